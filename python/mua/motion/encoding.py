@@ -1,0 +1,33 @@
+"""How a pose window becomes the motion descriptor that the coefficient MLPs read (paper, Sec. Data Assumption)."""
+
+from dataclasses import dataclass
+
+from mua.arrays import Array
+
+
+@dataclass(frozen=True)
+class PoseEncoding:
+    """The declared form of the motion descriptor, stored in every recording and asset.
+
+    Per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3),
+    the root joint's world rotation relative to its bind rotation (6D), then the local rotations of `joints` (6D each).
+    With `heading`, root positions and rotations are turned back by the yaw of frame f.
+    """
+
+    joints: tuple[int, ...]  # joints encoded beside the root, ascending, root excluded
+    rate: float  # frames per second between the frames of a window
+    window: int = 3  # k
+    heading: bool = True
+
+    @property
+    def width(self) -> int:
+        """k x D, the length of a descriptor."""
+        return self.window * (9 + 6 * len(self.joints))
+
+
+@dataclass(frozen=True)
+class Normalization:
+    """Mean and scale that a descriptor passes before the first layer: (x - mean) / scale."""
+
+    mean: Array  # [k D]
+    scale: Array  # [k D], > 0

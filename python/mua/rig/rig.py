@@ -1,0 +1,19 @@
+"""What a teacher and its student share: skeleton, skinned template and texture space."""
+
+from dataclasses import dataclass
+
+from mua.arrays import Array
+from mua.rig.character import Mesh
+from mua.rig.skeleton import Skeleton
+from mua.rig.texel_map import TexelMap
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A skinned template of a few thousand vertices and the texels on it (paper, Data Assumption)."""
+
+    skeleton: Skeleton
+    mesh: Mesh  # the template; its vertices are the canonical (bind) pose
+    skin_indices: Array  # [V, 8] int32
+    skin_weights: Array  # [V, 8] float32, rows sum to 1
+    texels: TexelMap

@@ -1,0 +1,70 @@
+"""A skeleton of rigid joints and its forward kinematics."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One moment of a skeleton: what moves each joint relative to its parent."""
+
+    rotations: Array  # [J, 4] local joint rotations, unit, wxyz
+    translation: Array  # [3] local translation of the skeleton's root joint, metres
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """Joints in parent-before-child order; metres, Y up, right-handed; column vectors.
+
+    Every transform is rigid: scales of the source are folded into the mesh. Only joint `root`
+    (the hips of a person) carries an animated translation; the others keep that of the bind pose.
+    """
+
+    names: tuple[str, ...]
+    parents: Array  # [J] int32, -1 for a joint without parent
+    bind_rotations: Array  # [J, 4] local rotations of the bind pose, unit, wxyz
+    bind_translations: Array  # [J, 3] local translations of the bind pose, metres
+    root: int
+
+    @property
+    def bind_pose(self) -> Pose:
+        return Pose(self.bind_rotations, self.bind_translations[self.root])
+
+    @cached_property
+    def bind_inverse(self) -> Array:
+        """[J, 8] dual quaternions from the bind pose's world space to each joint's own."""
+        return rotation.dual_inverse(rotation.dual_from_rigid(*self.world(*self._bind)))
+
+    @property
+    def _bind(self) -> tuple[Array, Array]:
+        return self.bind_rotations, self.bind_translations[self.root]
+
+    def world(
+        self,
+        rotations: Array,  # [..., J, 4] local
+        translation: Array,  # [..., 3] local translation of the root joint
+    ) -> tuple[Array, Array]:
+        """Joint-to-world rotations [..., J, 4] and positions [..., J, 3] (forward kinematics)."""
+        turned = np.empty(rotations.shape)
+        placed = np.empty((*rotations.shape[:-1], 3))
+        for j, parent in enumerate(self.parents):
+            local = translation if j == self.root else self.bind_translations[j]
+            if parent < 0:
+                turned[..., j, :], placed[..., j, :] = rotations[..., j, :], local
+                continue
+            turned[..., j, :] = rotation.multiply(turned[..., parent, :], rotations[..., j, :])
+            placed[..., j, :] = placed[..., parent, :] + rotation.rotate(turned[..., parent, :], local)
+        return turned, placed
+
+    def skinning(
+        self,
+        rotations: Array,  # [..., J, 4] local
+        translation: Array,  # [..., 3] local translation of the root joint
+    ) -> Array:
+        """Dual quaternions [..., J, 8] that carry bind-pose points to the posed world."""
+        return rotation.dual_multiply(rotation.dual_from_rigid(*self.world(rotations, translation)), self.bind_inverse)

@@ -1,0 +1,30 @@
+"""The teacher protocol: anything that yields pose, canonical mesh and Gaussian texture, frame by frame."""
+
+from collections.abc import Container, Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from mua.arrays import Array
+from mua.motion.clip import Clip
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Pose
+
+
+@dataclass(frozen=True)
+class TeacherFrame:
+    """One frame of a teacher."""
+
+    pose: Pose
+    mesh: Array  # [V, 3] float32 canonical template vertices, metres
+    texture: Array  # [N, 23] float32 raw channels (mua.texture.channels) at the valid texels, in the order of the texel map
+
+
+class Teacher(Protocol):
+    """A source of frames; `rig` says what they are frames of."""
+
+    @property
+    def rig(self) -> Rig: ...
+
+    def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
+        """Yield, for every frame of `clip` in order, a whole frame where its index is in `wanted`, else the pose alone."""
+        ...

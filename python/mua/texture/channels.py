@@ -1,0 +1,21 @@
+"""The 23 channels of a Gaussian texture, before activation (paper, Sec. Teacher Model; design: geometry 11, appearance 12).
+
+Offsets are metres in canonical space; quaternions wxyz raw; scales are natural logarithms of metres; opacity is a logit;
+SH is degree 1, coefficient-major (coefficient, rgb), in canonical space:
+colour = 0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3) for the unit direction (x, y, z) from camera to splat.
+"""
+
+GEOMETRY = slice(0, 11)
+APPEARANCE = slice(11, 23)
+CHANNELS = 23
+
+ATTRIBUTES = {
+    "offset": slice(0, 3),
+    "rotation": slice(3, 7),
+    "scale": slice(7, 10),
+    "opacity": slice(10, 11),
+    "SH": slice(11, 23),
+}
+
+SH_C0 = 0.28209479177387814  # 1 / (2 sqrt(pi))
+SH_C1 = 0.4886025119029199  # sqrt(3 / (4 pi))

@@ -1,0 +1,22 @@
+"""Fixtures shared by all tests."""
+
+from pathlib import Path
+
+import pytest
+
+SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+class SharedData:
+    """Real inputs that lie beside a checkout; a test that needs an absent one skips and names it."""
+
+    def path(self, name: str) -> Path:
+        found = SHARED_DATA / name
+        if not found.exists():
+            pytest.skip(f"needs shared/data/{name} beside the checkout")
+        return found
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> SharedData:
+    return SharedData()
