@@ -107,8 +107,7 @@ def _accumulate(
     """Add weight x dual on the hemisphere of the reference."""
     dot = np.einsum("ni,ni->n", dual[:, :4], reference)
     signed = np.where(dot < 0, -weight, weight).astype(total.dtype)
-    dual *= signed[:, None]
-    total += dual
+    total += signed[:, None] * dual
 
 
 def _normalize(

@@ -1,0 +1,129 @@
+"""A small random avatar for tests: a three-joint tube of 12 vertices, 32 x 32 texels, four wavelet levels (LL 2 x 2)."""
+
+import numpy as np
+import pywt
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.motion.clip import Clip
+from mua.motion.encoding import Normalization, PoseEncoding
+from mua.rig.character import Mesh
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+from mua.rig.texel_map import TexelMap
+
+SIZE = 32
+LEVELS = 4
+RINGS, SPOKES = 4, 3
+RANKS = (4, 3, 2)  # LL, D3, D2
+PCA = 4
+HIDDEN = 16
+
+
+def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4") -> Avatar:
+    """The same avatar for the same arguments; all tensors float32, wavelet taps and UV float64."""
+    rng = np.random.default_rng(seed)
+    rig = synthetic_rig()
+    encoding = PoseEncoding(joints=(1, 2), rate=24.0)
+    scale = rng.uniform(0.5, 2, encoding.width).astype(np.float32)
+    taps = pywt.Wavelet(wavelet)
+    vertices = rig.mesh.vertices.astype(np.float32)
+    return Avatar(
+        name="synthetic",
+        producer="mua tests",
+        rig=rig,
+        encoding=encoding,
+        normalization=Normalization(_normal(rng, encoding.width, 0.1), scale),
+        coarse=Coarse(_mlp(rng, encoding.width, PCA), vertices, _normal(rng, (PCA, *vertices.shape), 0.01)),
+        geometry=_branch(rng, encoding.width, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], len(rig.texels.texels)),
+        appearance=_branch(rng, encoding.width, [0] * 12, len(rig.texels.texels)),
+        wavelet=Wavelet(wavelet, LEVELS, np.array(taps.rec_lo), np.array(taps.rec_hi)),
+        clips=(synthetic_clip(rig.skeleton, rng),),
+        bounds=np.array([[-1, -1, -1], [1, 2, 1]], dtype=np.float32),
+        thumbnail=b"",
+        notes="random numbers in the shape of an avatar",
+    )
+
+
+def synthetic_rig() -> Rig:
+    """A triangular tube along +Y, open at both ends, with a UV seam along it; joints at heights 0, 0.5 and 1 m."""
+    skeleton = Skeleton(
+        names=("root", "middle", "tip"),
+        parents=np.array([-1, 0, 1], dtype=np.int32),
+        bind_rotations=np.tile([1.0, 0, 0, 0], (3, 1)),
+        bind_translations=np.array([[0, 0.1, 0], [0, 0.5, 0], [0, 0.5, 0]]),
+        root=0,
+    )
+    height, angle = np.meshgrid(np.linspace(0, 1.5, RINGS), 2 * np.pi * np.arange(SPOKES) / SPOKES, indexing="ij")
+    vertices = np.stack([0.3 * np.sin(angle), height, 0.3 * np.cos(angle)], axis=-1).reshape(-1, 3)
+    columns, rows = np.meshgrid(np.linspace(0.1, 0.9, SPOKES + 1), np.linspace(0.9, 0.1, RINGS))
+    corners = [(r, s) for r in range(RINGS - 1) for s in range(SPOKES)]
+    quads = [[(r, s), (r, s + 1), (r + 1, s + 1), (r + 1, s)] for r, s in corners]
+    triangles = [[q[i] for i in half] for q in quads for half in ((0, 1, 2), (0, 2, 3))]
+    mesh = Mesh(
+        vertices=vertices,
+        faces=np.array([[r * SPOKES + s % SPOKES for r, s in t] for t in triangles], dtype=np.int32),
+        uv=np.stack([columns, rows], axis=-1).reshape(-1, 2),
+        uv_faces=np.array([[r * (SPOKES + 1) + s for r, s in t] for t in triangles], dtype=np.int32),
+    )
+    skin = np.maximum(0, 1 - 2 * np.abs(vertices[:, 1:2] - [[0.1, 0.6, 1.1]])) + 0.05
+    order = np.argsort(-skin, axis=1, kind="stable")
+    indices, weights = np.zeros((len(vertices), 8), np.int32), np.zeros((len(vertices), 8), np.float32)
+    indices[:, :3] = order
+    weights[:, :3] = np.take_along_axis(skin / skin.sum(axis=1, keepdims=True), order, axis=1)
+    return Rig(skeleton, mesh, indices, weights, _texel_map(mesh))
+
+
+def synthetic_clip(skeleton: Skeleton, rng: np.random.Generator, *, frames: int = 7) -> Clip:
+    """Random smooth turning of every joint while the root drifts."""
+    axes = rotation.normalize(rng.normal(size=(len(skeleton.names), 3)))
+    angles = 0.6 * np.sin(np.arange(frames)[:, None] / 2 + np.arange(len(skeleton.names)))
+    drift = skeleton.bind_translations[skeleton.root] + np.arange(frames)[:, None] * [0.02, 0, 0.05]
+    return Clip("wave", 24.0, rotation.from_axis_angle(axes, angles), drift)
+
+
+def _texel_map(mesh: Mesh) -> TexelMap:
+    """Texels whose centre lies in a UV triangle; the first triangle that holds it wins."""
+    row, column = np.divmod(np.arange(SIZE * SIZE), SIZE)
+    centres = (np.stack([column, row], axis=1) + 0.5) / SIZE
+    corners = mesh.uv[mesh.uv_faces]  # [F, 3, 2]
+    system = np.concatenate([corners, np.ones((len(corners), 3, 1))], axis=2).transpose(0, 2, 1)
+    wanted = np.concatenate([centres, np.ones((len(centres), 1))], axis=1)
+    bary = np.einsum("fij,nj->nfi", np.linalg.inv(system), wanted)
+    inside = bary.min(axis=2) >= 0
+    texels = np.flatnonzero(inside.any(axis=1))
+    triangles = np.argmax(inside[texels], axis=1)
+    return TexelMap(
+        SIZE, texels.astype(np.int32), triangles.astype(np.int32), bary[texels, triangles].astype(np.float32), 0
+    )
+
+
+def _branch(rng: np.random.Generator, inputs: int, means: list[float], texels: int) -> Branch:
+    channels, side = len(means), SIZE >> LEVELS
+    gain = 2**LEVELS  # of a constant through the analysis, two per level in 2D
+    constant = np.array(means, dtype=np.float32)[:, None, None] * gain
+    return Branch(
+        mlp=_mlp(rng, inputs, channels * sum(RANKS)),
+        ll_mean=constant + _normal(rng, (channels, side, side), 0.3),
+        ll_basis=_normal(rng, (channels, RANKS[0], side, side), 0.3),
+        details=tuple(_band(rng, channels, rank, side << i) for i, rank in enumerate(RANKS[1:])),
+        static=_normal(rng, (channels, texels), 0.01),
+    )
+
+
+def _band(rng: np.random.Generator, channels: int, rank: int, side: int) -> DetailBand:
+    shape = (3, channels, rank, side)
+    return DetailBand(_normal(rng, (3, channels, side, side), 0.1), _normal(rng, shape, 0.2), _normal(rng, shape, 0.2))
+
+
+def _mlp(rng: np.random.Generator, inputs: int, outputs: int) -> Mlp:
+    sizes = (inputs, HIDDEN, HIDDEN, outputs)
+    return tuple(
+        Layer(_normal(rng, (n, m), 1 / np.sqrt(m)), _normal(rng, n, 0.1))
+        for m, n in zip(sizes[:-1], sizes[1:], strict=True)
+    )
+
+
+def _normal(rng: np.random.Generator, shape: int | tuple[int, ...], scale: float) -> Array:
+    return (scale * rng.normal(size=shape)).astype(np.float32)
