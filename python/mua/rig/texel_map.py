@@ -93,7 +93,7 @@ def _corner_areas(
     texels: Array,  # [n] row * size + col
     size: int,
 ) -> Array:
-    """Twice the area [n, 3] that each texel centre spans with the edge opposite each corner; >= 0 inside, 0 on the edge.
+    """Twice the area [n, 3] that each texel centre spans with the edge opposite each corner; >= 0 inside.
 
     Both triangles of an edge evaluate it from the same end, so their values differ in sign alone: rounding opens no
     gap between neighbours and makes no overlap.
