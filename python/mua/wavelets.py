@@ -1,0 +1,171 @@
+"""Batched 2-D discrete wavelet transforms in torch: PyWavelets' `periodization` mode, which halves even sizes exactly.
+
+Along one axis of length n a level of the transform is linear and periodic, so it is a product with an [n, n] matrix whose
+rows are shifted filters. The matrices are built once and cached: at texture sizes a dense product is several times faster than a
+strided convolution on a CPU, runs on any device and dtype, and composes (two low-pass levels are one matrix).
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+import pywt
+import torch
+from torch import Tensor
+
+from mua.arrays import Array
+from mua.errors import InputError
+
+
+def wavedec2(
+    x: Tensor,  # [..., H, W]
+    wavelet: str,
+    levels: int,
+) -> tuple[Tensor, list[Tensor]]:
+    """Split images into the low-pass subband [..., H / 2^levels, W / 2^levels] and `levels` detail levels, coarse first.
+
+    A detail level is [..., 3, h, w] in the order (cH, cV, cD) of pywt: high-pass along H, along W, along both.
+    Raises InputError where H or W cannot be halved `levels` times.
+    """
+    _check_divisible(x, levels)
+    details: list[Tensor] = []
+    for _ in range(levels):
+        h, w = x.shape[-2] // 2, x.shape[-1] // 2
+        y = _both_axes(x, _analysis_matrix(wavelet, 2 * h), _analysis_matrix(wavelet, 2 * w))
+        details.append(torch.stack([y[..., h:, :w], y[..., :h, w:], y[..., h:, w:]], dim=-3))
+        x = y[..., :h, :w]
+    return x, details[::-1]
+
+
+def waverec2(
+    ll: Tensor,  # [..., h, w] low-pass subband
+    details: Sequence[Tensor],  # coarse first, each [..., 3, h, w], h and w doubling from one to the next
+    wavelet: str,
+) -> Tensor:
+    """Rebuild images [..., H, W] from the subbands of `wavedec2`; the inverse of it.
+
+    Raises InputError where a detail level does not have the size of the image built up to it.
+    """
+    for level in details:
+        if level.shape[-3:] != (3, *ll.shape[-2:]):
+            raise InputError(
+                f"waverec2: a detail level has shape {tuple(level.shape)}, expected [..., 3, {ll.shape[-2]}, {ll.shape[-1]}]"
+            )
+        rows, columns = ll.shape[-2:]
+        horizontal, vertical, diagonal = level.unbind(-3)
+        top, bottom = torch.cat([ll, vertical], dim=-1), torch.cat([horizontal, diagonal], dim=-1)
+        quadrants = torch.cat([top, bottom], dim=-2)
+        ll = _both_axes(quadrants, _synthesis_matrix(wavelet, 2 * rows), _synthesis_matrix(wavelet, 2 * columns))
+    return ll
+
+
+def analyse_lowpass(
+    x: Tensor,  # [..., H, W]
+    wavelet: str,
+    levels: int,
+) -> Tensor:
+    """The low-pass subband [..., H / 2^levels, W / 2^levels] alone: what `wavedec2` returns first, without the details.
+
+    Raises InputError where H or W cannot be halved `levels` times.
+    """
+    _check_divisible(x, levels)
+    rows, columns = x.shape[-2:]
+    return _both_axes(
+        x, _lowpass_analysis_matrix(wavelet, rows, levels), _lowpass_analysis_matrix(wavelet, columns, levels)
+    )
+
+
+def synthesise_lowpass(
+    ll: Tensor,  # [..., h, w]
+    wavelet: str,
+    levels: int,
+) -> Tensor:
+    """The images [..., h 2^levels, w 2^levels] of a low-pass subband whose details of `levels` levels are all zero."""
+    rows, columns = ll.shape[-2:]
+    return _both_axes(
+        ll, _lowpass_synthesis_matrix(wavelet, rows, levels), _lowpass_synthesis_matrix(wavelet, columns, levels)
+    )
+
+
+def static_offset(
+    image: Tensor,  # [..., H, W]
+    wavelet: str,
+    levels: int = 2,
+) -> Tensor:
+    """The part [..., H, W] of images that lives in their finest detail levels: IDWT(0, 0, 0, D1, D0) (paper, Eq. static offset).
+
+    As the transform inverts exactly, it is the image less the synthesis of its low-pass subband.
+    """
+    return image - synthesise_lowpass(analyse_lowpass(image, wavelet, levels), wavelet, levels)
+
+
+def _both_axes(
+    x: Tensor,  # [..., H, W]
+    rows: Array,  # [H', H]
+    columns: Array,  # [W', W]
+) -> Tensor:
+    """The images [..., H', W'] of a separable linear map."""
+    left = torch.as_tensor(rows, dtype=x.dtype, device=x.device)
+    right = torch.as_tensor(columns, dtype=x.dtype, device=x.device)
+    return left @ (x @ right.T)
+
+
+def _check_divisible(x: Tensor, levels: int) -> None:
+    rows, columns = x.shape[-2:]
+    if rows % 2**levels or columns % 2**levels:
+        raise InputError(
+            f"wavelet transform: size {rows} x {columns} cannot be halved {levels} times, expected multiples of {2**levels}"
+        )
+
+
+def filters(wavelet: str) -> pywt.Wavelet:
+    """The filter bank of a discrete wavelet by its PyWavelets name; raises InputError where there is none."""
+    if wavelet not in pywt.wavelist(kind="discrete"):
+        raise InputError(
+            f"wavelet: {wavelet!r} is unknown, expected a discrete wavelet of PyWavelets such as 'bior4.4'"
+        )
+    return pywt.Wavelet(wavelet)
+
+
+@lru_cache(maxsize=64)
+def _analysis_matrix(wavelet: str, n: int) -> Array:
+    """[n, n] float64: n / 2 low-pass rows, then n / 2 high-pass rows; output o of taps f is sum_j f[j] x[2 o + L / 2 - j]."""
+    bank = filters(wavelet)
+    matrix = np.zeros((n, n))
+    output, tap = np.meshgrid(np.arange(n // 2), np.arange(bank.dec_len), indexing="ij")
+    source = (2 * output + bank.dec_len // 2 - tap) % n
+    np.add.at(matrix, (output, source), np.asarray(bank.dec_lo)[tap])
+    np.add.at(matrix, (output + n // 2, source), np.asarray(bank.dec_hi)[tap])
+    return matrix
+
+
+@lru_cache(maxsize=64)
+def _synthesis_matrix(wavelet: str, n: int) -> Array:
+    """[n, n] float64, the inverse of the analysis: coefficient o adds r[k] to output 2 o + k + 1 - L / 2."""
+    bank = filters(wavelet)
+    matrix = np.zeros((n, n))
+    coefficient, tap = np.meshgrid(np.arange(n // 2), np.arange(bank.rec_len), indexing="ij")
+    target = (2 * coefficient + tap + 1 - bank.rec_len // 2) % n
+    np.add.at(matrix, (target, coefficient), np.asarray(bank.rec_lo)[tap])
+    np.add.at(matrix, (target, coefficient + n // 2), np.asarray(bank.rec_hi)[tap])
+    return matrix
+
+
+@lru_cache(maxsize=64)
+def _lowpass_analysis_matrix(wavelet: str, n: int, levels: int) -> Array:
+    """[n / 2^levels, n] float64: the low-pass halves of `levels` analysis steps as one product."""
+    matrix = np.eye(n)
+    for level in range(levels):
+        size = n >> level
+        matrix = _analysis_matrix(wavelet, size)[: size // 2] @ matrix
+    return matrix
+
+
+@lru_cache(maxsize=64)
+def _lowpass_synthesis_matrix(wavelet: str, n: int, levels: int) -> Array:
+    """[n 2^levels, n] float64: the low-pass halves of `levels` synthesis steps as one product."""
+    matrix = np.eye(n)
+    for level in range(levels):
+        size = n << level
+        matrix = _synthesis_matrix(wavelet, 2 * size)[:, :size] @ matrix
+    return matrix
