@@ -60,7 +60,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class Coarse:
-    """The coarse mesh: F_temp predicts the PCA coefficients of the canonical vertices (paper, Animatable Coarse Geometry)."""
+    """The coarse mesh: F_temp predicts the PCA coefficients of the canonical vertices (paper, Coarse Geometry)."""
 
     mlp: Mlp
     mean: Array  # [V, 3] metres

@@ -1,0 +1,283 @@
+"""Read a `.muaavatar` file: every shape relation, range and finiteness is checked before an Avatar leaves here."""
+
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.asset.flatbuffer import FormatError, Tree, parse
+from mua.asset.tensors import indices, reals
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.motion.encoding import Normalization, PoseEncoding
+from mua.rig.character import MAX_INFLUENCES, Mesh
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+from mua.rig.texel_map import TexelMap
+
+UNIT_BOUND = 2e-3  # a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
+WEIGHT_BOUND = 1e-4  # 8 weights rounded to f32, with room for a writer that rounds to f16-derived values
+BIND_BOUND = 1e-4  # metres and quaternion components: f32 forward kinematics over a deep chain
+MAX_SIZE = 4096
+MAX_LEVELS = 8
+GEOMETRY_CHANNELS, APPEARANCE_CHANNELS = 11, 12
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+
+
+def read(path: Path) -> Avatar:
+    """The avatar in the file at `path`; stored f16 and i8 are expanded to float32.
+
+    Errors: InputError with one sentence that names the file, the field and what is wrong with it.
+    """
+    try:
+        return decode_tree(load(path))
+    except FormatError as error:
+        raise error.inside(str(path)) from error
+
+
+def load(path: Path) -> Tree:
+    """The file at `path` as a tree whose bytes and checksum are sound; tensors stay in their stored type.
+
+    Errors: InputError naming the file and field.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from error
+    try:
+        return parse_checked(content)
+    except FormatError as error:
+        raise error.inside(str(path)) from error
+
+
+def parse_checked(content: bytes) -> Tree:
+    """The tree of a file whose structure and checksum are sound.
+
+    Errors: FormatError, with code `checksum` where the content is not what was written.
+    """
+    tree = parse(content)
+    at = tree["_at"].get("crc32")
+    if at is None:
+        raise FormatError("missing", "crc32", "the field is required and absent")
+    found = zlib.crc32(content[at + 4 :], zlib.crc32(bytes(4), zlib.crc32(content[:at])))
+    if found != tree["crc32"]:
+        raise FormatError(
+            "checksum", "crc32", f"{tree['crc32']:08x}, but the content gives {found:08x}: the file is damaged"
+        )
+    return tree
+
+
+def decode_tree(tree: Tree) -> Avatar:
+    """The avatar that a tree describes.
+
+    Errors: FormatError with code `shape`, `type`, `range`, `finite` or `value` and the field's path.
+    """
+    skeleton = _skeleton(tree["skeleton"])
+    encoding, normalization = _encoding(tree["encoding"], skeleton)
+    wavelet = _wavelet(tree["wavelet"])
+    coarse = _coarse(tree["coarse"], encoding.width)
+    rig = _rig(tree, skeleton, coarse.mean)
+    size, count = rig.texels.size, len(rig.texels.texels)
+    branches = [
+        _branch(tree[name], name, channels, count=count, width=encoding.width, size=size >> wavelet.levels)
+        for name, channels in (("geometry", GEOMETRY_CHANNELS), ("appearance", APPEARANCE_CHANNELS))
+    ]
+    if size % (1 << wavelet.levels):
+        _refuse("texels.size", f"{size} does not halve {wavelet.levels} times")
+    if max(len(branch.details) for branch in branches) > wavelet.levels:
+        _refuse("geometry.details", f"more levels of detail than the wavelet's {wavelet.levels}")
+    return Avatar(
+        name=tree["name"],
+        producer=tree["producer"],
+        rig=rig,
+        encoding=encoding,
+        normalization=normalization,
+        coarse=coarse,
+        geometry=branches[0],
+        appearance=branches[1],
+        wavelet=wavelet,
+        clips=tuple(_clip(clip, f"clips[{i}]", skeleton) for i, clip in enumerate(tree["clips"])),
+        bounds=_bounds(tree["bounds"]),
+        thumbnail=_thumbnail(tree["thumbnail"]),
+        notes=tree["notes"],
+    )
+
+
+def _refuse(field: str, sentence: str) -> None:
+    raise FormatError("value", field, sentence)
+
+
+def _skeleton(tree: Tree) -> Skeleton:
+    count = len(tree["names"])
+    parents = indices(tree["parents"], "skeleton.parents", (count,), -1, count)
+    late = np.flatnonzero(parents >= np.arange(count))
+    if late.size:
+        _refuse("skeleton.parents", f"joint {late[0]} stands before its parent {parents[late[0]]}")
+    if not tree["root"] < count:
+        _refuse("skeleton.root", f"{tree['root']}, but there are {count} joints")
+    skeleton = Skeleton(
+        names=tuple(tree["names"]),
+        parents=parents,
+        bind_rotations=_unit(tree["bind_rotations"], "skeleton.bind_rotations", count),
+        bind_translations=reals(tree["bind_translations"], "skeleton.bind_translations", (count, 3)),
+        root=tree["root"],
+    )
+    stated = reals(tree["bind_inverse"], "skeleton.bind_inverse", (count, 8))
+    gap = np.minimum(np.abs(stated - skeleton.bind_inverse), np.abs(stated + skeleton.bind_inverse)).max()
+    if gap > BIND_BOUND:
+        _refuse("skeleton.bind_inverse", f"differs by {gap:.1e} from the inverse of the bind pose")
+    return skeleton
+
+
+def _unit(tensor: Tree, path: str, joints: int) -> Array:
+    """Unit quaternions [..., J, 4], renormalised after storage."""
+    shape: tuple[int | None, ...] = (joints, 4) if len(tensor["shape"]) == 2 else (None, joints, 4)
+    q = reals(tensor, path, shape).astype(np.float64)
+    lengths = np.linalg.norm(q, axis=-1)
+    if np.abs(lengths - 1).max(initial=0) > UNIT_BOUND:
+        worst = lengths.ravel()[np.abs(lengths - 1).argmax()]
+        _refuse(path, f"a quaternion of length {worst:.4g}, expected 1")
+    return rotation.normalize(q)
+
+
+def _encoding(tree: Tree, skeleton: Skeleton) -> tuple[PoseEncoding, Normalization]:
+    joints = indices(tree["joints"], "encoding.joints", (None,), 0, len(skeleton.names))
+    if np.any(np.diff(joints) <= 0) or skeleton.root in joints:
+        _refuse("encoding.joints", "joints must ascend and leave out the root")
+    if not 1 <= tree["window"] <= 16:
+        _refuse("encoding.window", f"{tree['window']} frames, expected 1 to 16")
+    encoding = PoseEncoding(
+        joints=tuple(int(j) for j in joints),
+        rate=_rate(tree["rate"], "encoding.rate"),
+        window=tree["window"],
+        heading=tree["heading"],
+    )
+    scale = reals(tree["scale"], "encoding.scale", (encoding.width,))
+    if scale.min() <= 0:
+        _refuse("encoding.scale", f"{scale.min()}, expected more than 0")
+    return encoding, Normalization(mean=reals(tree["mean"], "encoding.mean", (encoding.width,)), scale=scale)
+
+
+def _rate(rate: float, path: str) -> float:
+    if not 0 < rate < float("inf"):
+        _refuse(path, f"{rate} frames per second, expected more than 0")
+    return rate
+
+
+def _rig(tree: Tree, skeleton: Skeleton, vertices: Array) -> Rig:
+    template, count = tree["template"], len(vertices)
+    uv = reals(template["uv"], "template.uv", (None, 2))
+    faces = indices(template["faces"], "template.faces", (None, 3), 0, count)
+    uv_faces = indices(template["uv_faces"], "template.uv_faces", (len(faces), 3), 0, len(uv))
+    influences = (count, MAX_INFLUENCES)
+    weights = reals(template["skin_weights"], "template.skin_weights", influences)
+    sums = weights.sum(axis=1)
+    if weights.min(initial=0) < 0 or np.abs(sums - 1).max(initial=0) > WEIGHT_BOUND:
+        vertex = int(np.abs(sums - 1).argmax())
+        _refuse("template.skin_weights", f"weights of vertex {vertex} sum to {sums[vertex]:.4g} or one is negative")
+    return Rig(
+        skeleton=skeleton,
+        mesh=Mesh(vertices=vertices, faces=faces, uv=uv, uv_faces=uv_faces),
+        skin_indices=indices(template["skin_indices"], "template.skin_indices", influences, 0, len(skeleton.names)),
+        skin_weights=weights,
+        texels=_texels(tree["texels"], len(faces)),
+    )
+
+
+def _texels(tree: Tree, faces: int) -> TexelMap:
+    size = tree["size"]
+    if not 1 <= size <= MAX_SIZE:
+        _refuse("texels.size", f"{size}, expected 1 to {MAX_SIZE}")
+    texels = indices(tree["texels"], "texels.texels", (None,), 0, size * size)
+    if np.any(np.diff(texels) <= 0):
+        _refuse("texels.texels", "texels must ascend")
+    triangles = indices(tree["triangles"], "texels.triangles", (len(texels),), 0, faces)
+    first = reals(tree["barycentrics"], "texels.barycentrics", (len(texels), 2))
+    barycentrics = np.column_stack([first, 1 - first.sum(axis=1)])
+    slack = 4 * np.finfo(np.float32).eps  # the third is a rounded difference
+    if barycentrics.min(initial=0) < -slack:
+        _refuse("texels.barycentrics", f"{barycentrics.min():.3g}, expected 0 to 1")
+    return TexelMap(
+        size=size, texels=texels, triangles=triangles, barycentrics=np.maximum(barycentrics, 0), claimed_twice=0
+    )
+
+
+def _wavelet(tree: Tree) -> Wavelet:
+    low, high = tree["rec_lo"], tree["rec_hi"]
+    if not 1 <= tree["levels"] <= MAX_LEVELS:
+        _refuse("wavelet.levels", f"{tree['levels']}, expected 1 to {MAX_LEVELS}")
+    if low.size != high.size or low.size % 2 or not 2 <= low.size <= 40:
+        _refuse("wavelet.rec_lo", f"{low.size} and {high.size} taps, expected an even number of each, 2 to 40")
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        raise FormatError("finite", "wavelet.rec_lo", "a value is not finite")
+    return Wavelet(name=tree["name"], levels=tree["levels"], rec_lo=low, rec_hi=high)
+
+
+def _mlp(layers: list[Tree], path: str, first: int, last: int) -> Mlp:
+    mlp: list[Layer] = []
+    width = first
+    for i, layer in enumerate(layers):
+        weight = reals(layer["weight"], f"{path}[{i}].weight", (None, width))
+        width = len(weight)
+        mlp.append(Layer(weight=weight, bias=reals(layer["bias"], f"{path}[{i}].bias", (width,))))
+    if not mlp or width != last:
+        raise FormatError("shape", path, f"{len(mlp)} layers with {width} outputs, expected {last}")
+    return tuple(mlp)
+
+
+def _coarse(tree: Tree, width: int) -> Coarse:
+    mean = reals(tree["mean"], "coarse.mean", (None, 3))
+    basis = reals(tree["basis"], "coarse.basis", (None, len(mean), 3))
+    return Coarse(mlp=_mlp(tree["mlp"], "coarse.mlp", width, len(basis)), mean=mean, basis=basis)
+
+
+def _branch(tree: Tree, path: str, channels: int, *, count: int, width: int, size: int) -> Branch:
+    """One branch over `count` texels with LL of `size`, driven by descriptors of `width`."""
+    basis = reals(tree["ll_basis"], f"{path}.ll_basis", (channels, None, size, size))
+    details = tuple(
+        _detail(band, f"{path}.details[{i}]", channels, size << i) for i, band in enumerate(tree["details"])
+    )
+    outputs = channels * (basis.shape[1] + sum(band.h.shape[2] for band in details))
+    return Branch(
+        mlp=_mlp(tree["mlp"], f"{path}.mlp", width, outputs),
+        ll_mean=reals(tree["ll_mean"], f"{path}.ll_mean", (channels, size, size)),
+        ll_basis=basis,
+        details=details,
+        static=reals(tree["static_offset"], f"{path}.static_offset", (channels, count)),
+    )
+
+
+def _detail(tree: Tree, path: str, channels: int, size: int) -> DetailBand:
+    h = reals(tree["h"], f"{path}.h", (3, channels, None, size))
+    return DetailBand(
+        mean=reals(tree["mean"], f"{path}.mean", (3, channels, size, size)),
+        h=h,
+        w=reals(tree["w"], f"{path}.w", h.shape),
+    )
+
+
+def _clip(tree: Tree, path: str, skeleton: Skeleton) -> Clip:
+    rotations = _unit(tree["rotations"], f"{path}.rotations", len(skeleton.names))
+    if rotations.ndim != 3 or not len(rotations):
+        _refuse(f"{path}.rotations", "a clip needs at least one frame")
+    translation = reals(tree["translation"], f"{path}.translation", (len(rotations), 3))
+    return Clip(
+        name=tree["name"], rate=_rate(tree["rate"], f"{path}.rate"), rotations=rotations, translation=translation
+    )
+
+
+def _bounds(tensor: Tree) -> Array:
+    bounds = reals(tensor, "bounds", (2, 3))
+    if np.any(bounds[0] > bounds[1]):
+        _refuse("bounds", f"lowest corner {bounds[0].tolist()} above highest {bounds[1].tolist()}")
+    return bounds
+
+
+def _thumbnail(content: Array) -> bytes:
+    thumbnail = content.tobytes()
+    if thumbnail and not thumbnail.startswith(PNG_SIGNATURE):
+        _refuse("thumbnail", "the content is no PNG")
+    return thumbnail

@@ -1,0 +1,105 @@
+"""The Tensor of the file: shape, element type, bytes, and one scale for each row where the type is i8."""
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.asset.flatbuffer import FormatError, Tree
+from mua.errors import InputError
+
+Storage = Literal["f32", "f16", "i8"]
+
+DTYPES = {"F32": np.dtype("<f4"), "F16": np.dtype("<f2"), "I8": np.dtype("i1"), "I32": np.dtype("<i4")}
+MAX_RANK = 4
+
+
+def pack(values: Array, storage: Storage = "f32", *, rows: int = 0) -> Tree:
+    """Store `values` as f32, f16 or i8; i8 scales each of `rows` equal parts to its largest magnitude.
+
+    Errors: InputError where a value is not finite or does not fit f16.
+    """
+    if storage == "i8":
+        return _pack_i8(np.asarray(values, dtype=np.float32), rows)
+    with np.errstate(over="ignore"):  # reported below, by value
+        stored = np.asarray(values).astype(DTYPES[storage.upper()])
+    if not np.isfinite(stored).all():
+        worst = np.asarray(values).ravel()[np.flatnonzero(~np.isfinite(stored))[0]]
+        raise InputError(f"the value {worst} cannot be stored as {storage}")
+    return _tensor(storage.upper(), stored)
+
+
+def pack_indices(values: Array) -> Tree:
+    """Store integers as i32."""
+    return _tensor("I32", np.asarray(values).astype("<i4"))
+
+
+def _pack_i8(values: Array, rows: int) -> Tree:
+    if not np.isfinite(values).all():
+        raise InputError("a value that is not finite cannot be stored as i8")
+    parts = values.reshape(rows, -1)
+    scale = np.abs(parts).max(axis=1, initial=0).astype(np.float32) / np.float32(127)
+    stored = np.rint(parts / np.where(scale == 0, 1, scale)[:, None]).astype(np.int8)
+    return {**_tensor("I8", stored.reshape(values.shape)), "scale": scale}
+
+
+def _tensor(kind: str, stored: Array) -> Tree:
+    data = np.ascontiguousarray(stored).reshape(-1).view(np.uint8)
+    return {"shape": np.array(stored.shape, "<u4"), "type": kind, "data": data}
+
+
+def stored(tensor: Tree, path: str) -> Array:
+    """The elements of a tensor in their stored type, a view of the file.
+
+    Errors: FormatError with code `shape` where shape, bytes and scales do not agree.
+    """
+    shape = [int(n) for n in tensor["shape"]]
+    if not 1 <= len(shape) <= MAX_RANK:
+        raise FormatError("shape", f"{path}.shape", f"{len(shape)} dimensions, expected 1 to {MAX_RANK}")
+    dtype = DTYPES[tensor["type"]]
+    if math.prod(shape) * dtype.itemsize != tensor["data"].size:
+        raise FormatError("shape", f"{path}.data", f"{tensor['data'].size} bytes do not fill {tensor['type']} {shape}")
+    rows = tensor["scale"].size if "scale" in tensor else 0
+    if (tensor["type"] == "I8") != (rows > 0) or (rows and math.prod(shape) % rows):
+        raise FormatError("shape", f"{path}.scale", f"{rows} scales do not fit {tensor['type']} {shape}")
+    return np.asarray(tensor["data"].view(dtype).reshape(shape))
+
+
+def indices(tensor: Tree, path: str, shape: tuple[int | None, ...], low: int, high: int) -> Array:
+    """Integers of `shape` (None: any length) within low <= i < high.
+
+    Errors: FormatError with code `shape`, `type` or `range`.
+    """
+    values = stored(tensor, path)
+    _check_shape(values, path, shape)
+    if tensor["type"] != "I32":
+        raise FormatError("type", path, f"element type {tensor['type']}, expected I32")
+    if values.size and (values.min() < low or values.max() >= high):
+        wrong = values[(values < low) | (values >= high)].ravel()[0]
+        raise FormatError("range", path, f"index {wrong} lies outside {low} to {high - 1}")
+    return values
+
+
+def reals(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
+    """Finite float32 values of `shape` (None: any length); f16 and i8 are expanded.
+
+    Errors: FormatError with code `shape`, `type` or `finite`.
+    """
+    values = stored(tensor, path)
+    _check_shape(values, path, shape)
+    if tensor["type"] == "I32":
+        raise FormatError("type", path, "element type I32, expected F32, F16 or I8")
+    if tensor["type"] == "I8":
+        scale = tensor["scale"]
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite then is reported below
+            values = (values.reshape(scale.size, -1).astype(np.float32) * scale[:, None]).reshape(values.shape)
+    if not np.isfinite(values).all() or not np.isfinite(tensor.get("scale", np.zeros(1))).all():
+        raise FormatError("finite", path, "a value is not finite")
+    return values.astype(np.float32, copy=False)
+
+
+def _check_shape(values: Array, path: str, shape: tuple[int | None, ...]) -> None:
+    if len(values.shape) != len(shape) or any(e not in (None, n) for e, n in zip(shape, values.shape, strict=True)):
+        expected = ", ".join("any" if n is None else str(n) for n in shape)
+        raise FormatError("shape", f"{path}.shape", f"{list(values.shape)}, expected [{expected}]")

@@ -1,0 +1,146 @@
+"""Write an Avatar as a `.muaavatar` file (schemas/muaavatar.fbs)."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Mlp
+from mua.asset.flatbuffer import VERSION, Tree, build, parse
+from mua.asset.read import decode_tree, parse_checked
+from mua.asset.tensors import Storage, pack, pack_indices
+from mua.files import write_bytes
+from mua.motion.clip import Clip
+from mua.motion.encoding import Normalization, PoseEncoding
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+
+
+def write(path: Path, avatar: Avatar, *, storage: Storage = "f16") -> None:
+    """Write `avatar` to `path`, atomically; what the reader would refuse is never written.
+
+    `storage` is the element type of bases, static offset and MLP weights; positions, means of LL and biases stay f32.
+    Errors: InputError naming the field that a file cannot hold.
+    """
+    write_bytes(path, encode(avatar, storage=storage))
+
+
+def encode(avatar: Avatar, *, storage: Storage = "f16") -> bytes:
+    """The bytes of a file; the same avatar gives the same bytes."""
+    content = seal(build(_avatar(avatar, storage)))
+    decode_tree(parse_checked(content))
+    return content
+
+
+def seal(content: bytes) -> bytes:
+    """`content` with its checksum set: CRC-32 of the whole file with the checksum's four bytes zero."""
+    at = parse(content)["_at"]["crc32"]
+    blank = content[:at] + bytes(4) + content[at + 4 :]
+    return blank[:at] + struct.pack("<I", zlib.crc32(blank)) + blank[at + 4 :]
+
+
+def _avatar(avatar: Avatar, storage: Storage) -> Tree:
+    return {
+        "version_major": VERSION[0],
+        "version_minor": VERSION[1],
+        "crc32": 0,
+        "axes": "MetresYUpRightHanded",
+        "name": avatar.name,
+        "producer": avatar.producer,
+        "notes": avatar.notes,
+        "skeleton": _skeleton(avatar.rig.skeleton),
+        "encoding": _encoding(avatar.encoding, avatar.normalization),
+        "template": _template(avatar.rig),
+        "texels": {
+            "size": avatar.rig.texels.size,
+            "texels": pack_indices(avatar.rig.texels.texels),
+            "triangles": pack_indices(avatar.rig.texels.triangles),
+            "barycentrics": pack(avatar.rig.texels.barycentrics[:, :2]),
+        },
+        "wavelet": {
+            "name": avatar.wavelet.name,
+            "levels": avatar.wavelet.levels,
+            "rec_lo": avatar.wavelet.rec_lo,
+            "rec_hi": avatar.wavelet.rec_hi,
+        },
+        "coarse": _coarse(avatar.coarse, storage),
+        "geometry": _branch(avatar.geometry, storage),
+        "appearance": _branch(avatar.appearance, storage),
+        "clips": [_clip(clip, storage) for clip in avatar.clips],
+        "bounds": pack(avatar.bounds),
+        "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
+    }
+
+
+def _skeleton(skeleton: Skeleton) -> Tree:
+    return {
+        "names": list(skeleton.names),
+        "parents": pack_indices(skeleton.parents),
+        "bind_rotations": pack(skeleton.bind_rotations),
+        "bind_translations": pack(skeleton.bind_translations),
+        "bind_inverse": pack(skeleton.bind_inverse),
+        "root": skeleton.root,
+    }
+
+
+def _encoding(encoding: PoseEncoding, normalization: Normalization) -> Tree:
+    return {
+        "joints": pack_indices(np.array(encoding.joints, dtype=np.int32)),
+        "rotation": "SixD",
+        "order": "NewestFirst",
+        "window": encoding.window,
+        "rate": encoding.rate,
+        "heading": encoding.heading,
+        "mean": pack(normalization.mean),
+        "scale": pack(normalization.scale),
+    }
+
+
+def _template(rig: Rig) -> Tree:
+    return {
+        "faces": pack_indices(rig.mesh.faces),
+        "uv": pack(rig.mesh.uv),
+        "uv_faces": pack_indices(rig.mesh.uv_faces),
+        "skin_indices": pack_indices(rig.skin_indices),
+        "skin_weights": pack(rig.skin_weights),
+    }
+
+
+def _mlp(mlp: Mlp, storage: Storage) -> list[Tree]:
+    return [{"weight": pack(la.weight, storage, rows=len(la.weight)), "bias": pack(la.bias)} for la in mlp]
+
+
+def _coarse(coarse: Coarse, storage: Storage) -> Tree:
+    basis = pack(coarse.basis, storage, rows=len(coarse.basis))
+    return {"mlp": _mlp(coarse.mlp, storage), "mean": pack(coarse.mean), "basis": basis}
+
+
+def _branch(branch: Branch, storage: Storage) -> Tree:
+    channels, rank = branch.ll_basis.shape[:2]
+    return {
+        "mlp": _mlp(branch.mlp, storage),
+        "ll_mean": pack(branch.ll_mean),
+        "ll_basis": pack(branch.ll_basis, storage, rows=channels * rank),
+        "details": [_detail(band, storage) for band in branch.details],
+        "static_offset": pack(branch.static, storage, rows=channels),
+    }
+
+
+def _detail(band: DetailBand, storage: Storage) -> Tree:
+    rows = int(np.prod(band.h.shape[:3]))
+    return {
+        "mean": pack(band.mean, _half(storage)),
+        "h": pack(band.h, storage, rows=rows),
+        "w": pack(band.w, storage, rows=rows),
+    }
+
+
+def _clip(clip: Clip, storage: Storage) -> Tree:
+    rotations = pack(clip.rotations, _half(storage))
+    return {"name": clip.name, "rate": clip.rate, "rotations": rotations, "translation": pack(clip.translation)}
+
+
+def _half(storage: Storage) -> Storage:
+    """i8 would cost more than it saves on tensors that are small or have no rows of like magnitude."""
+    return "f16" if storage == "i8" else storage

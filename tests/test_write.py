@@ -1,0 +1,120 @@
+"""The writer: exact round trips, storage types, same bytes for the same avatar, nothing lost on failure."""
+
+import dataclasses
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar
+
+from mua.arrays import Array
+from mua.asset.read import decode_tree, load, parse_checked, read
+from mua.asset.tensors import Storage
+from mua.asset.write import encode, write
+from mua.errors import InputError
+
+ROOT = Path(__file__).resolve().parents[1]
+GOLDEN = ROOT / "tests" / "golden" / "synthetic.muaavatar"
+F16_RELATIVE = 2.0**-11  # half a unit in the last place of 11 significant bits
+F16_SMALLEST = 2.0**-25  # half the spacing of subnormals
+
+
+def tensors(avatar: object) -> dict[str, Array]:
+    """Every array of a nested dataclass by its path."""
+    found: dict[str, Array] = {}
+
+    def walk(value: object, path: str) -> None:
+        if isinstance(value, np.ndarray):
+            found[path] = value
+        elif isinstance(value, tuple):
+            for i, item in enumerate(value):
+                walk(item, f"{path}[{i}]")
+        elif dataclasses.is_dataclass(value):
+            for field in dataclasses.fields(value):
+                walk(getattr(value, field.name), f"{path}.{field.name}")
+
+    walk(avatar, "")
+    return found
+
+
+def test_f32_file_returns_every_array_as_float32() -> None:
+    avatar = synthetic_avatar()
+    back = tensors(decode_tree(parse_checked(encode(avatar, storage="f32"))))
+    for path, expected in tensors(avatar).items():
+        unit = path.endswith(("rotations", "barycentrics"))  # renormalised by the reader
+        bound = 4 * np.finfo(np.float32).eps if unit else 0
+        np.testing.assert_allclose(back[path], np.asarray(expected, back[path].dtype), rtol=0, atol=bound, err_msg=path)
+
+
+@pytest.mark.parametrize("path", [".geometry.ll_basis", ".appearance.details[1].h", ".geometry.mlp[2].weight"])
+def test_f16_rounds_to_half_precision(path: str) -> None:
+    avatar = synthetic_avatar()
+    expected = tensors(avatar)[path]
+    error = np.abs(tensors(decode_tree(parse_checked(encode(avatar, storage="f16"))))[path] - expected)
+    assert np.all(error <= F16_RELATIVE * np.abs(expected) + F16_SMALLEST)
+    assert error.max() > 0
+
+
+def test_i8_rounds_each_row_to_its_own_largest_value() -> None:
+    avatar = synthetic_avatar()
+    basis = avatar.geometry.ll_basis
+    back = decode_tree(parse_checked(encode(avatar, storage="i8"))).geometry.ll_basis
+    step = np.abs(basis).max(axis=(2, 3), keepdims=True) / 127
+    assert np.all(np.abs(back - basis) <= step * (0.5 + 1e-5))
+    assert np.abs(back - basis).max() > 0
+
+
+@pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
+def test_same_avatar_gives_same_bytes(storage: Storage) -> None:
+    assert encode(synthetic_avatar(), storage=storage) == encode(synthetic_avatar(), storage=storage)
+
+
+def test_tensor_bytes_start_at_multiples_of_16() -> None:
+    content = encode(synthetic_avatar())
+    tree = parse_checked(content)
+    base = np.frombuffer(content, np.uint8).__array_interface__["data"][0]
+    for branch in (tree["geometry"], tree["appearance"]):
+        assert (branch["ll_basis"]["data"].__array_interface__["data"][0] - base) % 16 == 0
+        assert (branch["static_offset"]["data"].__array_interface__["data"][0] - base) % 16 == 0
+
+
+def test_golden_file_reads_and_writes_back_to_the_same_bytes() -> None:
+    content = GOLDEN.read_bytes()
+    assert encode(read(GOLDEN), storage="f32") == content
+
+
+def test_refused_avatar_leaves_the_earlier_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, synthetic_avatar())
+    before = path.read_bytes()
+    avatar = synthetic_avatar()
+    broken = dataclasses.replace(avatar.geometry, ll_mean=np.full_like(avatar.geometry.ll_mean, np.nan))
+    with pytest.raises(InputError, match="cannot be stored"):
+        write(path, dataclasses.replace(avatar, geometry=broken))
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_flatc_reads_the_same_values(tmp_path: Path) -> None:
+    """The schema compiler is the independent reader: it knows the schema, not our layout."""
+    flatc = shutil.which("flatc")
+    if flatc is None:
+        pytest.skip("needs flatc (Debian package flatbuffers-compiler)")
+    path = tmp_path / "a.muaavatar"
+    write(path, synthetic_avatar(), storage="i8")
+    schema = ROOT / "schemas" / "muaavatar.fbs"
+    command = [flatc, "--json", "--strict-json", "--raw-binary", "-o", str(tmp_path), str(schema), "--", str(path)]
+    subprocess.run(command, check=True)
+    told = json.loads((tmp_path / "a.json").read_text())
+    ours = load(path)
+    assert told["skeleton"]["names"] == ours["skeleton"]["names"]
+    assert told["crc32"] == ours["crc32"]
+    assert told["wavelet"]["rec_hi"] == pytest.approx(ours["wavelet"]["rec_hi"].tolist(), abs=1e-9)
+    for name in ("ll_basis", "ll_mean", "static_offset"):
+        ours_tensor, told_tensor = ours["geometry"][name], told["geometry"][name]
+        assert told_tensor["data"] == ours_tensor["data"].tolist()
+        assert told_tensor["shape"] == ours_tensor["shape"].tolist()
+        assert told_tensor.get("type", "F32") == ours_tensor["type"]

@@ -1,0 +1,97 @@
+"""Generate python/mua/asset/layout.py from schemas/muaavatar.fbs; --check says whether it is up to date.
+
+The generated module is data: which fields each table has, in slot order. python/mua/asset/flatbuffer.py reads and
+writes by it. Only the grammar that the schema uses is understood; anything else stops with its line.
+"""
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SCHEMA = ROOT / "schemas" / "muaavatar.fbs"
+LAYOUT = ROOT / "python" / "mua" / "asset" / "layout.py"
+
+ENUM = re.compile(r"enum (\w+) : ubyte \{ ([\w, ]+) \}")
+FIELD = re.compile(r"(\w+): (\[?\w+\]?)( \([\w:, ]+\))?;")
+HEADER = '''"""Generated from schemas/muaavatar.fbs by tools/gen_layout.py; do not edit."""
+
+from typing import NamedTuple
+
+
+class Field(NamedTuple):
+    """One slot of a table: `kind` is a scalar, `string`, an enum or a table; `vector` says whether there are many."""
+
+    name: str
+    kind: str
+    vector: bool = False
+    required: bool = False
+    align: int = 0
+
+
+'''
+
+
+def parse(schema: str) -> tuple[str, dict[str, list[str]], dict[str, list[str]], str]:
+    """The file identifier, enums, tables (as source lines of fields) and root type of a schema."""
+    enums: dict[str, list[str]] = {}
+    tables: dict[str, list[str]] = {}
+    identifier = root = table = ""
+    for number, raw in enumerate(schema.splitlines(), 1):
+        line = raw.split("//")[0].strip()
+        if not line or line.startswith(("namespace", "file_extension")):
+            continue
+        if found := ENUM.fullmatch(line):
+            enums[found[1]] = found[2].split(", ")
+        elif line.startswith("table "):
+            table = line.split()[1]
+            tables[table] = []
+        elif found := FIELD.fullmatch(line):
+            tables[table].append(field_source(*found.groups()))
+        elif line.startswith("root_type"):
+            root = line.split()[1].rstrip(";")
+        elif line.startswith("file_identifier"):
+            identifier = line.split('"')[1]
+        elif line != "}":
+            sys.exit(f"{SCHEMA}:{number}: not understood: {line}")
+    return identifier, enums, tables, root
+
+
+def field_source(name: str, kind: str, attributes: str | None) -> str:
+    """A Field as Python source."""
+    align = re.search(r"force_align: (\d+)", attributes or "")
+    options = [f'"{name}"', f'"{kind.strip("[]")}"']
+    options += ["vector=True"] if kind.startswith("[") else []
+    options += ["required=True"] if "required" in (attributes or "") else []
+    options += [f"align={align[1]}"] if align else []
+    return f"Field({', '.join(options)})"
+
+
+def quoted(values: list[str]) -> str:
+    return '", "'.join(values)
+
+
+def generate() -> str:
+    identifier, enums, tables, root = parse(SCHEMA.read_text())
+    lines = [f'IDENTIFIER = b"{identifier}"', f'ROOT = "{root}"', "", "ENUMS = {"]
+    for name, values in enums.items():
+        lines += [f'    "{name}": ("{values[0]}",),' if len(values) == 1 else f'    "{name}": ("{quoted(values)}"),']
+    lines += ["}", "", "TABLES = {"]
+    for name, fields in tables.items():
+        lines += [f'    "{name}": (', *(f"        {field}," for field in fields), "    ),"]
+    return HEADER + "\n".join([*lines, "}", ""])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="exit 1 where the committed file differs")
+    if parser.parse_args().check:
+        if LAYOUT.read_text() != generate():
+            sys.exit(f"{LAYOUT.relative_to(ROOT)} is out of date: run tools/gen_layout.py")
+        return
+    LAYOUT.write_text(generate())
+
+
+if __name__ == "__main__":
+    main()
