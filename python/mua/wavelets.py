@@ -1,8 +1,9 @@
-"""Batched 2-D discrete wavelet transforms in torch: PyWavelets' `periodization` mode, which halves even sizes exactly.
+"""Batched 2-D discrete wavelet transforms in torch: PyWavelets' mode `periodization`, which halves even sizes exactly.
 
-Along one axis of length n a level of the transform is linear and periodic, so it is a product with an [n, n] matrix whose
-rows are shifted filters. The matrices are built once and cached: at texture sizes a dense product is several times faster than a
-strided convolution on a CPU, runs on any device and dtype, and composes (two low-pass levels are one matrix).
+Along one axis of length n a level of the transform is linear and periodic, so it is a product with an [n, n] matrix
+whose rows are shifted filters. The matrices are built once and cached: at texture sizes a dense product is several
+times faster than a strided convolution on a CPU, runs on any device and dtype, and composes (two low-pass levels are
+one matrix).
 """
 
 from collections.abc import Sequence
@@ -22,7 +23,7 @@ def wavedec2(
     wavelet: str,
     levels: int,
 ) -> tuple[Tensor, list[Tensor]]:
-    """Split images into the low-pass subband [..., H / 2^levels, W / 2^levels] and `levels` detail levels, coarse first.
+    """Split images into the low-pass subband [..., H / 2^levels, W / 2^levels] and the detail levels, coarse first.
 
     A detail level is [..., 3, h, w] in the order (cH, cV, cD) of pywt: high-pass along H, along W, along both.
     Raises InputError where H or W cannot be halved `levels` times.
@@ -49,7 +50,8 @@ def waverec2(
     for level in details:
         if level.shape[-3:] != (3, *ll.shape[-2:]):
             raise InputError(
-                f"waverec2: a detail level has shape {tuple(level.shape)}, expected [..., 3, {ll.shape[-2]}, {ll.shape[-1]}]"
+                f"waverec2: a detail level has shape {tuple(level.shape)}, "
+                f"expected [..., 3, {ll.shape[-2]}, {ll.shape[-1]}]"
             )
         rows, columns = ll.shape[-2:]
         horizontal, vertical, diagonal = level.unbind(-3)
@@ -92,7 +94,7 @@ def static_offset(
     wavelet: str,
     levels: int = 2,
 ) -> Tensor:
-    """The part [..., H, W] of images that lives in their finest detail levels: IDWT(0, 0, 0, D1, D0) (paper, Eq. static offset).
+    """The part [..., H, W] of images that their finest details hold: IDWT(0, 0, 0, D1, D0) (paper, static offset).
 
     As the transform inverts exactly, it is the image less the synthesis of its low-pass subband.
     """
@@ -114,22 +116,21 @@ def _check_divisible(x: Tensor, levels: int) -> None:
     rows, columns = x.shape[-2:]
     if rows % 2**levels or columns % 2**levels:
         raise InputError(
-            f"wavelet transform: size {rows} x {columns} cannot be halved {levels} times, expected multiples of {2**levels}"
+            f"wavelet transform: size {rows} x {columns} cannot be halved {levels} times, "
+            f"expected multiples of {2**levels}"
         )
 
 
 def filters(wavelet: str) -> pywt.Wavelet:
     """The filter bank of a discrete wavelet by its PyWavelets name; raises InputError where there is none."""
     if wavelet not in pywt.wavelist(kind="discrete"):
-        raise InputError(
-            f"wavelet: {wavelet!r} is unknown, expected a discrete wavelet of PyWavelets such as 'bior4.4'"
-        )
+        raise InputError(f"wavelet: {wavelet!r} is unknown, expected one of PyWavelets' such as 'bior4.4'")
     return pywt.Wavelet(wavelet)
 
 
 @lru_cache(maxsize=64)
 def _analysis_matrix(wavelet: str, n: int) -> Array:
-    """[n, n] float64: n / 2 low-pass rows, then n / 2 high-pass rows; output o of taps f is sum_j f[j] x[2 o + L / 2 - j]."""
+    """[n, n] float64: n / 2 low-pass rows, then as many high-pass; row o of taps f is sum_j f[j] x[2 o + L / 2 - j]."""
     bank = filters(wavelet)
     matrix = np.zeros((n, n))
     output, tap = np.meshgrid(np.arange(n // 2), np.arange(bank.dec_len), indexing="ij")
