@@ -153,7 +153,9 @@ MALFORMED = [
 ]
 
 
-@pytest.mark.parametrize(("code", "field", "edit"), MALFORMED, ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize(
+    ("code", "field", "edit"), MALFORMED, ids=lambda value: value if isinstance(value, str) else ""
+)
 def test_malformed_field_is_named(content: bytes, code: str, field: str, edit: Callable[[Tree], None]) -> None:
     tree = parse(content)
     edit(tree)

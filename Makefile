@@ -1,0 +1,33 @@
+# `make demo` bakes the procedural character; `make test` checks everything. Both set up what they need.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+DEMO := build/demo
+
+.PHONY: demo test test-long check setup clean
+
+demo: setup
+	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
+	$(BIN)/mua-inspect --verify $(DEMO)/avatar.muaavatar
+
+test: setup check
+	$(BIN)/pytest
+
+test-long: setup
+	$(BIN)/pytest -m long
+
+check: setup
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python tools/gen_layout.py --check
+
+setup: $(VENV)/.installed
+
+$(VENV)/.installed: python/pyproject.toml tools/setup.sh
+	PYTHON=$(PYTHON) sh tools/setup.sh $(VENV)
+	touch $@
+
+clean:
+	rm -rf build

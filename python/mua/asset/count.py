@@ -1,0 +1,56 @@
+"""What an avatar costs, counted from the avatar itself: parameters and floating-point operations of a frame."""
+
+import numpy as np
+
+from mua.asset.avatar import Avatar, Branch, Mlp
+
+
+def parameters(avatar: Avatar) -> dict[str, int]:
+    """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison)."""
+    branches = (avatar.geometry, avatar.appearance)
+    return {
+        "coefficient MLPs": sum(_weights(mlp) for mlp in (avatar.coarse.mlp, *(b.mlp for b in branches))),
+        "PCA mesh": avatar.coarse.mean.size + avatar.coarse.basis.size,
+        "LL bases": sum(b.ll_mean.size + b.ll_basis.size for b in branches),
+        "detail bases": sum(d.mean.size + d.h.size + d.w.size for b in branches for d in b.details),
+        "static offset": sum(b.static.size for b in branches),
+    }
+
+
+def flops(avatar: Avatar) -> dict[str, int]:
+    """Floating-point operations of one frame by stage, a multiply-add as two.
+
+    Counted is what turns a motion descriptor into a Gaussian texture and a mesh; posing and rasterising are not,
+    as in the paper (Sec. Metrics).
+    """
+    branches = (avatar.geometry, avatar.appearance)
+    taps = len(avatar.wavelet.rec_lo)
+    mlps = (avatar.coarse.mlp, *(b.mlp for b in branches))
+    return {
+        "coefficient MLPs": 2 * sum(layer.weight.size for mlp in mlps for layer in mlp),
+        "PCA mesh": 2 * avatar.coarse.basis.size,
+        "LL blend": 2 * sum(b.ll_basis.size for b in branches),
+        "detail blend": 2 * sum(_outer_products(b) for b in branches),
+        "inverse DWT": 2 * sum(_inverse_dwt(b, avatar.wavelet.levels, taps) for b in branches),
+        "static offset": sum(b.static.size for b in branches),
+    }
+
+
+def _weights(mlp: Mlp) -> int:
+    return sum(layer.weight.size + layer.bias.size for layer in mlp)
+
+
+def _outer_products(branch: Branch) -> int:
+    """Multiply-adds of sum_r alpha h (x) w: the scaled h, then one matrix product for each band and channel."""
+    return sum(band.h.size + band.h.size * band.w.shape[-1] for band in branch.details)
+
+
+def _inverse_dwt(branch: Branch, levels: int, taps: int) -> int:
+    """Multiply-adds of separable synthesis: half of the taps meet each output sample of each input branch.
+
+    With an output side of n, four bands cost n^2 taps for the columns and as many for the rows; the low-pass branch
+    alone costs n (n / 2) (taps / 2) and then n^2 taps / 2.
+    """
+    sides = branch.ll_mean.shape[-1] << np.arange(1, levels + 1)
+    full, low = sides[: len(branch.details)] ** 2, sides[len(branch.details) :] ** 2
+    return int(branch.channels * (2 * taps * full.sum() + taps * low.sum() * 3 // 4))
