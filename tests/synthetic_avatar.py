@@ -1,4 +1,6 @@
-"""A small random avatar for tests: a three-joint tube of 12 vertices, 32 x 32 texels, four wavelet levels (LL 2 x 2)."""
+"""A small random avatar for tests: a three-joint tube of 12 vertices, 32 x 32 texels, four levels (LL 2 x 2)."""
+
+from itertools import pairwise
 
 import numpy as np
 import pywt
@@ -119,10 +121,7 @@ def _band(rng: np.random.Generator, channels: int, rank: int, side: int) -> Deta
 
 def _mlp(rng: np.random.Generator, inputs: int, outputs: int) -> Mlp:
     sizes = (inputs, HIDDEN, HIDDEN, outputs)
-    return tuple(
-        Layer(_normal(rng, (n, m), 1 / np.sqrt(m)), _normal(rng, n, 0.1))
-        for m, n in zip(sizes[:-1], sizes[1:], strict=True)
-    )
+    return tuple(Layer(_normal(rng, (n, m), 1 / np.sqrt(m)), _normal(rng, n, 0.1)) for m, n in pairwise(sizes))
 
 
 def _normal(rng: np.random.Generator, shape: int | tuple[int, ...], scale: float) -> Array:

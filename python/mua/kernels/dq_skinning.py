@@ -10,7 +10,9 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 
-METRES2_TO_MM2 = 1e6  # covariances are packed in mm^2: half floats hold 0.25 mm to 25 cm of standard deviation in full precision
+METRES2_TO_MM2 = (
+    1e6  # covariances are packed in mm^2: half floats hold 0.25 mm to 25 cm of standard deviation in full precision
+)
 PACKED_WORDS = 16
 
 
@@ -19,7 +21,7 @@ def blend_vertices(
     indices: Array,  # [V, 8] joints, largest weight first
     weights: Array,  # [V, 8] rows sum to 1
 ) -> Array:
-    """Dual quaternions [V, 8] of the template's vertices, bind pose to world; the reference of the signs is column 0."""
+    """Dual quaternions [V, 8] of the vertices, bind pose to world; the reference of the signs is column 0."""
     reference = joints[indices[:, 0], :4]
     total = np.zeros((len(indices), 8), dtype=joints.dtype)
     for joint, weight in zip(indices.T, weights.T, strict=True):

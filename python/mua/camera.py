@@ -1,0 +1,72 @@
+"""A pinhole camera and the orbit view that frames an avatar.
+
+Eye space is right-handed, Y up, looking along -Z (as in glTF); matrices act on column vectors.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+
+NEAR = 0.02  # metres
+FOV = float(np.radians(30))  # vertical; a portrait lens
+FILL = 0.92  # of the image's half size, that the framed box reaches
+
+
+@dataclass(frozen=True)
+class Camera:
+    """One eye."""
+
+    view: Array  # [4, 4] world to eye, metres
+    projection: Array  # [4, 4] eye to clip
+    screen: tuple[int, int]  # width, height, pixels
+
+    @property
+    def position(self) -> Array:
+        """[3] world, metres."""
+        return np.asarray(-self.view[:3, :3].T @ self.view[:3, 3])
+
+
+def perspective(
+    fov: float,  # vertical, radians
+    *,
+    aspect: float,  # width / height
+) -> Array:
+    """Projection matrix [4, 4] with the far plane at infinity, clip z in -w..w."""
+    focal = 1 / np.tan(fov / 2)
+    matrix = np.diag([focal / aspect, focal, -1.0, 0.0])
+    matrix[2, 3], matrix[3, 2] = -2 * NEAR, -1
+    return matrix
+
+
+def orbit(
+    bounds: Array,  # [2, 3] lowest and highest corner of what to frame, metres
+    *,
+    screen: tuple[int, int],  # width, height, pixels
+    azimuth: float = 0.0,  # radians; 0 faces the character (from +Z), positive goes round to its left (+X)
+    elevation: float = 0.0,  # radians; positive looks down
+    fov: float = FOV,  # vertical, radians
+) -> Camera:
+    """Look at the middle of the box from the nearest distance at which all of it is in the image."""
+    projection = perspective(fov, aspect=screen[0] / screen[1])
+    turn = _pitch(elevation) @ _yaw(-azimuth)
+    middle = np.mean(bounds, axis=0)
+    corners = np.array(np.meshgrid(*np.transpose(bounds - middle))).reshape(3, -1)
+    x, y, z = turn @ corners
+    slope_x, slope_y = FILL / projection[0, 0], FILL / projection[1, 1]
+    distance = max(np.max(z + np.maximum(np.abs(x) / slope_x, np.abs(y) / slope_y)), NEAR)
+    view = np.eye(4)
+    view[:3, :3] = turn
+    view[:3, 3] = [0, 0, -distance] - turn @ middle
+    return Camera(view, projection, screen)
+
+
+def _yaw(angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+
+
+def _pitch(angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])

@@ -1,0 +1,123 @@
+"""From an avatar and a window of poses to posed splats, by the reference kernels (design: kernels, in frame order)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar, Branch, Mlp, Wavelet
+from mua.kernels.blend_subbands import blend_detail, blend_ll
+from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
+from mua.kernels.inverse_dwt import add_static, inverse_dwt
+from mua.kernels.mlp_matmul import mlp_matmul
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Pose
+from mua.texture.channels import APPEARANCE
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A posed avatar, in the dtype it was decoded in; world space, metres; N splats in the order of the texel map."""
+
+    canonical: Array  # [V, 3] canonical vertices
+    mesh: Array  # [V, 3] posed vertices
+    texture: Array  # [N, 23] raw channels (mua.texture.channels)
+    centres: Array  # [N, 3]
+    rotations: Array  # [N, 4] unit, wxyz
+    scales: Array  # [N, 3] standard deviations
+    opacities: Array  # [N] in 0..1
+    sh: Array  # [N, 12] degree 1, canonical space
+    texel_dq: Array  # [N, 8] bind pose to world; the real part is R_tex
+
+
+def decode(
+    avatar: Avatar,
+    rotations: Array,  # [k, J, 4] local joint rotations, newest first
+    *,
+    translation: Array,  # [k, 3] local translation of the root joint, metres
+    dtype: npt.DTypeLike = np.float32,
+) -> Frame:
+    """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
+    from mua.motion.descriptor import describe_window
+
+    descriptor = describe_window(avatar.encoding, avatar.rig.skeleton, rotations, translation)
+    x = ((descriptor - avatar.normalization.mean) / avatar.normalization.scale).astype(dtype)
+    canonical = expand_mesh(avatar, x)
+    geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
+    appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
+    texture = np.concatenate([geometry, appearance]).T
+    return pose_splats(avatar.rig, canonical, texture=texture, pose=Pose(rotations[0], translation[0]))
+
+
+def expand_mesh(
+    avatar: Avatar,
+    x: Array,  # [k D] normalised descriptor
+) -> Array:
+    """Canonical vertices [V, 3]: F_temp, then the PCA basis."""
+    coefficients = _mlp(avatar.coarse.mlp, x)
+    rank = len(coefficients)
+    basis = avatar.coarse.basis.reshape(rank, -1).astype(x.dtype, copy=False).T
+    mean = avatar.coarse.mean.reshape(-1).astype(x.dtype, copy=False)
+    return mlp_matmul(basis, mean, coefficients, relu=False).reshape(-1, 3)
+
+
+def decode_branch(
+    branch: Branch,
+    wavelet: Wavelet,
+    x: Array,  # [k D] normalised descriptor
+    *,
+    texels: Array,  # [N] row * size + column
+) -> Array:
+    """Raw channels [C, N]: coefficients, subbands, synthesis over all levels and the static offset."""
+    dtype = x.dtype
+    alphas = _mlp(branch.mlp, x)
+    splits = np.cumsum(branch.channels * np.array(branch.ranks))[:-1]
+    alpha_ll, *alpha_details = (a.reshape(branch.channels, -1) for a in np.split(alphas, splits))
+    texture = blend_ll(branch.ll_mean.astype(dtype, copy=False), branch.ll_basis.astype(dtype, copy=False), alpha_ll)
+    for level in range(wavelet.levels):
+        details = None
+        if level < len(branch.details):
+            band = branch.details[level]
+            mean, h, w = (a.astype(dtype, copy=False) for a in (band.mean, band.h, band.w))
+            details = blend_detail(mean, h, w, alpha_details[level])
+        texture = inverse_dwt(texture, details, wavelet.rec_lo, wavelet.rec_hi)
+    return add_static(texture, texels, branch.static.astype(dtype, copy=False))
+
+
+def pose_splats(
+    rig: Rig,
+    canonical: Array,  # [V, 3] canonical vertices, metres
+    *,
+    texture: Array,  # [N, 23] raw channels at the valid texels; its dtype is that of the frame
+    pose: Pose,
+) -> Frame:
+    """Skin mesh and texture, a student's or a teacher's, into the world."""
+    dtype = texture.dtype
+    canonical = canonical.astype(dtype, copy=False)
+    faces, triangles = rig.mesh.faces, rig.texels.triangles
+    barycentrics = rig.texels.barycentrics.astype(dtype, copy=False)
+    joints = rig.skeleton.skinning(pose.rotations, pose.translation).astype(dtype)
+    vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
+    texel_dq = blend_texels(vertex_dq, faces, triangles, barycentrics)
+    centres, rotations, scales, opacities = skin_splats(texel_dq, canonical, faces, triangles, barycentrics, texture)
+    return Frame(
+        canonical=canonical,
+        mesh=rotation.dual_transform(vertex_dq, canonical),
+        texture=texture,
+        centres=centres,
+        rotations=rotations,
+        scales=scales,
+        opacities=opacities,
+        sh=texture[:, APPEARANCE],
+        texel_dq=texel_dq,
+    )
+
+
+def _mlp(mlp: Mlp, x: Array) -> Array:
+    """ReLU on every layer but the last."""
+    for layer in mlp:
+        weight, bias = layer.weight.astype(x.dtype, copy=False), layer.bias.astype(x.dtype, copy=False)
+        x = mlp_matmul(weight, bias, x, relu=layer is not mlp[-1])
+    return x

@@ -1,0 +1,113 @@
+"""Splats to screen: culling, the ellipse of each splat in each eye, the depth key, compaction before the sort.
+
+The screen covariance is that of the projection linearised at the centre (EWA, Zwicker et al. 2001,
+https://doi.org/10.1145/383259.383300). No blur is added to it: splat_draw integrates over the pixel instead.
+Eye space is right-handed, Y up, looking along -Z; rows of pixels run down, pixel centres lie at +0.5.
+"""
+
+import numpy as np
+
+from mua.arrays import Array
+
+LEAST_OPACITY = 1 / 255  # below it a splat changes no 8-bit image
+LEAST_VARIANCE = 1e-4  # px^2; float32 rounding of the covariance of a 30 px splat, so that a thin axis stays positive
+GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
+LAST_KEY = 0xFFFF
+
+
+def splat_project(
+    centres: Array,  # [N, 3] world, metres
+    covariance: Array,  # [N, 6] xx, xy, xz, yy, yz, zz, square metres
+    opacities: Array,  # [N]
+    view: Array,  # [E, 4, 4] world to eye
+    projection: Array,  # [E, 4, 4] eye to clip
+    *,
+    screen: tuple[int, int],  # width, height of one eye, pixels
+    near: float,  # metres
+    bounds: Array,  # [2, 3] world box over which depth is keyed
+) -> tuple[Array, Array, Array]:
+    """Keep the splats that at least one eye may see.
+
+    Returns splats [M] int32 ascending, keys [M] uint16 (ascending = back to front, by the eyes' mean depth) and
+    ellipses [E, M, 6]: centre column and row, cosine and sine of the major axis, standard deviations along it and
+    across it, in pixels; both deviations are 0 where this eye does not see the splat.
+    """
+    dtype = centres.dtype
+    view, projection, bounds = view.astype(dtype), projection.astype(dtype), bounds.astype(dtype)
+    eyes = [_ellipses(centres, covariance, v, p, screen, near) for v, p in zip(view, projection, strict=True)]
+    ellipses = np.stack(eyes)
+    extent = half_extents(ellipses, opacities)
+    middle = ellipses[..., 0:2]
+    on_screen = np.all((middle + extent > 0) & (middle - extent < np.array(screen, dtype)), axis=-1)
+    seen = on_screen & (ellipses[..., 4] > 0) & (opacities >= LEAST_OPACITY)
+    splats = np.flatnonzero(seen.any(axis=0)).astype(np.int32)
+    ellipses = ellipses[:, splats]
+    ellipses[~seen[:, splats], 4:6] = 0
+    return splats, _keys(centres[splats], view, near, bounds), ellipses
+
+
+def half_lengths(
+    ellipses: Array,  # [..., M, 6]
+    opacities: Array,  # [M]
+) -> Array:
+    """Half lengths [..., M, 2] of the quad along the ellipse's axes, pixels.
+
+    It reaches to where opacity x Gaussian falls to LEAST_OPACITY, and half a pixel on, for the integral over the pixel.
+    """
+    reach = np.sqrt(2 * np.log(np.maximum(opacities / LEAST_OPACITY, 1)))
+    return np.asarray(ellipses[..., 4:6] * reach[:, None] + ellipses.dtype.type(0.5))
+
+
+def half_extents(
+    ellipses: Array,  # [..., M, 6]
+    opacities: Array,  # [M]
+) -> Array:
+    """Half width and height [..., M, 2] of the upright box around the quad, pixels."""
+    along, across = np.moveaxis(half_lengths(ellipses, opacities), -1, 0)
+    cosine, sine = np.abs(ellipses[..., 2]), np.abs(ellipses[..., 3])
+    return np.stack([cosine * along + sine * across, sine * along + cosine * across], axis=-1)
+
+
+def _ellipses(
+    centres: Array,  # [N, 3]
+    covariance: Array,  # [N, 6]
+    view: Array,  # [4, 4]
+    projection: Array,  # [4, 4]
+    screen: tuple[int, int],
+    near: float,
+) -> Array:
+    """Ellipses [N, 6] in one eye; deviations 0 before the near plane."""
+    turn = view[:3, :3]
+    eye = centres @ turn.T + view[:3, 3]
+    depth = np.maximum(-eye[:, 2], near)
+    half = np.array(screen, dtype=centres.dtype) / 2 * np.array([1, -1], dtype=centres.dtype)  # rows run down
+    focal, skew = np.diagonal(projection)[:2], projection[:2, 2]
+    ndc = eye[:, :2] / depth[:, None] * focal - skew
+    slope = (np.clip(ndc, -GUARD, GUARD) + skew) / focal
+    # Rows of the Jacobian of (column, row), times the view's rotation: half f / depth (e_i + slope_i e_z).
+    jacobian = (half * focal / depth[:, None])[:, :, None] * (turn[:2] + slope[:, :, None] * turn[2])
+    xx, xy, xz, yy, yz, zz = covariance.T
+    sigma = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
+    screen_covariance = jacobian @ sigma @ jacobian.swapaxes(1, 2)
+    a, b, c = screen_covariance[:, 0, 0], screen_covariance[:, 0, 1], screen_covariance[:, 1, 1]
+    mean, spread = (a + c) / 2, np.hypot((a - c) / 2, b)
+    angle = np.arctan2(b, (a - c) / 2) / 2
+    deviations = np.sqrt(np.maximum([mean + spread, mean - spread], LEAST_VARIANCE)) * (-eye[:, 2] > near)
+    column, row = ((ndc * np.sign(half) + 1) * np.abs(half)).T
+    return np.stack([column, row, np.cos(angle), np.sin(angle), *deviations], axis=1).astype(centres.dtype)
+
+
+def _keys(
+    centres: Array,  # [M, 3]
+    view: Array,  # [E, 4, 4]
+    near: float,
+    bounds: Array,  # [2, 3]
+) -> Array:
+    """Keys [M] uint16: 0 at the bounds' farthest depth, LAST_KEY at the nearest or at the near plane."""
+    forward, offset = -view[:, 2, :3].mean(axis=0), -view[:, 2, 3].mean()
+    low, high = np.sort(bounds * forward, axis=0)
+    nearest = max(low.sum() + offset, near)
+    farthest = high.sum() + offset
+    span = max(farthest - nearest, np.finfo(centres.dtype).tiny)
+    fraction = np.clip((farthest - (centres @ forward + offset)) / span, 0, 1)
+    return np.floor(fraction * LAST_KEY + 0.5).astype(np.uint16)

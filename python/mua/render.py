@@ -1,0 +1,51 @@
+"""A posed avatar to an image, by the reference kernels on the CPU.
+
+Colours are display-referred, as in 3D Gaussian Splatting: sRGB values are blended, so an image needs no transfer function
+before it is written as 8 bits.
+"""
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.camera import NEAR, Camera
+from mua.decode import Frame
+from mua.kernels.dq_skinning import covariances
+from mua.kernels.splat_draw import splat_colors, splat_draw
+from mua.kernels.splat_project import splat_project
+from mua.kernels.splat_sort import splat_sort
+
+WHITE = (1.0, 1.0, 1.0)
+
+
+def render(
+    frame: Frame,
+    camera: Camera,
+    *,
+    background: tuple[float, float, float] = WHITE,  # sRGB, 0..1
+) -> Array:
+    """The image [H, W, 3] over a plain background, sRGB, float64, not below 0; above 1 where the SH says so."""
+    image = render_premultiplied(frame, camera)
+    return np.asarray(image[..., :3] + (1 - image[..., 3:]) * np.array(background))
+
+
+def render_premultiplied(frame: Frame, camera: Camera) -> Array:
+    """Premultiplied sRGB and alpha [H, W, 4], float64."""
+    splats, keys, ellipses = splat_project(
+        frame.centres,
+        covariances(frame.rotations, frame.scales),
+        frame.opacities,
+        camera.view[None],
+        camera.projection[None],
+        screen=camera.screen,
+        near=NEAR,
+        bounds=frame_bounds(frame),
+    )
+    colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], camera.position)
+    return splat_draw(ellipses[0], colors, frame.opacities[splats], splat_sort(keys), screen=camera.screen)
+
+
+def frame_bounds(frame: Frame) -> Array:
+    """Lowest and highest corner [2, 3] of the splat centres, metres; zeros where there are none."""
+    if len(frame.centres) == 0:
+        return np.zeros((2, 3))
+    return np.stack([frame.centres.min(axis=0), frame.centres.max(axis=0)])
