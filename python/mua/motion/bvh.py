@@ -1,0 +1,277 @@
+"""Read BVH motion: a hierarchy of offsets and Euler channels, then one row of numbers per frame.
+
+The format states neither units nor the up axis. Units are taken as the common one (metres, centimetres, millimetres,
+decimetres, inches) that give the skeleton a person's span; the up axis is Z where heads are above feet along Z.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.motion.joint_names import roles
+from mua.motion.source import SourceMotion
+from mua.rig.skeleton import Skeleton
+
+UNITS = (1.0, 0.01, 0.001, 0.1, 0.0254)  # metres per unit, the likeliest first
+PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child to giant
+TYPICAL_SPAN = 2.35
+STRETCH = 0.01  # of the span: how far a bone may stretch before dropping it is worth a note
+WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
+Z_UP_TO_Y_UP = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0])  # a quarter turn about X
+
+
+@dataclass(frozen=True)
+class _Node:
+    name: str
+    parent: int
+    offset: Array  # [3] file units
+    channels: tuple[str, ...]  # lower case, in file order; empty for an end site
+
+
+def read_bvh(path: Path, *, scale: float | None = None) -> SourceMotion:
+    """Read the motion of a BVH file; end sites become joints named `<parent>_end`.
+
+    scale: metres per unit of the file; estimated where it is not given.
+    Errors: InputError for a broken hierarchy, an unknown channel, a wrong number of values, no frames, NaN or infinity.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").lstrip("\ufeff").splitlines()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    motion = next((i for i, line in enumerate(lines) if line.strip().lower() == "motion"), None)
+    if motion is None:
+        raise InputError(f"{path}: expected a line MOTION after the hierarchy, found none")
+    nodes = _parse_hierarchy(path, lines[:motion])
+    rate, values = _parse_motion(path, lines[motion + 1 :], sum(len(node.channels) for node in nodes))
+    return _assemble(path, nodes, rate, values, scale)
+
+
+def _parse_hierarchy(path: Path, lines: list[str]) -> list[_Node]:
+    """Turn the HIERARCHY section into nodes, parents before children."""
+    words = [line.replace("{", "\n{\n").replace("}", "\n}\n").splitlines() for line in lines]
+    statements = [part.split() for line in words for part in line if part.strip()]
+    if not statements or statements[0][0].lower() != "hierarchy":
+        raise InputError(
+            f"{path}: expected HIERARCHY in the first line, found {lines[0][:40]!r}" if lines else f"{path}: is empty"
+        )
+    nodes: list[_Node] = []
+    open_nodes: list[int] = []
+    for statement in statements[1:]:
+        keyword, values = statement[0].lower(), statement[1:]
+        if keyword in ("root", "joint", "end"):
+            parent = open_nodes[-1] if open_nodes else -1
+            if (keyword == "root") != (parent < 0):
+                raise InputError(
+                    f"{path}: {' '.join(statement)}: expected ROOT outside and JOINT inside of a joint's braces"
+                )
+            name = f"{nodes[parent].name}_end" if keyword == "end" else " ".join(values)
+            nodes.append(_Node(name, parent, np.zeros(3), ()))
+        elif keyword == "{":
+            open_nodes.append(len(nodes) - 1)
+        elif keyword == "}" and open_nodes:
+            open_nodes.pop()
+        elif keyword in ("offset", "channels") and open_nodes:
+            read = _offset if keyword == "offset" else _channels
+            nodes[open_nodes[-1]] = read(path, nodes[open_nodes[-1]], values)
+        else:
+            raise InputError(
+                f"{path}: HIERARCHY: expected a joint, OFFSET, CHANNELS or a brace, found {' '.join(statement)!r}"
+            )
+    if open_nodes or not nodes:
+        raise InputError(
+            f"{path}: HIERARCHY: {len(open_nodes)} braces are not closed before MOTION, expected a whole joint tree"
+        )
+    return nodes
+
+
+def _offset(path: Path, node: _Node, values: list[str]) -> _Node:
+    offset = _numbers(path, f"OFFSET of {node.name}", values)
+    if len(offset) != 3:
+        raise InputError(f"{path}: OFFSET of {node.name}: expected 3 numbers, found {len(offset)}")
+    return _Node(node.name, node.parent, offset, node.channels)
+
+
+def _channels(path: Path, node: _Node, values: list[str]) -> _Node:
+    known = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
+    channels = tuple(value.lower() for value in values[1:])
+    if not values or values[0] != str(len(channels)):
+        raise InputError(
+            f"{path}: CHANNELS of {node.name}: expected a count and as many names, found {' '.join(values)!r}"
+        )
+    for channel in channels:
+        if channel not in known:
+            raise InputError(f"{path}: CHANNELS of {node.name}: expected Xposition .. Zrotation, found {channel!r}")
+    return _Node(node.name, node.parent, node.offset, channels)
+
+
+def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, Array]:
+    """Return frames per second and values [F, width] of the MOTION section."""
+    rows = [line for line in lines if line.strip()]
+    count = _header(path, rows, 0, "Frames:")
+    frame_time = _header(path, rows, 1, "Frame Time:")
+    if count < 1 or count != int(count):
+        raise InputError(f"{path}: Frames: expected at least 1 frame, found {count:g}")
+    if frame_time <= 0:
+        raise InputError(f"{path}: Frame Time: expected seconds above 0, found {frame_time:g}")
+    values = _numbers(path, "MOTION", " ".join(rows[2:]).split())
+    if len(values) != count * width:
+        raise InputError(
+            f"{path}: MOTION: expected {int(count)} frames of {width} values, found {len(values)} values "
+            f"({len(values) / max(width, 1):g} frames)"
+        )
+    rate = 1 / frame_time
+    whole = max(round(rate), 1)
+    return float(whole) if abs(rate - whole) < WHOLE_RATE * whole else rate, values.reshape(int(count), width)
+
+
+def _header(path: Path, rows: list[str], index: int, label: str) -> float:
+    line = " ".join(rows[index].split()) if index < len(rows) else ""
+    if not line.lower().startswith(label.lower()):
+        raise InputError(f"{path}: MOTION: expected {label!r} and a number, found {line[:40]!r}")
+    values = _numbers(path, label, line[len(label) :].split())
+    if len(values) != 1:
+        raise InputError(f"{path}: {label} expected one number, found {line[len(label) :]!r}")
+    return float(values[0])
+
+
+def _numbers(path: Path, field: str, words: list[str]) -> Array:
+    try:
+        values = np.array(words, dtype=float)
+    except ValueError as error:
+        raise InputError(f"{path}: {field}: expected numbers, {error}") from error
+    if not np.isfinite(values).all():
+        raise InputError(
+            f"{path}: {field}: expected finite numbers, found {words[int(np.argmin(np.isfinite(values)))]}"
+        )
+    return values
+
+
+def _assemble(path: Path, nodes: list[_Node], rate: float, values: Array, scale: float | None) -> SourceMotion:
+    """Build skeleton and clip of nodes and values [F, channels] in file units."""
+    span = _span(nodes)
+    scale = _likely_unit(span) if scale is None else scale
+    offsets = np.array([node.offset for node in nodes])
+    skeleton = Skeleton(
+        names=tuple(node.name for node in nodes),
+        parents=np.array([node.parent for node in nodes], dtype=np.int32),
+        bind_rotations=np.tile([1.0, 0, 0, 0], (len(nodes), 1)),
+        bind_translations=offsets,
+        root=0,
+    )
+    rotations, positions = _decode_channels(nodes, values)
+    root = _moving_root(skeleton, positions)
+    translation, carried = _root_translation(skeleton, rotations, positions, root)
+    rest = positions.mean(axis=0)
+    rest[carried] = offsets[carried]
+    stretched = [
+        j for j in range(len(nodes)) if j not in carried and np.ptp(positions[:, j], axis=0).max() > STRETCH * span
+    ]
+    skeleton = replace(skeleton, bind_translations=rest * scale, root=root)
+    clip = Clip(path.stem, rate, rotations, translation * scale)
+    notes = []
+    if stretched:
+        notes.append(f"{path.name}: bones that stretch keep their mean length: {_listed(skeleton, stretched)}.")
+    if _is_z_up(skeleton, clip):
+        skeleton, clip = _turn(skeleton, clip, Z_UP_TO_Y_UP)
+        notes.append(f"{path.name}: Z is up; turned to Y up.")
+    return SourceMotion(skeleton, clip, tuple(notes))
+
+
+def _decode_channels(nodes: list[_Node], values: Array) -> tuple[Array, Array]:
+    """Return local rotations [F, J, 4] and local positions [F, J, 3] in file units.
+
+    Rotations apply in the order of the channels, each about the axes that the ones before it have turned. Positions
+    stand for the offset, as most writers mean them; below the root they add to it where they are nearer to zero.
+    """
+    rotations = np.tile([1.0, 0, 0, 0], (len(values), len(nodes), 1))
+    positions = np.tile(np.array([node.offset for node in nodes]), (len(values), 1, 1))
+    column = 0
+    for j, node in enumerate(nodes):
+        for channel in node.channels:
+            axis = "xyz".index(channel[0])
+            if channel.endswith("position"):
+                positions[:, j, axis] = values[:, column]
+            else:
+                turn = rotation.from_axis_angle(np.eye(3)[axis], np.radians(values[:, column]))
+                rotations[:, j] = rotation.multiply(rotations[:, j], turn)
+            column += 1
+        moved = positions[:, j]
+        adds = np.linalg.norm(moved, axis=-1).mean() < np.linalg.norm(moved - node.offset, axis=-1).mean()
+        if node.parent >= 0 and adds:
+            positions[:, j] += node.offset
+    return rotations, positions
+
+
+def _moving_root(skeleton: Skeleton, positions: Array) -> int:
+    """The joint that carries the motion's translation: the hips where they move, else the first joint that does."""
+    moving = np.flatnonzero(np.ptp(positions, axis=0).max(axis=-1) > 0)
+    hips = roles(skeleton)["hips"][0]
+    return hips if hips in moving or not len(moving) else int(moving[0])
+
+
+def _root_translation(skeleton: Skeleton, rotations: Array, positions: Array, root: int) -> tuple[Array, list[int]]:
+    """Local translation [F, 3] of `root`, with the movement of the joints above it folded in; and all these joints."""
+    translation, carried = positions[:, root].copy(), [root]
+    turn = np.array([1.0, 0, 0, 0])  # from the space above a joint to that of the root's parent
+    joint = int(skeleton.parents[root])
+    while joint >= 0:
+        carried.append(joint)
+        turn = rotation.multiply(turn, rotation.conjugate(rotations[:, joint]))
+        translation += rotation.rotate(turn, positions[:, joint] - skeleton.bind_translations[joint])
+        joint = int(skeleton.parents[joint])
+    return translation, carried
+
+
+def _span(nodes: list[_Node]) -> float:
+    """The longest way along bones between two ends: a measure of size that no pose changes."""
+    deepest = [0.0] * len(nodes)
+    span = 0.0
+    for j in range(len(nodes) - 1, 0, -1):
+        reach = deepest[j] + float(np.linalg.norm(nodes[j].offset))
+        span = max(span, deepest[nodes[j].parent] + reach)
+        deepest[nodes[j].parent] = max(deepest[nodes[j].parent], reach)
+    return span
+
+
+def _likely_unit(span: float) -> float:
+    """Metres per unit that make `span` a person's, or come nearest to it."""
+    if span <= 0:
+        return 1.0
+    for unit in UNITS:
+        if PERSON_SPAN[0] <= span * unit <= PERSON_SPAN[1]:
+            return unit
+    return min(UNITS, key=lambda unit: abs(np.log(span * unit / TYPICAL_SPAN)))
+
+
+def _is_z_up(skeleton: Skeleton, clip: Clip) -> bool:
+    """Whether heads (or hips) are above feet along Z rather than Y, on average over the clip."""
+    named = roles(skeleton)
+    feet = [*named.get("left foot", ()), *named.get("right foot", ())]
+    if not feet:
+        return False
+    above = named.get("head", named["hips"])[0]
+    _, positions = skeleton.world(clip.rotations, clip.translation)
+    up = (positions[:, above] - positions[:, feet].mean(axis=1)).mean(axis=0)
+    return bool(up[2] > abs(up[1]))
+
+
+def _turn(skeleton: Skeleton, clip: Clip, turn: Array) -> tuple[Skeleton, Clip]:
+    """Turn the world, and so the rest pose and every frame, by the quaternion `turn` [4]."""
+    top = skeleton.parents < 0
+    rotations = clip.rotations.copy()
+    rotations[:, top] = rotation.multiply(turn, rotations[:, top])
+    bind_rotations, bind_translations = skeleton.bind_rotations.copy(), skeleton.bind_translations.copy()
+    bind_rotations[top] = rotation.multiply(turn, bind_rotations[top])
+    bind_translations[top] = rotation.rotate(turn, bind_translations[top])
+    translation = rotation.rotate(turn, clip.translation) if top[skeleton.root] else clip.translation
+    skeleton = replace(skeleton, bind_rotations=bind_rotations, bind_translations=bind_translations)
+    return skeleton, replace(clip, rotations=rotations, translation=translation)
+
+
+def _listed(skeleton: Skeleton, joints: list[int]) -> str:
+    return ", ".join(skeleton.names[j] for j in joints)

@@ -1,0 +1,42 @@
+"""Read motion of any known format, from a file or all files of a directory."""
+
+from pathlib import Path
+
+from mua.errors import InputError
+from mua.motion.amass import read_amass
+from mua.motion.bvh import read_bvh
+from mua.motion.source import SourceMotion
+
+RIG_SUFFIXES = (".glb", ".gltf", ".usd", ".usda", ".usdc", ".usdz")
+SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
+
+
+def read_motion(path: Path) -> list[SourceMotion]:
+    """Read every motion of `path`: a .bvh, AMASS .npz, glTF or USD file, or a directory of such files, by name.
+
+    Errors: InputError for a path that does not exist, a suffix that is not known, a file or directory without motion.
+    """
+    if path.is_dir():
+        files = sorted(file for file in path.iterdir() if file.suffix.lower() in SUFFIXES)
+        if not files:
+            raise InputError(f"{path}: expected files that end in {', '.join(SUFFIXES)}, found none")
+        return [motion for file in files for motion in read_motion(file)]
+    if not path.exists():
+        raise InputError(f"{path}: does not exist, expected a motion file or a directory of them")
+    suffix = path.suffix.lower()
+    if suffix == ".bvh":
+        return [read_bvh(path)]
+    if suffix == ".npz":
+        return [read_amass(path)]
+    if suffix in RIG_SUFFIXES:
+        return _read_rig_clips(path)
+    raise InputError(f"{path}: expected a suffix out of {', '.join(SUFFIXES)}, found {path.suffix!r}")
+
+
+def _read_rig_clips(path: Path) -> list[SourceMotion]:
+    from mua.rig.read import read_surfaces  # here, because scene readers are slow to import
+
+    rig = read_surfaces(path)
+    if not rig.clips:
+        raise InputError(f"{path}: expected an animation, found none")
+    return [SourceMotion(rig.skeleton, clip) for clip in rig.clips]

@@ -1,0 +1,26 @@
+"""Resample a clip to another rate: rotations along the shorter arc, positions linearly."""
+
+import numpy as np
+
+from mua import rotation
+from mua.motion.clip import Clip
+
+LAST_FRAME_SLACK = 1e-6  # frames by which rounding may place the end of a clip before its last sample
+
+
+def resample(clip: Clip, rate: float) -> Clip:
+    """Return `clip` sampled at `rate` frames per second from its first frame on, never past its last."""
+    if rate == clip.rate:
+        return clip
+    last = len(clip) - 1
+    count = int(last / clip.rate * rate + LAST_FRAME_SLACK) + 1
+    times = np.minimum(np.arange(count) * (clip.rate / rate), last)  # in frames of `clip`
+    before = np.minimum(times.astype(int), max(last - 1, 0))
+    after = np.minimum(before + 1, last)
+    t = times - before
+    return Clip(
+        name=clip.name,
+        rate=rate,
+        rotations=rotation.slerp(clip.rotations[before], clip.rotations[after], t[:, None]),
+        translation=clip.translation[before] + t[:, None] * (clip.translation[after] - clip.translation[before]),
+    )

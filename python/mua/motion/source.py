@@ -1,0 +1,15 @@
+"""Motion as a file holds it: a clip on the file's own skeleton, not yet on the character's."""
+
+from dataclasses import dataclass
+
+from mua.motion.clip import Clip
+from mua.rig.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class SourceMotion:
+    """A clip and the skeleton that it was recorded on; the skeleton's bind pose is the rest pose of the file."""
+
+    skeleton: Skeleton
+    clip: Clip
+    notes: tuple[str, ...] = ()  # decisions of the reader worth telling the user, a sentence each
