@@ -1,5 +1,6 @@
 """A small random avatar for tests: a three-joint tube of 12 vertices, 32 x 32 texels, four levels (LL 2 x 2)."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -101,7 +102,7 @@ def _texel_map(mesh: Mesh) -> TexelMap:
     )
 
 
-def _branch(rng: np.random.Generator, inputs: int, means: list[float], texels: int) -> Branch:
+def _branch(rng: np.random.Generator, inputs: int, means: Sequence[float], texels: int) -> Branch:
     channels, side = len(means), SIZE >> LEVELS
     gain = 2**LEVELS  # of a constant through the analysis, two per level in 2D
     constant = np.array(means, dtype=np.float32)[:, None, None] * gain

@@ -12,6 +12,8 @@ from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
 from mua.kernels.inverse_dwt import add_static, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
+from mua.motion.clip import Clip
+from mua.motion.descriptor import describe_window
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.texture.channels import APPEARANCE
@@ -40,15 +42,25 @@ def decode(
     dtype: npt.DTypeLike = np.float32,
 ) -> Frame:
     """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
-    from mua.motion.descriptor import describe_window
-
-    descriptor = describe_window(avatar.encoding, avatar.rig.skeleton, rotations, translation)
+    descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translation)
     x = ((descriptor - avatar.normalization.mean) / avatar.normalization.scale).astype(dtype)
     canonical = expand_mesh(avatar, x)
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
     return pose_splats(avatar.rig, canonical, texture=texture, pose=Pose(rotations[0], translation[0]))
+
+
+def decode_clip_frame(
+    avatar: Avatar,
+    clip: Clip,  # at the rate of the avatar's encoding
+    *,
+    frame: int,
+    dtype: npt.DTypeLike = np.float32,
+) -> Frame:
+    """Decode one frame of a clip; before its first frame, the clip is held still."""
+    window = np.maximum(frame - np.arange(avatar.encoding.window), 0)
+    return decode(avatar, clip.rotations[window], translation=clip.translation[window], dtype=dtype)
 
 
 def expand_mesh(

@@ -1,7 +1,7 @@
 """A posed avatar to an image, by the reference kernels on the CPU.
 
-Colours are display-referred, as in 3D Gaussian Splatting: sRGB values are blended, so an image needs no transfer function
-before it is written as 8 bits.
+Colours are display-referred, as in 3D Gaussian Splatting: sRGB values are blended, so an image needs no transfer
+function before it is written as 8 bits.
 """
 
 import numpy as np
