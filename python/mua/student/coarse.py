@@ -1,0 +1,60 @@
+"""The coarse mesh: PCA of the teacher's canonical meshes and F_temp (paper, Animatable Coarse Geometry)."""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mua.student.factorize import truncated_svd
+from mua.student.model import Coarse
+from mua.student.optimise import Run
+from mua.student.regress import absolute_error, regress
+from mua.student.settings import Settings
+
+
+@dataclass(frozen=True)
+class MeshPca:
+    """meshes = mean + coefficients @ basis; the basis is orthonormal, coefficients are metres."""
+
+    mean: Tensor  # [V, 3]
+    basis: Tensor  # [K, V, 3], zero beyond the rank of the meshes
+    coefficients: Tensor  # [F, K]
+
+
+def mesh_pca(
+    meshes: Tensor,  # [F, V, 3] canonical vertices, metres
+    components: int,
+    *,
+    generator: torch.Generator,
+) -> MeshPca:
+    """The leading principal components of canonical meshes; where frames or vertices are too few, the rest is zero."""
+    mean = meshes.mean(0)
+    flat = (meshes - mean).flatten(1)
+    _, s, v = truncated_svd(flat, components, generator=generator)
+    v = v * (s > torch.finfo(s.dtype).eps * max(flat.shape) * s.max())[:, None]  # directions without motion are noise
+    basis = torch.nn.functional.pad(v, (0, 0, 0, components - len(v)))
+    return MeshPca(mean, basis.unflatten(1, meshes.shape[1:]), flat @ basis.T)
+
+
+def fit_coarse(
+    coarse: Coarse,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    meshes: Tensor,  # [F, V, 3] canonical vertices, metres
+    *,
+    settings: Settings,
+    run: Run,
+) -> None:
+    """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
+    pca = mesh_pca(meshes, settings.components, generator=run.generator)
+    coarse.mean.copy_(pca.mean)
+    coarse.basis.copy_(pca.basis)
+    mlp = regress(
+        inputs,
+        pca.coefficients,
+        hidden=settings.hidden,
+        criterion=absolute_error,
+        schedule=settings.regression,
+        stage="coarse mesh",
+        run=run,
+    )
+    coarse.mlp.load_state_dict(mlp.state_dict())

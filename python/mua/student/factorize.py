@@ -1,0 +1,161 @@
+"""Closed-form blendshapes: truncated SVD for LL, coupled CP by alternating least squares for the detail bands.
+
+Everything works on one channel at a time, so that memory does not depend on the number of channels.
+CP by alternating least squares: Kolda and Bader 2009, https://doi.org/10.1137/07070111X; the subspace iteration behind the SVD:
+Halko, Martinsson and Tropp 2011, https://doi.org/10.1137/090771806.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+OVERSAMPLING = 16
+POWER_ITERATIONS = 3
+PROXIMAL = 1e-5  # weight of the previous factor in an update, relative to the Gram matrix's mean diagonal
+
+
+@dataclass(frozen=True)
+class Blendshapes:
+    """A linear model of one channel of LL: samples = coefficients @ basis, coefficients of unit variance."""
+
+    coefficients: Tensor  # [F, R]
+    basis: Tensor  # [R, P]
+
+
+@dataclass(frozen=True)
+class Factors:
+    """A coupled CP model of the three detail bands of one channel: X[f, s] = sum_r a[f, r] h[s, r] (x) w[s, r]."""
+
+    coefficients: Tensor  # [F, R]
+    h: Tensor  # [3, R, n]
+    w: Tensor  # [3, R, n]
+
+    def basis(self) -> Tensor:
+        """The blendshapes [R, 3 n n] that the factors stand for."""
+        return torch.einsum("sri,srj->rsij", self.h, self.w).flatten(1)
+
+
+def truncated_svd(
+    x: Tensor,  # [F, P]
+    rank: int,
+    *,
+    generator: torch.Generator,
+) -> tuple[Tensor, Tensor, Tensor]:
+    """The leading singular triplets u [F, K], s [K], v [K, P] of a matrix, K = min(rank, F, P), by subspace iteration."""
+    width = min(rank + OVERSAMPLING, *x.shape)
+    probe = torch.randn(x.shape[1], width, generator=generator).to(x)
+    span = torch.linalg.qr(x @ probe).Q
+    for _ in range(POWER_ITERATIONS):
+        span = torch.linalg.qr(x @ torch.linalg.qr(x.T @ span).Q).Q
+    u, s, v = torch.linalg.svd(span.T @ x, full_matrices=False)
+    keep = min(rank, *x.shape)
+    return span @ u[:, :keep], s[:keep], v[:keep]
+
+
+def blendshapes(
+    x: Tensor,  # [F, P] samples about their mean
+    rank: int,
+    *,
+    generator: torch.Generator,
+) -> Blendshapes:
+    """The best linear blendshapes of a channel; where there are fewer frames or samples than `rank`, the rest is zero."""
+    u, s, v = truncated_svd(x, rank, generator=generator)
+    spread = len(x) ** 0.5
+    coefficients = torch.nn.functional.pad(u * spread, (0, rank - len(s)))
+    return Blendshapes(coefficients, torch.nn.functional.pad(v * (s / spread)[:, None], (0, 0, 0, rank - len(s))))
+
+
+def separable_blendshapes(
+    x: Tensor,  # [F, 3, n, n] samples about their mean
+    rank: int,
+    *,
+    sweeps: int,
+    generator: torch.Generator,
+) -> Factors:
+    """Separable blendshapes of the three bands of a channel by `sweeps` rounds of alternating least squares.
+
+    A model of rank R spans at most R directions over frames, so the sweeps run on the leading 2 R of them, which is several
+    times cheaper; the coefficients of all frames are solved for at the end.
+    """
+    u, s, v = truncated_svd(x.flatten(1), 2 * rank, generator=generator)
+    compressed = (s[:, None] * v).unflatten(1, x.shape[1:])
+    factors = start_from_modes(compressed, rank)
+    for _ in range(sweeps):
+        factors = sweep(compressed, factors)
+    coefficients = u @ factors.coefficients
+    return _balance(Factors(coefficients, factors.h, factors.w))
+
+
+def start_from_modes(
+    modes: Tensor,  # [K, 3, n, n] orthogonal modes, largest first
+    rank: int,
+) -> Factors:
+    """Split every mode into separable terms by an SVD per band and keep the `rank` terms of most energy.
+
+    Term p of a mode takes the p-th singular pair of each band, as the bands share one coefficient.
+    """
+    u, s, v = torch.linalg.svd(modes)
+    energy = s.square().sum(1)  # [K, n]
+    best = energy.flatten().topk(min(rank, energy.numel())).indices
+    mode, term = best // energy.shape[1], best % energy.shape[1]
+    root = s[mode, :, term].sqrt()[..., None]  # [R, 3, 1]
+    h = (u[mode, :, :, term] * root).transpose(0, 1)
+    w = (v[mode, :, term, :] * root).transpose(0, 1)
+    missing = rank - len(best)
+    coefficients = torch.nn.functional.one_hot(mode, len(modes)).T.to(modes)
+    return Factors(_pad(coefficients, 1, missing), _pad(h, 1, missing), _pad(w, 1, missing))
+
+
+def sweep(
+    x: Tensor,  # [F, 3, n, n]
+    factors: Factors,
+) -> Factors:
+    """One round of alternating least squares: coefficients, then rows, then columns; the error never rises."""
+    a = fit_coefficients(x, factors)
+    y = torch.einsum("fr,fp->rp", a, x.flatten(1)).unflatten(1, x.shape[1:])
+    gram = a.T @ a
+    h = _update(torch.einsum("rsij,srj->sri", y, factors.w), gram * _gram(factors.w), factors.h)
+    w = _update(torch.einsum("rsij,sri->srj", y, h), gram * _gram(h), factors.w)
+    return _balance(Factors(a, h, w))
+
+
+def fit_coefficients(
+    x: Tensor,  # [F, 3, n, n]
+    factors: Factors,
+) -> Tensor:
+    """The coefficients [F, R] that fit `x` best for given rows and columns."""
+    right = factors.basis() @ x.flatten(1).T
+    return _update(right, (_gram(factors.h) * _gram(factors.w)).sum(0), factors.coefficients.T).T
+
+
+def _gram(rows: Tensor) -> Tensor:
+    return rows @ rows.transpose(-1, -2)
+
+
+def _update(right: Tensor, gram: Tensor, previous: Tensor) -> Tensor:
+    """Solve gram x = right, held to `previous` by a proximal term: well-posed for any rank, and still a descent step."""
+    pull = PROXIMAL * gram.diagonal(dim1=-2, dim2=-1).mean(-1)[..., None, None] + torch.finfo(gram.dtype).tiny
+    identity = torch.eye(gram.shape[-1], dtype=gram.dtype, device=gram.device)
+    factor = torch.linalg.cholesky(gram + pull * identity)
+    return torch.cholesky_solve(right + pull * previous, factor)
+
+
+def _balance(factors: Factors) -> Factors:
+    """Give every term coefficients of unit variance and rows and columns of equal length; the product stays the same."""
+    tiny = torch.finfo(factors.h.dtype).tiny
+    spread = factors.coefficients.square().mean(0).sqrt()
+    rows, columns = (f.square().sum((0, 2)).sqrt() for f in (factors.h, factors.w))
+    length = (spread * rows * columns).sqrt()
+    safe = [torch.where(size > tiny, size, torch.ones_like(size)) for size in (spread, rows, columns)]
+    return Factors(
+        factors.coefficients / safe[0],
+        factors.h * (length / safe[1])[:, None],
+        factors.w * (length / safe[2])[:, None],
+    )
+
+
+def _pad(x: Tensor, dim: int, count: int) -> Tensor:
+    shape = list(x.shape)
+    shape[dim] = count
+    return torch.cat([x, x.new_zeros(shape)], dim=dim)

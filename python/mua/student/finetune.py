@@ -1,0 +1,67 @@
+"""Joint training of bases and MLP on the paper's loss (paper, Supervision and Training Objectives)."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import torch
+from torch import Tensor
+
+from mua.student.model import Bands, Branch
+from mua.student.optimise import Run, draw_batch, optimise
+from mua.student.regress import WEIGHT_DECAY
+from mua.student.settings import Schedule
+
+LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1
+BASIS_RATE = 0.1  # learning rate of the bases relative to that of the MLP
+
+
+def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
+    """5 |LL| + |D3| + |D2|, L1 (paper, Eq. L_rec)."""
+    ll, d3, d2 = ((a - b).abs().mean() for a, b in zip(predicted, truth, strict=True))
+    return LL_WEIGHT * ll + d3 + d2
+
+
+@contextmanager
+def weighted(branch: Branch, weights: Tensor) -> Iterator[None]:
+    """Scale the branch's subbands by `weights` [C] within the block, so that Adam's steps are alike for all channels."""
+    _scale(branch, weights)
+    yield
+    _scale(branch, 1 / weights)
+
+
+def _scale(branch: Branch, weights: Tensor) -> None:
+    with torch.no_grad():
+        branch.ll_mean.mul_(weights[:, None, None])
+        branch.ll_basis.mul_(weights[:, None, None, None])
+        for detail in (branch.d3, branch.d2):
+            detail.mean.mul_(weights[:, None, None])
+            detail.h.mul_(weights.sqrt()[:, None, None])
+            detail.w.mul_(weights.sqrt()[:, None, None])
+
+
+def finetune(
+    branch: Branch,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    bands: Callable[[Tensor], Bands],  # the subbands of a batch of frames
+    *,
+    weights: Tensor,  # [C]
+    schedule: Schedule,
+    stage: str,
+    run: Run,
+) -> None:
+    """Train bases and MLP together on the paper's loss over weighted subbands."""
+
+    def loss() -> Tensor:
+        batch = draw_batch(len(inputs), schedule.batch, run.generator)
+        ll, d3, d2 = (band.to(run.device) for band in bands(batch))
+        scale = weights[:, None, None]
+        return subband_loss(branch(inputs[batch.to(inputs.device)]), Bands(ll * scale, d3 * scale, d2 * scale))
+
+    mlp = list(branch.mlp.parameters())
+    bases = [branch.ll_basis, branch.d3.h, branch.d3.w, branch.d2.h, branch.d2.w]
+    groups: list[dict[str, object]] = [
+        {"params": mlp, "weight_decay": WEIGHT_DECAY},
+        {"params": bases, "weight_decay": 0.0, "lr": BASIS_RATE},
+    ]
+    with weighted(branch, weights):
+        optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run)

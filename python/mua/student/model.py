@@ -1,0 +1,195 @@
+"""The student in torch: a coarse mesh and two branches of wavelet blendshapes, each driven by one small MLP (paper, Methodology)."""
+
+from typing import NamedTuple
+
+import torch
+from torch import Tensor, nn
+
+from mua.student.settings import Ranks, Settings
+from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.wavelets import synthesise_lowpass, waverec2
+
+STATIC_LEVELS = 2  # the two finest levels are the mean over training frames
+HIDDEN_LAYERS = 2
+
+
+class Bands(NamedTuple):
+    """The dynamic subbands of F frames; detail bands in the order of pywt's (cH, cV, cD)."""
+
+    ll: Tensor  # [F, C, n, n]
+    d3: Tensor  # [F, 3, C, n, n]
+    d2: Tensor  # [F, 3, C, 2n, 2n]
+
+
+class Alphas(NamedTuple):
+    """Blendshape coefficients alpha(r, c) of F frames, per channel as the paper writes them."""
+
+    ll: Tensor  # [F, C, R_LL]
+    d3: Tensor  # [F, C, R_3]
+    d2: Tensor  # [F, C, R_2]
+
+    def flat(self) -> Tensor:
+        """[F, M], the order in which a coefficient MLP puts them out."""
+        return torch.cat([level.flatten(1) for level in self], dim=1)
+
+
+def build_mlp(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
+    """A shallow MLP: ReLU after every layer but the last."""
+    widths = [inputs, *[hidden] * HIDDEN_LAYERS]
+    layers: list[nn.Module] = []
+    for fan_in, fan_out in zip(widths, widths[1:], strict=False):
+        layers += [nn.Linear(fan_in, fan_out), nn.ReLU()]
+    return nn.Sequential(*layers, nn.Linear(hidden, outputs))
+
+
+def linear_layers(mlp: nn.Module) -> list[nn.Linear]:
+    return [layer for layer in mlp.modules() if isinstance(layer, nn.Linear)]
+
+
+def outer_products(
+    h: Tensor,  # [3, C, R, n]
+    w: Tensor,  # [3, C, R, n]
+) -> Tensor:
+    """The blendshapes [C, R, 3 n n] that factors stand for: h (x) w of the three bands, flattened."""
+    return torch.einsum("scri,scrj->crsij", h, w).flatten(2)
+
+
+class Detail(nn.Module):
+    """The three detail subbands of one level: mean + sum_r alpha(r, c) h (x) w, with alpha shared by the bands."""
+
+    mean: Tensor
+
+    def __init__(self, channels: int, rank: int, size: int) -> None:
+        super().__init__()
+        self.register_buffer("mean", torch.zeros(3, channels, size, size))
+        self.h = nn.Parameter(torch.zeros(3, channels, rank, size))
+        self.w = nn.Parameter(torch.zeros(3, channels, rank, size))
+
+    def forward(self, alpha: Tensor) -> Tensor:
+        """Subbands [F, 3, C, n, n] of coefficients [F, C, R]."""
+        flat = torch.bmm(alpha.transpose(0, 1), outer_products(self.h, self.w))  # [C, F, 3 n n]
+        size = self.mean.shape[-1]
+        return flat.unflatten(2, (3, size, size)).permute(1, 2, 0, 3, 4) + self.mean
+
+
+class Branch(nn.Module):
+    """Geometry or appearance: F_coeff and the subbands that its coefficients drive."""
+
+    ll_mean: Tensor
+
+    def __init__(self, channels: int, ranks: Ranks, size: int, *, inputs: int, hidden: int) -> None:
+        super().__init__()
+        self.channels = channels
+        self.ranks = ranks
+        self.mlp = build_mlp(inputs, hidden, channels * ranks.total)
+        self.register_buffer("ll_mean", torch.zeros(channels, size, size))
+        self.ll_basis = nn.Parameter(torch.zeros(channels, ranks.ll, size, size))
+        self.d3 = Detail(channels, ranks.d3, size)
+        self.d2 = Detail(channels, ranks.d2, 2 * size)
+
+    def split(self, flat: Tensor) -> Alphas:
+        """Name the parts of an MLP output [F, M]."""
+        sizes = (self.ranks.ll, self.ranks.d3, self.ranks.d2)
+        parts = flat.split([self.channels * rank for rank in sizes], dim=1)
+        return Alphas(*(part.unflatten(1, (self.channels, rank)) for part, rank in zip(parts, sizes, strict=True)))
+
+    def synthesize(self, alphas: Alphas) -> Bands:
+        """The subbands of given coefficients."""
+        ll = torch.bmm(alphas.ll.transpose(0, 1), self.ll_basis.flatten(2))  # [C, F, n n]
+        ll = ll.transpose(0, 1).unflatten(2, self.ll_mean.shape[1:]) + self.ll_mean
+        return Bands(ll, self.d3(alphas.d3), self.d2(alphas.d2))
+
+    def forward(self, inputs: Tensor) -> Bands:
+        """The subbands of normalised descriptors [F, k D]."""
+        return self.synthesize(self.split(self.mlp(inputs)))
+
+
+class Coarse(nn.Module):
+    """F_temp and the PCA of the canonical mesh (paper, Animatable Coarse Geometry)."""
+
+    mean: Tensor
+    basis: Tensor
+
+    def __init__(self, vertices: int, components: int, *, inputs: int, hidden: int) -> None:
+        super().__init__()
+        self.mlp = build_mlp(inputs, hidden, components)
+        self.register_buffer("mean", torch.zeros(vertices, 3))
+        self.register_buffer("basis", torch.zeros(components, vertices, 3))
+
+    def forward(self, inputs: Tensor) -> Tensor:
+        """Canonical vertices [F, V, 3], metres, of normalised descriptors [F, k D]."""
+        return torch.einsum("fk,kvx->fvx", self.mlp(inputs), self.basis) + self.mean
+
+
+class Student(nn.Module):
+    """The whole student; descriptors enter as `mua.motion.descriptor` makes them and are normalised here."""
+
+    mean: Tensor
+    scale: Tensor
+    static: Tensor
+    texels: Tensor
+
+    def __init__(self, settings: Settings, *, inputs: int, vertices: int, texels: Tensor, wavelet: str) -> None:
+        """`texels` [N] are the valid texels as row * size + col."""
+        super().__init__()
+        self.size = settings.texels
+        self.wavelet = wavelet
+        width, coarsest = settings.hidden, settings.texels // 16
+        self.register_buffer("mean", torch.zeros(inputs))
+        self.register_buffer("scale", torch.ones(inputs))
+        self.register_buffer("texels", texels.long())
+        self.register_buffer("static", torch.zeros(CHANNELS, len(texels)))
+        self.coarse = Coarse(vertices, settings.components, inputs=inputs, hidden=width)
+        self.geometry = Branch(_count(GEOMETRY), settings.geometry, coarsest, inputs=inputs, hidden=width)
+        self.appearance = Branch(_count(APPEARANCE), settings.appearance, coarsest, inputs=inputs, hidden=width)
+
+    @property
+    def branches(self) -> tuple[Branch, Branch]:
+        return self.geometry, self.appearance
+
+    def normalize(self, descriptors: Tensor) -> Tensor:
+        return (descriptors - self.mean) / self.scale
+
+    def mesh(self, descriptors: Tensor) -> Tensor:
+        """Canonical vertices [F, V, 3], metres."""
+        return self.coarse(self.normalize(descriptors))
+
+    def coefficients(self, descriptors: Tensor) -> tuple[Alphas, Alphas]:
+        """What the MLPs predict, geometry and appearance."""
+        inputs = self.normalize(descriptors)
+        return self.geometry.split(self.geometry.mlp(inputs)), self.appearance.split(self.appearance.mlp(inputs))
+
+    def synthesize(self, alphas: tuple[Alphas, Alphas]) -> Bands:
+        """Subbands of all 23 channels."""
+        geometry, appearance = (branch.synthesize(part) for branch, part in zip(self.branches, alphas, strict=True))
+        return Bands(
+            torch.cat([geometry.ll, appearance.ll], dim=1),
+            torch.cat([geometry.d3, appearance.d3], dim=2),
+            torch.cat([geometry.d2, appearance.d2], dim=2),
+        )
+
+    def predict(self, descriptors: Tensor) -> Bands:
+        """Subbands of all 23 channels of descriptors [F, k D]."""
+        return self.synthesize(self.coefficients(descriptors))
+
+    def texture(self, bands: Bands) -> Tensor:
+        """The full-resolution texture [F, N, 23] at the valid texels: IDWT of the dynamic subbands plus the static offset."""
+        return (lowpass_texels(bands, self.wavelet, self.texels) + self.static).transpose(1, 2)
+
+    def mean_lowpass(self) -> Tensor:
+        """What the mean of the dynamic subbands puts into the valid texels [23, N]."""
+        geometry, appearance = self.branches
+        ll = torch.cat([geometry.ll_mean, appearance.ll_mean])
+        d3 = torch.cat([geometry.d3.mean, appearance.d3.mean], dim=1)
+        d2 = torch.cat([geometry.d2.mean, appearance.d2.mean], dim=1)
+        return lowpass_texels(Bands(ll[None], d3[None], d2[None]), self.wavelet, self.texels)[0]
+
+
+def lowpass_texels(bands: Bands, wavelet: str, texels: Tensor) -> Tensor:
+    """IDWT(LL, D3, D2, 0, 0) [F, C, N] at the valid texels [N]."""
+    quarter = waverec2(bands.ll, [bands.d3.transpose(1, 2), bands.d2.transpose(1, 2)], wavelet)
+    return synthesise_lowpass(quarter, wavelet, STATIC_LEVELS).flatten(2)[..., texels]
+
+
+def _count(channels: slice) -> int:
+    return channels.stop - channels.start

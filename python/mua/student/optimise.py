@@ -1,0 +1,95 @@
+"""One resumable run of Adam: the loop that every trained stage of a distillation shares."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from mua.student.checkpoint import Checkpoints
+from mua.student.settings import Schedule
+
+CHECKPOINT_STEPS = 200
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a distillation stands."""
+
+    stage: str
+    step: int  # finished steps
+    steps: int
+    loss: float
+    rate: float  # steps per second of this stage
+
+
+Report = Callable[[Progress], None]
+
+
+@dataclass(frozen=True)
+class Run:
+    """What every stage of a distillation shares."""
+
+    generator: torch.Generator
+    checkpoints: Checkpoints
+    report: Report
+    device: torch.device
+
+
+def optimise(
+    module: nn.Module,
+    loss: Callable[[], Tensor],
+    *,
+    schedule: Schedule,
+    parameters: list[dict[str, object]],
+    stage: str,
+    run: Run,
+) -> None:
+    """Run AdamW over `schedule` from the stage's last checkpoint; `parameters` are its groups, `lr` relative to the schedule's.
+
+    After a kill, a resumed run ends in the same bytes: model, optimiser and generator continue from the same state.
+    """
+    relative = [float(group.pop("lr", 1.0)) for group in parameters]  # type: ignore[arg-type]
+    optimizer = torch.optim.AdamW(parameters, lr=schedule.rate)
+    first = _restore(module, optimizer, stage=stage, run=run)
+    started = time.monotonic()
+    for step in range(first, schedule.steps):
+        rate = schedule.rate * 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
+        for group, factor in zip(optimizer.param_groups, relative, strict=True):
+            group["lr"] = rate * factor
+        optimizer.zero_grad()
+        value = loss()
+        value.backward()  # type: ignore[no-untyped-call]
+        optimizer.step()
+        done = step + 1
+        if done % CHECKPOINT_STEPS == 0 or done == schedule.steps:
+            _keep(module, optimizer, done, stage=stage, run=run)
+        pace = (done - first) / max(time.monotonic() - started, 1e-9)
+        run.report(Progress(stage, done, schedule.steps, float(value.detach()), pace))
+
+
+def _restore(module: nn.Module, optimizer: torch.optim.Optimizer, *, stage: str, run: Run) -> int:
+    kept = run.checkpoints.load(stage)
+    if kept is None:
+        return 0
+    module.load_state_dict(kept["module"])
+    optimizer.load_state_dict(kept["optimizer"])
+    run.generator.set_state(kept["generator"])
+    return int(kept["step"])
+
+
+def _keep(module: nn.Module, optimizer: torch.optim.Optimizer, step: int, *, stage: str, run: Run) -> None:
+    state = {
+        "module": module.state_dict(),
+        "optimizer": optimizer.state_dict(),
+        "generator": run.generator.get_state(),
+        "step": step,
+    }
+    run.checkpoints.save(stage, state)
+
+
+def draw_batch(frames: int, batch: int, generator: torch.Generator) -> Tensor:
+    """Indices [min(batch, frames)] of different frames."""
+    return torch.randperm(frames, generator=generator)[:batch]

@@ -1,0 +1,87 @@
+"""What a distillation may vary: three presets, each a point between minutes on a laptop and the paper's own setting."""
+
+from dataclasses import dataclass
+
+from mua.errors import InputError
+
+
+@dataclass(frozen=True)
+class Ranks:
+    """Blendshapes per channel of the three dynamic levels (paper, Methodology; design, section 3)."""
+
+    ll: int
+    d3: int
+    d2: int
+
+    @property
+    def total(self) -> int:
+        return self.ll + self.d3 + self.d2
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """One run of Adam with a learning rate that falls to zero along a cosine."""
+
+    steps: int
+    batch: int  # frames per step
+    rate: float  # learning rate of the first step
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Sizes and schedules of one distillation."""
+
+    texels: int  # H = W of the Gaussian texture
+    frames: int  # training frames to record
+    geometry: Ranks
+    appearance: Ranks
+    components: int  # PCA components of the coarse mesh
+    hidden: int  # width of the two hidden layers of every MLP
+    sweeps: int  # of alternating least squares
+    regression: Schedule
+    finetune: Schedule
+    seed: int = 0
+
+
+PRESETS = {
+    "tiny": Settings(
+        texels=192,
+        frames=240,
+        geometry=Ranks(32, 24, 24),
+        appearance=Ranks(24, 24, 24),
+        components=24,
+        hidden=128,
+        sweeps=10,
+        regression=Schedule(steps=600, batch=256, rate=3e-3),
+        finetune=Schedule(steps=100, batch=32, rate=3e-4),
+    ),
+    "preview": Settings(
+        texels=384,
+        frames=1500,
+        geometry=Ranks(192, 128, 96),
+        appearance=Ranks(128, 128, 96),
+        components=128,
+        hidden=256,
+        sweeps=15,
+        regression=Schedule(steps=3000, batch=512, rate=2e-3),
+        finetune=Schedule(steps=600, batch=64, rate=3e-4),
+    ),
+    "paper": Settings(
+        texels=768,
+        frames=17000,
+        geometry=Ranks(192, 128, 96),
+        appearance=Ranks(128, 128, 96),
+        components=128,
+        hidden=256,
+        sweeps=20,
+        regression=Schedule(steps=20000, batch=1024, rate=2e-3),
+        finetune=Schedule(steps=20000, batch=32, rate=3e-4),
+    ),
+}
+
+
+def preset(name: str) -> Settings:
+    """The settings called `name`; raises InputError where there are none."""
+    if name not in PRESETS:
+        raise InputError(f"preset: {name!r} is unknown, expected one of {', '.join(PRESETS)}")
+    return PRESETS[name]

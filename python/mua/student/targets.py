@@ -1,0 +1,84 @@
+"""What the coefficient MLPs regress: the joint principal directions of all blendshape coefficients of a branch.
+
+Coefficients are first expressed so that a squared error in them is the squared error in the texture that they stand for; the
+few hundred directions that matter are regressed, and the linear map back is folded into the last layer of the MLP.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mua.student.factorize import truncated_svd
+from mua.student.model import Branch, outer_products
+from mua.texture.channels import ATTRIBUTES
+
+# No one sees an attribute vary by less than this, in its own unit (metres, quaternion, log scale, logit, SH).
+LEAST_SPREAD = {"offset": 1e-4, "rotation": 1e-3, "scale": 1e-3, "opacity": 1e-2, "SH": 1e-3}
+GRAM_RIDGE = 1e-6
+
+
+@dataclass(frozen=True)
+class Targets:
+    """F frames of K joint coordinates; coefficients = coordinates @ expand."""
+
+    coordinates: Tensor  # [F, K] in units of the weighted texture
+    expand: Tensor  # [K, M]
+
+
+def channel_weights(
+    variance: Tensor,  # [C] over training frames and texels
+    channels: slice,  # which of the 23 these are
+) -> Tensor:
+    """The weight [C] of each channel's error: one over the spread of its attribute.
+
+    The channels of an attribute share a unit, hence a weight; attributes come to count alike. The paper's loss over raw
+    channels would all but ignore offsets, which are metres beside logits.
+    """
+    weights = torch.empty_like(variance)
+    for name, where in ATTRIBUTES.items():
+        if channels.start <= where.start and where.stop <= channels.stop:
+            own = slice(where.start - channels.start, where.stop - channels.start)
+            weights[own] = 1 / variance[own].mean().sqrt().clamp(min=LEAST_SPREAD[name])
+    return weights
+
+
+@torch.no_grad()
+def joint_targets(
+    branch: Branch,
+    flat: Tensor,  # [F, M] coefficients
+    weights: Tensor,  # [C]
+    *,
+    rank: int,
+    generator: torch.Generator,
+) -> Targets:
+    """The leading `rank` joint directions of a branch's coefficients, by their worth in the weighted texture."""
+    bases = (
+        branch.ll_basis.flatten(2),
+        outer_products(branch.d3.h, branch.d3.w),
+        outer_products(branch.d2.h, branch.d2.w),
+    )
+    alphas = branch.split(flat)
+    roots = [_root(basis, weights) for basis in bases]
+    worth = [torch.einsum("fcr,crk->fck", alpha, root) for alpha, root in zip(alphas, roots, strict=True)]
+    u, s, v = truncated_svd(torch.cat([level.flatten(1) for level in worth], dim=1), rank, generator=generator)
+    parts = branch.split(v)
+    expand = [
+        torch.linalg.solve_triangular(root, part.transpose(0, 1), upper=False, left=False).transpose(0, 1).flatten(1)
+        for root, part in zip(roots, parts, strict=True)
+    ]
+    return Targets(u * s, torch.cat(expand, dim=1))
+
+
+def _root(
+    basis: Tensor,  # [C, R, P]
+    weights: Tensor,  # [C]
+) -> Tensor:
+    """The Cholesky roots L [C, R, R] of the weighted Gram matrices, so that |alpha L| is the norm of alpha's texture.
+
+    A ridge keeps them invertible where terms are alike, or zero because there were fewer frames than blendshapes.
+    """
+    weighted = basis * weights[:, None, None]
+    gram = weighted @ weighted.transpose(1, 2)
+    ridge = GRAM_RIDGE * gram.diagonal(dim1=1, dim2=2).mean(1) + torch.finfo(gram.dtype).tiny
+    return torch.linalg.cholesky(gram + ridge[:, None, None] * torch.eye(gram.shape[1]).to(gram))

@@ -1,0 +1,188 @@
+"""Distillation of training frames into a student: closed-form start, regression, joint fine-tuning (design, section 8.1)."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mua.student.checkpoint import Checkpoints
+from mua.student.coarse import fit_coarse
+from mua.student.factorize import blendshapes, separable_blendshapes
+from mua.student.finetune import finetune
+from mua.student.model import Alphas, Bands, Branch, Student, outer_products
+from mua.student.optimise import Progress, Report, Run
+from mua.student.regress import regress, squared_error, unfold_last_layer
+from mua.student.settings import Settings
+from mua.student.targets import channel_weights, joint_targets
+from mua.texture.channels import APPEARANCE, GEOMETRY
+
+HELD_BYTES = 2 << 30  # a branch's subbands up to this size are kept in memory, larger ones are read batch by batch
+
+Source = Callable[[slice, Tensor], Bands]  # the subbands of channels and rows of the training frames
+
+
+@dataclass(frozen=True)
+class Samples:
+    """F training frames as the student sees them."""
+
+    descriptors: Tensor  # [F, k D] as `mua.motion.descriptor` makes them
+    meshes: Tensor  # [F, V, 3] canonical vertices, metres
+    subbands: Source
+    mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
+
+    def __len__(self) -> int:
+        return len(self.descriptors)
+
+
+def train(
+    student: Student,
+    samples: Samples,
+    *,
+    settings: Settings,
+    checkpoints: Checkpoints,
+    device: torch.device,
+    report: Report,
+) -> None:
+    """Train `student` (its normalisation set) in place on `samples`; resumes from `checkpoints`."""
+    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device)
+    student.to(device)
+    inputs = student.normalize(samples.descriptors.to(device))
+    fit_coarse(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run)
+    for name, branch, channels in zip(
+        ("geometry", "appearance"), student.branches, (GEOMETRY, APPEARANCE), strict=True
+    ):
+        source = hold(samples.subbands, channels, frames=len(samples), size=student.size)
+        fit_branch(branch, inputs, source, channels=channels, settings=settings, name=name, run=run)
+    student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
+    student.requires_grad_(False).eval()
+
+
+def hold(subbands: Source, channels: slice, *, frames: int, size: int) -> Source:
+    """A source of `channels` alone, counted from 0, read once into memory where they fit in HELD_BYTES."""
+    values = (size // 4) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
+    if frames * values * (channels.stop - channels.start) * 4 > HELD_BYTES:
+        return lambda part, rows: subbands(slice(channels.start + part.start, channels.start + part.stop), rows)
+    ll, d3, d2 = subbands(channels, torch.arange(frames))
+    return lambda part, rows: Bands(ll[rows, part], d3[rows, :, part], d2[rows, :, part])
+
+
+def fit_branch(
+    branch: Branch,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    source: Source,  # of the branch's channels, counted from 0
+    *,
+    channels: slice,
+    settings: Settings,
+    name: str,
+    run: Run,
+) -> None:
+    """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning."""
+    flat, variance = factorize_branch(
+        branch, source, frames=len(inputs), settings=settings, stage=f"{name} bases", run=run
+    )
+    weights = channel_weights(variance, channels)
+    rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
+    targets = joint_targets(branch, flat, weights, rank=rank, generator=run.generator)
+    mlp = regress(
+        inputs,
+        targets.coordinates,
+        hidden=settings.hidden,
+        criterion=squared_error,
+        schedule=settings.regression,
+        stage=f"{name} coefficients",
+        run=run,
+    )
+    branch.mlp.load_state_dict(unfold_last_layer(mlp, targets.expand).state_dict())
+    finetune(
+        branch,
+        inputs,
+        lambda rows: source(slice(0, branch.channels), rows),
+        weights=weights,
+        schedule=settings.finetune,
+        stage=f"{name} fine-tuning",
+        run=run,
+    )
+
+
+@torch.no_grad()
+def factorize_branch(
+    branch: Branch,
+    source: Source,
+    *,
+    frames: int,
+    settings: Settings,
+    stage: str,
+    run: Run,
+) -> tuple[Tensor, Tensor]:
+    """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C]."""
+    kept = run.checkpoints.load(stage)
+    if kept is not None:
+        branch.load_state_dict(kept["branch"])
+        run.generator.set_state(kept["generator"])
+        return kept["flat"].to(run.device), kept["variance"].to(run.device)
+    started = time.monotonic()
+    columns, variance = [], []
+    for channel in range(branch.channels):
+        bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
+        alphas, energy = factorize_channel(branch, channel, bands, sweeps=settings.sweeps, generator=run.generator)
+        columns.append(alphas)
+        variance.append(energy)
+        done = channel + 1
+        run.report(Progress(stage, done, branch.channels, 0.0, done / (time.monotonic() - started)))
+    flat = Alphas(*(torch.stack(level, dim=1) for level in zip(*columns, strict=True))).flat()
+    spread = torch.stack(variance) / (frames * settings.texels**2)
+    state = {"branch": branch.state_dict(), "generator": run.generator.get_state(), "flat": flat, "variance": spread}
+    run.checkpoints.save(stage, state)
+    return flat, spread
+
+
+def factorize_channel(
+    branch: Branch,
+    channel: int,
+    bands: Bands,  # of this channel alone
+    *,
+    sweeps: int,
+    generator: torch.Generator,
+) -> tuple[Alphas, Tensor]:
+    """Set means and bases of one channel; returns its coefficients [F, R] and the sum of squares about the mean."""
+    ll, d3, d2 = bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]
+    branch.ll_mean[channel] = ll.mean(0)
+    ll = ll - branch.ll_mean[channel]
+    shapes = blendshapes(ll.flatten(1), branch.ranks.ll, generator=generator)
+    branch.ll_basis[channel] = shapes.basis.unflatten(1, ll.shape[1:])
+    energy = ll.square().sum()
+    coefficients = [shapes.coefficients]
+    for detail, rank, band in ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2)):
+        detail.mean[:, channel] = band.mean(0)
+        band = band - detail.mean[:, channel]
+        factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator)
+        detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
+        coefficients.append(factors.coefficients)
+        energy = energy + band.square().sum()
+    return Alphas(*coefficients), energy
+
+
+@torch.no_grad()
+def best_coefficients(
+    branch: Branch,
+    bands: Bands,  # of the branch's channels
+) -> Alphas:
+    """The coefficients per frame and channel that fit given subbands best in the least-squares sense for the learnt bases."""
+    ll = _least_squares(bands.ll - branch.ll_mean, branch.ll_basis.flatten(2))
+    levels = [ll]
+    for detail, band in ((branch.d3, bands.d3), (branch.d2, bands.d2)):
+        samples = (band - detail.mean).transpose(1, 2)
+        levels.append(_least_squares(samples, outer_products(detail.h, detail.w)))
+    return Alphas(*levels)
+
+
+def _least_squares(
+    x: Tensor,  # [F, C, ...]
+    basis: Tensor,  # [C, R, P]
+) -> Tensor:
+    """[F, C, R] in double precision, of least norm where blendshapes are alike or zero."""
+    right = torch.einsum("fcp,crp->crf", x.flatten(2).double(), basis.double())
+    gram = basis.double() @ basis.double().transpose(1, 2)
+    return (torch.linalg.pinv(gram, hermitian=True, rtol=1e-10) @ right).permute(2, 0, 1).to(x)
