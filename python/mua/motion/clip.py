@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from mua.arrays import Array
+from mua.rig.skeleton import Pose
 
 
 @dataclass(frozen=True)
@@ -16,3 +17,6 @@ class Clip:
 
     def __len__(self) -> int:
         return len(self.rotations)
+
+    def pose(self, index: int) -> Pose:
+        return Pose(self.rotations[index], self.translation[index])

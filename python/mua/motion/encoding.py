@@ -24,6 +24,10 @@ class PoseEncoding:
         """k x D, the length of a descriptor."""
         return self.window * (9 + 6 * len(self.joints))
 
+    def frames(self, index: int) -> list[int]:
+        """The frames of the window that ends at `index`, newest first; before its first frame, a clip is held still."""
+        return [max(index - age, 0) for age in range(self.window)]
+
 
 @dataclass(frozen=True)
 class Normalization:
