@@ -1,23 +1,27 @@
 """From the pieces that a scene file holds to one surface on one rigid skeleton; shared by all readers."""
 
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
 
 from mua.arrays import Array
+from mua.errors import InputError
 from mua.motion.clip import Clip
+from mua.rig.bind_pose import Bind, bind_pose
+from mua.rig.character import MAX_INFLUENCES
+from mua.rig.rigid_motion import rigid_skeleton
+from mua.rig.scene import Material, Part, Scene
 from mua.rig.skeleton import Skeleton
 
-Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
-
-
-@dataclass(frozen=True)
-class Material:
-    """Base colour of some faces: a picture with the material's factor already multiplied in."""
-
-    name: str
-    image: Array  # [h, w, 4] uint8 sRGB, at least 1 x 1; alpha is opacity (255 where the material is opaque)
-    wrap_u: Wrap = "repeat"
-    wrap_v: Wrap = "repeat"
+WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
+WEIGHT_STEP = 1e-5  # weights nearer than this are equal
+HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
+ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be another than it says
+UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
+LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
+FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
 
 @dataclass(frozen=True)
@@ -39,3 +43,231 @@ class Surfaces:
     skin_weights: Array  # [V, 8] float32, rows sum to 1
     clips: tuple[Clip, ...]
     notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Mesh:
+    """All parts in one index space, before welding."""
+
+    groups: Array  # [N] int
+    vertices: Array  # [N, 3] metres
+    indices: Array  # [N, 8] int32 joints
+    weights: Array  # [N, 8] float64
+    faces: Array  # [F, 3] int
+    uv: Array  # [T, 2]
+    uv_faces: Array  # [F, 3] int
+    face_material: Array  # [F] int32
+    notes: tuple[str, ...]
+
+
+def assemble(scene: Scene, path: Path) -> Surfaces:
+    """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
+
+    Raises an InputError that names `path` where no skinned triangle is left.
+    """
+    if not any(len(part.faces) for part in scene.parts):
+        raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character")
+    bind = bind_pose(scene)
+    mesh = _merge(scene, bind)
+    correction, told = _correction(scene, bind, vertices=mesh.vertices[np.unique(mesh.faces)])
+    if told:
+        moved = tuple(replace(motion, worlds=correction @ motion.worlds) for motion in scene.motions)
+        scene = replace(scene, rest=correction @ scene.rest, motions=moved)
+        bind = bind_pose(scene)
+        mesh = _merge(scene, bind)
+    mesh = _weld(mesh)
+    skeleton, clips, losses = rigid_skeleton(scene, bind)
+    return Surfaces(
+        name=scene.name,
+        skeleton=skeleton,
+        vertices=mesh.vertices,
+        faces=mesh.faces.astype(np.int32),
+        uv=mesh.uv,
+        uv_faces=mesh.uv_faces.astype(np.int32),
+        face_material=mesh.face_material,
+        materials=scene.materials,
+        skin_indices=mesh.indices,
+        skin_weights=mesh.weights.astype(np.float32),
+        clips=clips,
+        notes=(*scene.notes, *told, *mesh.notes, *losses),
+    )
+
+
+def limit_influences(
+    joints: Array,  # [N, K] int
+    weights: Array,  # [N, K] >= 0, any scale
+) -> tuple[Array, Array, float]:
+    """Keep the eight largest influences of each vertex, largest first, normalised.
+
+    Returns joints [N, 8] int32, weights [N, 8] and the largest share of weight that a vertex lost. A joint named
+    twice counts once with the sum; a vertex without weight goes to its first joint.
+    """
+    weights = weighted(weights)
+    order = np.argsort(joints, axis=1, kind="stable")
+    joints = np.take_along_axis(joints, order, axis=1)
+    weights = np.take_along_axis(weights, order, axis=1)
+    for k in range(1, joints.shape[1]):
+        same = joints[:, k] == joints[:, k - 1]
+        weights[:, k] += np.where(same, weights[:, k - 1], 0)
+        weights[:, k - 1] = np.where(same, 0, weights[:, k - 1])
+    order = np.argsort(-weights, axis=1, kind="stable")[:, :MAX_INFLUENCES]
+    kept = np.zeros((len(weights), MAX_INFLUENCES))
+    indices = np.zeros((len(weights), MAX_INFLUENCES), np.int32)
+    kept[:, : order.shape[1]] = np.take_along_axis(weights, order, axis=1)
+    indices[:, : order.shape[1]] = np.take_along_axis(joints, order, axis=1)
+    indices[kept == 0] = 0
+    remaining = kept.sum(axis=1, keepdims=True)
+    return indices, kept / remaining, 1 - float(remaining.min(initial=1.0))
+
+
+def weighted(weights: Array) -> Array:
+    """Weights [N, K] scaled to sum to 1; a vertex without any goes to its first joint."""
+    weights = weights.astype(float)
+    total = weights.sum(axis=1, keepdims=True)
+    weights[:, :1] = np.where(total > 0, weights[:, :1], 1)
+    return weights / np.where(total > 0, total, 1)
+
+
+def _merge(scene: Scene, bind: Bind) -> _Mesh:
+    joint_of = {int(node): j for j, node in enumerate(bind.nodes)}
+    columns: dict[str, list[Array]] = {name: [] for name in _Mesh.__annotations__ if name != "notes"}
+    notes: list[str] = []
+    vertex_count = uv_count = 0
+    for part in scene.parts:
+        skin_joints = np.array([joint_of[int(node)] for node in scene.skins[part.skin].joints])
+        indices, weights, lost = limit_influences(skin_joints[part.joints], part.weights)
+        if lost > LOST_WEIGHT:
+            notes.append(
+                f"Mesh {part.name} has vertices with more than {MAX_INFLUENCES} influences; "
+                f"up to {100 * lost:.0f} % of a vertex's weight is dropped."
+            )
+        vertices, mirrored = _place(scene, part, bind=bind, joints=skin_joints)
+        turn = [0, 2, 1] if mirrored else [0, 1, 2]
+        columns["groups"].append(np.full(len(vertices), part.group))
+        columns["vertices"].append(vertices)
+        columns["indices"].append(indices)
+        columns["weights"].append(weights)
+        columns["faces"].append(part.faces[:, turn] + vertex_count)
+        columns["uv"].append(part.uv)
+        columns["uv_faces"].append(np.where(part.uv_faces < 0, -1, part.uv_faces + uv_count)[:, turn])
+        columns["face_material"].append(np.full(len(part.faces), part.material, np.int32))
+        vertex_count += len(vertices)
+        uv_count += len(part.uv)
+    return _Mesh(**{name: np.concatenate(column) for name, column in columns.items()}, notes=tuple(notes))
+
+
+def _place(scene: Scene, part: Part, *, bind: Bind, joints: Array) -> tuple[Array, bool]:
+    """A part's vertices [N, 3] in the bind pose, and whether that mirrors its triangles.
+
+    Skins bound in different poses or spaces meet here: each vertex is carried by its own weights.
+    """
+    spaces = bind.matrices[joints] @ scene.skins[part.skin].inverse_binds
+    weights = weighted(part.weights)
+    bound = np.zeros_like(part.positions)
+    for k in range(weights.shape[1]):
+        space = spaces[part.joints[:, k]]
+        bound += weights[:, k, None] * (np.einsum("nij,nj->ni", space[:, :3, :3], part.positions) + space[:, :3, 3])
+    stretched = np.zeros_like(bound)
+    for k in range(weights.shape[1]):
+        j = joints[part.joints[:, k]]
+        apart = np.einsum("nij,nj->ni", bind.stretch[j], bound - bind.matrices[j, :3, 3])
+        stretched += weights[:, k, None] * (bind.places[j] + apart)
+    used = np.unique(part.joints[weights > 0])
+    return stretched, bool(np.median(np.linalg.det(spaces[used, :3, :3])) < 0)
+
+
+def _weld(mesh: _Mesh) -> _Mesh:
+    """Make one vertex of those of a mesh at one place with equal weights, and drop faces that this leaves empty."""
+    size = np.ptp(mesh.vertices, axis=0).max()
+    keys = np.concatenate(
+        [
+            mesh.groups[:, None],
+            np.round(mesh.vertices / (WELD * size)),
+            mesh.indices,
+            np.round(mesh.weights / WEIGHT_STEP),
+        ],
+        axis=1,
+    )
+    first, welded = first_of_equal(keys.astype(np.int64))
+    faces = welded[mesh.faces]
+    distinct = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    kept = np.flatnonzero(distinct)
+    kept = np.sort(kept[first_of_equal(np.sort(faces[kept], axis=1))[0]])
+    doubled = int(distinct.sum()) - len(kept)
+    faces, uv_faces, face_material = faces[kept], mesh.uv_faces[kept], mesh.face_material[kept]
+    used, faces = np.unique(faces, return_inverse=True)
+    faces = faces.reshape(-1, 3)
+    uv, uv_faces = _corners(faces, mesh.uv, uv_faces=uv_faces, face_material=face_material)
+    rows = first[used]
+    told = (f"{doubled} triangles that lie on others are dropped.",) if doubled else ()
+    return replace(
+        mesh,
+        groups=mesh.groups[rows],
+        vertices=mesh.vertices[rows],
+        indices=mesh.indices[rows],
+        weights=mesh.weights[rows],
+        faces=faces,
+        uv=uv,
+        uv_faces=uv_faces,
+        face_material=face_material,
+        notes=(*mesh.notes, *told),
+    )
+
+
+def first_of_equal(rows: Array) -> tuple[Array, Array]:
+    """Indices of the first of each run of equal rows, in order of appearance, and for each row which it equals."""
+    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), int)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[inverse.reshape(-1)]
+
+
+def _corners(faces: Array, uv: Array, *, uv_faces: Array, face_material: Array) -> tuple[Array, Array]:
+    """One UV corner for each vertex, material and UV, so that corners meet exactly where the texture is continuous."""
+    mapped = uv_faces[:, 0] >= 0
+    corners = uv_faces[mapped].ravel()
+    keys = np.stack([faces[mapped].ravel(), np.repeat(face_material[mapped], 3), *uv[corners].T], axis=1)
+    first, welded = first_of_equal(keys)
+    joined = np.full(uv_faces.shape, -1)
+    joined[mapped] = welded.reshape(-1, 3)
+    return uv[corners[first]].reshape(-1, 2), joined
+
+
+def _correction(scene: Scene, bind: Bind, *, vertices: Array) -> tuple[Array, tuple[str, ...]]:
+    """A similarity [4, 4] to a plausible height in metres and to facing +Z, with a sentence for each change."""
+    correction = np.eye(4)
+    told = []
+    height = float(np.ptp(vertices[:, 1]))
+    if not ODD_HEIGHTS[0] <= height <= ODD_HEIGHTS[1]:
+        for unit in UNITS:
+            if HEIGHTS[0] <= height * unit <= HEIGHTS[1]:
+                correction[:3, :3] *= unit
+                told.append(
+                    f"The character is {height:.3g} units high; one unit is taken as {unit:g} m, not as 1 m, "
+                    f"which makes it {height * unit:.2f} m."
+                )
+                break
+    turn = _quarter_turn(scene, bind)
+    if turn:
+        c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
+        correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
+        told.append(f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°.")
+    return correction, tuple(told)
+
+
+def _quarter_turn(scene: Scene, bind: Bind) -> int:
+    """Quarter turns about +Y that make the character face +Z, by the sides that its joint names tell."""
+    names = [scene.node_names[node].lower() for node in bind.nodes]
+    index = {name: j for j, name in enumerate(names)}
+    across = np.zeros(3)
+    for name, j in index.items():
+        for left, right in (("left", "right"), (r"(?<![a-z])l(?![a-z])", "r")):
+            other = index.get(re.sub(left, right, name))
+            if other is not None and other != j:
+                across += bind.places[j] - bind.places[other]
+    front = np.array([-across[2], across[0]])  # x and z of left cross up
+    length = np.linalg.norm(front)
+    if length < 1e-6 or front[1] / length >= FACING:
+        return 0
+    return int(np.round(-np.arctan2(front[0], front[1]) / (np.pi / 2))) % 4

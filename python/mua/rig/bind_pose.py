@@ -1,0 +1,188 @@
+"""The bind pose of a scene: which nodes are joints and where each stands when the mesh is undeformed.
+
+glTF and USD keep inverse bind matrices in the mesh's own space, whose place in the world no file states: it follows
+from the rest pose where that equals the bind pose, and is estimated where it does not.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.rig.scene import Scene, Skin
+
+AGREEMENT = 1e-3  # relative difference below which two joints put the mesh at the same place
+ANIMATED = 1e-4  # change of a local matrix, relative to the character, below which a node counts as static
+STRETCHED = 1e-3  # scale of a joint between bind and rest pose below which nothing is folded into the mesh
+OFFSET_TRUST = 0.02  # of the character's size: how far a joint without weights may bind from its place at rest
+
+
+@dataclass(frozen=True)
+class Bind:
+    """Joints in parent-before-child order, with the matrices that the mesh was bound to."""
+
+    nodes: Array  # [J] int nodes of the scene
+    parents: Array  # [J] int32 into joints, -1 for none
+    matrices: Array  # [J, 4, 4] joint to bind-pose world, any scale; metres
+    stretch: Array  # [J, 3, 3] scale in bind-pose axes that the rest pose adds to the joint; folded into the mesh
+    places: Array  # [J, 3] bind-pose positions with the stretch folded in, metres
+    mass: Array  # [J] summed skin weights
+
+
+def bind_pose(scene: Scene) -> Bind:
+    """Find the scene's joints and their bind pose."""
+    nodes = _joint_nodes(scene)
+    index = {int(node): j for j, node in enumerate(nodes)}
+    parents = np.array([_kept_parent(scene, node, index) for node in nodes], np.int32)
+    mass = np.zeros(len(nodes))
+    for s, skin in enumerate(scene.skins):
+        np.add.at(mass, [index[int(node)] for node in skin.joints], scene.masses(s))
+    matrices = _bind_matrices(scene, nodes, index=index, parents=parents)
+    stretch = _stretch(scene.rest[nodes] @ np.linalg.inv(matrices))
+    places = matrices[:, :3, 3].copy()
+    for j, parent in enumerate(parents):
+        if parent >= 0:
+            offset = matrices[j, :3, 3] - matrices[parent, :3, 3]
+            places[j] = places[parent] + stretch[parent] @ offset
+    return Bind(nodes, parents, matrices, stretch, places, mass)
+
+
+def rotations_of(matrices: Array) -> Array:
+    """The rotations [..., 3, 3] nearest to the linear part of matrices [..., 4, 4]."""
+    u, _, vt = np.linalg.svd(matrices[..., :3, :3])
+    mirrored = np.linalg.det(u) * np.linalg.det(vt) < 0
+    u[..., :, 2] = np.where(mirrored[..., None], -u[..., :, 2], u[..., :, 2])
+    return u @ vt
+
+
+def _joint_nodes(scene: Scene) -> Array:
+    """Nodes of all skins, and those of their ancestors that a clip moves."""
+    kept = {int(node) for skin in scene.skins for node in skin.joints}
+    ancestors = set()
+    for node in kept:
+        parent = int(scene.parents[node])
+        while parent >= 0 and parent not in ancestors:
+            ancestors.add(parent)
+            parent = int(scene.parents[parent])
+    return np.array(sorted(kept | {node for node in ancestors - kept if _is_animated(scene, node)}))
+
+
+def _is_animated(scene: Scene, node: int) -> bool:
+    parent = scene.parents[node]
+    size = np.ptp(scene.rest[:, :3, 3], axis=0).max() + 1e-9
+    for motion in scene.motions:
+        local = motion.worlds[:, node]
+        if parent >= 0:
+            local = np.linalg.inv(motion.worlds[:, parent]) @ local
+        change = np.abs(local - local[:1])
+        if max(change[:, :3, :3].max(), change[:, :3, 3].max() / size) > ANIMATED:
+            return True
+    return False
+
+
+def _kept_parent(scene: Scene, node: int, index: dict[int, int]) -> int:
+    parent = int(scene.parents[node])
+    while parent >= 0 and parent not in index:
+        parent = int(scene.parents[parent])
+    return index.get(parent, -1)
+
+
+def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents: Array) -> Array:
+    """Joint-to-bind-world matrices [J, 4, 4]: from inverse binds where weights vouch for them, else by the hierarchy."""
+    bound: dict[int, Array] = {}
+    proposed: dict[int, Array] = {}
+    masses = {s: scene.masses(s) for s, skin in enumerate(scene.skins) if not skin.rigid}
+    for s in sorted(masses, key=lambda s: -masses[s].sum()):
+        skin, mass = scene.skins[s], masses[s]
+        if not mass.any():
+            continue
+        space = _bind_space(scene, skin, mass=mass, bound=bound, index=index)
+        for node, matrix, joint_mass in zip(skin.joints, space @ np.linalg.inv(skin.inverse_binds), mass, strict=True):
+            (bound if joint_mass > 0 else proposed).setdefault(index[int(node)], matrix)
+    _bind_ancestors(scene, nodes, parents=parents, bound=bound)
+    size = np.ptp([matrix[:3, 3] for matrix in bound.values()], axis=0).max() if bound else 0.0
+    for j, node in enumerate(nodes):
+        if j in bound:
+            continue
+        if parents[j] < 0:
+            bound[j] = scene.rest[node]
+            continue
+        derived = bound[parents[j]] @ np.linalg.inv(scene.rest[nodes[parents[j]]]) @ scene.rest[node]
+        own = proposed.get(j)
+        trusted = own is not None and np.linalg.norm(own[:3, 3] - derived[:3, 3]) <= OFFSET_TRUST * size
+        bound[j] = own if own is not None and trusted else derived
+    return np.stack([bound[j] for j in range(len(nodes))])
+
+
+def _bind_ancestors(scene: Scene, nodes: Array, *, parents: Array, bound: dict[int, Array]) -> None:
+    """Give joints above the topmost bound ones the place that the rest pose gives them beside those."""
+    for j in sorted(bound):
+        derive = bound[j] @ np.linalg.inv(scene.rest[nodes[j]])
+        parent = int(parents[j])
+        while parent >= 0 and parent not in bound:
+            bound[parent] = derive @ scene.rest[nodes[parent]]
+            parent = int(parents[parent])
+
+
+def _bind_space(
+    scene: Scene,
+    skin: Skin,
+    *,
+    mass: Array,  # [n]
+    bound: dict[int, Array],
+    index: dict[int, int],
+) -> Array:
+    """The matrix [4, 4] that takes the mesh's own space of a skin to the bind-pose world."""
+    shared = [k for k, node in enumerate(skin.joints) if mass[k] > 0 and index[int(node)] in bound]
+    if shared:
+        k = max(shared, key=lambda k: mass[k])
+        return bound[index[int(skin.joints[k])]] @ skin.inverse_binds[k]
+    used = np.flatnonzero(mass)
+    spaces, mass = scene.rest[skin.joints[used]] @ skin.inverse_binds[used], mass[used]
+    scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)
+    size = np.ptp(scene.rest[skin.joints[used], :3, 3], axis=0).max() + 1e-9
+    turned = np.abs(spaces[:, None, :3, :3] - spaces[None, :, :3, :3]).max(axis=(-1, -2)) / scale[:, None]
+    moved = np.abs(spaces[:, None, :3, 3] - spaces[None, :, :3, 3]).max(axis=-1) / size
+    agreeing = ((turned < AGREEMENT) & (moved < AGREEMENT)) @ mass
+    if agreeing.max() > 0.5 * mass.sum():
+        return spaces[int(np.argmax(agreeing))]
+    return _upright_space(scene, skin.joints[used[0]], spaces=spaces, scale=scale, mass=mass, kept=index)
+
+
+def _upright_space(
+    scene: Scene,
+    joint: int,
+    *,
+    spaces: Array,  # [n, 4, 4]
+    scale: Array,  # [n]
+    mass: Array,  # [n]
+    kept: dict[int, int],
+) -> Array:
+    """The mesh's space where rest and bind pose differ: the skeleton's own frame, turned by quarter turns only.
+
+    Modelling tools bind in the skeleton's frame up to a change of axes and units; the joints' mean tells which.
+    """
+    top = ancestor = int(joint)
+    while ancestor >= 0:
+        top = ancestor if ancestor in kept else top
+        ancestor = int(scene.parents[ancestor])
+    frame = int(scene.parents[top])
+    frame_matrix = scene.rest[frame] if frame >= 0 else np.eye(4)
+    frame_rotation = rotations_of(frame_matrix)
+    mean = np.tensordot(mass / scale, spaces[:, :3, :3], axes=1)
+    quarters = [np.diag(signs) @ np.eye(3)[list(order)] for order in itertools.permutations(range(3))
+                for signs in itertools.product((1.0, -1.0), repeat=3)]
+    rotation = max((frame_rotation @ quarter for quarter in quarters), key=lambda r: float(np.sum(r * mean)))
+    space = np.eye(4)
+    space[:3, :3] = np.median(scale) * rotation
+    space[:3, 3] = frame_matrix[:3, 3]
+    return space
+
+
+def _stretch(deformation: Array) -> Array:
+    """The symmetric factors [J, 3, 3] of bind-to-rest matrices [J, 4, 4]; identity where they are rigid."""
+    _, scales, vt = np.linalg.svd(deformation[:, :3, :3])
+    stretch = np.swapaxes(vt, -1, -2) @ (scales[..., None] * vt)
+    rigid = np.abs(scales - 1).max(axis=-1) < STRETCHED
+    return np.where(rigid[:, None, None], np.eye(3), stretch)

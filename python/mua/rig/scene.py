@@ -1,0 +1,77 @@
+"""What a scene file holds of a character, before it becomes one surface on rigid joints; the readers fill it."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from mua.arrays import Array
+
+Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
+
+
+@dataclass(frozen=True)
+class Material:
+    """Base colour of some faces: a picture with the material's factor already multiplied in."""
+
+    name: str
+    image: Array  # [h, w, 4] uint8 sRGB, at least 1 x 1; alpha is opacity (255 where the material is opaque)
+    wrap_u: Wrap = "repeat"
+    wrap_v: Wrap = "repeat"
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Joints that carry a mesh; `rigid` marks a mesh without weights that only hangs on one joint."""
+
+    joints: Array  # [n] int nodes of the scene
+    inverse_binds: Array  # [n, 4, 4] from the mesh's own space to the joint's; rigid: to the joint's in the rest pose
+    rigid: bool = False
+
+
+@dataclass(frozen=True)
+class Part:
+    """Triangles of one material on one skin; vertices of parts of one group may be welded."""
+
+    name: str
+    group: int
+    positions: Array  # [N, 3] float64 in the mesh's own space
+    faces: Array  # [F, 3] int into positions, counter-clockwise in the mesh's own space
+    uv: Array  # [T, 2] float64, v down
+    uv_faces: Array  # [F, 3] int into uv, -1 where there are none
+    material: int
+    skin: int
+    joints: Array  # [N, K] int into the skin's joints
+    weights: Array  # [N, K] float64, any scale
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Node-to-world matrices of a clip at a steady rate."""
+
+    name: str
+    rate: float  # frames per second
+    worlds: Array  # [F, nodes, 4, 4] metres, Y up
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Nodes in parent-before-child order with their rest pose, and all that hangs on them; metres, Y up."""
+
+    name: str
+    node_names: tuple[str, ...]
+    parents: Array  # [nodes] int, -1 for a node without parent
+    rest: Array  # [nodes, 4, 4] node-to-world matrices, column vectors
+    skins: tuple[Skin, ...]
+    parts: tuple[Part, ...]
+    materials: tuple[Material, ...]
+    motions: tuple[Motion, ...]
+    notes: tuple[str, ...]
+
+    def masses(self, skin: int) -> Array:
+        """The summed weights [n] of each joint of a skin."""
+        mass = np.zeros(len(self.skins[skin].joints))
+        for part in self.parts:
+            if part.skin == skin:
+                mass += np.bincount(part.joints.ravel(), part.weights.ravel(), minlength=len(mass))
+        return mass
