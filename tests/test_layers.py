@@ -1,0 +1,59 @@
+"""Modules import only from modules listed above them in python/mua/README.md, and decoding needs no torch."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import mua
+
+PACKAGE = Path(mua.__file__).parent
+ORDER = [
+    line.split("`")[1].rstrip("/").replace("/", ".")
+    for line in (PACKAGE / "README.md").read_text().splitlines()
+    if line.startswith("| `")
+]
+
+
+def layer(module: str) -> str:
+    """The longest listed name that is the module or holds it."""
+    held = [name for name in ORDER if module == name or module.startswith(name + ".")]
+    assert held, f"python/mua/README.md does not list {module}"
+    return max(held, key=len)
+
+
+def modules() -> dict[str, Path]:
+    """Every module of the package by its name below `mua`."""
+    paths = sorted(PACKAGE.rglob("*.py"))
+    named = {".".join(p.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__"): p for p in paths}
+    return {name: path for name, path in named.items() if name != "__init__"}
+
+
+def imports(path: Path) -> set[str]:
+    """Modules of the package that a file imports, at any depth of its code."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names = {f"{node.module}.{alias.name}" for alias in node.names}
+            known = {f"mua.{name}" for name in modules()}
+            found |= (names & known) or {node.module}
+    return {name.removeprefix("mua.") for name in found if name.startswith("mua.")}
+
+
+def test_modules_import_only_from_above() -> None:
+    wrong = []
+    for name, path in modules().items():
+        if path.name == "__init__.py" and name in ("rig", "motion", "texture", "kernels"):
+            assert not imports(path), f"{name}/__init__.py would tie the layers of its package together"
+            continue
+        for imported in imports(path):
+            if ORDER.index(layer(imported)) > ORDER.index(layer(name)):
+                wrong.append(f"{name} imports {imported}")
+    assert wrong == []
+
+
+def test_reading_and_decoding_import_no_torch() -> None:
+    code = "import sys, mua.asset, mua.decode, mua.render; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
