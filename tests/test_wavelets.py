@@ -28,8 +28,9 @@ def images(rows: int, columns: int, dtype: torch.dtype) -> torch.Tensor:
 
 
 def pywt_subbands(x: torch.Tensor, wavelet: str, levels: int) -> tuple[np.ndarray, list[np.ndarray]]:
-    """pywt's subbands of float64 images, one level at a time: its own loop warns where filters are longer than images."""
-    ll, details = x.double().numpy(), []
+    """pywt's subbands of float64 images, one level at a time: its own loop warns of filters longer than images."""
+    ll = x.double().numpy()
+    details: list[np.ndarray] = []
     for _ in range(levels):
         ll, bands = pywt.dwt2(ll, wavelet, "periodization")
         details.insert(0, np.stack(bands, axis=-3))
