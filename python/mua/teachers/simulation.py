@@ -1,0 +1,237 @@
+"""Position-based dynamics of a surface that follows its skinned shape: soft tissue and hanging cloth.
+
+Every vertex hangs on a damped spring at its skinned position (stiff on skin, weak on cloth), its edges resist
+stretching, and bending is resisted by evening out neighbours' displacements from the skinned shape; gravity acts as far
+as the skinned shape has turned from rest, and loose cloth is pushed out of the capsules around the bones
+(Mueller et al. 2007, https://doi.org/10.1016/j.jvcir.2007.01.005; Jacobi iterations, so that every run gives the same bytes).
+
+The springs are damped near their critical value, so that the state is a function of the last tenths of a second. The
+evening-out keeps what is shorter than about 4 cm small: a student holds no dynamics there.
+"""
+
+# mypy: disable-error-code="index, operator, no-untyped-call"
+# (the bodies of the kernels are Warp's language, not Python)
+
+import numpy as np
+import warp as wp
+
+from mua import rotation
+from mua.arrays import Array
+from mua.teachers.bones import Bones, capsule_distance, figure_scale
+
+DEVICE = "cpu"  # a frame takes milliseconds: less than its way to a GPU and back
+SUBSTEP = 1 / 120  # seconds, at most
+ITERATIONS = 4  # of the constraints in a substep
+SETTLE_SECONDS = 1.0  # at the first pose of a clip
+
+CLOTH_FREQUENCY = 1.4  # hertz, of the spring where looseness is 1
+FIRMING = 1.5  # power of looseness by which the spring stiffens
+DAMPING = 0.8  # of critical
+DRAG = 0.6  # 1 / s, of the air on cloth
+GRAVITY = 9.81
+STRETCH = 0.5  # share of an edge's error that an iteration takes out where looseness is 1
+SLACK = 0.3  # share of that for an edge shorter than at rest: cloth folds before it shortens
+BENDING = 0.5  # m^2 / s^2: (length over which displacements even out x frequency of the spring)^2
+LOOSE = 0.5  # cloth above this looseness collides with the bones
+GAP = 0.01  # metres between cloth and bones' skin
+
+wp.config.log_level = wp.LOG_ERROR  # its greeting is not for the user of a library
+
+
+@wp.kernel(enable_backward=False)
+def predict(
+    now: wp.array[wp.vec3],
+    before: wp.array[wp.vec3],
+    target_from: wp.array[wp.vec3],
+    target_to: wp.array[wp.vec3],
+    force: wp.array[wp.vec3],
+    frequency: wp.array[float],
+    drag: wp.array[float],
+    damping: float,
+    moment: float,
+    frame_time: float,
+    step: float,
+    target: wp.array[wp.vec3],
+    ahead: wp.array[wp.vec3],
+):
+    """Move each vertex by inertia, spring and gravity for one substep; implicit in the spring, so always stable."""
+    i = wp.tid()
+    aim = wp.lerp(target_from[i], target_to[i], moment)
+    target[i] = aim
+    velocity = (now[i] - before[i]) / step
+    pace = (target_to[i] - target_from[i]) / frame_time
+    w = frequency[i]
+    friction = 2.0 * damping * w
+    push = w * w * (aim - now[i]) + friction * pace + force[i]
+    velocity = (velocity + step * push) / (1.0 + step * (friction + drag[i]) + step * step * w * w)
+    ahead[i] = now[i] + step * velocity
+
+
+@wp.kernel(enable_backward=False)
+def relax(
+    starts: wp.array[int],
+    neighbours: wp.array[int],
+    lengths: wp.array[float],
+    looseness: wp.array[float],
+    evening: wp.array[float],
+    stretch: float,
+    slack: float,
+    target: wp.array[wp.vec3],
+    now: wp.array[wp.vec3],
+    ahead: wp.array[wp.vec3],
+):
+    """One Jacobi iteration of the stretch and bend constraints about each vertex."""
+    i = wp.tid()
+    own = looseness[i]
+    if own == 0.0:
+        ahead[i] = target[i]
+        return
+    place = now[i]
+    shift = place - target[i]
+    pull = wp.vec3(0.0, 0.0, 0.0)
+    mean = wp.vec3(0.0, 0.0, 0.0)
+    for k in range(starts[i], starts[i + 1]):
+        j = neighbours[k]
+        edge = now[j] - place
+        length = wp.max(wp.length(edge), 1.0e-9)
+        error = length - lengths[k]
+        if error < 0.0:
+            error = error * slack
+        pull += edge * (error / length * own / (own + looseness[j]))
+        mean += now[j] - target[j] - shift
+    count = wp.max(float(starts[i + 1] - starts[i]), 1.0)
+    ahead[i] = place + (pull * (stretch * own * own) + mean * evening[i]) / count
+
+
+@wp.kernel(enable_backward=False)
+def collide(
+    vertices: wp.array[int],
+    clearance: wp.array2d[float],
+    ends: wp.array2d[wp.vec3],
+    places: wp.array[wp.vec3],
+):
+    """Push loose vertices out of each bone's capsule, but never farther than they are from it at rest."""
+    k = wp.tid()
+    i = vertices[k]
+    place = places[i]
+    for c in range(ends.shape[0]):
+        start = ends[c, 0]
+        axis = ends[c, 1] - start
+        along = wp.dot(place - start, axis) / wp.max(wp.dot(axis, axis), 1.0e-12)
+        away = place - start - axis * wp.clamp(along, 0.0, 1.0)
+        distance = wp.max(wp.length(away), 1.0e-9)
+        if distance < clearance[k, c]:
+            place += away * (clearance[k, c] / distance - 1.0)
+    places[i] = place
+
+
+class Simulation:
+    """The moving surface: where it is and where it was a substep ago."""
+
+    def __init__(
+        self,
+        vertices: Array,  # [V, 3] bind pose, metres
+        faces: Array,  # [F, 3]
+        *,
+        looseness: Array,  # [V] 0..1
+        bones: Bones,
+    ) -> None:
+        self._scale = figure_scale(vertices)
+        starts, neighbours = one_rings(faces, len(vertices))
+        own = np.repeat(np.arange(len(vertices)), np.diff(starts))
+        lengths = np.linalg.norm(vertices[neighbours] - vertices[own], axis=1)
+        self._starts, self._neighbours = _ints(starts), _ints(neighbours)
+        self._lengths, self._looseness = _floats(lengths), _floats(looseness)
+        spacing = np.bincount(own, lengths, len(vertices)) / np.maximum(np.diff(starts), 1) / self._scale
+        stiffness = BENDING * SUBSTEP**2 / ITERATIONS / np.maximum(spacing, 1e-6) ** 2
+        self._evening = _floats(4 * stiffness / (1 + 4 * stiffness))
+        softness = np.maximum(looseness, 1e-3)
+        self._frequency = _floats(2 * np.pi * CLOTH_FREQUENCY / softness**FIRMING)
+        self._drag = _floats(DRAG * looseness)
+        loose = np.flatnonzero(looseness > LOOSE)
+        at_rest = capsule_distance(vertices[loose][:, None], bones.ends[:, 0], bones.ends[:, 1])
+        self._loose = _ints(loose)
+        self._clearance = wp.array(np.minimum(bones.radii + GAP * self._scale, at_rest), dtype=float, device=DEVICE)
+        self._places = [_vectors(vertices) for _ in range(3)]  # now, a substep ago, to be written next
+        self._target = _vectors(vertices)
+        self._last = _vectors(vertices)
+
+    def settle(
+        self,
+        target: Array,  # [V, 3] skinned positions
+        turn: Array,  # [V, 4] skinned rotations
+        ends: Array,  # [C, 2, 3] bones
+    ) -> None:
+        """Start at rest in a pose: hang still, as if the pose had been held for long."""
+        self._last = _vectors(target)
+        self._places = [_vectors(target) for _ in range(3)]
+        self.advance(target, turn, ends, seconds=SETTLE_SECONDS)
+        self._places[1] = wp.clone(self._places[0])
+
+    def advance(
+        self,
+        target: Array,  # [V, 3] skinned positions at the end of the step
+        turn: Array,  # [V, 4] skinned rotations
+        ends: Array,  # [C, 2, 3] bones
+        *,
+        seconds: float,
+    ) -> Array:
+        """Move on by `seconds`, while the skinned shape goes steadily to `target`; returns positions [V, 3] float64."""
+        steps = max(1, round(seconds / SUBSTEP))
+        aim, capsules = _vectors(target), wp.array(ends, dtype=wp.vec3, ndim=2, device=DEVICE)
+        force = _vectors(self._scale * gravity_beyond_rest(turn))
+        for step in range(steps):
+            self._predict(aim, force, moment=(step + 1) / steps, seconds=seconds, substep=seconds / steps)
+            self._constrain(capsules)
+        self._last = aim
+        return np.asarray(self._places[0].numpy(), dtype=np.float64)
+
+    def _predict(self, aim: wp.array, force: wp.array, *, moment: float, seconds: float, substep: float) -> None:
+        """Fill the third of the places with where inertia, spring and gravity lead."""
+        now, before, ahead = self._places
+        shapes = [now, before, self._last, aim, force, self._frequency, self._drag]
+        wp.launch(
+            predict,
+            dim=len(now),
+            inputs=[*shapes, DAMPING, moment, seconds, substep],
+            outputs=[self._target, ahead],
+            device=DEVICE,
+        )
+
+    def _constrain(self, capsules: wp.array) -> None:
+        """Bring the predicted places nearer to the constraints and make them the present ones."""
+        now, spare, ahead = self._places
+        edges = [self._starts, self._neighbours, self._lengths, self._looseness, self._evening]
+        for _ in range(ITERATIONS):
+            inputs = [*edges, STRETCH, SLACK, self._target, ahead]
+            wp.launch(relax, dim=len(now), inputs=inputs, outputs=[spare], device=DEVICE)
+            ahead, spare = spare, ahead
+        wp.launch(collide, dim=len(self._loose), inputs=[self._loose, self._clearance, capsules, ahead], device=DEVICE)
+        self._places = [ahead, now, spare]
+
+
+def gravity_beyond_rest(
+    turn: Array,  # [V, 4] skinned rotations
+) -> Array:
+    """Accelerations [V, 3], m / s^2: gravity less the one that the rest shape already bears, turned with the surface."""
+    down = np.array([0.0, -GRAVITY, 0.0])
+    return np.asarray(down - rotation.rotate(turn, np.broadcast_to(down, (len(turn), 3))))
+
+
+def one_rings(faces: Array, count: int) -> tuple[Array, Array]:
+    """Starts [V + 1] and neighbours [E]: vertex i touches neighbours[starts[i]:starts[i + 1]], ascending."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    own, other = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0).T
+    return np.searchsorted(own, np.arange(count + 1)), other
+
+
+def _vectors(values: Array) -> wp.array:
+    return wp.array(values, dtype=wp.vec3, device=DEVICE)
+
+
+def _floats(values: Array) -> wp.array:
+    return wp.array(values, dtype=float, device=DEVICE)
+
+
+def _ints(values: Array) -> wp.array:
+    return wp.array(values, dtype=int, device=DEVICE)

@@ -1,0 +1,90 @@
+"""From a deformed and lit surface, by vertex, to the Gaussian texture, by texel."""
+
+import numpy as np
+from scipy import sparse
+
+from mua.arrays import Array
+from mua.rig.character import Character
+from mua.rig.rig import Rig
+from mua.rig.texel_map import build_texel_map, points_on_surface
+from mua.teachers.shading import Light
+from mua.texture.albedo import sample_albedo
+from mua.texture.channels import CHANNELS, SH_C0, SH_C1
+from mua.texture.surfels import rest_surfels
+
+MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1; of one whose alpha is 0, the negative
+SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
+
+
+class SurfaceTexels:
+    """The texels of a rig as points of the dense surface that the rig's template stands for."""
+
+    def __init__(self, character: Character, rig: Rig) -> None:
+        mesh, texels = character.mesh, rig.texels
+        triangles, barycentrics = points_on_surface(texels, build_texel_map(mesh, texels.size))
+        corners = mesh.faces[triangles]
+        self._dense = _weights(corners, barycentrics, len(mesh.vertices))
+        self._coarse = _weights(rig.mesh.faces[texels.triangles], texels.barycentrics, len(rig.mesh.vertices))
+        relief = self._dense @ mesh.vertices - self._coarse @ rig.mesh.vertices
+        surfels = rest_surfels(
+            mesh, size=texels.size, texels=texels.texels, triangles=triangles, barycentrics=barycentrics
+        )
+        uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
+        albedo = sample_albedo(character.base_color, uv, texels.size)
+        self._relief, self._rest, self._log_scales, self._albedo = (
+            np.ascontiguousarray(rows.T, dtype=np.float32)
+            for rows in (relief, surfels.rotations, surfels.log_scales, albedo[:, :3])
+        )
+        alpha = np.clip(albedo[:, 3], 1e-6, 1 - 1e-6)
+        self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_OPAQUE, MOST_OPAQUE)
+
+    def texture(
+        self,
+        displacement: Array,  # [V, 3] of the dense surface from the bind pose, canonical space, metres
+        coarse_displacement: Array,  # [T, 3] of the template's vertices
+        *,
+        turn: Array,  # [V, 4] of the surface about its vertices beside R_tex, canonical space; unit, w >= 0
+        log_stretch: Array,  # [V]
+        light: Light,  # its sheen in canonical space
+    ) -> Array:
+        """Raw channels [N, 23] float32, stored channel by channel: each is a plane of its own."""
+        planes = np.empty((CHANNELS, self._relief.shape[1]), dtype=np.float32)
+        planes[0:3] = self._relief + self._at_texels(displacement) - _planes(self._coarse, coarse_displacement)
+        planes[3:7] = _turned(self._at_texels(turn), self._rest)
+        planes[7:10] = self._log_scales
+        planes[7:9] += self._at_texels(log_stretch[:, None])
+        planes[10] = self._opacity
+        planes[11:14] = (self._albedo * self._at_texels(light.gain) - 0.5) / np.float32(SH_C0)
+        x, y, z = self._at_texels(light.sheen / SH_C1)
+        tint = 1 - SHEEN_TINT + SHEEN_TINT * self._albedo
+        planes[14:17], planes[17:20], planes[20:23] = -y * tint, z * tint, -x * tint
+        return planes.T
+
+    def _at_texels(self, values: Array) -> Array:
+        return _planes(self._dense, values)
+
+
+def _planes(weights: sparse.csr_matrix, values: Array) -> Array:
+    """Interpolate values [V, c] to texels, as planes [c, N] float32."""
+    return np.stack([weights @ column for column in np.asarray(values, dtype=np.float32).T])
+
+
+def _weights(corners: Array, barycentrics: Array, vertices: int) -> sparse.csr_matrix:
+    """The matrix [N, V] float32 that interpolates from vertices to barycentric points."""
+    starts = np.arange(len(corners) + 1) * 3
+    values = np.asarray(barycentrics, dtype=np.float32).ravel()
+    return sparse.csr_matrix((values, corners.ravel(), starts), shape=(len(corners), vertices))
+
+
+def _turned(turn: Array, rest: Array) -> Array:
+    """Products of quaternions as planes [4, N], the first brought to unit length: the turn after the rest."""
+    aw, ax, ay, az = turn / np.sqrt(np.sum(turn * turn, axis=0))
+    bw, bx, by, bz = rest
+    return np.stack(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ]
+    )

@@ -1,0 +1,201 @@
+"""Surfels: how the Gaussian of a texel lies on a surface, and how it turns and grows as the surface deforms."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from mua import rotation
+from mua.arrays import Array
+from mua.rig.character import Mesh
+
+SPREAD = 0.6  # standard deviation over the distance of neighbouring texels: overlapping surfels leave no gaps
+FLATNESS = 0.1  # thickness over the smaller standard deviation
+SMALLEST = 2e-4  # metres, of any standard deviation
+LARGEST = 2e-2  # metres
+
+
+@dataclass(frozen=True)
+class Surfels:
+    """The Gaussians of the texels on a surface at rest."""
+
+    rotations: Array  # [N, 4] x along u, z along the normal; unit, wxyz, one sign over each chart
+    log_scales: Array  # [N, 3] along u, across it in the surface, along the normal; natural logarithms of metres
+
+
+def rest_surfels(
+    mesh: Mesh,
+    *,
+    size: int,
+    texels: Array,  # [N] row * size + col
+    triangles: Array,  # [N] into the mesh's faces
+    barycentrics: Array,  # [N, 3]
+) -> Surfels:
+    """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart."""
+    along_u, along_v = _footprints(mesh, size)
+    tangents = _interpolate(
+        _mean_at_corners(mesh.uv_faces, along_u, len(mesh.uv)), mesh.uv_faces[triangles], barycentrics
+    )
+    normals = _interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
+    log_lengths = np.log(np.maximum(np.linalg.norm(np.stack([along_u, along_v], axis=1), axis=2), 1e-9))
+    widths = _interpolate(
+        _mean_at_corners(mesh.uv_faces, log_lengths, len(mesh.uv)), mesh.uv_faces[triangles], barycentrics
+    )
+    widths = np.clip(widths + np.log(SPREAD), np.log(SMALLEST), np.log(LARGEST))
+    thickness = np.maximum(widths.min(axis=1) + np.log(FLATNESS), np.log(SMALLEST))
+    return Surfels(
+        rotations=align_neighbours(rotation.from_matrix(_frames(tangents, normals)), texels, size),
+        log_scales=np.concatenate([widths, thickness[:, None]], axis=1),
+    )
+
+
+class SurfaceFrames:
+    """The turn and the stretch of a surface about each of its vertices."""
+
+    def __init__(self, vertices: Array, faces: Array) -> None:
+        """Take `vertices` [V, 3] as the rest shape of `faces` [F, 3]."""
+        self._tangents = _tangent_operator(vertices, faces)
+        self._rest, self._rest_size = self._measure(vertices)
+
+    def __call__(
+        self,
+        vertices: Array,  # [V, 3] deformed
+    ) -> tuple[Array, Array]:
+        """Rotations [V, 4] from the rest frames to the deformed ones, and log stretches [V] (half the log of the area)."""
+        frames, size = self._measure(vertices)
+        turn = np.einsum("vik,vjk->vij", frames, self._rest)
+        return rotation.from_matrix(turn), np.log(size / self._rest_size)
+
+    def _measure(self, vertices: Array) -> tuple[Array, Array]:
+        """Frames [V, 3, 3], columns x, y, z, and lengths [V] of the unit tangents carried along.
+
+        Of all frames about the normal, the one nearest to both carried tangents (polar decomposition in the plane).
+        """
+        t, b = np.asarray(self._tangents @ vertices).reshape(2, -1, 3)
+        across = np.cross(t, b)
+        area = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
+        z = across / area[:, None]
+        x = t + np.cross(b, z)
+        x -= z * np.sum(x * z, axis=1, keepdims=True)
+        x /= np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-12)
+        return np.stack([x, np.cross(z, x), z], axis=2), np.sqrt(area)
+
+
+def align_neighbours(
+    q: Array,  # [N, 4] unit
+    texels: Array,  # [N] row * size + col, ascending
+    size: int,
+) -> Array:
+    """Choose the signs of quaternions so that neighbouring texels lie on one hemisphere, and each chart has mean w >= 0.
+
+    A sign flip inside a chart would put a step into the wavelet details. Signs spread along the spanning forest of
+    the most alike neighbours; a chart is simply connected, so that any forest serves where frames are smooth.
+    """
+    count = len(q)
+    a, b = _neighbours(texels, size)
+    alike = np.sum(q[a] * q[b], axis=1)
+    graph = sparse.csr_matrix((2 - np.abs(alike), (a, b)), shape=(count, count))  # 0 would mean no edge
+    forest = csgraph.minimum_spanning_tree(graph)
+    charts, chart = csgraph.connected_components(forest, directed=False)
+    seeds = np.unique(chart, return_index=True)[1]
+    tree = forest.tocoo()
+    links = (
+        np.append(tree.data, np.ones(charts)),
+        (np.append(tree.row, np.full(charts, count)), np.append(tree.col, seeds)),
+    )
+    rooted = sparse.csr_matrix(links, shape=(count + 1, count + 1))
+    ancestor = csgraph.breadth_first_order(rooted, count, directed=False)[1]
+    ancestor[count] = count
+    q = np.concatenate([q, np.zeros((1, 4))])
+    sign = np.where(np.sum(q * q[ancestor], axis=1) < 0, -1.0, 1.0)  # relative to the ancestor
+    while (ancestor != count).any():
+        sign *= sign[ancestor]
+        ancestor = ancestor[ancestor]
+    aligned = q[:count] * sign[:count, None]
+    upside = np.bincount(chart, weights=aligned[:, 0], minlength=charts) < 0
+    return np.where(upside[chart][:, None], -aligned, aligned)
+
+
+def vertex_normals(
+    vertices: Array,  # [V, 3]
+    faces: Array,  # [F, 3]
+) -> Array:
+    """Unit normals [V, 3], faces weighted by area; upward where they cancel."""
+    a, b, c = vertices[faces].swapaxes(0, 1)
+    flat = np.cross(b - a, c - a)
+    total = np.stack([np.bincount(faces.ravel(), np.repeat(n, 3), len(vertices)) for n in flat.T], axis=1)
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.where(length > 1e-15, total / np.maximum(length, 1e-15), [0.0, 1.0, 0.0])
+
+
+def _footprints(mesh: Mesh, size: int) -> tuple[Array, Array]:
+    """How far on each face [F, 3] a step of one texel along u and along v leads, metres; 0 on faces without UV area."""
+    p, t = mesh.vertices[mesh.faces], mesh.uv[mesh.uv_faces] * size
+    e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    (u1, v1), (u2, v2) = (t[:, 1] - t[:, 0]).T, (t[:, 2] - t[:, 0]).T
+    area = u1 * v2 - u2 * v1
+    inverse = np.where(np.abs(area) > 1e-12, 1 / np.where(area == 0, 1, area), 0)[:, None]
+    along_u = (e1 * v2[:, None] - e2 * v1[:, None]) * inverse
+    along_v = (e2 * u1[:, None] - e1 * u2[:, None]) * inverse
+    return along_u, along_v
+
+
+def _mean_at_corners(faces: Array, values: Array, count: int) -> Array:
+    """Means [count, ...] over the faces around each corner of the values [F, ...] of the faces."""
+    flat = values.reshape(len(values), -1)
+    number = np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
+    total = np.stack([np.bincount(faces.ravel(), np.repeat(column, 3), count) for column in flat.T], axis=1)
+    return (total / number[:, None]).reshape(count, *values.shape[1:])
+
+
+def _interpolate(values: Array, corners: Array, barycentrics: Array) -> Array:
+    """Values [N, ...] at barycentric points of triangles whose corners [N, 3] index `values`."""
+    return np.asarray(np.einsum("nk,nkc->nc", barycentrics, values[corners]))
+
+
+def _frames(tangents: Array, normals: Array) -> Array:
+    """Rotation matrices [N, 3, 3] with z along the normals and x as near to the tangents as that allows."""
+    z = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-15)
+    x = tangents - z * np.sum(tangents * z, axis=1, keepdims=True)
+    length = np.linalg.norm(x, axis=1, keepdims=True)
+    any_across = np.cross(z, np.eye(3)[np.argmin(np.abs(z), axis=1)])
+    x = np.where(length > 1e-12, x, any_across)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    return np.stack([x, np.cross(z, x), z], axis=2)
+
+
+def _tangent_operator(vertices: Array, faces: Array) -> sparse.csr_matrix:
+    """A matrix [2 V, V] that carries two orthogonal unit tangents of each vertex along with the surface.
+
+    Row i is the least-squares derivative along the tangent over the edges of vertex i, each weighted by 1 / length^2.
+    """
+    count = len(vertices)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    i, j = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0).T
+    normals = vertex_normals(vertices, faces)
+    basis = _frames(np.zeros_like(normals), normals)[:, :, :2]
+    edge = vertices[j] - vertices[i]
+    weight = 1 / np.maximum(np.sum(edge * edge, axis=1), 1e-16)
+    flat = np.einsum("ek,ekc->ec", edge, basis[i])
+    moments = [np.bincount(i, weight * flat[:, a] * flat[:, c], count) for a, c in ((0, 0), (0, 1), (1, 1))]
+    moment = np.stack([moments[0], moments[1], moments[1], moments[2]], axis=1).reshape(count, 2, 2)
+    moment += 1e-6 * np.eye(2)  # a one-ring that lies on a line has no derivative across it
+    rows = np.einsum("eab,eb,e->ae", np.linalg.inv(moment)[i], flat, weight)
+    at = np.concatenate([i, i + count])
+    to = np.concatenate([j, j])
+    offs = sparse.csr_matrix((rows.ravel(), (at, to)), shape=(2 * count, count))
+    own = np.asarray(offs.sum(axis=1)).ravel()
+    here = np.tile(np.arange(count), 2)
+    return (offs - sparse.csr_matrix((own, (np.arange(2 * count), here)), shape=offs.shape)).tocsr()
+
+
+def _neighbours(texels: Array, size: int) -> tuple[Array, Array]:
+    """Pairs of rows of `texels` that are neighbours along a row or a column of the texture."""
+    row = np.full(size * size, -1, dtype=np.int64)
+    row[texels] = np.arange(len(texels))
+    grid = row.reshape(size, size)
+    a = np.concatenate([grid[:, :-1].ravel(), grid[:-1].ravel()])
+    b = np.concatenate([grid[:, 1:].ravel(), grid[1:].ravel()])
+    both = (a >= 0) & (b >= 0)
+    return a[both], b[both]
