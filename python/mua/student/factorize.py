@@ -1,8 +1,8 @@
 """Closed-form blendshapes: truncated SVD for LL, coupled CP by alternating least squares for the detail bands.
 
 Everything works on one channel at a time, so that memory does not depend on the number of channels.
-CP by alternating least squares: Kolda and Bader 2009, https://doi.org/10.1137/07070111X; the subspace iteration behind the SVD:
-Halko, Martinsson and Tropp 2011, https://doi.org/10.1137/090771806.
+CP by alternating least squares: Kolda and Bader 2009, https://doi.org/10.1137/07070111X; the subspace iteration behind
+the SVD: Halko, Martinsson and Tropp 2011, https://doi.org/10.1137/090771806.
 """
 
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ def truncated_svd(
     *,
     generator: torch.Generator,
 ) -> tuple[Tensor, Tensor, Tensor]:
-    """The leading singular triplets u [F, K], s [K], v [K, P] of a matrix, K = min(rank, F, P), by subspace iteration."""
+    """The leading K = min(rank, F, P) singular triplets u [F, K], s [K], v [K, P], by subspace iteration."""
     width = min(rank + OVERSAMPLING, *x.shape)
     probe = torch.randn(x.shape[1], width, generator=generator).to(x)
     span = torch.linalg.qr(x @ probe).Q
@@ -59,7 +59,7 @@ def blendshapes(
     *,
     generator: torch.Generator,
 ) -> Blendshapes:
-    """The best linear blendshapes of a channel; where there are fewer frames or samples than `rank`, the rest is zero."""
+    """The best linear blendshapes of a channel; with fewer frames or samples than `rank`, the rest is zero."""
     u, s, v = truncated_svd(x, rank, generator=generator)
     spread = len(x) ** 0.5
     coefficients = torch.nn.functional.pad(u * spread, (0, rank - len(s)))
@@ -75,8 +75,8 @@ def separable_blendshapes(
 ) -> Factors:
     """Separable blendshapes of the three bands of a channel by `sweeps` rounds of alternating least squares.
 
-    A model of rank R spans at most R directions over frames, so the sweeps run on the leading 2 R of them, which is several
-    times cheaper; the coefficients of all frames are solved for at the end.
+    A model of rank R spans at most R directions over frames, so the sweeps run on the leading 2 R of them, which is
+    several times cheaper.
     """
     u, s, v = truncated_svd(x.flatten(1), 2 * rank, generator=generator)
     compressed = (s[:, None] * v).unflatten(1, x.shape[1:])
@@ -134,7 +134,7 @@ def _gram(rows: Tensor) -> Tensor:
 
 
 def _update(right: Tensor, gram: Tensor, previous: Tensor) -> Tensor:
-    """Solve gram x = right, held to `previous` by a proximal term: well-posed for any rank, and still a descent step."""
+    """Solve gram x = right, held to `previous` by a proximal term: well-posed for any rank, still a descent step."""
     pull = PROXIMAL * gram.diagonal(dim1=-2, dim2=-1).mean(-1)[..., None, None] + torch.finfo(gram.dtype).tiny
     identity = torch.eye(gram.shape[-1], dtype=gram.dtype, device=gram.device)
     factor = torch.linalg.cholesky(gram + pull * identity)
@@ -142,7 +142,7 @@ def _update(right: Tensor, gram: Tensor, previous: Tensor) -> Tensor:
 
 
 def _balance(factors: Factors) -> Factors:
-    """Give every term coefficients of unit variance and rows and columns of equal length; the product stays the same."""
+    """Give every term coefficients of unit variance and rows and columns of equal length; the product stays."""
     tiny = torch.finfo(factors.h.dtype).tiny
     spread = factors.coefficients.square().mean(0).sqrt()
     rows, columns = (f.square().sum((0, 2)).sqrt() for f in (factors.h, factors.w))

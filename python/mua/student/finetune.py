@@ -23,7 +23,7 @@ def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
 
 @contextmanager
 def weighted(branch: Branch, weights: Tensor) -> Iterator[None]:
-    """Scale the branch's subbands by `weights` [C] within the block, so that Adam's steps are alike for all channels."""
+    """Scale the branch's subbands by `weights` [C] within the block: Adam's steps are then alike for all channels."""
     _scale(branch, weights)
     yield
     _scale(branch, 1 / weights)

@@ -1,5 +1,6 @@
-"""The student in torch: a coarse mesh and two branches of wavelet blendshapes, each driven by one small MLP (paper, Methodology)."""
+"""The student in torch: a coarse mesh and two branches of wavelet blendshapes, one MLP each (paper, Methodology)."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import torch
@@ -20,6 +21,10 @@ class Bands(NamedTuple):
     d3: Tensor  # [F, 3, C, n, n]
     d2: Tensor  # [F, 3, C, 2n, 2n]
 
+    def of(self, channels: slice) -> "Bands":
+        """The subbands of some of the channels."""
+        return Bands(self.ll[:, channels], self.d3[:, :, channels], self.d2[:, :, channels])
+
 
 class Alphas(NamedTuple):
     """Blendshape coefficients alpha(r, c) of F frames, per channel as the paper writes them."""
@@ -37,7 +42,7 @@ def build_mlp(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
     """A shallow MLP: ReLU after every layer but the last."""
     widths = [inputs, *[hidden] * HIDDEN_LAYERS]
     layers: list[nn.Module] = []
-    for fan_in, fan_out in zip(widths, widths[1:], strict=False):
+    for fan_in, fan_out in pairwise(widths):
         layers += [nn.Linear(fan_in, fan_out), nn.ReLU()]
     return nn.Sequential(*layers, nn.Linear(hidden, outputs))
 
@@ -173,7 +178,7 @@ class Student(nn.Module):
         return self.synthesize(self.coefficients(descriptors))
 
     def texture(self, bands: Bands) -> Tensor:
-        """The full-resolution texture [F, N, 23] at the valid texels: IDWT of the dynamic subbands plus the static offset."""
+        """The full texture [F, N, 23] at the valid texels: IDWT of the dynamic subbands plus the static offset."""
         return (lowpass_texels(bands, self.wavelet, self.texels) + self.static).transpose(1, 2)
 
     def mean_lowpass(self) -> Tensor:

@@ -47,7 +47,7 @@ def optimise(
     stage: str,
     run: Run,
 ) -> None:
-    """Run AdamW over `schedule` from the stage's last checkpoint; `parameters` are its groups, `lr` relative to the schedule's.
+    """Run AdamW over `schedule` from the stage's last checkpoint; a group's `lr` is relative to the schedule's.
 
     After a kill, a resumed run ends in the same bytes: model, optimiser and generator continue from the same state.
     """
@@ -61,7 +61,7 @@ def optimise(
             group["lr"] = rate * factor
         optimizer.zero_grad()
         value = loss()
-        value.backward()  # type: ignore[no-untyped-call]
+        value.backward()
         optimizer.step()
         done = step + 1
         if done % CHECKPOINT_STEPS == 0 or done == schedule.steps:

@@ -27,8 +27,8 @@ class Whitening:
 def whitening(inputs: Tensor) -> Whitening:
     """The whitening of normalised descriptors [F, k D].
 
-    A window's poses are nearly alike; velocities are its weak directions, and a network that sees the descriptor as it is
-    learns them last. The floor keeps directions that hold only noise from being raised to the others' level.
+    A window's poses are nearly alike; velocities are its weak directions, and a network that sees the descriptor as it
+    is learns them last. The floor keeps directions that hold only noise from being raised to the others' level.
     """
     mean = inputs.mean(0)
     variance, directions = torch.linalg.eigh(torch.cov(inputs.double().T, correction=0).reshape(inputs.shape[1], -1))
@@ -45,7 +45,7 @@ def regress(
     stage: str,
     run: Run,
 ) -> nn.Sequential:
-    """An MLP from normalised descriptors to targets, trained on whitened descriptors with noise; the whitening is folded in."""
+    """An MLP from normalised descriptors to targets, trained on whitened, noisy ones; the whitening is folded in."""
     white = whitening(inputs)
     z = (inputs - white.mean) @ white.turn
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
@@ -98,7 +98,7 @@ def unfold_last_layer(
     expand: Tensor,  # [K, M]
 ) -> nn.Sequential:
     """The MLP to M coefficients, from one to K coordinates: the linear map becomes part of the last layer."""
-    first, second, last = linear_layers(mlp)
+    first, *_, last = linear_layers(mlp)
     wide = build_mlp(first.in_features, first.out_features, expand.shape[1]).to(expand.device)
     state = mlp.state_dict()
     *_, weight, bias = state

@@ -1,7 +1,7 @@
 """What the coefficient MLPs regress: the joint principal directions of all blendshape coefficients of a branch.
 
-Coefficients are first expressed so that a squared error in them is the squared error in the texture that they stand for; the
-few hundred directions that matter are regressed, and the linear map back is folded into the last layer of the MLP.
+Coefficients are first expressed so that a squared error in them is the squared error in the texture that they stand
+for; the few hundred directions that matter are regressed, and the linear map back is folded into the MLP's last layer.
 """
 
 from dataclasses import dataclass

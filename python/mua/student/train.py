@@ -1,4 +1,4 @@
-"""Distillation of training frames into a student: closed-form start, regression, joint fine-tuning (design, section 8.1)."""
+"""Distillation of training frames into a student: closed-form start, regression, fine-tuning (design, section 8.1)."""
 
 import time
 from collections.abc import Callable
@@ -64,8 +64,8 @@ def hold(subbands: Source, channels: slice, *, frames: int, size: int) -> Source
     values = (size // 4) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
     if frames * values * (channels.stop - channels.start) * 4 > HELD_BYTES:
         return lambda part, rows: subbands(slice(channels.start + part.start, channels.start + part.stop), rows)
-    ll, d3, d2 = subbands(channels, torch.arange(frames))
-    return lambda part, rows: Bands(ll[rows, part], d3[rows, :, part], d2[rows, :, part])
+    held = Bands(*subbands(channels, torch.arange(frames)))
+    return lambda part, rows: Bands(*(band[rows] for band in held.of(part)))
 
 
 def fit_branch(
@@ -169,7 +169,7 @@ def best_coefficients(
     branch: Branch,
     bands: Bands,  # of the branch's channels
 ) -> Alphas:
-    """The coefficients per frame and channel that fit given subbands best in the least-squares sense for the learnt bases."""
+    """The coefficients per frame and channel that fit given subbands best, by least squares, for the learnt bases."""
     ll = _least_squares(bands.ll - branch.ll_mean, branch.ll_basis.flatten(2))
     levels = [ll]
     for detail, band in ((branch.d3, bands.d3), (branch.d2, bands.d2)):

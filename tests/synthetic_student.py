@@ -1,0 +1,95 @@
+"""A small student and training frames for tests: smooth low-rank textures that depend nonlinearly on a descriptor."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from mua.student.checkpoint import Checkpoints
+from mua.student.model import Bands, Student
+from mua.student.optimise import Progress, Run
+from mua.student.settings import Ranks, Schedule, Settings
+from mua.student.train import Samples
+from mua.texture.channels import ATTRIBUTES, CHANNELS
+
+SIZE = 48  # LL 3 x 3
+INPUTS = 10
+VERTICES = 7
+FRAMES = 60
+SPREAD = {"offset": 0.01, "rotation": 0.1, "scale": 0.2, "opacity": 1.0, "SH": 0.3}
+
+SETTINGS = Settings(
+    texels=SIZE,
+    frames=FRAMES,
+    geometry=Ranks(6, 5, 4),
+    appearance=Ranks(5, 4, 3),
+    components=4,
+    hidden=32,
+    sweeps=4,
+    regression=Schedule(steps=150, batch=64, rate=5e-3),
+    finetune=Schedule(steps=20, batch=16, rate=3e-4),
+)
+
+
+def quick(settings: Settings = SETTINGS) -> Settings:
+    """The same sizes, trained for a few steps only."""
+    return replace(
+        settings, regression=replace(settings.regression, steps=6), finetune=replace(settings.finetune, steps=4)
+    )
+
+
+def new_student(settings: Settings = SETTINGS) -> Student:
+    return Student(settings, inputs=INPUTS, vertices=VERTICES, texels=valid_texels(), wavelet="bior4.4")
+
+
+def random_student(seed: int = 0) -> Student:
+    """A student whose every parameter and buffer but the texels is random."""
+    student = new_student()
+    generator = torch.Generator().manual_seed(seed)
+    with torch.no_grad():
+        for tensor in student.state_dict().values():
+            if tensor.is_floating_point():
+                tensor.normal_(0, 0.3, generator=generator)
+        student.scale.abs_().add_(0.5)
+    return student
+
+
+def valid_texels() -> Tensor:
+    return torch.arange(5, SIZE * SIZE, 3)
+
+
+def bands_of_frames(frames: int = FRAMES, *, rank: int = 4, seed: int = 0) -> tuple[Tensor, Bands]:
+    """Descriptors [F, k D] and subbands of all 23 channels, `rank` hidden factors driving all of them."""
+    generator = torch.Generator().manual_seed(seed)
+    descriptors = torch.randn(frames, INPUTS, generator=generator)
+    hidden = torch.tanh(descriptors @ torch.randn(INPUTS, rank, generator=generator) / 3)
+    unit = torch.empty(CHANNELS)
+    for name, channels in ATTRIBUTES.items():
+        unit[channels] = SPREAD[name]
+    n = SIZE // 16
+
+    def field(*shape: int) -> Tensor:
+        drawn = torch.randn(rank, *shape, generator=generator).cumsum(-1).cumsum(-2) / shape[-1]
+        return torch.tensordot(hidden, drawn, dims=1) * unit[:, None, None]
+
+    return descriptors, Bands(4 * field(CHANNELS, n, n), field(3, CHANNELS, n, n), field(3, CHANNELS, 2 * n, 2 * n))
+
+
+def samples(frames: int = FRAMES) -> Samples:
+    descriptors, bands = bands_of_frames(frames)
+    shift = torch.arange(VERTICES * 3).reshape(VERTICES, 3) / 100
+    meshes = shift * (1 + 0.1 * torch.tanh(descriptors[:, :1, None]))
+    mean_texture = torch.linspace(-1, 1, len(valid_texels()))[:, None].expand(-1, CHANNELS)
+    return Samples(
+        descriptors,
+        meshes,
+        lambda channels, rows: Bands(*(band[rows] for band in bands.of(channels))),
+        mean_texture,
+    )
+
+
+def run_in(directory: Path, report: list[Progress] | None = None) -> Run:
+    """A run with its own generator; `report` collects its progress."""
+    progress = report.append if report is not None else lambda _: None
+    return Run(torch.Generator().manual_seed(0), Checkpoints(directory, "test"), progress, torch.device("cpu"))
