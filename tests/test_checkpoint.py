@@ -1,0 +1,59 @@
+"""Checkpoints are whole, belong to one run, and are nothing where they are damaged."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from mua.student.checkpoint import Checkpoints, run_key
+
+
+def test_returns_what_was_saved(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path, "a")
+    checkpoints.save("stage", {"step": 3, "weight": torch.arange(5)})
+    kept = checkpoints.load("stage")
+    assert kept is not None
+    assert kept["step"] == 3
+    assert torch.equal(kept["weight"], torch.arange(5))
+
+
+def test_nothing_is_kept_of_a_new_stage(tmp_path: Path) -> None:
+    assert Checkpoints(tmp_path / "new", "a").load("stage") is None
+
+
+def test_ignores_the_checkpoint_of_another_run(tmp_path: Path) -> None:
+    Checkpoints(tmp_path, "a").save("stage", {"step": 3})
+    assert Checkpoints(tmp_path, "b").load("stage") is None
+
+
+def test_ignores_a_file_truncated_anywhere(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path, "a")
+    checkpoints.save("stage", {"step": 3, "weight": torch.arange(5)})
+    path = tmp_path / "stage.pt"
+    whole = path.read_bytes()
+    for length in range(0, len(whole), 7):
+        path.write_bytes(whole[:length])
+        assert checkpoints.load("stage") is None, length
+
+
+def test_a_failed_save_leaves_the_old_state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    checkpoints = Checkpoints(tmp_path, "a")
+    checkpoints.save("stage", {"step": 1})
+
+    def half(content: object, path: Path) -> None:
+        path.write_bytes(b"half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(torch, "save", half)
+    with pytest.raises(KeyboardInterrupt):
+        checkpoints.save("stage", {"step": 2})
+    monkeypatch.undo()
+    assert checkpoints.load("stage") == {"step": 1}
+    assert [path.name for path in tmp_path.iterdir()] == ["stage.pt"]
+
+
+def test_key_depends_on_settings_and_inputs() -> None:
+    x = torch.arange(6.0)
+    keys = {run_key("a", [x]), run_key("b", [x]), run_key("a", [x + 1])}
+    assert len(keys) == 3
+    assert run_key("a", [x]) == run_key("a", [x.clone()])

@@ -1,0 +1,74 @@
+"""The exported avatar, evaluated in numpy, is the student."""
+
+import numpy as np
+import pywt
+import torch
+from synthetic_student import INPUTS, bands_of_frames, random_student
+
+from mua.arrays import Array
+from mua.asset import avatar
+from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
+
+RELATIVE = 1e-5  # the project's bound for a float32 asset against the torch student
+
+
+def numpy_mlp(mlp: avatar.Mlp, x: Array) -> Array:
+    for i, layer in enumerate(mlp):
+        x = x @ layer.weight.T.astype(float) + layer.bias
+        x = np.maximum(x, 0) if i < len(mlp) - 1 else x
+    return x
+
+
+def numpy_bands(branch: avatar.Branch, x: Array) -> list[Array]:
+    """LL [F, C, n, n] and the detail bands [F, 3, C, n, n], coarse first, in double precision."""
+    flat = numpy_mlp(branch.mlp, x)
+    sizes = np.cumsum([branch.channels * rank for rank in branch.ranks])
+    alphas = [part.reshape(len(x), branch.channels, -1) for part in np.split(flat, sizes[:-1], axis=1)]
+    bands = [branch.ll_mean + np.einsum("fcr,crij->fcij", alphas[0], branch.ll_basis)]
+    for alpha, band in zip(alphas[1:], branch.details, strict=True):
+        bands.append(band.mean + np.einsum("fcr,scri,scrj->fscij", alpha, band.h, band.w))
+    return bands
+
+
+def assert_close(found: Array, expected: torch.Tensor) -> None:
+    assert np.abs(found - expected.detach().numpy()).max() < RELATIVE * float(expected.detach().abs().max())
+
+
+def test_subbands_of_the_avatar_are_the_students() -> None:
+    student = random_student()
+    descriptors, _ = bands_of_frames(5)
+    normalization = export_normalization(student)
+    x = (descriptors.double().numpy() - normalization.mean) / normalization.scale
+    for exported, branch in zip(export_branches(student), student.branches, strict=True):
+        expected = branch(student.normalize(descriptors))
+        for found, band in zip(numpy_bands(exported, x), expected, strict=True):
+            assert_close(found, band)
+
+
+def test_mesh_of_the_avatar_is_the_students() -> None:
+    student = random_student()
+    x = torch.randn(4, INPUTS, generator=torch.Generator().manual_seed(0))
+    coarse = export_coarse(student.coarse)
+    found = coarse.mean + np.tensordot(numpy_mlp(coarse.mlp, x.double().numpy()), coarse.basis, axes=1)
+    assert_close(found, student.coarse(x))
+
+
+def test_static_offset_is_split_between_the_branches() -> None:
+    student = random_student()
+    geometry, appearance = export_branches(student)
+    assert np.array_equal(np.concatenate([geometry.static, appearance.static]), student.static.numpy())
+
+
+def test_wavelet_is_pywts_synthesis_bank() -> None:
+    wavelet = export_wavelet(random_student())
+    assert wavelet.levels == 4
+    assert np.array_equal(wavelet.rec_hi, pywt.Wavelet("bior4.4").rec_hi)
+    assert np.array_equal(wavelet.rec_lo, pywt.Wavelet("bior4.4").rec_lo)
+
+
+def test_arrays_do_not_share_memory_with_the_student() -> None:
+    student = random_student()
+    exported, _ = export_branches(student)
+    before = exported.ll_mean.copy()
+    student.geometry.ll_mean.zero_()
+    assert np.array_equal(exported.ll_mean, before)

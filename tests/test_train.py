@@ -1,0 +1,185 @@
+"""Training explains its frames, resumes to the same bytes after a kill and gives the same bytes for a seed."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from synthetic_student import FRAMES, SETTINGS, bands_of_frames, new_student, quick, random_student, run_in, samples
+
+from mua.student import train as training
+from mua.student.checkpoint import Checkpoints
+from mua.student.model import Bands, Branch, Student, build_mlp
+from mua.student.optimise import Progress
+from mua.student.regress import regress, squared_error, unfold_last_layer, whitening
+from mua.student.settings import Settings
+from mua.student.targets import channel_weights, joint_targets
+from mua.student.train import best_coefficients, hold, train
+from mua.texture.channels import APPEARANCE, GEOMETRY
+
+CPU = torch.device("cpu")
+
+
+def trained(
+    directory: Path, settings: Settings = SETTINGS, report: Callable[[Progress], None] = lambda _: None
+) -> Student:
+    student, data = new_student(settings), samples()
+    student.mean.copy_(data.descriptors.mean(0))
+    student.scale.copy_(data.descriptors.std(0))
+    train(student, data, settings=settings, checkpoints=Checkpoints(directory, "key"), device=CPU, report=report)
+    return student
+
+
+def same(a: Student, b: Student) -> bool:
+    return all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
+
+
+def explained(predicted: torch.Tensor, truth: torch.Tensor) -> float:
+    return float(1 - (predicted - truth).square().sum() / (truth - truth.mean(0)).square().sum())
+
+
+def test_explains_its_training_frames(tmp_path: Path) -> None:
+    student = trained(tmp_path)
+    descriptors, truth = bands_of_frames()
+    predicted = student.predict(descriptors)
+    for found, band, least in zip(predicted, truth, (0.9, 0.8, 0.7), strict=True):
+        assert explained(found, band) > least
+
+
+def test_mean_texture_is_kept_at_the_valid_texels(tmp_path: Path) -> None:
+    student = trained(tmp_path, quick())
+    mean = student.mean_lowpass() + student.static
+    assert torch.allclose(mean, samples().mean_texture.T, atol=1e-5)
+
+
+def test_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path: Path) -> None:
+    settings = quick()
+    first, second = trained(tmp_path / "a", settings), trained(tmp_path / "b", settings)
+    assert same(first, second)
+    assert not same(first, trained(tmp_path / "c", replace(settings, seed=1)))
+
+
+class Killed(Exception):
+    """Stands for a kill at one moment of a run."""
+
+
+STAGES = ("coarse mesh", "geometry bases", "geometry coefficients", "geometry fine-tuning", "appearance bases")
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_resumes_to_the_same_bytes_after_a_kill(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stage: str) -> None:
+    monkeypatch.setattr("mua.student.optimise.CHECKPOINT_STEPS", 2)
+
+    def kill(progress: Progress) -> None:
+        if progress.stage == stage and progress.step == 3:
+            raise Killed
+
+    with pytest.raises(Killed):
+        trained(tmp_path / "killed", quick(), kill)
+    assert same(trained(tmp_path / "killed", quick()), trained(tmp_path / "whole", quick()))
+
+
+def test_a_finished_run_repeats_no_step(tmp_path: Path) -> None:
+    trained(tmp_path, quick())
+    reports: list[Progress] = []
+    trained(tmp_path, quick(), reports.append)
+    assert reports == []
+
+
+def test_reports_every_step_of_every_stage(tmp_path: Path) -> None:
+    reports: list[Progress] = []
+    settings = quick()
+    trained(tmp_path, settings, reports.append)
+    fine = [r.step for r in reports if r.stage == "appearance fine-tuning"]
+    assert fine == list(range(1, settings.finetune.steps + 1))
+    assert {r.stage for r in reports} >= set(STAGES)
+
+
+def test_best_coefficients_give_back_what_the_bases_span() -> None:
+    branch = random_student().appearance
+    alphas = branch.split(torch.randn(3, branch.channels * branch.ranks.total, generator=torch.Generator()))
+    bands = branch.synthesize(alphas)
+    again = branch.synthesize(best_coefficients(branch, bands))
+    for found, band in zip(again, bands, strict=True):
+        assert torch.allclose(found, band, atol=1e-3 * float(band.abs().max()))
+
+
+def test_best_coefficients_are_no_worse_than_any_others() -> None:
+    branch = random_student().geometry
+    bands = bands_of_frames(4)[1].of(GEOMETRY)
+    best = branch.synthesize(best_coefficients(branch, bands))
+    predicted = branch(torch.zeros(4, 10))
+    for found, other, band in zip(best, predicted, bands, strict=True):
+        assert (found - band).square().sum() <= (other - band).square().sum()
+
+
+def test_joint_targets_measure_the_weighted_texture() -> None:
+    branch = random_student().geometry
+    flat = torch.randn(9, branch.channels * branch.ranks.total, generator=torch.Generator().manual_seed(1))
+    weights = torch.linspace(0.5, 3, branch.channels)
+    targets = joint_targets(branch, flat, weights, rank=9, generator=torch.Generator().manual_seed(0))
+    zero = branch.synthesize(branch.split(torch.zeros(1, flat.shape[1])))
+    bands = branch.synthesize(branch.split(flat))
+    energy = sum(
+        ((band - still) * weights[:, None, None]).double().square().flatten(1).sum(1)
+        for band, still in zip(bands, zero, strict=True)
+    )
+    # The ridge of the Gram matrices adds its share of energy, GRAM_RIDGE of the mean one.
+    assert torch.allclose(targets.coordinates.double().square().sum(1), energy, rtol=1e-3)
+    assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-2)
+
+
+def test_attributes_count_alike_and_one_that_never_varies_is_not_raised() -> None:
+    variance = torch.tensor([1e-4] * 3 + [0.04] * 4 + [0.09] * 3 + [0.0])
+    weights = channel_weights(variance, GEOMETRY)
+    assert torch.allclose(weights[:10], torch.tensor([100.0] * 3 + [5.0] * 4 + [1 / 0.3] * 3))
+    assert weights[10] == 100  # a hundredth of a logit is the least that counts
+    assert len(channel_weights(torch.ones(12), APPEARANCE)) == 12
+
+
+def test_the_folded_mlp_reads_plain_descriptors(tmp_path: Path) -> None:
+    inputs = torch.randn(40, 6, generator=torch.Generator().manual_seed(0)) * torch.tensor([1, 1, 1, 1, 0.05, 0.0])
+    goal = 100 * torch.tanh(inputs[:, :2]) @ torch.tensor([[1.0, 0.2, 0.0], [0.0, 1.0, 0.5]])
+    schedule = replace(SETTINGS.regression, steps=400)
+    run = run_in(tmp_path)
+    mlp = regress(inputs, goal, hidden=32, criterion=squared_error, schedule=schedule, stage="x", run=run)
+    assert explained(mlp(inputs), goal) > 0.9
+
+
+def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
+    inputs = torch.randn(500, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([3.0, 1.0, 1e-4])
+    white = whitening(inputs)
+    spread = ((inputs - white.mean) @ white.turn).std(0)
+    assert torch.allclose(spread.sort().values[1:], torch.ones(2), atol=0.01)
+    assert spread.min() < 0.01
+
+
+def test_unfolding_multiplies_the_output() -> None:
+    mlp, expand = build_mlp(3, 5, 2), torch.randn(2, 7, generator=torch.Generator().manual_seed(0))
+    x = torch.randn(4, 3, generator=torch.Generator().manual_seed(1))
+    assert torch.allclose(unfold_last_layer(mlp, expand)(x), mlp(x) @ expand, atol=1e-5)
+
+
+def test_large_sources_are_read_batch_by_batch(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, bands = bands_of_frames()
+    asked: list[tuple[slice, int]] = []
+
+    def source(channels: slice, rows: torch.Tensor) -> Bands:
+        asked.append((channels, len(rows)))
+        return Bands(*(band[rows] for band in bands.of(channels)))
+
+    rows = torch.tensor([4, 2])
+    held = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
+    monkeypatch.setattr(training, "HELD_BYTES", 0)
+    streamed = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
+    assert all(torch.equal(a, b) for a, b in zip(held, streamed, strict=True))
+    assert asked == [(APPEARANCE, FRAMES), (slice(12, 14), 2)]
+
+
+def test_fewer_frames_than_blendshapes_train(tmp_path: Path) -> None:
+    student, data = new_student(), samples(2)
+    settings = quick()
+    train(student, data, settings=settings, checkpoints=Checkpoints(tmp_path, "k"), device=CPU, report=lambda _: None)
+    assert all(torch.isfinite(tensor).all() for tensor in student.state_dict().values())
+    assert isinstance(student.geometry, Branch)
