@@ -52,7 +52,7 @@ def random_student(seed: int = 0) -> Student:
             if tensor.is_floating_point():
                 tensor.normal_(0, 0.3, generator=generator)
         student.scale.abs_().add_(0.5)
-    return student
+    return student.requires_grad_(False)
 
 
 def valid_texels() -> Tensor:

@@ -31,7 +31,7 @@ def numpy_bands(branch: avatar.Branch, x: Array) -> list[Array]:
 
 
 def assert_close(found: Array, expected: torch.Tensor) -> None:
-    assert np.abs(found - expected.detach().numpy()).max() < RELATIVE * float(expected.detach().abs().max())
+    assert np.abs(found - expected.numpy()).max() < RELATIVE * float(expected.abs().max())
 
 
 def test_subbands_of_the_avatar_are_the_students() -> None:
