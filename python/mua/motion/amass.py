@@ -96,7 +96,7 @@ def nominal_skeleton(joints: int) -> Skeleton:
 
 def _load(path: Path) -> tuple[Array, Array, float]:
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             arrays = {key: file[key] for key in ("poses", "trans", *RATE_KEYS) if key in file}
     except (OSError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(f"{path}: cannot be read as an .npz of plain arrays: {error}") from error

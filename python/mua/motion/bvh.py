@@ -65,13 +65,11 @@ def _parse_hierarchy(path: Path, lines: list[str]) -> list[_Node]:
         keyword, values = statement[0].lower(), statement[1:]
         if keyword in ("root", "joint", "end"):
             parent = open_nodes[-1] if open_nodes else -1
-            if (keyword == "root") != (parent < 0):
-                raise InputError(
-                    f"{path}: {' '.join(statement)}: expected ROOT outside and JOINT inside of a joint's braces"
-                )
+            if (keyword == "root") == bool(nodes) or (parent < 0) == bool(nodes):
+                raise InputError(f"{path}: {' '.join(statement)}: expected one ROOT and every other joint inside of it")
             name = f"{nodes[parent].name}_end" if keyword == "end" else " ".join(values)
             nodes.append(_Node(name, parent, np.zeros(3), ()))
-        elif keyword == "{":
+        elif keyword == "{" and nodes and len(nodes) - 1 not in open_nodes:
             open_nodes.append(len(nodes) - 1)
         elif keyword == "}" and open_nodes:
             open_nodes.pop()
@@ -208,10 +206,13 @@ def _decode_channels(nodes: list[_Node], values: Array) -> tuple[Array, Array]:
 
 
 def _moving_root(skeleton: Skeleton, positions: Array) -> int:
-    """The joint that carries the motion's translation: the hips where they move, else the first joint that does."""
-    moving = np.flatnonzero(np.ptp(positions, axis=0).max(axis=-1) > 0)
+    """The joint that carries the motion's translation: the hips, else the first below the ROOT that moves."""
     hips = roles(skeleton)["hips"][0]
-    return hips if hips in moving or not len(moving) else int(moving[0])
+    moves = np.ptp(positions, axis=0).any(axis=-1)
+    root = 0
+    while not moves[root] and np.count_nonzero(skeleton.parents == root) == 1:
+        root += 1  # an only child follows its parent in the file
+    return root if hips == 0 and moves[root] else hips
 
 
 def _root_translation(skeleton: Skeleton, rotations: Array, positions: Array, root: int) -> tuple[Array, list[int]]:

@@ -15,7 +15,7 @@ def resample(clip: Clip, rate: float) -> Clip:
     last = len(clip) - 1
     count = int(last / clip.rate * rate + LAST_FRAME_SLACK) + 1
     times = np.minimum(np.arange(count) * (clip.rate / rate), last)  # in frames of `clip`
-    before = np.minimum(times.astype(int), max(last - 1, 0))
+    before = times.astype(int)
     after = np.minimum(before + 1, last)
     t = times - before
     return Clip(

@@ -35,6 +35,7 @@ SOLES = ("foot", "toe")
 STANDING = 0.05  # quantile over frames of the lower foot's height that counts as standing
 ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
 MOST_LIFT = 0.25  # of the leg: the most that a clip is raised or lowered to put its feet on the floor
+CLEARLY = 10  # times nearer to the shin's plane than to the vertical one: a foot that rolls with its leg
 
 IDENTITY = np.array([1.0, 0, 0, 0])
 Y = np.array([0.0, 1, 0])
@@ -190,13 +191,14 @@ def _sole_frame(knee: Array, ankle: Array, ball: Array, tip: Array | None, up: A
     """Columns left, up, forward of a sole at rest, which is level along the foot.
 
     Across the foot it is level too, unless the foot continues a leg that is set apart, as in the zero pose of ASF
-    skeletons: there the ball of the foot lies in the plane of shin and toes, and the sole rolls with the leg.
+    skeletons: there ball and toes lie in one plane with the shin rather than with the vertical.
     """
-    along = ball - ankle if tip is None else tip - ball
-    forward = _unit(along - up * (along @ up))
-    shin, foot = ((v - forward * (v @ forward)) for v in (ankle - knee, ball - ankle))
-    rolls = np.linalg.norm(foot) > 0 and _unit(foot) @ _unit(shin) > _unit(foot) @ -up
-    return _frame(-_unit(shin) if rolls else up, np.cross(up, forward))
+    toes = ball - ankle if tip is None else tip - ball
+    level, rolled = (_unit(np.cross(above, toes)) for above in (up, knee - ankle))
+    rolls = CLEARLY * abs(rolled @ (ball - ankle)) < abs(level @ (ball - ankle))
+    left = rolled if rolls else level
+    forward = _unit(np.cross(left, up))
+    return np.stack([left, np.cross(forward, left), forward], axis=-1)
 
 
 def _local_rotations(rest: _Rest, alignments: dict[int, Array], moved: Array) -> Array:

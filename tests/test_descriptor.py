@@ -1,0 +1,151 @@
+"""The motion descriptor against a slow one by matrices, and what it must not depend on."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from mua import rotation
+from mua.motion.clip import Clip
+from mua.motion.descriptor import choose_joints, describe, describe_window, heading_of, normalization
+from mua.motion.encoding import PoseEncoding
+from mua.rig.skeleton import Skeleton
+
+FRAMES = 7
+BOUND = 256 * np.finfo(float).eps * 8  # some hundred operations on numbers up to 8
+
+
+def quaternions(count: int, seed: int) -> np.ndarray:
+    return np.asarray(Rotation.random(count, random_state=seed).as_quat(scalar_first=True))
+
+
+@pytest.fixture
+def skeleton() -> Skeleton:
+    """A turned joint above the root, the root, and a chain of three below it."""
+    offsets = np.random.default_rng(1).normal(size=(5, 3))
+    parents = np.array([-1, 0, 1, 2, 3], dtype=np.int32)
+    return Skeleton(("world", "hips", "spine", "neck", "head"), parents, quaternions(5, seed=2), offsets, root=1)
+
+
+@pytest.fixture
+def clip(skeleton: Skeleton) -> Clip:
+    """Random motion below a joint that keeps its bind rotation, as the one above a root does."""
+    rotations = quaternions(FRAMES * 5, seed=3).reshape(FRAMES, 5, 4)
+    rotations[:, 0] = skeleton.bind_rotations[0]
+    return Clip("clip", 30.0, rotations, np.random.default_rng(4).normal(size=(FRAMES, 3)))
+
+
+def matrix(q: np.ndarray) -> np.ndarray:
+    return np.asarray(Rotation.from_quat(q, scalar_first=True).as_matrix())
+
+
+def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: int) -> np.ndarray:
+    """One descriptor as mua.motion.encoding words it, for the skeleton of this file, by 3x3 matrices."""
+    above, offset = matrix(skeleton.bind_rotations[0]), skeleton.bind_translations[0]
+    bind = above @ matrix(skeleton.bind_rotations[1])
+
+    def root(g: int) -> tuple[np.ndarray, np.ndarray]:
+        return above @ matrix(clip.rotations[g, 1]) @ bind.T, offset + above @ clip.translation[g]
+
+    turn, position = root(f)
+    back = np.eye(3)
+    if encoding.heading:
+        # The twist about Y is the rotation about Y nearest to `turn`: its angle maximises trace(R_y(angle)^T turn).
+        back = Rotation.from_euler("y", -np.arctan2(turn[0, 2] - turn[2, 0], turn[0, 0] + turn[2, 2])).as_matrix()
+    parts = []
+    for i in range(encoding.window):
+        g = max(f - i, 0)
+        turn_g, position_g = root(g)
+        parts += [back @ (position_g - position), *(back @ turn_g).T[:2]]
+        for j in encoding.joints:
+            parts += [*matrix(clip.rotations[g, j]).T[:2]]
+    return np.concatenate(parts)
+
+
+@pytest.mark.parametrize("heading", [True, False])
+@pytest.mark.parametrize(("window", "joints"), [(3, (2, 4)), (1, (3,)), (5, ()), (9, (2, 3, 4))])
+def test_holds_what_the_encoding_declares(skeleton, clip, heading: bool, window: int, joints: tuple) -> None:
+    encoding = PoseEncoding(joints, 30.0, window, heading)
+    found = describe(skeleton, encoding, clip.rotations, clip.translation)
+    assert found.shape == (FRAMES, encoding.width)
+    assert found.dtype == np.float64
+    expected = [slow_descriptor(skeleton, encoding, clip, f) for f in range(FRAMES)]
+    np.testing.assert_allclose(found, expected, atol=BOUND)
+
+
+@pytest.mark.parametrize("heading", [True, False])
+def test_a_window_gives_the_numbers_of_its_clip(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
+    encoding = PoseEncoding((2, 3), 30.0, 3, heading)
+    whole = describe(skeleton, encoding, clip.rotations, clip.translation)
+    for f in range(FRAMES):
+        newest_first = np.maximum(f - np.arange(3), 0)
+        one = describe_window(skeleton, encoding, clip.rotations[newest_first], clip.translation[newest_first])
+        np.testing.assert_array_equal(one, whole[f])
+
+
+def test_holds_the_clip_still_before_its_start(skeleton: Skeleton, clip: Clip) -> None:
+    encoding = PoseEncoding((2, 3), 30.0, 3)
+    still = describe(skeleton, encoding, clip.rotations[[0, 0, 0]], clip.translation[[0, 0, 0]])
+    first = describe(skeleton, encoding, clip.rotations, clip.translation)[0]
+    np.testing.assert_array_equal(first, still[2])
+
+
+def moved(skeleton: Skeleton, clip: Clip, yaw: float, shift: np.ndarray) -> Clip:
+    """The same motion elsewhere in the world: turned about Y, then shifted."""
+    turn = np.array([np.cos(yaw / 2), 0, np.sin(yaw / 2), 0])
+    above = skeleton.bind_rotations[0]
+    local = rotation.multiply(rotation.conjugate(above), rotation.multiply(turn, above))
+    rotations = clip.rotations.copy()
+    rotations[:, 1] = rotation.multiply(local, rotations[:, 1])
+    world = skeleton.bind_translations[0] + rotation.rotate(above, clip.translation)
+    world = rotation.rotate(turn, world) + shift
+    translation = rotation.rotate(rotation.conjugate(above), world - skeleton.bind_translations[0])
+    return Clip(clip.name, clip.rate, rotations, translation)
+
+
+@pytest.mark.parametrize("heading", [True, False])
+def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
+    encoding = PoseEncoding((2, 3), 30.0, 3, heading)
+    elsewhere = moved(skeleton, clip, 0.0, np.array([5.0, -2, 3]))
+    found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translation)
+    np.testing.assert_allclose(found, describe(skeleton, encoding, clip.rotations, clip.translation), atol=BOUND)
+
+
+def test_depends_on_the_facing_only_without_heading(skeleton: Skeleton, clip: Clip) -> None:
+    elsewhere = moved(skeleton, clip, 2.5, np.array([5.0, -2, 3]))
+    for heading in (True, False):
+        encoding = PoseEncoding((2, 3), 30.0, 3, heading)
+        found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translation)
+        here = describe(skeleton, encoding, clip.rotations, clip.translation)
+        assert (np.abs(found - here).max() < BOUND) == heading
+
+
+def test_heading_of_a_half_turn_across_y_is_none() -> None:
+    np.testing.assert_array_equal(heading_of(np.array([0.0, 1, 0, 0])), [1, 0, 0, 0])
+    np.testing.assert_array_equal(heading_of(np.array([0.0, 0, 1, 0])), [0, 0, 1, 0])
+
+
+def test_chooses_joints_that_vary_and_are_used(skeleton: Skeleton) -> None:
+    rotations = np.tile(skeleton.bind_rotations, (40, 1, 1))
+    wave = np.sin(np.arange(40) * 2 * np.pi / 40)  # standard deviation sqrt(1/2)
+    for joint, degrees in ((1, 30.0), (2, 0.13), (3, 0.15), (4, 30.0)):
+        turn = rotation.from_axis_angle(np.array([0, 0, 1.0]), np.radians(degrees) * wave)
+        rotations[:, joint] = rotation.multiply(rotations[:, joint], turn)
+    rotations[1::2] *= -1  # q and -q are the same rotation
+    halves = [Clip("a", 30.0, rotations[:20], np.zeros((20, 3))), Clip("b", 30.0, rotations[20:], np.zeros((20, 3)))]
+    assert choose_joints(skeleton, halves, np.ones(5, dtype=bool)) == (3, 4)
+    assert choose_joints(skeleton, halves, np.array([1, 1, 1, 1, 0], dtype=bool)) == (3,)
+
+
+def test_chooses_a_joint_that_differs_between_still_clips(skeleton: Skeleton) -> None:
+    still = np.tile(skeleton.bind_rotations, (3, 1, 1))
+    other = still.copy()
+    other[:, 3] = rotation.multiply(still[:, 3], np.array([np.cos(0.2), 0, np.sin(0.2), 0]))
+    clips = [Clip("a", 30.0, still, np.zeros((3, 3))), Clip("b", 30.0, other, np.zeros((3, 3)))]
+    assert choose_joints(skeleton, clips, np.ones(5, dtype=bool)) == (3,)
+
+
+def test_normalizes_but_does_not_stretch_constant_columns() -> None:
+    columns = np.random.default_rng(5).normal(size=(50, 3)) * [2, 1e-6, 0] + [1, 2, 3]
+    found = normalization(columns)
+    np.testing.assert_allclose(found.mean, columns.mean(axis=0))
+    np.testing.assert_allclose(found.scale, [columns[:, 0].std(), 1, 1])

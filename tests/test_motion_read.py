@@ -1,0 +1,41 @@
+"""Reading motion by suffix: files, directories, and what is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mua.errors import InputError
+from mua.motion.read import read_motion
+
+STILL = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 1 0\nCHANNELS 0\n}\nMOTION\nFrames: 1\nFrame Time: 1\n"
+
+
+def test_reads_a_directory_by_name_and_skips_other_files(tmp_path: Path) -> None:
+    for name in ("b.bvh", "A.BVH"):
+        (tmp_path / name).write_text(STILL)
+    (tmp_path / "notes.txt").write_text("not motion")
+    np.savez(tmp_path / "c.npz", poses=np.zeros((2, 72)), trans=np.zeros((2, 3)), mocap_framerate=60)
+    assert [motion.clip.name for motion in read_motion(tmp_path)] == ["A", "b", "c"]
+
+
+def test_reads_the_clips_of_a_rig(shared_data) -> None:
+    clips = [motion.clip for motion in read_motion(shared_data.path("characters/Fox.glb"))]
+    assert [clip.name for clip in clips] == ["Survey", "Walk", "Run"]
+
+
+@pytest.mark.parametrize(("name", "says"), [("absent.bvh", "does not exist"), ("notes.txt", r"\.txt")])
+def test_refuses_what_holds_no_motion(tmp_path: Path, name: str, says: str) -> None:
+    (tmp_path / "notes.txt").write_text("not motion")
+    with pytest.raises(InputError, match=says):
+        read_motion(tmp_path / name)
+
+
+def test_refuses_a_directory_without_motion(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="found none"):
+        read_motion(tmp_path)
+
+
+def test_refuses_a_rig_without_clips(shared_data) -> None:
+    with pytest.raises(InputError, match="animation"):
+        read_motion(shared_data.path("characters/White_F_3_Casual.glb"))

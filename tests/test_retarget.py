@@ -1,0 +1,339 @@
+"""Retargeting: what limbs do in the world, checked on a T-pose person built here and on real motion."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from mua import rotation
+from mua.errors import InputError
+from mua.motion.amass import nominal_skeleton
+from mua.motion.bvh import read_bvh
+from mua.motion.clip import Clip
+from mua.motion.retarget import retarget
+from mua.motion.source import SourceMotion
+from mua.rig.read import read_surfaces
+from mua.rig.skeleton import Skeleton
+
+# Chains of at most 12 joints, some 100 operations each on lengths up to 10 m, divided by bones of at least 0.1 m.
+POSITION_BOUND = 12 * 100 * 10 * np.finfo(float).eps
+ANGLE_BOUND = POSITION_BOUND / 0.1
+CMU_FACING = 1e-6  # radians by which the hips of CMU's zero pose are turned from facing +Z: rounding of its offsets
+
+# World positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is mirrored.
+PARENTS = {
+    "Hips": "",
+    "Spine": "Hips",
+    "Spine1": "Spine",
+    "Spine2": "Spine1",
+    "Neck": "Spine2",
+    "Head": "Neck",
+    "HeadTop_End": "Head",
+    "LeftShoulder": "Spine2",
+    "LeftArm": "LeftShoulder",
+    "LeftForeArm": "LeftArm",
+    "LeftHand": "LeftForeArm",
+    "LeftHandMiddle1": "LeftHand",
+    "LeftUpLeg": "Hips",
+    "LeftLeg": "LeftUpLeg",
+    "LeftFoot": "LeftLeg",
+    "LeftToeBase": "LeftFoot",
+    "LeftToe_End": "LeftToeBase",
+}
+T_POSE = {
+    "Hips": (0, 1.0, 0),
+    "Spine": (0, 1.1, 0),
+    "Spine1": (0, 1.2, 0.01),
+    "Spine2": (0, 1.32, 0),
+    "Neck": (0, 1.5, -0.02),
+    "Head": (0, 1.6, 0.01),
+    "HeadTop_End": (0, 1.8, 0.03),
+    "LeftShoulder": (0.06, 1.45, 0),
+    "LeftArm": (0.18, 1.45, -0.01),
+    "LeftForeArm": (0.46, 1.45, -0.01),
+    "LeftHand": (0.72, 1.45, 0),
+    "LeftHandMiddle1": (0.82, 1.45, 0),
+    "LeftUpLeg": (0.1, 0.94, 0),
+    "LeftLeg": (0.1, 0.52, 0.01),
+    "LeftFoot": (0.1, 0.1, -0.02),
+    "LeftToeBase": (0.1, 0.02, 0.11),
+    "LeftToe_End": (0.1, 0.0, 0.17),
+}
+LIMBS = [
+    (f"{side}{bone}", f"{side}{end}")
+    for side in ("Left", "Right")
+    for bone, end in (("Arm", "ForeArm"), ("ForeArm", "Hand"), ("UpLeg", "Leg"), ("Leg", "Foot"))
+]
+CMU_NAMES = {
+    "Arm": "humerus",
+    "ForeArm": "radius",
+    "Hand": "wrist",
+    "UpLeg": "femur",
+    "Leg": "tibia",
+    "Foot": "foot",
+    "ToeBase": "toes",
+}
+
+
+def person(*, arms_down: float = 0, legs_apart: float = 0, size: float = 1, axes: int | None = None) -> Skeleton:
+    """The T-pose, arms lowered and legs set apart (feet roll along) by degrees; joint axes random by seed `axes`."""
+    at = {name: np.array(place) * size for name, place in T_POSE.items()}
+    swing(at, "LeftArm", -arms_down)
+    swing(at, "LeftUpLeg", legs_apart)
+    parents = dict(PARENTS)
+    for name in [name for name in at if name.startswith("Left")]:
+        at["Right" + name[4:]] = at[name] * [-1, 1, 1]
+        parents["Right" + name[4:]] = parents[name].replace("Left", "Right")
+    names = tuple(at)
+    turned = np.tile([1.0, 0, 0, 0], (len(names), 1))
+    if axes is not None:
+        turned = Rotation.random(len(names), random_state=axes).as_quat(scalar_first=True)
+    index = np.array([names.index(parents[name]) if parents[name] else -1 for name in names], dtype=np.int32)
+    above = np.where(index[:, None] < 0, [1.0, 0, 0, 0], turned[index])
+    origin = np.array([at[parents[name]] if parents[name] else np.zeros(3) for name in names])
+    local = rotation.rotate(rotation.conjugate(above), np.array(list(at.values())) - origin)
+    return Skeleton(names, index, rotation.multiply(rotation.conjugate(above), turned), local, root=0)
+
+
+def swing(at: dict[str, np.ndarray], joint: str, degrees: float) -> None:
+    """Turn everything below a left joint about Z through it."""
+    turn, centre = Rotation.from_euler("z", degrees, degrees=True), at[joint]
+    below = {joint}
+    for name, parent in PARENTS.items():
+        if parent in below:
+            below.add(name)
+            at[name] = centre + turn.apply(at[name] - centre)
+
+
+def random_clip(skeleton: Skeleton, frames: int = 9) -> Clip:
+    """Every joint up to about 60 degrees away from bind, the root also along a path."""
+    random = np.random.default_rng(8)
+    turns = Rotation.from_rotvec(random.normal(size=(frames * len(skeleton.names), 3)) * 0.4).as_quat(scalar_first=True)
+    rotations = rotation.multiply(turns.reshape(frames, -1, 4), skeleton.bind_rotations)
+    translation = skeleton.bind_translations[skeleton.root] + random.normal(size=(frames, 3)) * [1, 0.1, 1]
+    return Clip("clip", 30.0, rotations, translation)
+
+
+def world(skeleton: Skeleton, clip: Clip) -> tuple[np.ndarray, np.ndarray]:
+    return skeleton.world(clip.rotations, clip.translation)
+
+
+def bone(skeleton: Skeleton, clip: Clip, begin: str, end: str) -> np.ndarray:
+    """Unit directions [F, 3] in the world from joint to joint."""
+    at = world(skeleton, clip)[1]
+    along = at[:, skeleton.names.index(end)] - at[:, skeleton.names.index(begin)]
+    return np.asarray(along / np.linalg.norm(along, axis=-1, keepdims=True))
+
+
+def angle(a: np.ndarray, b: np.ndarray) -> float:
+    """The largest angle between unit vectors, radians."""
+    return float(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)).max())
+
+
+def below_a_turned_joint(skeleton: Skeleton) -> Skeleton:
+    """The same skeleton in the same place under a node that is turned and moved."""
+    turn, shift = Rotation.random(random_state=3).as_quat(scalar_first=True), np.array([0.3, 0.1, -0.2])
+    rotations = np.concatenate([turn[None], skeleton.bind_rotations])
+    rotations[1] = rotation.multiply(rotation.conjugate(turn), rotations[1])
+    offsets = np.concatenate([shift[None], skeleton.bind_translations])
+    offsets[1] = rotation.rotate(rotation.conjugate(turn), offsets[1] - shift)
+    parents = np.concatenate([[-1], skeleton.parents + 1]).astype(np.int32)
+    return Skeleton(("Armature", *skeleton.names), parents, rotations, offsets, root=1)
+
+
+@pytest.mark.parametrize(
+    "skeleton",
+    [person(), person(axes=1), person(arms_down=50, legs_apart=15, axes=2), below_a_turned_joint(person(axes=4))],
+    ids=["plain axes", "random axes", "A-pose", "below a turned joint"],
+)
+def test_onto_itself_is_the_identity(skeleton: Skeleton) -> None:
+    clip = random_clip(skeleton)
+    clip.rotations[:, : skeleton.root] = skeleton.bind_rotations[: skeleton.root]
+    found, _ = retarget(SourceMotion(skeleton, clip), skeleton)
+    for a, b in zip(world(skeleton, found), world(skeleton, clip), strict=True):
+        sign = np.sign(np.sum(a * b, axis=-1, keepdims=True)) if a.shape[-1] == 4 else 1
+        np.testing.assert_allclose(sign * a, b, atol=POSITION_BOUND)
+
+
+@pytest.mark.parametrize("arms_down", [0, 50])
+@pytest.mark.parametrize("legs_apart", [0, 20])
+def test_limbs_point_where_the_source_points(arms_down: float, legs_apart: float) -> None:
+    source, target = person(arms_down=arms_down, legs_apart=legs_apart, axes=1), person(size=1.3, axes=2)
+    clip = random_clip(source)
+    found, _ = retarget(SourceMotion(source, clip), target)
+    for begin, end in LIMBS:
+        assert angle(bone(target, found, begin, end), bone(source, clip, begin, end)) < ANGLE_BOUND
+
+
+def test_the_rest_pose_of_another_person_gives_ones_own_torso() -> None:
+    source, target = person(arms_down=50, legs_apart=20, axes=1), person(axes=2)
+    rest = Clip("rest", 30.0, source.bind_rotations[None], source.bind_translations[None, 0])
+    turned, _ = world(target, retarget(SourceMotion(source, rest), target)[0])
+    expected, _ = target.world(target.bind_rotations, target.bind_translations[0])
+    for name in ("Hips", "Spine", "Spine2", "Neck", "Head", "LeftShoulder"):
+        j = target.names.index(name)
+        np.testing.assert_allclose(np.abs(turned[0, j] @ expected[j]), 1, atol=POSITION_BOUND)
+
+
+def test_soles_are_level_when_splayed_legs_close() -> None:
+    """Where the source's feet roll with its legs (ASF zero pose), legs straight down mean level feet."""
+    source, target = person(legs_apart=20), person(axes=2)
+    rotations = source.bind_rotations[None].copy()
+    for side, sign in (("Left", -1), ("Right", 1)):
+        turn = Rotation.from_euler("z", sign * 20, degrees=True).as_quat(scalar_first=True)
+        rotations[0, source.names.index(f"{side}UpLeg")] = turn
+    closed = Clip("closed", 30.0, rotations, source.bind_translations[None, 0])
+    turned, _ = world(target, retarget(SourceMotion(source, closed), target)[0])
+    expected, _ = target.world(target.bind_rotations, target.bind_translations[0])
+    for name in ("LeftFoot", "RightFoot", "LeftToeBase"):
+        j = target.names.index(name)
+        np.testing.assert_allclose(np.abs(turned[0, j] @ expected[j]), 1, atol=POSITION_BOUND)
+
+
+def test_soles_stay_level_where_only_the_targets_legs_are_apart() -> None:
+    """A bind pose with legs apart and level soles: the feet of a source that stands level stay level."""
+    source, apart = person(), person(legs_apart=20)
+    _, level = source.world(source.bind_rotations, source.bind_translations[0])
+    offsets = apart.bind_translations.copy()  # plain axes: local offsets are differences in the world
+    for side in ("Left", "Right"):
+        for name in (f"{side}ToeBase", f"{side}Toe_End"):
+            j = apart.names.index(name)
+            offsets[j] = level[j] - level[apart.parents[j]]
+    target = Skeleton(apart.names, apart.parents, apart.bind_rotations, offsets, root=0)
+    rest = Clip("rest", 30.0, source.bind_rotations[None], source.bind_translations[None, 0])
+    found, _ = retarget(SourceMotion(source, rest), target)
+    turned, _ = world(target, found)
+    np.testing.assert_allclose(np.abs(turned[0, target.names.index("LeftFoot"), 0]), 1, atol=POSITION_BOUND)
+    assert angle(bone(target, found, "LeftUpLeg", "LeftLeg"), bone(source, rest, "LeftUpLeg", "LeftLeg")) < ANGLE_BOUND
+
+
+@pytest.mark.parametrize("yaw", [90, 180, -37])
+def test_faces_the_targets_way_whatever_way_the_source_rests(yaw: float) -> None:
+    source, target = person(axes=1), person(size=1.1, axes=2)
+    clip = random_clip(source)
+    turn = Rotation.from_euler("y", yaw, degrees=True).as_quat(scalar_first=True)
+    rest, rotations = source.bind_rotations.copy(), clip.rotations.copy()
+    rest[0], rotations[:, 0] = rotation.multiply(turn, rest[0]), rotation.multiply(turn, rotations[:, 0])
+    offsets = source.bind_translations.copy()
+    offsets[0] = rotation.rotate(turn, offsets[0])
+    turned_source = Skeleton(source.names, source.parents, rest, offsets, root=0)
+    turned_clip = Clip("clip", 30.0, rotations, rotation.rotate(turn, clip.translation))
+    expected, _ = retarget(SourceMotion(source, clip), target)
+    found, _ = retarget(SourceMotion(turned_source, turned_clip), target)
+    np.testing.assert_allclose(world(target, found)[1], world(target, expected)[1], atol=POSITION_BOUND)
+
+
+def test_path_and_size_scale_with_the_legs() -> None:
+    small, large = person(axes=1), person(size=2, axes=1)
+    clip = random_clip(small)
+    found, _ = retarget(SourceMotion(small, clip), large)
+    np.testing.assert_allclose(world(large, found)[1], 2 * world(small, clip)[1], atol=POSITION_BOUND)
+
+
+def test_source_resting_about_its_hips_is_set_on_the_floor() -> None:
+    source, target = person(), person(size=1.2, axes=2)
+    offsets = source.bind_translations.copy()
+    offsets[0] = 0
+    floating = Skeleton(source.names, source.parents, source.bind_rotations, offsets, root=0)
+    standing = Clip("standing", 30.0, np.tile(source.bind_rotations, (5, 1, 1)), np.tile([0, 1.07, 0], (5, 1)))
+    found, _ = retarget(SourceMotion(floating, standing), target)
+    expected = target.world(target.bind_rotations, target.bind_translations[0])[1]
+    np.testing.assert_allclose(world(target, found)[1][0], expected, atol=POSITION_BOUND)
+
+
+def test_keeps_the_height_of_a_clip_that_never_stands_and_says_so() -> None:
+    source = person()
+    offsets = source.bind_translations.copy()
+    offsets[0] = 0
+    floating = Skeleton(source.names, source.parents, source.bind_rotations, offsets, root=0)
+    flight = Clip("flight", 30.0, np.tile(source.bind_rotations, (5, 1, 1)), np.tile([0, 4.0, 0], (5, 1)))
+    found, notes = retarget(SourceMotion(floating, flight), source)
+    assert world(source, found)[1][0, 0, 1] == pytest.approx(4)
+    assert "off the floor" in notes[-1]
+
+
+def test_joints_without_a_match_keep_their_bind_rotation() -> None:
+    source, target = person(axes=1), person(axes=2)
+    names = tuple("Wing" if name == "LeftForeArm" else name for name in target.names)
+    winged = Skeleton(names, target.parents, target.bind_rotations, target.bind_translations, root=0)
+    found, notes = retarget(SourceMotion(source, random_clip(source)), winged)
+    j = names.index("Wing")
+    np.testing.assert_array_equal(found.rotations[:, j], np.tile(target.bind_rotations[j], (9, 1)))
+    assert f"{len(names) - 1} of {len(names)} joints" in notes[0]
+
+
+def test_mapping_reaches_joints_that_no_name_gives_away() -> None:
+    plain, target = person(axes=1), person(axes=2)
+    names = tuple(f"Bone.{i:03}" for i in range(len(plain.names)))
+    source = Skeleton(names, plain.parents, plain.bind_rotations, plain.bind_translations, root=0)
+    clip = random_clip(plain)
+    with pytest.raises(InputError, match="mapping file"):
+        retarget(SourceMotion(source, clip), target)
+    mapping = dict(zip(target.names, names, strict=True))
+    found, _ = retarget(SourceMotion(source, clip), target, mapping=mapping)
+    expected, _ = retarget(SourceMotion(plain, clip), target)
+    np.testing.assert_array_equal(found.rotations, expected.rotations)
+
+
+def test_brings_the_clip_to_the_rate_asked_for() -> None:
+    skeleton = person(axes=1)
+    found, _ = retarget(SourceMotion(skeleton, random_clip(skeleton)), skeleton, rate=24.0)
+    assert (len(found), found.rate) == (7, 24.0)
+
+
+@pytest.mark.parametrize("joints", [24, 52, 55])
+def test_amass_rest_pose_stands_upright_in_the_targets_place(joints: int) -> None:
+    smpl, target = nominal_skeleton(joints), person(axes=2)
+    standing = Clip("standing", 30.0, smpl.bind_rotations[None], np.array([[0.0, 0.95, 0]]))
+    found, _ = retarget(SourceMotion(smpl, standing), target)
+    for begin, end in LIMBS:
+        names = {"Arm": "shoulder", "ForeArm": "elbow", "Hand": "wrist", "UpLeg": "hip", "Leg": "knee", "Foot": "ankle"}
+        side = "left" if begin.startswith("Left") else "right"
+        limb = [f"{side}_{names[part.removeprefix('Left').removeprefix('Right')]}" for part in (begin, end)]
+        assert angle(bone(target, found, begin, end), bone(smpl, standing, *limb)) < ANGLE_BOUND
+    turned, at = world(target, found)
+    bind_turned, bind_at = target.world(target.bind_rotations, target.bind_translations[0])
+    for name in ("Hips", "Head", "LeftFoot", "RightToeBase"):
+        j = target.names.index(name)
+        assert abs(at[0, j, 1] - bind_at[j, 1]) < 0.02
+        if not name.startswith(("Left", "Right")):
+            np.testing.assert_allclose(np.abs(turned[0, j] @ bind_turned[j]), 1, atol=POSITION_BOUND)
+
+
+@pytest.fixture(scope="module")
+def woman(shared_data) -> Skeleton:
+    return read_surfaces(shared_data.path("characters/White_F_3_Casual.glb")).skeleton
+
+
+@pytest.mark.parametrize("name", ["02_01", "02_03", "01_05"])
+@pytest.mark.parametrize("target_name", ["person", "woman"])
+def test_real_motion_moves_limbs_alike(shared_data, request, name: str, target_name: str) -> None:
+    target = person(axes=3) if target_name == "person" else request.getfixturevalue("woman")
+    source = read_bvh(shared_data.path(f"motion/cmu/{name}.bvh"))
+    found, notes = retarget(source, target)
+    assert len(found) == len(source.clip)
+    assert not any("off the floor" in note for note in notes)
+    for begin, end in LIMBS:
+        limb = [
+            f"{part[0].lower()}{CMU_NAMES[part.removeprefix('Left').removeprefix('Right')]}" for part in (begin, end)
+        ]
+        assert angle(bone(target, found, begin, end), bone(source.skeleton, source.clip, *limb)) < CMU_FACING
+
+
+@pytest.mark.parametrize("name", ["02_01", "02_03"])
+def test_walks_and_runs_upright_on_the_floor_with_knees_forward(shared_data, woman: Skeleton, name: str) -> None:
+    clip, _ = retarget(read_bvh(shared_data.path(f"motion/cmu/{name}.bvh")), woman)
+    _, at = world(woman, clip)
+    place = {joint: at[:, j] for j, joint in enumerate(woman.names)}
+    rest = woman.world(woman.bind_rotations, woman.bind_translations[woman.root])[1]
+    assert (place["Head"][:, 1] - place["Hips"][:, 1] > 0.5).all()
+    assert (place["LeftHand"][:, 1] < place["Head"][:, 1]).all()
+    toes = [woman.names.index(f"{side}ToeBase") for side in ("Left", "Right")]
+    assert np.abs((at[:, toes, 1] - rest[toes, 1]).min(axis=0)).max() < 0.03
+    forward = np.cross(place["LeftUpLeg"] - place["RightUpLeg"], [0, 1, 0])
+    for side in ("Left", "Right"):
+        hip, knee, ankle = (place[f"{side}{part}"] for part in ("UpLeg", "Leg", "Foot"))
+        bend = np.sum((knee - (hip + ankle) / 2) * forward, axis=-1)
+        assert bend.mean() > 0
+        assert (bend > -0.02 * np.linalg.norm(forward, axis=-1)).all()
+    travel = place["Hips"][-1] - place["Hips"][0]
+    assert np.sum(travel * forward.mean(axis=0)) > 0.9 * np.linalg.norm(travel) * np.linalg.norm(forward.mean(axis=0))
