@@ -28,8 +28,8 @@ class Template:
 def make_template(character: Character, *, vertices: int = 5000) -> Template:
     """Decimate a character's mesh to about `vertices` by edge collapses that keep UV seams and chart borders.
 
-    The quadrics measure positions and UVs together (Garland and Heckbert 1998), a UV error counting like the distance on
-    the surface that it stands for, so that chart borders stay where they are.
+    The quadrics measure positions and UVs together (Garland and Heckbert 1998), a UV error counting like the distance
+    on the surface that it stands for, so that chart borders stay where they are.
     """
     mesh = character.mesh
     if len(mesh.vertices) > DENSE_ENOUGH * vertices:

@@ -29,16 +29,8 @@ def build_texel_map(mesh: Mesh, size: int) -> TexelMap:
     A centre on a shared edge or in an overlap goes to the first face in file order. UV triangles without area
     cover nothing, mirrored ones cover like any other, and what leaves the unit square is cut off.
     """
-    corners = mesh.uv[mesh.uv_faces] * size  # [F, 3, 2] in texels
-    owner = np.full(size * size, -1, np.int32)
-    claims = np.zeros(size * size, np.int64)
-    for faces, texels in _candidates(corners, size):
-        areas = _corner_areas(corners[faces], texels, size)
-        covered = (areas >= 0).all(axis=1) & (areas > 0).any(axis=1)
-        claims += np.bincount(texels[(areas > 0).all(axis=1)], minlength=size * size)
-        taken, first = np.unique(texels[covered], return_index=True)
-        free = owner[taken] < 0
-        owner[taken[free]] = faces[covered][first[free]]
+    corners = mesh.uv[mesh.uv_faces] * size
+    owner, claims = cover(corners, size)
     texels = np.flatnonzero(owner >= 0)
     areas = _corner_areas(corners[owner[texels]], texels, size)
     return TexelMap(
@@ -69,6 +61,23 @@ def points_on_surface(texels: TexelMap, dense: TexelMap) -> tuple[Array, Array]:
         wanted = np.stack(np.divmod(texels.texels[empty], texels.size), axis=1)
         rows[empty] = cKDTree(covered).query(wanted)[1]
     return dense.triangles[rows], dense.barycentrics[rows]
+
+
+def cover(
+    corners: Array,  # [F, 3, 2] UV triangles, in texels
+    size: int,
+) -> tuple[Array, Array]:
+    """For each texel centre [size * size] its first triangle, -1 for none, and how many hold it strictly inside."""
+    owner = np.full(size * size, -1, np.int32)
+    claims = np.zeros(size * size, np.int64)
+    for faces, texels in _candidates(corners, size):
+        areas = _corner_areas(corners[faces], texels, size)
+        covered = (areas >= 0).all(axis=1) & (areas > 0).any(axis=1)
+        claims += np.bincount(texels[(areas > 0).all(axis=1)], minlength=size * size)
+        taken, first = np.unique(texels[covered], return_index=True)
+        free = owner[taken] < 0
+        owner[taken[free]] = faces[covered][first[free]]
+    return owner, claims
 
 
 def _candidates(

@@ -1,0 +1,165 @@
+"""UV charts: pieces of surface that lie connected in texture space, as an artist or xatlas cut them."""
+
+import numpy as np
+import xatlas
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from mua.arrays import Array
+from mua.rig.texel_map import cover
+
+PACK_SIZE = 512  # texels along the square that charts are packed in
+PACK_GUTTER = 2  # of these texels between charts
+FULL = 0.8  # share of the square that the first attempt wants to fill
+SHRINK = 0.97  # texel density of the next attempt, when the charts did not fit
+
+SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is no chart
+CELL = 128  # texels along the square in which a chart is searched for overlap
+CELLS_SIZE = 2048  # texels along all these squares together
+COLLAPSED = 1e-4  # a triangle with less UV area for its surface than this share of the chart's has none
+
+UNWRAP_COST = 16.0  # xatlas grows a chart until it costs this; its default of 2 cuts four times as many
+
+
+def find_charts(
+    nodes: Array,  # [F, 3] int, equal where corners share vertex, UV and material
+    corners: Array,  # [F, 3, 2] UV
+) -> Array:
+    """Number the charts: triangles that share an edge in space and in UV and are not folded over it.
+
+    Returns [F] int32. A mirrored half that meets the other half along an edge is a chart of its own; a folded sliver
+    stays with a neighbour.
+    """
+    ends = np.sort(np.stack([nodes, np.roll(nodes, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    face = np.repeat(np.arange(len(nodes)), 3)
+    order = np.lexsort((face, ends[:, 1], ends[:, 0]))
+    same = (ends[order[1:]] == ends[order[:-1]]).all(axis=1)
+    a, b = face[order[:-1]][same], face[order[1:]][same]
+    area = signed_areas(corners)
+    flat = np.sign(area[a]) * np.sign(area[b]) >= 0
+    links = coo_matrix((np.ones(flat.sum()), (a[flat], b[flat])), shape=(len(nodes), len(nodes)))
+    count, charts = connected_components(links, directed=False)
+    speck = np.bincount(charts, np.abs(area), minlength=count) < SPECK
+    joins = np.arange(count)
+    for one, other in ((charts[a], charts[b]), (charts[b], charts[a])):
+        across = speck[one] & ~speck[other]
+        joins[one[across]] = other[across]
+    return np.unique(joins[charts], return_inverse=True)[1].astype(np.int32)
+
+
+def unusable(
+    corners: Array,  # [F, 3, 2] UV
+    surface: Array,  # [F] surface area of each triangle, m2
+    charts: Array,  # [F]
+    *,
+    allowed: float,
+) -> Array:
+    """Say for each chart whether more than the share `allowed` of it overlaps itself or has no area in UV: [K] bool."""
+    uv = np.abs(signed_areas(corners))
+    ratio = np.bincount(charts, uv) / np.maximum(np.bincount(charts, surface), np.finfo(float).tiny)
+    collapsed = uv <= COLLAPSED * ratio[charts] * surface
+    lost = np.bincount(charts, surface * collapsed) > allowed * np.bincount(charts, surface)
+    return lost | (_overlap(corners, charts) > allowed)
+
+
+def isometric(
+    corners: Array,  # [F, 3, 2] UV
+    positions: Array,  # [F, 3, 3] metres
+    charts: Array,  # [F]
+) -> Array:
+    """Stretch each chart by the one linear map that brings it closest to its surface: [F, 3, 2] metres, starting at 0.
+
+    The map is the root of the chart's mean metric tensor; the mean is taken of logarithms, over the chart's area in UV,
+    so that neither slivers nor a fold that hides in a few texels rule it.
+    """
+    edges = corners[:, 1:] - corners[:, :1]  # [F, 2 edges, 2]
+    sides = positions[:, 1:] - positions[:, :1]
+    flat = np.linalg.pinv(edges)
+    value, axes = np.linalg.eigh(flat @ sides @ sides.transpose(0, 2, 1) @ flat.transpose(0, 2, 1))
+    weight = areas(corners) * (value[:, 0] > 0)
+    logs = (axes * np.log(np.where(value > 0, value, 1))[:, None]) @ axes.transpose(0, 2, 1)
+    mean = np.stack([np.bincount(charts, weight * logs[:, i, j]) for i, j in ((0, 0), (0, 1), (0, 1), (1, 1))], axis=1)
+    value, axes = np.linalg.eigh(_ratio(mean, np.bincount(charts, weight)[:, None]).reshape(-1, 2, 2))
+    stretch = (axes * np.exp(value / 2)[:, None]) @ axes.transpose(0, 2, 1)
+    moved = corners @ stretch[charts]
+    low = np.full((charts.max() + 1, 2), np.inf)
+    np.minimum.at(low, charts, moved.min(axis=1))
+    return moved - low[charts, None]
+
+
+def unwrap(
+    vertices: Array,  # [V, 3] metres
+    faces: Array,  # [F, 3]
+) -> Array:
+    """Cut and flatten a surface with xatlas: [F, 3, 2], all charts in one plane without overlap."""
+    kept, index = np.unique(faces, return_inverse=True)
+    atlas = xatlas.Atlas()
+    atlas.add_mesh(vertices[kept].astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
+    options = xatlas.ChartOptions()
+    options.max_cost = UNWRAP_COST
+    atlas.generate(options, xatlas.PackOptions())
+    _, flat, uv = atlas.get_mesh(0)
+    return uv[flat].astype(np.float64) * (atlas.width, atlas.height)
+
+
+def pack(
+    corners: Array,  # [F, 3, 2] all charts in one scale
+    charts: Array,  # [F]
+) -> Array:
+    """Place the charts in the unit square, as large as they fit without overlap: [F, 3, 2]."""
+    scale = PACK_SIZE * np.sqrt(FULL / max(areas(corners).sum(), np.finfo(float).tiny))
+    while True:  # in texels, because xatlas leaves out faces that are small in absolute terms
+        rows = np.column_stack([np.repeat(charts, 3), (corners.reshape(-1, 2) * scale).astype(np.float32)])
+        nodes, index = np.unique(rows, axis=0, return_inverse=True)
+        triangles = index.reshape(-1, 3).astype(np.uint32)
+        atlas = xatlas.Atlas()
+        atlas.add_uv_mesh(nodes[:, 1:].astype(np.float32), triangles, charts.astype(np.uint32)[:, None])
+        options = xatlas.PackOptions()
+        options.resolution, options.padding, options.texels_per_unit = PACK_SIZE, PACK_GUTTER, 1.0
+        atlas.generate(xatlas.ChartOptions(), options)
+        if atlas.atlas_count <= 1:
+            break
+        scale *= SHRINK
+    _, flat, uv = atlas.get_mesh(0)
+    return uv[flat].astype(np.float64)
+
+
+def signed_areas(
+    corners: Array,  # [F, 3, 2]
+) -> Array:
+    """Area of each UV triangle [F], negative where it is mirrored."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+
+
+def areas(
+    corners: Array,  # [F, 3, 2 or 3]
+) -> Array:
+    """Area of each triangle [F]."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    squares = (a * a).sum(axis=1) * (b * b).sum(axis=1) - (a * b).sum(axis=1) ** 2
+    return np.sqrt(np.maximum(squares, 0)) / 2
+
+
+def _overlap(
+    corners: Array,  # [F, 3, 2] UV
+    charts: Array,  # [F]
+) -> Array:
+    """Share of each chart's texels [K] that two of its own triangles claim, each chart seen in a square of its own."""
+    count = charts.max() + 1
+    across = int(np.ceil(np.sqrt(count)))
+    cell = max(min(CELL, CELLS_SIZE // across), 4)
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+    np.minimum.at(low, charts, corners.min(axis=1))
+    np.maximum.at(high, charts, corners.max(axis=1))
+    scale = cell / np.maximum((high - low).max(axis=1), np.finfo(float).tiny)
+    place = np.stack(np.divmod(charts, across)[::-1], axis=1) * cell
+    owner, claims = cover((corners - low[charts, None]) * scale[charts, None, None] + place[:, None], across * cell)
+    filled = owner >= 0
+    chart = charts[owner[filled]]
+    return _ratio(np.bincount(chart, claims[filled] > 1, minlength=count), np.bincount(chart, minlength=count))
+
+
+def _ratio(a: Array, b: Array) -> Array:
+    """a / b, and 0 where b is 0."""
+    return np.divide(a, b, out=np.zeros(a.shape), where=b > 0)
