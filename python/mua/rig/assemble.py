@@ -11,8 +11,9 @@ from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.rig.bind_pose import Bind, bind_pose
 from mua.rig.character import MAX_INFLUENCES
-from mua.rig.rigid_motion import rigid_skeleton
+from mua.rig.rigid_skeleton import rigid_skeleton
 from mua.rig.scene import Material, Part, Scene
+from mua.rig.scene import Wrap as Wrap  # part of what Surfaces says to the atlas
 from mua.rig.skeleton import Skeleton
 
 WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
@@ -76,20 +77,24 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
         bind = bind_pose(scene)
         mesh = _merge(scene, bind)
     mesh = _weld(mesh)
-    skeleton, clips, losses = rigid_skeleton(scene, bind)
+    rigged = rigid_skeleton(scene, bind)
+    joint_of_node = np.zeros(len(scene.parents), np.int32)
+    joint_of_node[rigged.nodes] = np.arange(len(rigged.nodes))
+    used, face_material = np.unique(mesh.face_material, return_inverse=True)
+    indices = np.where(mesh.weights > 0, joint_of_node[bind.nodes[mesh.indices]], 0).astype(np.int32)
     return Surfaces(
         name=scene.name,
-        skeleton=skeleton,
+        skeleton=rigged.skeleton,
         vertices=mesh.vertices,
         faces=mesh.faces.astype(np.int32),
         uv=mesh.uv,
         uv_faces=mesh.uv_faces.astype(np.int32),
-        face_material=mesh.face_material,
-        materials=scene.materials,
-        skin_indices=mesh.indices,
+        face_material=face_material.reshape(-1).astype(np.int32),
+        materials=tuple(scene.materials[m] for m in used),
+        skin_indices=indices,
         skin_weights=mesh.weights.astype(np.float32),
-        clips=clips,
-        notes=(*scene.notes, *told, *mesh.notes, *losses),
+        clips=rigged.clips,
+        notes=(*scene.notes, *told, *mesh.notes, *rigged.notes),
     )
 
 

@@ -28,6 +28,7 @@ class Bind:
     stretch: Array  # [J, 3, 3] scale in bind-pose axes that the rest pose adds to the joint; folded into the mesh
     places: Array  # [J, 3] bind-pose positions with the stretch folded in, metres
     mass: Array  # [J] summed skin weights
+    trusted: Array  # [J] bool: weights or the hierarchy vouch for the joint's inverse bind; else only the rest pose does
 
 
 def bind_pose(scene: Scene) -> Bind:
@@ -38,14 +39,14 @@ def bind_pose(scene: Scene) -> Bind:
     mass = np.zeros(len(nodes))
     for s, skin in enumerate(scene.skins):
         np.add.at(mass, [index[int(node)] for node in skin.joints], scene.masses(s))
-    matrices = _bind_matrices(scene, nodes, index=index, parents=parents)
+    matrices, trusted = _bind_matrices(scene, nodes, index=index, parents=parents)
     stretch = _stretch(scene.rest[nodes] @ np.linalg.inv(matrices))
     places = matrices[:, :3, 3].copy()
     for j, parent in enumerate(parents):
         if parent >= 0:
             offset = matrices[j, :3, 3] - matrices[parent, :3, 3]
             places[j] = places[parent] + stretch[parent] @ offset
-    return Bind(nodes, parents, matrices, stretch, places, mass)
+    return Bind(nodes, parents, matrices, stretch, places, mass, trusted)
 
 
 def rotations_of(matrices: Array) -> Array:
@@ -88,8 +89,33 @@ def _kept_parent(scene: Scene, node: int, index: dict[int, int]) -> int:
     return index.get(parent, -1)
 
 
-def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents: Array) -> Array:
-    """Joint-to-bind-world matrices [J, 4, 4]: from inverse binds where weights vouch for them, else by the hierarchy."""
+def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents: Array) -> tuple[Array, Array]:
+    """Joint-to-bind-world matrices [J, 4, 4] and which [J] of them are the file's own.
+
+    Inverse binds of joints without weights are often left at the identity: such a joint takes the file's only where
+    it agrees with the place that the rest pose gives it beside its neighbours.
+    """
+    bound, proposed = _file_binds(scene, index)
+    size = np.ptp([matrix[:3, 3] for matrix in bound.values()], axis=0).max() if bound else 0.0
+    trusted = np.array([j in bound for j in range(len(nodes))])
+    towards = _by_descendants(bound, parents)
+    for j in [*sorted(towards, reverse=True), *range(len(nodes))]:  # first up from the bound joints, then down
+        if j in bound:
+            continue
+        beside = towards.get(j, int(parents[j]))
+        derived = scene.rest[nodes[j]]
+        if beside >= 0:
+            derived = bound[beside] @ np.linalg.inv(scene.rest[nodes[beside]]) @ derived
+        own = proposed.get(j)
+        if own is not None and np.linalg.norm(own[:3, 3] - derived[:3, 3]) <= OFFSET_TRUST * size:
+            bound[j], trusted[j] = own, True
+        else:
+            bound[j] = derived
+    return np.stack([bound[j] for j in range(len(nodes))]), trusted
+
+
+def _file_binds(scene: Scene, index: dict[int, int]) -> tuple[dict[int, Array], dict[int, Array]]:
+    """Joint-to-bind-world matrices by the file's inverse binds: of joints with weights, and of those without."""
     bound: dict[int, Array] = {}
     proposed: dict[int, Array] = {}
     masses = {s: scene.masses(s) for s, skin in enumerate(scene.skins) if not skin.rigid}
@@ -100,29 +126,18 @@ def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents
         space = _bind_space(scene, skin, mass=mass, bound=bound, index=index)
         for node, matrix, joint_mass in zip(skin.joints, space @ np.linalg.inv(skin.inverse_binds), mass, strict=True):
             (bound if joint_mass > 0 else proposed).setdefault(index[int(node)], matrix)
-    _bind_ancestors(scene, nodes, parents=parents, bound=bound)
-    size = np.ptp([matrix[:3, 3] for matrix in bound.values()], axis=0).max() if bound else 0.0
-    for j, node in enumerate(nodes):
-        if j in bound:
-            continue
-        if parents[j] < 0:
-            bound[j] = scene.rest[node]
-            continue
-        derived = bound[parents[j]] @ np.linalg.inv(scene.rest[nodes[parents[j]]]) @ scene.rest[node]
-        own = proposed.get(j)
-        trusted = own is not None and np.linalg.norm(own[:3, 3] - derived[:3, 3]) <= OFFSET_TRUST * size
-        bound[j] = own if own is not None and trusted else derived
-    return np.stack([bound[j] for j in range(len(nodes))])
+    return bound, proposed
 
 
-def _bind_ancestors(scene: Scene, nodes: Array, *, parents: Array, bound: dict[int, Array]) -> None:
-    """Give joints above the topmost bound ones the place that the rest pose gives them beside those."""
+def _by_descendants(bound: dict[int, Array], parents: Array) -> dict[int, int]:
+    """For each joint above a bound one, the child towards it."""
+    towards: dict[int, int] = {}
     for j in sorted(bound):
-        derive = bound[j] @ np.linalg.inv(scene.rest[nodes[j]])
         parent = int(parents[j])
-        while parent >= 0 and parent not in bound:
-            bound[parent] = derive @ scene.rest[nodes[parent]]
-            parent = int(parents[parent])
+        while parent >= 0 and parent not in bound and parent not in towards:
+            towards[parent] = j
+            j, parent = parent, int(parents[parent])
+    return towards
 
 
 def _bind_space(
