@@ -248,7 +248,7 @@ def test_keeps_the_height_of_a_clip_that_never_stands_and_says_so() -> None:
     flight = Clip("flight", 30.0, np.tile(source.bind_rotations, (5, 1, 1)), np.tile([0, 4.0, 0], (5, 1)))
     found, notes = retarget(SourceMotion(floating, flight), source)
     assert world(source, found)[1][0, 0, 1] == pytest.approx(4)
-    assert "off the floor" in notes[-1]
+    assert notes == ("flight: its feet never come nearer to the floor than 3.00 m; the height is kept.",)
 
 
 def test_joints_without_a_match_keep_their_bind_rotation() -> None:
@@ -258,7 +258,7 @@ def test_joints_without_a_match_keep_their_bind_rotation() -> None:
     found, notes = retarget(SourceMotion(source, random_clip(source)), winged)
     j = names.index("Wing")
     np.testing.assert_array_equal(found.rotations[:, j], np.tile(target.bind_rotations[j], (9, 1)))
-    assert f"{len(names) - 1} of {len(names)} joints" in notes[0]
+    assert notes[0].startswith(f"1 of {len(names)} joints")
 
 
 def test_mapping_reaches_joints_that_no_name_gives_away() -> None:
@@ -311,7 +311,7 @@ def test_real_motion_moves_limbs_alike(shared_data, request, name: str, target_n
     source = read_bvh(shared_data.path(f"motion/cmu/{name}.bvh"))
     found, notes = retarget(source, target)
     assert len(found) == len(source.clip)
-    assert not any("off the floor" in note for note in notes)
+    assert not any("floor" in note for note in notes)
     for begin, end in LIMBS:
         limb = [
             f"{part[0].lower()}{CMU_NAMES[part.removeprefix('Left').removeprefix('Right')]}" for part in (begin, end)

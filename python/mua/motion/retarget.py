@@ -34,7 +34,7 @@ LIMBS = {
 SOLES = ("foot", "toe")
 STANDING = 0.05  # quantile over frames of the lower foot's height that counts as standing
 ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
-MOST_LIFT = 0.25  # of the leg: the most that a clip is raised or lowered to put its feet on the floor
+LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stands and stays where it is
 CLEARLY = 10  # times nearer to the shin's plane than to the vertical one: a foot that rolls with its leg
 
 IDENTITY = np.array([1.0, 0, 0, 0])
@@ -84,14 +84,13 @@ def retarget(
     source_turned, source_at = source.skeleton.world(clip.rotations, clip.translation)
     moved = rotation.multiply(facing, rotation.multiply(source_turned, rotation.conjugate(rest.source_turned)))
     rotations = _local_rotations(rest, _alignments(rest, upright), moved)
-    translation, lift_notes = _translation(rest, rotations, rotation.rotate(facing, source_at))
-    count = f"{len(rest.matches)} of {len(target.names)} joints"
-    coverage = f"{clip.name}: {count} follow the motion, the others keep their bind rotation."
-    return Clip(clip.name, rate, rotations, translation), (
-        *source.notes,
-        coverage,
-        *(f"{clip.name}: {n}" for n in lift_notes),
-    )
+    translation, notes = _translation(rest, rotations, rotation.rotate(facing, source_at))
+    notes = [f"{clip.name}: {note}" for note in notes]
+    if unmatched := len(target.names) - len(rest.matches):
+        notes.append(
+            f"{unmatched} of {len(target.names)} joints match none of the motion and keep their bind rotation."
+        )
+    return Clip(clip.name, rate, rotations, translation), (*source.notes, *notes)
 
 
 def _rest(source: Skeleton, target: Skeleton, matches: Matches) -> _Rest:
@@ -231,8 +230,8 @@ def _translation(rest: _Rest, rotations: Array, source_at: Array) -> tuple[Array
     shift = path - at[:, hips].mean(axis=1)
     lift = _lift(rest, at + shift[:, None], source_at, scale)
     notes = []
-    if abs(lift) > MOST_LIFT * leg:
-        notes.append(f"its feet stay {-lift:.2f} m off the floor of the bind pose; the height is kept as it is.")
+    if -lift > LOWEST * leg:
+        notes.append(f"its feet never come nearer to the floor than {-lift:.2f} m; the height is kept.")
     else:
         shift[:, 1] += lift
     parent = target.parents[target.root]
