@@ -1,6 +1,7 @@
 """Counts against the paper's published figures and against a count by hand."""
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pywt
@@ -23,7 +24,7 @@ def blank(*shape: int) -> Array:
 
 
 def mlp(*sizes: int) -> Mlp:
-    return tuple(Layer(blank(n, m), blank(n)) for m, n in zip(sizes[:-1], sizes[1:], strict=True))
+    return tuple(Layer(blank(n, m), blank(n)) for m, n in itertools.pairwise(sizes))
 
 
 def paper_branch(channels: int, rank: int, inputs: int) -> Branch:
