@@ -1,4 +1,4 @@
-"""Capsules around the bones of a character: the body that loose cloth must not enter and that shades what is near it."""
+"""Capsules around a character's bones: the body that loose cloth must not enter and that shades what is near."""
 
 from dataclasses import dataclass
 

@@ -1,8 +1,8 @@
 """Light on the simulated surface: a sky, a lamp and the shadow of near limbs, in the frame that the body faces.
 
 The light turns with the body's heading, so that a colour depends on the pose alone and a student that reads
-heading-normalised poses can learn it. Everything is smooth in normals and distances: a hard shadow's edge would be finer than
-what a student holds.
+heading-normalised poses can learn it. Everything is smooth in normals and distances: the edge of a hard shadow
+would be finer than what a student holds.
 """
 
 # mypy: disable-error-code="index, operator, no-untyped-call"
@@ -46,10 +46,10 @@ def occlude(
     shadow: float,
     visible: wp.array[float],
 ):
-    """The share of light left at each point: every capsule before it takes some, as a sphere at its nearest point would."""
+    """The share of light left at each point: a capsule takes what a sphere at its nearest point would."""
     i = wp.tid()
     point = points[i]
-    left = float(1.0)
+    left = wp.float32(1.0)
     for c in range(ends.shape[0]):
         start = ends[c, 0]
         axis = ends[c, 1] - start
@@ -82,7 +82,7 @@ def shade(
     *,
     heading: Array,  # [4] the body's yaw, unit quaternion
 ) -> Light:
-    """Light a matt surface with a little sheen; the sheen is linear in the view direction, as degree-1 SH can hold it."""
+    """Light a matt surface with a little sheen, which is linear in the view direction: degree-1 SH can hold it."""
     lamp = rotation.rotate(heading, LAMP / np.linalg.norm(LAMP))
     slant = normals @ lamp
     lit = np.maximum((slant + WRAP) / (1 + WRAP), 0) ** 2

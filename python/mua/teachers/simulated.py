@@ -1,9 +1,9 @@
 """The simulated character: a teacher made of a rigged, textured character, motion and position-based dynamics.
 
-It stands in for a captured teacher. Its surface is defined in canonical space: the simulated vertices are brought back to
-the bind pose by the dual quaternions that skinned them, and a texel lies at a fixed point of that surface. What of the
-deformation is longer than about 12 cm goes into the canonical mesh, the rest into the texels' offsets; posed by T_tex, both
-together are the simulated surface.
+It stands in for a captured teacher. Its surface is defined in canonical space: the simulated vertices are brought
+back to the bind pose by the dual quaternions that skinned them, and a texel lies at a fixed point of that surface.
+What of the deformation is longer than about 12 cm goes into the canonical mesh, the rest into the texels' offsets;
+posed by T_tex, both together are the teacher's surface.
 """
 
 from collections.abc import Callable, Container, Iterator
@@ -53,7 +53,7 @@ class SimulatedTeacher:
         self._simulation = Simulation(mesh.vertices, mesh.faces, looseness=looseness, bones=self._bones)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
-        self._low_pass = _low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
+        self._low_pass = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
         self._texels = SurfaceTexels(character, self.rig)
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
@@ -97,7 +97,7 @@ class SimulatedTeacher:
         return Light(gain=light.gain, sheen=rotation.rotate(rotation.conjugate(dual[:, :4]), light.sheen))
 
 
-def _low_pass(vertices: Array, faces: Array, wavelength: float) -> Callable[[Array], Array]:
+def low_pass(vertices: Array, faces: Array, wavelength: float) -> Callable[[Array], Array]:
     """A filter for fields [V, c] on a surface that halves waves of this length and keeps longer ones: (M + t L)^-1 M.
 
     L is the cotangent Laplacian without its negative weights, M the area about each vertex.

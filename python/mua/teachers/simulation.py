@@ -1,12 +1,12 @@
 """Position-based dynamics of a surface that follows its skinned shape: soft tissue and hanging cloth.
 
 Every vertex hangs on a damped spring at its skinned position (stiff on skin, weak on cloth), its edges resist
-stretching, and bending is resisted by evening out neighbours' displacements from the skinned shape; gravity acts as far
-as the skinned shape has turned from rest, and loose cloth is pushed out of the capsules around the bones
-(Mueller et al. 2007, https://doi.org/10.1016/j.jvcir.2007.01.005; Jacobi iterations, so that every run gives the same bytes).
+stretching, and bending is resisted by evening out neighbours' displacements from the skinned shape; gravity acts as
+far as the skinned shape has turned from rest, and loose cloth is pushed out of the capsules around the bones
+(Mueller et al. 2007, https://doi.org/10.1016/j.jvcir.2007.01.005; Jacobi iterations: every run gives the same bytes).
 
-The springs are damped near their critical value, so that the state is a function of the last tenths of a second. The
-evening-out keeps what is shorter than about 4 cm small: a student holds no dynamics there.
+The springs are damped near their critical value, so that the state is a function of the last tenths of a second.
+The evening-out keeps what is shorter than about 4 cm small: a student holds no dynamics there.
 """
 
 # mypy: disable-error-code="index, operator, no-untyped-call"
@@ -213,7 +213,7 @@ class Simulation:
 def gravity_beyond_rest(
     turn: Array,  # [V, 4] skinned rotations
 ) -> Array:
-    """Accelerations [V, 3], m / s^2: gravity less the one that the rest shape already bears, turned with the surface."""
+    """Accelerations [V, 3], m / s^2: gravity less that which the rest shape bears, turned with the surface."""
     down = np.array([0.0, -GRAVITY, 0.0])
     return np.asarray(down - rotation.rotate(turn, np.broadcast_to(down, (len(turn), 3))))
 

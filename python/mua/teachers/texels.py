@@ -10,6 +10,7 @@ from mua.rig.texel_map import build_texel_map, points_on_surface
 from mua.teachers.shading import Light
 from mua.texture.albedo import sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1
+from mua.texture.sh import LINEAR
 from mua.texture.surfels import rest_surfels
 
 MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1; of one whose alpha is 0, the negative
@@ -55,9 +56,10 @@ class SurfaceTexels:
         planes[7:9] += self._at_texels(log_stretch[:, None])
         planes[10] = self._opacity
         planes[11:14] = (self._albedo * self._at_texels(light.gain) - 0.5) / np.float32(SH_C0)
-        x, y, z = self._at_texels(light.sheen / SH_C1)
+        slope = self._at_texels(light.sheen / SH_C1)
         tint = 1 - SHEEN_TINT + SHEEN_TINT * self._albedo
-        planes[14:17], planes[17:20], planes[20:23] = -y * tint, z * tint, -x * tint
+        for first, (axis, sign) in zip((14, 17, 20), LINEAR, strict=True):
+            np.multiply(tint, sign * slope[axis], out=planes[first : first + 3])
         return planes.T
 
     def _at_texels(self, values: Array) -> Array:

@@ -11,7 +11,7 @@ def sample_albedo(
     uv: Array,  # [N, 2] v down
     size: int,
 ) -> Array:
-    """Colours and opacities [N, 4] float32 in 0..1, sRGB, at points of the atlas, for a texture of `size` x `size` texels.
+    """Colours and opacities [N, 4] float32 in 0..1, sRGB, at points of the atlas, for `size` x `size` texels.
 
     Bilinear in an atlas that is first averaged down to no more than twice the texture's own resolution.
     """

@@ -10,12 +10,14 @@ from mua import rotation
 from mua.arrays import Array
 from mua.texture.channels import SH_C0, SH_C1
 
+LINEAR = ((1, -1), (2, 1), (0, -1))  # c1, c2, c3: which component of a, and its sign
+
 
 def rotate(
     sh: Array,  # [N, 12] coefficient-major (coefficient, rgb)
     q: Array,  # [N, 4] unit, wxyz
 ) -> Array:
-    """Coefficients [N, 12] of splats turned by q; the conjugate of R_tex brings posed coefficients to canonical space."""
+    """Coefficients [N, 12] of splats turned by q; the conjugate of R_tex brings posed ones to canonical space."""
     return from_linear(sh[:, :3], rotation.rotate(q[:, None, :], linear(sh)))
 
 
@@ -23,8 +25,10 @@ def linear(
     sh: Array,  # [N, 12]
 ) -> Array:
     """The vectors a [N, 3 rgb, 3 xyz] of the linear coefficients."""
-    c1, c2, c3 = sh[:, 3:6], sh[:, 6:9], sh[:, 9:12]
-    return np.stack([-c3, -c1, c2], axis=-1)
+    vectors = np.empty((len(sh), 3, 3), dtype=sh.dtype)
+    for coefficient, (axis, sign) in enumerate(LINEAR, start=1):
+        vectors[..., axis] = sign * sh[:, 3 * coefficient : 3 * coefficient + 3]
+    return vectors
 
 
 def from_linear(
@@ -32,7 +36,7 @@ def from_linear(
     vectors: Array,  # [N, 3 rgb, 3 xyz]
 ) -> Array:
     """Coefficients [N, 12] of constant terms and vectors."""
-    return np.concatenate([constant, -vectors[..., 1], vectors[..., 2], -vectors[..., 0]], axis=1)
+    return np.concatenate([constant, *(sign * vectors[..., axis] for axis, sign in LINEAR)], axis=1)
 
 
 def encode(

@@ -34,14 +34,10 @@ def rest_surfels(
 ) -> Surfels:
     """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart."""
     along_u, along_v = _footprints(mesh, size)
-    tangents = _interpolate(
-        _mean_at_corners(mesh.uv_faces, along_u, len(mesh.uv)), mesh.uv_faces[triangles], barycentrics
-    )
-    normals = _interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
     log_lengths = np.log(np.maximum(np.linalg.norm(np.stack([along_u, along_v], axis=1), axis=2), 1e-9))
-    widths = _interpolate(
-        _mean_at_corners(mesh.uv_faces, log_lengths, len(mesh.uv)), mesh.uv_faces[triangles], barycentrics
-    )
+    at_corners = _mean_at_corners(mesh.uv_faces, np.concatenate([along_u, log_lengths], axis=1), len(mesh.uv))
+    tangents, widths = np.split(_interpolate(at_corners, mesh.uv_faces[triangles], barycentrics), [3], axis=1)
+    normals = _interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
     widths = np.clip(widths + np.log(SPREAD), np.log(SMALLEST), np.log(LARGEST))
     thickness = np.maximum(widths.min(axis=1) + np.log(FLATNESS), np.log(SMALLEST))
     return Surfels(
@@ -62,7 +58,7 @@ class SurfaceFrames:
         self,
         vertices: Array,  # [V, 3] deformed
     ) -> tuple[Array, Array]:
-        """Rotations [V, 4] from the rest frames to the deformed ones, and log stretches [V] (half the log of the area)."""
+        """Rotations [V, 4] from the rest frames to the deformed ones, and log stretches [V]: half the log of area."""
         frames, size = self._measure(vertices)
         turn = np.einsum("vik,vjk->vij", frames, self._rest)
         return rotation.from_matrix(turn), np.log(size / self._rest_size)
@@ -87,7 +83,7 @@ def align_neighbours(
     texels: Array,  # [N] row * size + col, ascending
     size: int,
 ) -> Array:
-    """Choose the signs of quaternions so that neighbouring texels lie on one hemisphere, and each chart has mean w >= 0.
+    """Choose signs so that neighbouring texels' quaternions lie on one hemisphere and each chart has mean w >= 0.
 
     A sign flip inside a chart would put a step into the wavelet details. Signs spread along the spanning forest of
     the most alike neighbours; a chart is simply connected, so that any forest serves where frames are smooth.
@@ -100,11 +96,8 @@ def align_neighbours(
     charts, chart = csgraph.connected_components(forest, directed=False)
     seeds = np.unique(chart, return_index=True)[1]
     tree = forest.tocoo()
-    links = (
-        np.append(tree.data, np.ones(charts)),
-        (np.append(tree.row, np.full(charts, count)), np.append(tree.col, seeds)),
-    )
-    rooted = sparse.csr_matrix(links, shape=(count + 1, count + 1))
+    ends = np.append(tree.row, np.full(charts, count)), np.append(tree.col, seeds)  # a root above one texel per chart
+    rooted = sparse.csr_matrix((np.ones(len(ends[0])), ends), shape=(count + 1, count + 1))
     ancestor = csgraph.breadth_first_order(rooted, count, directed=False)[1]
     ancestor[count] = count
     q = np.concatenate([q, np.zeros((1, 4))])
@@ -130,7 +123,7 @@ def vertex_normals(
 
 
 def _footprints(mesh: Mesh, size: int) -> tuple[Array, Array]:
-    """How far on each face [F, 3] a step of one texel along u and along v leads, metres; 0 on faces without UV area."""
+    """Where on each face a step of one texel along u and along v leads, [F, 3] metres; 0 without UV area."""
     p, t = mesh.vertices[mesh.faces], mesh.uv[mesh.uv_faces] * size
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     (u1, v1), (u2, v2) = (t[:, 1] - t[:, 0]).T, (t[:, 2] - t[:, 0]).T
@@ -142,15 +135,14 @@ def _footprints(mesh: Mesh, size: int) -> tuple[Array, Array]:
 
 
 def _mean_at_corners(faces: Array, values: Array, count: int) -> Array:
-    """Means [count, ...] over the faces around each corner of the values [F, ...] of the faces."""
-    flat = values.reshape(len(values), -1)
+    """Means [count, c] over the faces around each corner of the values [F, c] of the faces."""
     number = np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
-    total = np.stack([np.bincount(faces.ravel(), np.repeat(column, 3), count) for column in flat.T], axis=1)
-    return (total / number[:, None]).reshape(count, *values.shape[1:])
+    total = np.stack([np.bincount(faces.ravel(), np.repeat(column, 3), count) for column in values.T], axis=1)
+    return np.asarray(total / number[:, None])
 
 
 def _interpolate(values: Array, corners: Array, barycentrics: Array) -> Array:
-    """Values [N, ...] at barycentric points of triangles whose corners [N, 3] index `values`."""
+    """Values [N, c] at barycentric points of triangles whose corners [N, 3] index `values`."""
     return np.asarray(np.einsum("nk,nkc->nc", barycentrics, values[corners]))
 
 

@@ -1,0 +1,161 @@
+"""The simulated teacher: frames that keep the contract between canonical mesh, offsets and the texels' transforms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tube import still, swing, tube
+
+from mua import rotation
+from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
+from mua.motion.clip import Clip
+from mua.rig.character import Character
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Pose
+from mua.teachers.bones import fit_bones
+from mua.teachers.simulated import SimulatedTeacher, low_pass
+from mua.teachers.simulation import Simulation
+from mua.teachers.teacher import TeacherFrame
+from mua.texture.channels import ATTRIBUTES, CHANNELS
+
+SIZE = 48
+SINGLE = 32 * float(np.finfo(np.float32).eps)  # metres; sums of some ten terms of up to 2 m
+
+
+def whole_frames(teacher: SimulatedTeacher, clip: Clip) -> list[TeacherFrame]:
+    return [frame for frame in teacher.frames(clip, range(len(clip))) if isinstance(frame, TeacherFrame)]
+
+
+def posed(rig: Rig, frame: TeacherFrame) -> tuple[np.ndarray, np.ndarray]:
+    """Centres [N, 3] and rotations [N, 4] of a frame's splats in the world."""
+    joints = rig.skeleton.skinning(frame.pose.rotations, frame.pose.translation)
+    vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
+    surface = rig.mesh.faces, rig.texels.triangles, rig.texels.barycentrics
+    centres, rotations, _, _ = skin_splats(blend_texels(vertex_dq, *surface), frame.mesh, *surface, frame.texture)
+    return centres, rotations
+
+
+@pytest.fixture(scope="module")
+def teacher() -> SimulatedTeacher:
+    return SimulatedTeacher(tube(looseness=0.6), texels=SIZE)
+
+
+def test_whole_frames_have_the_shapes_of_the_rig(teacher: SimulatedTeacher) -> None:
+    (frame,) = whole_frames(teacher, still(tube(), frames=1))
+    assert frame.mesh.shape == teacher.rig.mesh.vertices.shape
+    assert frame.texture.shape == (len(teacher.rig.texels.texels), CHANNELS)
+    assert frame.mesh.dtype == frame.texture.dtype == np.float32
+    assert np.isfinite(frame.texture).all()
+
+
+def test_frames_not_wanted_are_poses_and_change_nothing(teacher: SimulatedTeacher) -> None:
+    clip = swing(tube())
+    every = whole_frames(teacher, clip)
+    some = list(teacher.frames(clip, {3, 11}))
+    assert [i for i, frame in enumerate(some) if isinstance(frame, TeacherFrame)] == [3, 11]
+    assert all(isinstance(frame, Pose) for i, frame in enumerate(some) if i not in {3, 11})
+    assert isinstance(some[11], TeacherFrame)
+    np.testing.assert_array_equal(some[11].texture, every[11].texture)
+    np.testing.assert_array_equal(some[11].mesh, every[11].mesh)
+
+
+def test_in_the_bind_pose_splats_lie_on_the_surface(teacher: SimulatedTeacher) -> None:
+    character = tube()
+    frame = whole_frames(teacher, still(character))[-1]
+    rig = teacher.rig
+    corners = rig.mesh.vertices[rig.mesh.faces[rig.texels.triangles]]
+    expected = np.einsum("nk,nkc->nc", rig.texels.barycentrics, corners)
+    np.testing.assert_allclose(posed(rig, frame)[0], expected, atol=SINGLE)
+    np.testing.assert_allclose(frame.mesh, rig.mesh.vertices, atol=SINGLE)
+
+
+def test_mesh_offsets_and_texel_transforms_rebuild_the_simulated_surface() -> None:
+    """Splats at vertices of the template have no interpolation between them and the simulation."""
+    character = tube(rings=SIZE // 2 + 1, sides=7, looseness=0.6)
+    size = 2 * SIZE
+    uv = (np.round(character.mesh.uv * size - 0.5) + 0.5) / size  # vertices in the middle of texels
+    character = replace(character, mesh=replace(character.mesh, uv=uv))
+    teacher = SimulatedTeacher(character, texels=size)
+    rig, clip = teacher.rig, swing(character)
+    at_vertex = rig.texels.barycentrics.max(axis=1) > 1 - 1e-6
+    corner = rig.texels.barycentrics[at_vertex].argmax(axis=1)
+    vertex = rig.mesh.faces[rig.texels.triangles[at_vertex], corner]
+    assert len(np.unique(vertex)) == len(rig.mesh.vertices)
+    moved = simulated_vertices(character, clip)
+    for frame, expected in zip(whole_frames(teacher, clip), moved, strict=True):
+        np.testing.assert_allclose(posed(rig, frame)[0][at_vertex], expected[vertex], atol=SINGLE)
+
+
+def test_a_rigid_tube_keeps_its_canonical_shape() -> None:
+    character = tube(looseness=0.0)
+    teacher = SimulatedTeacher(character, texels=SIZE)
+    frames = whole_frames(teacher, swing(character))
+    for frame in frames:
+        np.testing.assert_allclose(frame.mesh, teacher.rig.mesh.vertices, atol=SINGLE)
+        np.testing.assert_allclose(frame.texture[:, :3], frames[0].texture[:, :3], atol=SINGLE)
+
+
+def test_quaternions_are_unit_and_on_the_hemisphere_of_the_bind_pose(teacher: SimulatedTeacher) -> None:
+    bind = whole_frames(teacher, still(tube()))[-1].texture[:, ATTRIBUTES["rotation"]]
+    for frame in whole_frames(teacher, swing(tube())):
+        q = frame.texture[:, ATTRIBUTES["rotation"]]
+        np.testing.assert_allclose(np.linalg.norm(q, axis=1), 1, atol=SINGLE)
+        assert np.min(np.sum(q * bind, axis=1)) > 0.5
+
+
+def test_surfels_lie_in_the_posed_surface(teacher: SimulatedTeacher) -> None:
+    """Their z axes against normals from differences of neighbouring splats' centres."""
+    rig = teacher.rig
+    grid = np.full(SIZE * SIZE, -1)
+    grid[rig.texels.texels] = np.arange(len(rig.texels.texels))
+    grid = grid.reshape(SIZE, SIZE)
+    here, right, below = (part.ravel() for part in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, :-1]))
+    inside = (here >= 0) & (right >= 0) & (below >= 0)
+    here, right, below = here[inside], right[inside], below[inside]
+    for frame in whole_frames(teacher, swing(tube()))[::5]:
+        centres, rotations = posed(rig, frame)
+        normals = np.cross(centres[below] - centres[here], centres[right] - centres[here])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        dots = np.sum(normals * rotation.rotate(rotations[here], np.array([0, 0, 1.0])), axis=1)
+        assert np.quantile(dots, 0.02) > np.cos(1.5 * np.pi / 13)  # the tube has 13 corners
+
+
+def test_appearance_does_not_depend_on_heading_or_place(teacher: SimulatedTeacher) -> None:
+    character, clip = tube(), swing(tube())
+    yaw = rotation.from_axis_angle(np.array([0, 1.0, 0]), 2.0)
+    rotations = clip.rotations.copy()
+    rotations[:, 0] = rotation.multiply(yaw, rotations[:, 0])
+    origin = character.skeleton.bind_translations[0]
+    turned = Clip("turned", clip.rate, rotations, rotation.rotate(yaw, clip.translation - origin) + origin + [3, 0, 1])
+    first, second = whole_frames(teacher, clip)[-1], whole_frames(teacher, turned)[-1]
+    single_in_motion = 100 * SINGLE  # the simulation divides positions of up to 4 m by substeps
+    np.testing.assert_allclose(second.texture, first.texture, atol=100 * single_in_motion)
+    np.testing.assert_allclose(second.mesh, first.mesh, atol=single_in_motion)
+
+
+def test_low_pass_keeps_long_waves_and_halves_those_of_its_length() -> None:
+    character = tube(rings=200, sides=7)
+    height = character.mesh.vertices[:, 1]
+    inner = np.abs(height - 0.875) < 0.4
+    for ratio, gain in ((0.5, 1 / 5), (1.0, 1 / 2), (4.0, 16 / 17)):
+        wave = np.sin(2 * np.pi * height / (0.12 * ratio))[:, None]
+        smooth = low_pass(character.mesh.vertices, character.mesh.faces, 0.12)(wave)
+        np.testing.assert_allclose(
+            smooth[inner], gain * wave[inner], atol=0.02
+        )  # edges of 9 mm: sampling, and the rims
+
+
+def simulated_vertices(character: Character, clip: Clip) -> list[np.ndarray]:
+    """Positions [V, 3] of the dense surface in every frame, from the simulation itself."""
+    assert character.looseness is not None
+    bones = fit_bones(character, character.looseness)
+    mesh = character.mesh
+    state = Simulation(mesh.vertices, mesh.faces, looseness=character.looseness, bones=bones)
+    result = []
+    for frame, joints in enumerate(character.skeleton.skinning(clip.rotations, clip.translation)):
+        dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
+        skinned = rotation.dual_transform(dual, mesh.vertices), dual[:, :4], bones.posed(joints)
+        if frame == 0:
+            state.settle(*skinned)
+        result.append(state.advance(*skinned, seconds=1 / clip.rate))
+    return result

@@ -1,0 +1,102 @@
+"""Surfels: frames, footprints, signs, and how they follow a deformation."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from tube import HEIGHT, RADIUS, tube
+
+from mua import rotation
+from mua.rig.texel_map import build_texel_map
+from mua.texture import surfels
+
+SIZE = 61
+ROUNDING = 1e3 * float(np.finfo(np.float64).eps)  # one-rings' 2 x 2 inverses lose two digits
+
+
+def tube_surfels(sides: int = 13) -> tuple[surfels.Surfels, np.ndarray]:
+    mesh = tube(sides=sides).mesh
+    texels = build_texel_map(mesh, SIZE)
+    found = surfels.rest_surfels(
+        mesh,
+        size=SIZE,
+        texels=texels.texels,
+        triangles=texels.triangles,
+        barycentrics=texels.barycentrics,
+    )
+    return found, texels.texels
+
+
+def test_frames_are_unit_and_look_along_normal_and_u() -> None:
+    found, texels = tube_surfels(sides=60)
+    np.testing.assert_allclose(np.linalg.norm(found.rotations, axis=1), 1, atol=ROUNDING)
+    u = ((texels % SIZE) + 0.5) / SIZE
+    angle = (u - 0.1) / 0.8 * 2 * np.pi
+    axes = rotation.to_matrix(found.rotations)
+    outward = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
+    around = np.stack([np.cos(angle), 0 * angle, -np.sin(angle)], axis=1)
+    one_side = 2 * np.pi / 60  # the tube has corners
+    assert np.min(np.sum(axes[:, :, 2] * outward, axis=1)) > np.cos(one_side)
+    assert np.min(np.sum(axes[:, :, 0] * around, axis=1)) > np.cos(one_side)
+
+
+def test_neighbouring_frames_have_one_sign_right_around_the_tube() -> None:
+    found, texels = tube_surfels()
+    grid = np.full((SIZE * SIZE, 4), np.nan)
+    grid[texels] = found.rotations
+    grid = grid.reshape(SIZE, SIZE, 4)
+    for a, b in ((grid[:, :-1], grid[:, 1:]), (grid[:-1], grid[1:])):
+        dots = np.sum(a * b, axis=2)
+        assert np.nanmin(dots) > 0
+    ends = np.nanmean(np.sum(grid[:, int(0.12 * SIZE)] * grid[:, int(0.88 * SIZE)], axis=1))
+    assert ends < -0.9  # a full turn leads to the other sign, so no fixed hemisphere would have done
+
+
+def test_footprint_is_the_distance_of_texels() -> None:
+    found, _ = tube_surfels(sides=60)
+    scales = np.exp(found.log_scales)
+    wide, high = 2 * np.pi * RADIUS / (0.8 * SIZE), HEIGHT / (0.8 * SIZE)
+    chord = np.sinc(1 / 60)  # a side of the 60-gon over its arc
+    np.testing.assert_allclose(scales[:, 0], surfels.SPREAD * wide * chord, rtol=1e-6)
+    np.testing.assert_allclose(scales[:, 1], min(surfels.SPREAD * high, surfels.LARGEST), rtol=1e-6)
+    assert np.all(scales[:, 2] >= surfels.SMALLEST * (1 - 1e-6))
+    assert np.all(scales[:, 2] <= scales[:, :2].min(axis=1))
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_alignment_recovers_a_smooth_field_from_random_signs(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    size = 23
+    valid = np.zeros((size, size), bool)
+    valid[2:11, 3:20] = valid[13:22, 1:9] = True  # two charts
+    texels = np.flatnonzero(valid)
+    row, column = np.divmod(texels, size)
+    angles = np.stack([0.3 * row, 0.2 * column, 0.1 * row], axis=1)
+    smooth = rotation.from_axis_angle(np.array([0, 0, 1.0]), angles[:, 0])
+    smooth = rotation.multiply(smooth, rotation.from_axis_angle(np.array([1.0, 0, 0]), angles[:, 1]))
+    flipped = smooth * rng.choice([-1, 1], len(smooth))[:, None]
+    aligned = surfels.align_neighbours(flipped, texels, size)
+    for chart in (row < 12, row >= 12):
+        assert len(np.unique(np.sign(np.sum(aligned[chart] * smooth[chart], axis=1)))) == 1
+        assert aligned[chart, 0].mean() >= 0
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_alignment_of_hardly_any_texels(count: int) -> None:
+    q = np.tile([-1.0, 0, 0, 0], (count, 1))
+    np.testing.assert_array_equal(surfels.align_neighbours(q, np.arange(count), 4), -q)
+
+
+def test_rigid_motion_and_growth_are_measured() -> None:
+    mesh = tube().mesh
+    turn = Rotation.from_euler("xyz", [0.5, -1.0, 0.3])
+    q, log_stretch = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(1.5 * turn.apply(mesh.vertices) + [1, 2, 3])
+    expected = np.roll(turn.as_quat(), 1)
+    np.testing.assert_allclose(np.abs(q @ expected), 1, atol=ROUNDING)
+    np.testing.assert_allclose(log_stretch, np.log(1.5), atol=ROUNDING)
+
+
+def test_frames_do_not_turn_at_rest() -> None:
+    mesh = tube().mesh
+    q, log_stretch = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(mesh.vertices)
+    np.testing.assert_allclose(q, np.tile([1.0, 0, 0, 0], (len(q), 1)), atol=ROUNDING)
+    np.testing.assert_allclose(log_stretch, 0, atol=ROUNDING)
