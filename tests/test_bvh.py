@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import SharedData
 from scipy.spatial.transform import Rotation
 
 from mua.errors import InputError
@@ -122,7 +123,7 @@ def test_places_joints_and_end_sites_like_slow_kinematics(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("name", ["cmu/02_01.bvh", "dab.bvh"])
-def test_places_real_motion_like_slow_kinematics(shared_data, name: str) -> None:
+def test_places_real_motion_like_slow_kinematics(shared_data: SharedData, name: str) -> None:
     path = shared_data.path(f"motion/{name}")
     motion = read_bvh(path, scale=1.0)
     expected = slow_world_positions(path)
@@ -131,7 +132,7 @@ def test_places_real_motion_like_slow_kinematics(shared_data, name: str) -> None
     np.testing.assert_allclose(world_positions(motion), expected, atol=BOUND)
 
 
-def test_finds_centimetres_and_thirty_frames_a_second_in_cmu_motion(shared_data) -> None:
+def test_finds_centimetres_and_thirty_frames_a_second_in_cmu_motion(shared_data: SharedData) -> None:
     motion = read_bvh(shared_data.path("motion/cmu/02_01.bvh"))
     assert motion.clip.rate == 30
     heights = world_positions(motion)[..., 1]

@@ -63,7 +63,9 @@ def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: i
 
 @pytest.mark.parametrize("heading", [True, False])
 @pytest.mark.parametrize(("window", "joints"), [(3, (2, 4)), (1, (3,)), (5, ()), (9, (2, 3, 4))])
-def test_holds_what_the_encoding_declares(skeleton, clip, heading: bool, window: int, joints: tuple) -> None:
+def test_holds_what_the_encoding_declares(
+    skeleton: Skeleton, clip: Clip, heading: bool, window: int, joints: tuple[int, ...]
+) -> None:
     encoding = PoseEncoding(joints, 30.0, window, heading)
     found = describe(skeleton, encoding, clip.rotations, clip.translation)
     assert found.shape == (FRAMES, encoding.width)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import SharedData
 
 from mua.errors import InputError
 from mua.motion.read import read_motion
@@ -19,7 +20,7 @@ def test_reads_a_directory_by_name_and_skips_other_files(tmp_path: Path) -> None
     assert [motion.clip.name for motion in read_motion(tmp_path)] == ["A", "b", "c"]
 
 
-def test_reads_the_clips_of_a_rig(shared_data) -> None:
+def test_reads_the_clips_of_a_rig(shared_data: SharedData) -> None:
     clips = [motion.clip for motion in read_motion(shared_data.path("characters/Fox.glb"))]
     assert [clip.name for clip in clips] == ["Survey", "Walk", "Run"]
 
@@ -36,6 +37,6 @@ def test_refuses_a_directory_without_motion(tmp_path: Path) -> None:
         read_motion(tmp_path)
 
 
-def test_refuses_a_rig_without_clips(shared_data) -> None:
+def test_refuses_a_rig_without_clips(shared_data: SharedData) -> None:
     with pytest.raises(InputError, match="animation"):
         read_motion(shared_data.path("characters/White_F_3_Casual.glb"))

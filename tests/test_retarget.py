@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import SharedData
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
@@ -274,6 +275,19 @@ def test_mapping_reaches_joints_that_no_name_gives_away() -> None:
     np.testing.assert_array_equal(found.rotations, expected.rotations)
 
 
+@pytest.mark.parametrize("flat", [{0}, {1}, {2}, {0, 1}, {1, 2}, {0, 1, 2}])
+def test_skeletons_without_some_extent_still_give_rotations(flat: set[int]) -> None:
+    """Rest poses as broken exporters write them: all joints in one plane, on one line, in one point."""
+    whole = person()
+    offsets = whole.bind_translations.copy()
+    offsets[:, sorted(flat)] = 0
+    thin = Skeleton(whole.names, whole.parents, whole.bind_rotations, offsets, root=0)
+    for source, target in ((thin, person(axes=2)), (person(axes=2), thin)):
+        found, _ = retarget(SourceMotion(source, random_clip(source)), target)
+        np.testing.assert_allclose(np.linalg.norm(found.rotations, axis=-1), 1, atol=POSITION_BOUND)
+        assert np.isfinite(found.translation).all()
+
+
 def test_brings_the_clip_to_the_rate_asked_for() -> None:
     skeleton = person(axes=1)
     found, _ = retarget(SourceMotion(skeleton, random_clip(skeleton)), skeleton, rate=24.0)
@@ -300,13 +314,15 @@ def test_amass_rest_pose_stands_upright_in_the_targets_place(joints: int) -> Non
 
 
 @pytest.fixture(scope="module")
-def woman(shared_data) -> Skeleton:
+def woman(shared_data: SharedData) -> Skeleton:
     return read_surfaces(shared_data.path("characters/White_F_3_Casual.glb")).skeleton
 
 
 @pytest.mark.parametrize("name", ["02_01", "02_03", "01_05"])
 @pytest.mark.parametrize("target_name", ["person", "woman"])
-def test_real_motion_moves_limbs_alike(shared_data, request, name: str, target_name: str) -> None:
+def test_real_motion_moves_limbs_alike(
+    shared_data: SharedData, request: pytest.FixtureRequest, name: str, target_name: str
+) -> None:
     target = person(axes=3) if target_name == "person" else request.getfixturevalue("woman")
     source = read_bvh(shared_data.path(f"motion/cmu/{name}.bvh"))
     found, notes = retarget(source, target)
@@ -320,7 +336,9 @@ def test_real_motion_moves_limbs_alike(shared_data, request, name: str, target_n
 
 
 @pytest.mark.parametrize("name", ["02_01", "02_03"])
-def test_walks_and_runs_upright_on_the_floor_with_knees_forward(shared_data, woman: Skeleton, name: str) -> None:
+def test_walks_and_runs_upright_on_the_floor_with_knees_forward(
+    shared_data: SharedData, woman: Skeleton, name: str
+) -> None:
     clip, _ = retarget(read_bvh(shared_data.path(f"motion/cmu/{name}.bvh")), woman)
     _, at = world(woman, clip)
     place = {joint: at[:, j] for j, joint in enumerate(woman.names)}

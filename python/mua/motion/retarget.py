@@ -25,12 +25,7 @@ from mua.motion.source import SourceMotion
 from mua.rig.skeleton import Skeleton
 
 SIDES = ("left", "right")
-LIMBS = {
-    "upper_arm": "forearm",
-    "forearm": "hand",
-    "thigh": "shin",
-    "shin": "foot",
-}  # bones aligned, and where they end
+LIMBS = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}  # bones aligned: where they end
 SOLES = ("foot", "toe")
 STANDING = 0.05  # quantile over frames of the lower foot's height that counts as standing
 ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
@@ -108,7 +103,10 @@ def _body_turn(rest: _Rest) -> Array:
     )
     if top is None or bottom is None or across is None:
         return IDENTITY
-    frames = [_frame(_nearest_axis(up), left) for up, left in zip(top - bottom, across, strict=True)]
+    pairs = [(_nearest_axis(up), left) for up, left in zip(top - bottom, across, strict=True)]
+    if not all(np.cross(left, up).any() for up, left in pairs):
+        return IDENTITY
+    frames = [_frame(up, left) for up, left in pairs]
     return rotation.multiply(rotation.from_matrix(frames[1]), rotation.conjugate(rotation.from_matrix(frames[0])))
 
 
@@ -178,6 +176,8 @@ def _sole_alignment(rest: _Rest, side: str, upright: Array, base: Array) -> Arra
     )
     up = np.stack([Y, _nearest_axis(rotation.rotate(upright, Y))])
     target_sole, source_sole = (_sole_frame(knee[i], ankle[i], ball[i], tips[i], up[i]) for i in range(2))
+    if target_sole is None or source_sole is None:
+        return base
     return rotation.multiply(rotation.from_matrix(source_sole), rotation.conjugate(rotation.from_matrix(target_sole)))
 
 
@@ -186,14 +186,17 @@ def _first_child(skeleton: Skeleton, at: Array, joint: int) -> Array | None:
     return at[children[0]] if len(children) else None
 
 
-def _sole_frame(knee: Array, ankle: Array, ball: Array, tip: Array | None, up: Array) -> Array:
-    """Columns left, up, forward of a sole at rest, which is level along the foot.
+def _sole_frame(knee: Array, ankle: Array, ball: Array, tip: Array | None, up: Array) -> Array | None:
+    """Columns left, up, forward of a sole at rest, which is level along the foot; None where toes point up or nowhere.
 
     Across the foot it is level too, unless the foot continues a leg that is set apart, as in the zero pose of ASF
     skeletons: there ball and toes lie in one plane with the shin rather than with the vertical.
     """
     toes = ball - ankle if tip is None else tip - ball
-    level, rolled = (_unit(np.cross(above, toes)) for above in (up, knee - ankle))
+    level, rolled = (np.cross(above, toes) for above in (up, knee - ankle))
+    if not (level.any() and rolled.any()):
+        return None
+    level, rolled = _unit(level), _unit(rolled)
     rolls = CLEARLY * abs(rolled @ (ball - ankle)) < abs(level @ (ball - ankle))
     left = rolled if rolls else level
     forward = _unit(np.cross(left, up))
