@@ -1,6 +1,7 @@
 """AMASS reading: axis angles against scipy, names against the models' order, broken files."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +13,9 @@ from mua.motion.amass import nominal_skeleton, read_amass
 BOUND = 64 * np.finfo(float).eps  # sine, cosine and one quaternion product
 
 
-def write(folder: Path, **changes: object) -> Path:
+def write(folder: Path, **changes: Any) -> Path:
     random = np.random.default_rng(2)
-    arrays = {
+    arrays: dict[str, Any] = {
         "poses": random.normal(size=(5, 156)),
         "trans": random.normal(size=(5, 3)),
         "betas": np.zeros(16),
@@ -87,7 +88,7 @@ def test_takes_either_spelling_of_the_rate(tmp_path: Path) -> None:
         ({"mocap_framerate": np.array([30.0, 60])}, "mocap_framerate"),
     ],
 )
-def test_rejects_wrong_arrays_by_name(tmp_path: Path, changes: dict, says: str) -> None:
+def test_rejects_wrong_arrays_by_name(tmp_path: Path, changes: dict[str, Any], says: str) -> None:
     with pytest.raises(InputError, match=rf"motion\.npz.*{says}"):
         read_amass(write(tmp_path, **changes))
 
