@@ -1,0 +1,257 @@
+"""USD characters, written with pxr and compared with UsdSkel's own skinning."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
+
+from mua import rotation
+from mua.errors import InputError
+from mua.rig.assemble import Surfaces
+from mua.rig.read import read_surfaces
+
+JOINTS = ["Hips", "Hips/Spine", "Hips/Spine/Head"]
+HEIGHTS = (0.0, 60.0, 120.0)  # of the joints above the floor, centimetres, along the stage's up axis
+FRAMES = 11  # at 10 time codes apart, 24 codes a second
+# Float32 points of about 150 centimetres skinned by a chain of matrices: a dozen roundings.
+SKINNING_BOUND = 12 * 150 * 2**-23 * 0.01
+
+
+def row_matrix(angle: float, axis: tuple[float, float, float], offset: tuple[float, float, float]) -> Gf.Matrix4d:
+    return Gf.Matrix4d(Gf.Rotation(Gf.Vec3d(*axis), angle), Gf.Vec3d(*offset))
+
+
+def write_character(path: Path, *, z_up: bool = True, textured: bool = True, influences: int = 1) -> Path:
+    """A square column of three joints, in centimetres, whose upper joints bend and whose hips move."""
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z if z_up else UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    stage.SetTimeCodesPerSecond(24)
+    root = UsdSkel.Root.Define(stage, "/Man")
+    skeleton = UsdSkel.Skeleton.Define(stage, "/Man/Skeleton")
+    up = (lambda h: (0.0, 0.0, h)) if z_up else (lambda h: (0.0, h, 0.0))
+    skeleton.CreateJointsAttr(JOINTS)
+    skeleton.CreateBindTransformsAttr(Vt.Matrix4dArray([row_matrix(0, (1, 0, 0), up(h)) for h in HEIGHTS]))
+    skeleton.CreateRestTransformsAttr(
+        Vt.Matrix4dArray([row_matrix(0, (1, 0, 0), up(h)) for h in (HEIGHTS[0], 60.0, 60.0)])
+    )
+    animation = UsdSkel.Animation.Define(stage, "/Man/Skeleton/Wave")
+    animation.CreateJointsAttr(JOINTS)
+    for frame in range(FRAMES):
+        turns = [Gf.Quatf(Gf.Rotation(Gf.Vec3d(*a), b * frame).GetQuat())
+                 for a, b in (((0, 0, 1), 3.0), ((1, 0, 0), 5.0), ((0, 1, 0), -7.0))]
+        moves = [Gf.Vec3f(2.0 * frame, 0, 0), Gf.Vec3f(*up(60)), Gf.Vec3f(*up(60))]
+        animation.CreateRotationsAttr().Set(Vt.QuatfArray(turns), 10 * frame)
+        animation.CreateTranslationsAttr().Set(Vt.Vec3fArray(moves), 10 * frame)
+        animation.CreateScalesAttr().Set(Vt.Vec3hArray([Gf.Vec3h(1, 1, 1)] * 3), 10 * frame)
+    UsdSkel.BindingAPI.Apply(skeleton.GetPrim()).CreateAnimationSourceRel().SetTargets([animation.GetPath()])
+    mesh = column(stage, up=up)
+    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    binding.CreateSkeletonRel().SetTargets([skeleton.GetPath()])
+    binding.CreateGeomBindTransformAttr(Gf.Matrix4d().SetIdentity())
+    rows = [(k // 4) % 4 for k in range(16)]
+    joints = [[min(r, 2), *range(influences - 1)][:influences] for r in rows]
+    weights = [[1.0, *([0.0] * (influences - 1))] for _ in rows]
+    binding.CreateJointIndicesPrimvar(False, influences).Set([j for row in joints for j in row])
+    binding.CreateJointWeightsPrimvar(False, influences).Set([w for row in weights for w in row])
+    if textured:
+        texture(stage, mesh, path.parent)
+    stage.SetDefaultPrim(root.GetPrim())
+    stage.GetRootLayer().Save()
+    return path
+
+
+def column(stage: Usd.Stage, *, up) -> UsdGeom.Mesh:
+    mesh = UsdGeom.Mesh.Define(stage, "/Man/Body")
+    square = [(-10, -8), (10, -8), (10, 8), (-10, 8)]
+    points = [np.add((x, y, 0) if up(1)[2] else (x, 0, -y), up(50.0 * row)) for row in range(4) for x, y in square]
+    mesh.CreatePointsAttr([Gf.Vec3f(*map(float, p)) for p in points])
+    faces = [
+        [4 * r + k, 4 * r + (k + 1) % 4, 4 * r + 4 + (k + 1) % 4, 4 * r + 4 + k] for r in range(3) for k in range(4)
+    ]
+    mesh.CreateFaceVertexCountsAttr([4] * len(faces))
+    mesh.CreateFaceVertexIndicesAttr([i for face in faces for i in face])
+    st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(
+        "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying
+    )
+    st.Set([Gf.Vec2f(u, v) for r in range(3) for k in range(4)
+            for u, v in ((k / 4, r / 3), (k / 4 + 0.25, r / 3), (k / 4 + 0.25, r / 3 + 1 / 3), (k / 4, r / 3 + 1 / 3))])
+    return mesh
+
+
+def texture(stage: Usd.Stage, mesh: UsdGeom.Mesh, folder: Path) -> None:
+    picture = np.zeros((4, 4, 4), np.uint8)
+    picture[0] = (200, 10, 20, 128)  # the top row
+    picture[3] = (10, 200, 20, 255)
+    Image.fromarray(picture).save(folder / "skin.png")
+    material = UsdShade.Material.Define(stage, "/Man/Skin")
+    shader = UsdShade.Shader.Define(stage, "/Man/Skin/Surface")
+    shader.CreateIdAttr("UsdPreviewSurface")
+    image = UsdShade.Shader.Define(stage, "/Man/Skin/Image")
+    image.CreateIdAttr("UsdUVTexture")
+    image.CreateInput("file", Sdf.ValueTypeNames.Asset).Set("skin.png")
+    image.CreateInput("wrapS", Sdf.ValueTypeNames.Token).Set("mirror")
+    reader = UsdShade.Shader.Define(stage, "/Man/Skin/Reader")
+    reader.CreateIdAttr("UsdPrimvarReader_float2")
+    reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("st")
+    image.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(
+        reader.CreateOutput("result", Sdf.ValueTypeNames.Float2)
+    )
+    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).ConnectToSource(
+        image.CreateOutput("rgb", Sdf.ValueTypeNames.Float3)
+    )
+    shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).ConnectToSource(
+        image.CreateOutput("a", Sdf.ValueTypeNames.Float)
+    )
+    material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
+
+
+def skinned_by_usd(path: Path, time: float) -> np.ndarray:
+    """Points that UsdSkel itself deforms, in the stage's axes and unit."""
+    stage = Usd.Stage.Open(str(path))
+    root = UsdSkel.Root(stage.GetPrimAtPath("/Man"))
+    cache = UsdSkel.Cache()
+    cache.Populate(root, Usd.PrimDefaultPredicate)
+    binding = cache.ComputeSkelBindings(root, Usd.PrimDefaultPredicate)[0]
+    transforms = cache.GetSkelQuery(binding.GetSkeleton()).ComputeSkinningTransforms(time)
+    target = binding.GetSkinningTargets()[0]
+    points = UsdGeom.Mesh(target.GetPrim()).GetPointsAttr().Get()
+    target.ComputeSkinnedPoints(transforms, points, time)
+    return np.array(points, float)
+
+
+def posed(surfaces: Surfaces, rotations: np.ndarray, translation: np.ndarray) -> np.ndarray:
+    """Vertices that each follow their first joint."""
+    transforms = surfaces.skeleton.skinning(rotations, translation)
+    return rotation.dual_transform(transforms[surfaces.skin_indices[:, 0]], surfaces.vertices)
+
+
+@pytest.fixture
+def character(tmp_path: Path) -> Path:
+    return write_character(tmp_path / "man.usda")
+
+
+def test_brings_centimetres_and_z_up_to_metres_and_y_up(character: Path) -> None:
+    surfaces = read_surfaces(character)
+    np.testing.assert_allclose(surfaces.vertices.min(axis=0), [-0.1, 0, -0.08], atol=1e-7)
+    np.testing.assert_allclose(surfaces.vertices.max(axis=0), [0.1, 1.5, 0.08], atol=1e-7)
+    assert surfaces.skeleton.names == ("Hips", "Spine", "Head")
+    assert surfaces.skeleton.parents.tolist() == [-1, 0, 1]
+
+
+def test_y_up_stage_gives_the_same_character(tmp_path: Path, character: Path) -> None:
+    (tmp_path / "y").mkdir()
+    other = read_surfaces(write_character(tmp_path / "y" / "man.usdc", z_up=False))
+    surfaces = read_surfaces(character)
+    np.testing.assert_allclose(other.vertices, surfaces.vertices, atol=1e-7)
+    np.testing.assert_array_equal(other.faces, surfaces.faces)
+
+
+def test_bind_pose_reproduces_the_bind_vertices(character: Path) -> None:
+    surfaces = read_surfaces(character)
+    bind = surfaces.skeleton.bind_pose
+    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translation), surfaces.vertices, atol=1e-14)
+
+
+@pytest.mark.parametrize("frame", [0, 4, 100])
+def test_posed_clip_equals_usd_skinning(character: Path, frame: int) -> None:
+    surfaces = read_surfaces(character)
+    (clip,) = surfaces.clips
+    ours = posed(surfaces, clip.rotations[frame], clip.translation[frame])
+    theirs = skinned_by_usd(character, frame * 24 / clip.rate)[:, [0, 2, 1]] * [0.01, 0.01, -0.01]
+    np.testing.assert_allclose(ours, theirs, atol=SKINNING_BOUND)
+
+
+def test_clip_has_the_animations_name_rate_and_length(character: Path) -> None:
+    (clip,) = read_surfaces(character).clips
+    assert (clip.name, clip.rate, len(clip)) == ("Wave", 30.0, 126)  # 100 codes at 24 a second, both ends
+    assert not read_surfaces(character).notes
+
+
+def test_moved_hips_are_the_root(character: Path) -> None:
+    surfaces = read_surfaces(character)
+    assert surfaces.skeleton.names[surfaces.skeleton.root] == "Hips"
+
+
+def test_texture_keeps_rows_and_turns_v_down(character: Path) -> None:
+    surfaces = read_surfaces(character)
+    (material,) = surfaces.materials
+    assert (material.name, material.wrap_u, material.wrap_v) == ("Skin", "mirror", "repeat")
+    np.testing.assert_array_equal(material.image[0, 0], [200, 10, 20, 128])
+    top = surfaces.vertices[surfaces.faces][..., 1].max(axis=1) > 1.49
+    assert surfaces.uv[surfaces.uv_faces[top]][..., 1].min() == pytest.approx(0, abs=1e-6)
+
+
+def test_texture_inside_a_package_is_read(tmp_path: Path, character: Path) -> None:
+    package = tmp_path / "man.usdz"
+    UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(character)), str(package))
+    (tmp_path / "skin.png").unlink()
+    np.testing.assert_array_equal(read_surfaces(package).materials[0].image[3, 0], [10, 200, 20, 255])
+
+
+def test_mesh_without_material_takes_its_display_color(tmp_path: Path) -> None:
+    path = write_character(tmp_path / "plain.usda", textured=False)
+    stage = Usd.Stage.Open(str(path))
+    UsdGeom.Mesh(stage.GetPrimAtPath("/Man/Body")).CreateDisplayColorAttr([Gf.Vec3f(1, 0, 0.2140411)])
+    stage.GetRootLayer().Save()
+    np.testing.assert_array_equal(read_surfaces(path).materials[0].image[0, 0], [255, 0, 127, 255])
+
+
+def test_several_influences_keep_the_weighted_joint(tmp_path: Path) -> None:
+    surfaces = read_surfaces(write_character(tmp_path / "man.usda", influences=3))
+    np.testing.assert_array_equal(surfaces.skin_weights[:, 0], 1)
+    assert set(surfaces.skin_indices[:, 0].tolist()) == {0, 1, 2}
+
+
+def test_polygons_become_fans(character: Path) -> None:
+    surfaces = read_surfaces(character)
+    assert surfaces.faces.shape == (24, 3)
+    triangle = surfaces.vertices[surfaces.faces]
+    outward = np.cross(triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0])
+    centre = triangle.mean(axis=1) * [1, 0, 1]
+    assert (np.sum(outward * centre, axis=1) > 0).all()
+
+
+def edited(path: Path, change) -> Path:
+    stage = Usd.Stage.Open(str(path))
+    change(stage)
+    stage.GetRootLayer().Save()
+    return path
+
+
+BROKEN = {
+    "bindTransforms": lambda s: UsdSkel.Skeleton.Get(s, "/Man/Skeleton").GetBindTransformsAttr().Set(
+        Vt.Matrix4dArray([Gf.Matrix4d(1)])
+    ),
+    "points": lambda s: UsdGeom.Mesh.Get(s, "/Man/Body").GetPointsAttr().Set([Gf.Vec3f(float("nan"))] * 16),
+    "faceVertexIndices": lambda s: UsdGeom.Mesh.Get(s, "/Man/Body").GetFaceVertexIndicesAttr().Set([0, 1, 99]),
+    "jointIndices": lambda s: UsdSkel.BindingAPI(s.GetPrimAtPath("/Man/Body")).GetJointIndicesAttr().Set([9] * 16),
+    "jointWeights": lambda s: UsdSkel.BindingAPI(s.GetPrimAtPath("/Man/Body")).GetJointWeightsAttr().Set([-1.0] * 16),
+    "inputs:file": lambda s: UsdShade.Shader.Get(s, "/Man/Skin/Image").GetInput("file").Set("gone.png"),
+    "no skinned mesh": lambda s: s.RemovePrim("/Man/Body"),
+}
+
+
+@pytest.mark.parametrize("field", BROKEN)
+def test_broken_stage_names_the_field(character: Path, field: str) -> None:
+    with pytest.raises(InputError, match=field) as raised:
+        read_surfaces(edited(character, BROKEN[field]))
+    assert "man.usda" in str(raised.value)
+
+
+def test_garbage_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "bad.usda"
+    path.write_text("not a stage")
+    with pytest.raises(InputError, match="cannot open"):
+        read_surfaces(path)
+
+
+def test_truncated_package_is_refused(tmp_path: Path, character: Path) -> None:
+    package = tmp_path / "man.usdz"
+    UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(character)), str(package))
+    package.write_bytes(package.read_bytes()[:200])
+    with pytest.raises(InputError, match=r"man\.usdz"):
+        read_surfaces(package)
