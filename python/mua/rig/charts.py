@@ -10,6 +10,7 @@ from mua.rig.texel_map import cover
 
 PACK_SIZE = 512  # texels along the square that charts are packed in
 PACK_GUTTER = 2  # of these texels between charts
+ROOM = 8  # texels along the square that the smallest chart and its gutter need
 FULL = 0.8  # share of the square that the first attempt wants to fill
 SHRINK = 0.97  # texel density of the next attempt, when the charts did not fit
 
@@ -17,8 +18,6 @@ SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is n
 CELL = 128  # texels along the square in which a chart is searched for overlap
 CELLS_SIZE = 2048  # texels along all these squares together
 COLLAPSED = 1e-4  # a triangle with less UV area for its surface than this share of the chart's has none
-
-UNWRAP_COST = 16.0  # xatlas grows a chart until it costs this; its default of 2 cuts four times as many
 
 
 def find_charts(
@@ -95,9 +94,7 @@ def unwrap(
     kept, index = np.unique(faces, return_inverse=True)
     atlas = xatlas.Atlas()
     atlas.add_mesh(vertices[kept].astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
-    options = xatlas.ChartOptions()
-    options.max_cost = UNWRAP_COST
-    atlas.generate(options, xatlas.PackOptions())
+    atlas.generate()
     _, flat, uv = atlas.get_mesh(0)
     return uv[flat].astype(np.float64) * (atlas.width, atlas.height)
 
@@ -107,19 +104,30 @@ def pack(
     charts: Array,  # [F]
 ) -> Array:
     """Place the charts in the unit square, as large as they fit without overlap: [F, 3, 2]."""
-    scale = PACK_SIZE * np.sqrt(FULL / max(areas(corners).sum(), np.finfo(float).tiny))
-    while True:  # in texels, because xatlas leaves out faces that are small in absolute terms
-        rows = np.column_stack([np.repeat(charts, 3), (corners.reshape(-1, 2) * scale).astype(np.float32)])
-        nodes, index = np.unique(rows, axis=0, return_inverse=True)
-        triangles = index.reshape(-1, 3).astype(np.uint32)
-        atlas = xatlas.Atlas()
-        atlas.add_uv_mesh(nodes[:, 1:].astype(np.float32), triangles, charts.astype(np.uint32)[:, None])
-        options = xatlas.PackOptions()
-        options.resolution, options.padding, options.texels_per_unit = PACK_SIZE, PACK_GUTTER, 1.0
-        atlas.generate(xatlas.ChartOptions(), options)
-        if atlas.atlas_count <= 1:
-            break
+    size = max(PACK_SIZE, int(ROOM * np.sqrt(charts.max() + 1)))
+    scale = size * np.sqrt(FULL / max(areas(corners).sum(), np.finfo(float).tiny))
+    while (placed := _placed(corners * scale, charts, size)) is None:
         scale *= SHRINK
+    return placed
+
+
+def _placed(
+    corners: Array,  # [F, 3, 2] in texels, because xatlas leaves out what is small in absolute terms
+    charts: Array,  # [F]
+    size: int,
+) -> Array | None:
+    """The charts moved and turned into a square of `size` texels, as [F, 3, 2] in 0..1; None where they do not fit."""
+    rows = np.column_stack([np.repeat(charts, 3), corners.reshape(-1, 2).astype(np.float32)])
+    nodes, index = np.unique(rows, axis=0, return_inverse=True)
+    atlas = xatlas.Atlas()
+    atlas.add_uv_mesh(
+        nodes[:, 1:].astype(np.float32), index.reshape(-1, 3).astype(np.uint32), charts.astype(np.uint32)[:, None]
+    )
+    options = xatlas.PackOptions()
+    options.resolution, options.padding, options.texels_per_unit = size, PACK_GUTTER, 1.0
+    atlas.generate(xatlas.ChartOptions(), options)
+    if atlas.atlas_count > 1:
+        return None
     _, flat, uv = atlas.get_mesh(0)
     return uv[flat].astype(np.float64)
 

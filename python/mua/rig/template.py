@@ -8,10 +8,14 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.rig.character import Character, Mesh
+from mua.rig.charts import areas
 
 DENSE_ENOUGH = 1.2  # a mesh of at most this many times the wanted vertices is its own template
 CLOSE_ENOUGH = 0.02  # of the wanted vertices
 ATTEMPTS = 6  # the number of vertices that a number of triangles leaves is only known afterwards
+UV_WEIGHT = 4.0  # of an error in UV against the distance on the surface that it stands for
+SKIN_WEIGHT = 0.5  # of the character's size: the error of a vertex that moves with a wrong joint
+SKIN_DIRECTIONS = 24  # of the space of skin weights; the library takes 32 attributes
 NO_ERROR_LIMIT = c_float(1e9)  # the number of triangles alone ends the decimation
 
 
@@ -28,12 +32,12 @@ class Template:
 def make_template(character: Character, *, vertices: int = 5000) -> Template:
     """Decimate a character's mesh to about `vertices` by edge collapses that keep UV seams and chart borders.
 
-    The quadrics measure positions and UVs together (Garland and Heckbert 1998), a UV error counting like the distance
-    on the surface that it stands for, so that chart borders stay where they are.
+    The quadrics measure positions, UVs and skin weights together (Garland and Heckbert 1998), so that chart borders and
+    the bends at joints stay where they are.
     """
     mesh = character.mesh
     if len(mesh.vertices) > DENSE_ENOUGH * vertices:
-        mesh = _decimate(mesh, vertices)
+        mesh = _decimate(mesh, vertices, _skin_directions(character))
     kept, faces = np.unique(mesh.faces, return_inverse=True)
     uv_kept, uv_faces = np.unique(mesh.uv_faces, return_inverse=True)
     return Template(
@@ -49,13 +53,29 @@ def make_template(character: Character, *, vertices: int = 5000) -> Template:
     )
 
 
-def _decimate(mesh: Mesh, vertices: int) -> Mesh:
+def _skin_directions(character: Character) -> Array:
+    """The principal components [V, n] of the vertices' weights over all joints."""
+    weights = np.zeros((len(character.skin_weights), character.skin_indices.max() + 1))
+    np.add.at(weights, (np.arange(len(weights))[:, None], character.skin_indices), character.skin_weights)
+    weights -= weights.mean(axis=0)
+    return weights @ np.linalg.eigh(weights.T @ weights)[1][:, -SKIN_DIRECTIONS:]
+
+
+def _decimate(
+    mesh: Mesh,
+    vertices: int,
+    skin: Array,  # [V, n]
+) -> Mesh:
     """The mesh with fewer triangles between about `vertices` of the same vertices."""
     corners = np.stack([mesh.faces.ravel(), mesh.uv_faces.ravel()], axis=1)
     pairs, index = np.unique(corners, axis=0, return_inverse=True)  # a vertex once for each of its UVs
+    positions = mesh.vertices[pairs[:, 0]].astype(np.float32)
+    metres_per_uv = np.sqrt(areas(mesh.vertices[mesh.faces]).sum() / max(areas(mesh.uv[mesh.uv_faces]).sum(), 1e-12))
+    uv = mesh.uv[pairs[:, 1]] * (UV_WEIGHT * metres_per_uv / meshoptimizer.simplify_scale(positions))
+    attributes = np.column_stack([uv, skin[pairs[:, 0]] * SKIN_WEIGHT]).astype(np.float32)
     triangles = len(mesh.faces) * vertices / len(mesh.vertices)
     for _ in range(ATTEMPTS):
-        left = pairs[_collapse(mesh, pairs, index.ravel(), int(triangles))]
+        left = pairs[_collapse(index.ravel(), positions, attributes, triangles=int(triangles))]
         count = len(np.unique(left[:, 0]))
         if abs(count - vertices) <= CLOSE_ENOUGH * vertices:
             break
@@ -65,41 +85,29 @@ def _decimate(mesh: Mesh, vertices: int) -> Mesh:
 
 
 def _collapse(
-    mesh: Mesh,
-    pairs: Array,  # [P, 2] vertex, uv
-    index: Array,  # [3 F] into pairs
+    index: Array,  # [3 F] into the vertices
+    positions: Array,  # [P, 3] float32
+    attributes: Array,  # [P, n] float32, in units of the mesh's largest extent
+    *,
     triangles: int,
 ) -> Array:
-    """Indices [3 n] into pairs of about `triangles` triangles.
+    """Indices [3 n] into the same vertices, of about `triangles` triangles.
 
     The binding declares no argument types for this function, so every number goes in as the C type that it expects.
     """
-    positions = mesh.vertices[pairs[:, 0]].astype(np.float32)
-    uv = mesh.uv[pairs[:, 1]].astype(np.float32)
-    metres_per_uv = np.sqrt(_area(mesh.vertices[mesh.faces]) / max(_area(mesh.uv[mesh.uv_faces]), 1e-12))
-    weight = metres_per_uv / meshoptimizer.simplify_scale(positions)
     left = np.empty(len(index), np.uint32)
     count = meshoptimizer.simplify_with_attributes(
         left,
         index.astype(np.uint32),
         positions,
-        uv,
-        np.full(2, weight, np.float32),
+        attributes,
+        np.ones(attributes.shape[1], np.float32),
         index_count=c_size_t(len(index)),
-        vertex_count=c_size_t(len(pairs)),
+        vertex_count=c_size_t(len(positions)),
         vertex_positions_stride=c_size_t(positions.strides[0]),
-        vertex_attributes_stride=c_size_t(uv.strides[0]),
-        attribute_count=c_size_t(2),
+        vertex_attributes_stride=c_size_t(attributes.strides[0]),
+        attribute_count=c_size_t(attributes.shape[1]),
         target_index_count=c_size_t(3 * triangles),
         target_error=NO_ERROR_LIMIT,
     )
     return left[:count]
-
-
-def _area(
-    corners: Array,  # [F, 3, 2 or 3]
-) -> float:
-    """The sum of the triangles' areas."""
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    squares = (a * a).sum(axis=1) * (b * b).sum(axis=1) - (a * b).sum(axis=1) ** 2
-    return float(np.sqrt(np.maximum(squares, 0)).sum() / 2)

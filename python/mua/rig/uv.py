@@ -119,9 +119,9 @@ def _lay_out(
     if anew.any():
         corners[anew] = _cut(source, anew)
         rows = np.column_stack([source.surfaces.faces[anew].ravel(), corners[anew].reshape(-1, 2)])
-        charts[anew] = charts.max(initial=-1) + 1 + find_charts(_numbered(rows), corners[anew])
+        charts[anew] = charts.max() + 1 + find_charts(_numbered(rows), corners[anew])
     charts = np.unique(charts, return_inverse=True)[1]
-    total = charts.max(initial=-1) + 1
+    total = charts.max() + 1
     flat = isometric(corners, source.positions, charts) * emphasis[:, None, None]
     cut = len(np.unique(charts[anew]))
     note = (
@@ -205,5 +205,5 @@ def _numbered(
 def _per_chart(fold: np.ufunc, values: Array, charts: Array) -> Array:
     """Fold the faces' values [F, ...] into one for each chart [K, ...]."""
     order = np.argsort(charts, kind="stable")
-    starts = np.searchsorted(charts[order], np.arange(charts.max(initial=-1) + 1))
+    starts = np.searchsorted(charts[order], np.arange(charts.max() + 1))
     return fold.reduceat(values[order], starts)
