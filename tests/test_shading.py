@@ -34,8 +34,8 @@ def test_bones_take_light_by_their_nearest_point() -> None:
 
 
 def test_nothing_is_hidden_without_bones() -> None:
-    points = np.zeros((3, 3))
-    np.testing.assert_array_equal(visibility(points, points + [0, 1, 0], np.zeros((0, 2, 3)), np.zeros(0)), 1)
+    points, up = np.zeros((3, 3)), np.tile([0.0, 1, 0], (3, 1))
+    np.testing.assert_array_equal(visibility(points, up, np.zeros((0, 2, 3)), np.zeros(0)), 1)
 
 
 def test_light_turns_with_the_body() -> None:
@@ -59,7 +59,7 @@ def test_a_surface_is_brightest_towards_the_lamp_and_where_nothing_hides_it() ->
 def test_sheen_is_brightest_in_the_mirrored_direction() -> None:
     rng = np.random.default_rng(0)
     lamp = LAMP / np.linalg.norm(LAMP)
-    normal = rotation.normalize(lamp + [0.3, 0.2, 0])
+    normal = rotation.normalize(lamp + np.array([0.3, 0.2, 0]))
     sheen = shade(normal[None], np.ones(1), heading=STRAIGHT).sheen[0]
     directions = rotation.normalize(rng.standard_normal((1000, 3)))
     mirrored = 2 * (normal @ lamp) * normal - lamp

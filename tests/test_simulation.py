@@ -1,5 +1,7 @@
 """Position-based dynamics: rest, decay, determinism and memory."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from tube import RATE, still, swing, tube
@@ -102,7 +104,7 @@ def test_loose_cloth_stays_out_of_a_bone_that_moves_into_it() -> None:
     bone = Bones(fitted.joints[:1], np.array([[[0.0, 0.7, -0.3], [0.0, 1.0, -0.3]]]), np.array([0.05]))
     target, turn = skinned(character, still(character))[0]
     state = simulation(character, bones=bone)
-    into = bone.ends + [0, 0, 0.3 - 0.12]  # onto the wall of the tube
+    into = bone.ends + np.array([0, 0, 0.3 - 0.12])  # onto the wall of the tube
     state.settle(target, turn, bone.ends)
     for _ in range(10):
         places = state.advance(target, turn, into, seconds=1 / RATE)
@@ -118,5 +120,5 @@ def test_only_turned_surfaces_feel_gravity() -> None:
 
 def test_one_rings_list_every_edge_from_both_ends() -> None:
     starts, neighbours = one_rings(np.array([[0, 1, 2], [2, 1, 3]]), 5)
-    rings = [neighbours[a:b].tolist() for a, b in zip(starts[:-1], starts[1:], strict=True)]
+    rings = [neighbours[a:b].tolist() for a, b in pairwise(starts)]
     assert rings == [[1, 2], [0, 2, 3], [0, 1, 3], [1, 2], []]

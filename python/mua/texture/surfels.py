@@ -172,8 +172,8 @@ def _tangent_operator(vertices: Array, faces: Array) -> sparse.csr_matrix:
     flat = np.einsum("ek,ekc->ec", edge, basis[i])
     moments = [np.bincount(i, weight * flat[:, a] * flat[:, c], count) for a, c in ((0, 0), (0, 1), (1, 1))]
     moment = np.stack([moments[0], moments[1], moments[1], moments[2]], axis=1).reshape(count, 2, 2)
-    moment += 1e-6 * np.eye(2)  # a one-ring that lies on a line has no derivative across it
-    rows = np.einsum("eab,eb,e->ae", np.linalg.inv(moment)[i], flat, weight)
+    solvable = moment + 1e-6 * np.eye(2)  # a one-ring that lies on a line has no derivative across it
+    rows = np.einsum("eab,eb,e->ae", np.linalg.inv(solvable)[i], flat, weight)
     at = np.concatenate([i, i + count])
     to = np.concatenate([j, j])
     offs = sparse.csr_matrix((rows.ravel(), (at, to)), shape=(2 * count, count))
