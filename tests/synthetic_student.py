@@ -6,6 +6,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from mua.motion.encoding import PoseEncoding
 from mua.student.checkpoint import Checkpoints
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress, Run
@@ -14,7 +15,8 @@ from mua.student.train import Samples
 from mua.texture.channels import ATTRIBUTES, CHANNELS
 
 SIZE = 48  # LL 3 x 3
-INPUTS = 10
+ENCODING = PoseEncoding(joints=(), rate=30.0, window=1)
+INPUTS = ENCODING.width
 VERTICES = 7
 FRAMES = 60
 SPREAD = {"offset": 0.01, "rotation": 0.1, "scale": 0.2, "opacity": 1.0, "SH": 0.3}
@@ -40,7 +42,7 @@ def quick(settings: Settings = SETTINGS) -> Settings:
 
 
 def new_student(settings: Settings = SETTINGS) -> Student:
-    return Student(settings, inputs=INPUTS, vertices=VERTICES, texels=valid_texels(), wavelet="bior4.4")
+    return Student(settings, encoding=ENCODING, vertices=VERTICES, texels=valid_texels(), wavelet="bior4.4")
 
 
 def random_student(seed: int = 0) -> Student:

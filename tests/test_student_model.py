@@ -7,6 +7,7 @@ import torch
 from synthetic_student import INPUTS, SIZE, VERTICES, bands_of_frames, random_student, valid_texels
 
 from mua.errors import InputError
+from mua.motion.encoding import PoseEncoding
 from mua.student.model import Alphas, Branch, Student, build_mlp
 from mua.student.settings import PRESETS, Settings, preset
 from mua.texture.channels import CHANNELS, GEOMETRY
@@ -79,18 +80,23 @@ def test_mean_lowpass_is_the_texture_of_zero_coefficients() -> None:
     assert torch.allclose(student.mean_lowpass(), texture - student.static, atol=100 * FLOAT32)
 
 
-def parameters(settings: Settings, *, vertices: int, texels: int, inputs: int) -> int:
+def parameters(settings: Settings, *, vertices: int, texels: int, encoding: PoseEncoding) -> int:
     """Stored numbers of a student, counted from its own tensors without allocating them."""
     with torch.device("meta"):
         student = Student(
-            settings, inputs=inputs, vertices=vertices, texels=torch.zeros(texels, dtype=torch.long), wavelet="bior4.4"
+            settings,
+            encoding=encoding,
+            vertices=vertices,
+            texels=torch.zeros(texels, dtype=torch.long),
+            wavelet="bior4.4",
         )
     return sum(tensor.numel() for tensor in student.state_dict().values() if tensor.is_floating_point())
 
 
 def test_the_papers_setting_fits_the_papers_parameter_count() -> None:
+    encoding = PoseEncoding(joints=tuple(range(1, 61)), rate=30.0)
     # 5,514 template vertices, 300 K splats (paper) and a skeleton of 60 encoded joints
-    assert parameters(preset("paper"), vertices=5514, texels=300_000, inputs=3 * (9 + 6 * 60)) <= 26.67e6
+    assert parameters(preset("paper"), vertices=5514, texels=300_000, encoding=encoding) <= 26.67e6
 
 
 def test_mlps_have_two_hidden_layers() -> None:

@@ -6,7 +6,17 @@ from pathlib import Path
 
 import pytest
 import torch
-from synthetic_student import FRAMES, SETTINGS, bands_of_frames, new_student, quick, random_student, run_in, samples
+from synthetic_student import (
+    FRAMES,
+    INPUTS,
+    SETTINGS,
+    bands_of_frames,
+    new_student,
+    quick,
+    random_student,
+    run_in,
+    samples,
+)
 
 from mua.student import train as training
 from mua.student.checkpoint import Checkpoints
@@ -109,7 +119,7 @@ def test_best_coefficients_are_no_worse_than_any_others() -> None:
     branch = random_student().geometry
     bands = bands_of_frames(4)[1].of(GEOMETRY)
     best = branch.synthesize(best_coefficients(branch, bands))
-    predicted = branch(torch.zeros(4, 10))
+    predicted = branch(torch.zeros(4, INPUTS))
     for found, other, band in zip(best, predicted, bands, strict=True):
         assert (found - band).square().sum() <= (other - band).square().sum()
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
+from mua.motion.encoding import PoseEncoding
 from mua.student.settings import Ranks, Settings
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import synthesise_lowpass, waverec2
@@ -134,12 +135,15 @@ class Student(nn.Module):
     static: Tensor
     texels: Tensor
 
-    def __init__(self, settings: Settings, *, inputs: int, vertices: int, texels: Tensor, wavelet: str) -> None:
+    def __init__(
+        self, settings: Settings, *, encoding: PoseEncoding, vertices: int, texels: Tensor, wavelet: str
+    ) -> None:
         """`texels` [N] are the valid texels as row * size + col."""
         super().__init__()
         self.size = settings.texels
+        self.encoding = encoding
         self.wavelet = wavelet
-        width, coarsest = settings.hidden, settings.texels // 16
+        inputs, width, coarsest = encoding.width, settings.hidden, settings.texels // 16
         self.register_buffer("mean", torch.zeros(inputs))
         self.register_buffer("scale", torch.ones(inputs))
         self.register_buffer("texels", texels.long())

@@ -21,7 +21,7 @@ class Progress:
     stage: str
     step: int  # finished steps
     steps: int
-    loss: float
+    loss: float | None  # None in stages that solve instead of descend
     rate: float  # steps per second of this stage
 
 

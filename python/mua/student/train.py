@@ -130,7 +130,7 @@ def factorize_branch(
         columns.append(alphas)
         variance.append(energy)
         done = channel + 1
-        run.report(Progress(stage, done, branch.channels, 0.0, done / (time.monotonic() - started)))
+        run.report(Progress(stage, done, branch.channels, None, done / (time.monotonic() - started)))
     flat = Alphas(*(torch.stack(level, dim=1) for level in zip(*columns, strict=True))).flat()
     spread = torch.stack(variance) / (frames * settings.texels**2)
     state = {"branch": branch.state_dict(), "generator": run.generator.get_state(), "flat": flat, "variance": spread}

@@ -1,0 +1,106 @@
+"""From a recording on disk to a student: which frames, which joints, and a run that is taken up again."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from synthetic_avatar import SIZE, synthetic_clip, synthetic_rig
+from synthetic_student import SETTINGS, quick
+
+from mua.errors import InputError
+from mua.recording import Recording, TeacherWriter
+from mua.rig.skeleton import Pose
+from mua.student.distil import distil, moving_joints
+from mua.student.model import Student
+from mua.student.settings import Settings
+from mua.texture.channels import CHANNELS
+
+CPU = torch.device("cpu")
+
+
+class Heard:
+    """A listener that writes down what it hears."""
+
+    def __init__(self) -> None:
+        self.stages: list[str] = []
+        self.steps: list[tuple[int, int]] = []
+
+    def stage(self, name: str) -> None:
+        self.stages.append(name)
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        self.steps.append((done, total))
+
+
+def recording(directory: Path, *, training: int = 2) -> Recording:
+    """`training` clips and a held-out one whose values are far off; every second frame is recorded."""
+    rig, rng = synthetic_rig(), np.random.default_rng(0)
+    with TeacherWriter(directory, rig, rate=24.0) as writer:
+        for number in range(training + 1):
+            held_out = number == training
+            clip = synthetic_clip(rig.skeleton, rng, frames=9)
+            writer.start_clip(f"clip {number}", held_out=held_out)
+            for frame in range(len(clip)):
+                pose = Pose(clip.rotations[frame], clip.translation[frame])
+                mesh = (rig.mesh.vertices + 0.01 * rng.normal(size=3)).astype(np.float32)
+                texture = rng.normal(50 if held_out else 0, 0.1, (len(rig.texels.texels), CHANNELS))
+                texture[:, 3] += 1
+                writer.add(pose, *((mesh, texture.astype(np.float32)) if frame % 2 else ()))
+    return Recording(directory)
+
+
+def settings() -> Settings:
+    return replace(quick(SETTINGS), texels=SIZE)
+
+
+def distilled(source: Recording, directory: Path, heard: Heard) -> Student:
+    return distil(source, settings(), device=CPU, directory=directory, report=heard)
+
+
+def test_learns_from_the_training_frames_alone(tmp_path: Path) -> None:
+    source = recording(tmp_path / "recording")
+    student = distilled(source, tmp_path / "student", Heard())
+    assert source.count() == 2 * 4
+    mean = (student.mean_lowpass() + student.static).T
+    assert np.abs(mean.numpy() - source.mean_texture()).max() < 1e-3  # half precision of the subbands' mean
+
+
+def test_a_second_run_repeats_nothing_and_gives_the_same_student(tmp_path: Path) -> None:
+    source = recording(tmp_path / "recording")
+    heard = Heard()
+    first = distilled(source, tmp_path / "student", heard)
+    assert heard.stages[0] == "coarse mesh"
+    assert len(heard.stages) == len(set(heard.stages)) == 7
+    again = Heard()
+    second = distilled(source, tmp_path / "student", again)
+    assert again.steps == []
+    assert all(
+        torch.equal(a, b) for a, b in zip(first.state_dict().values(), second.state_dict().values(), strict=True)
+    )
+
+
+def test_a_recording_that_grew_is_distilled_anew(tmp_path: Path) -> None:
+    distilled(recording(tmp_path / "short"), tmp_path / "student", Heard())
+    heard = Heard()
+    distilled(recording(tmp_path / "long", training=3), tmp_path / "student", heard)
+    assert heard.stages[0] == "coarse mesh"
+
+
+def test_joints_move_the_mesh_themselves_or_through_a_descendant() -> None:
+    rig = synthetic_rig()
+    only_middle = replace(rig, skin_indices=np.full_like(rig.skin_indices, 1))
+    assert moving_joints(only_middle).tolist() == [True, True, False]
+
+
+def test_rejects_a_recording_of_another_texture_size(tmp_path: Path) -> None:
+    source = recording(tmp_path / "recording")
+    with pytest.raises(InputError, match="has 32 texels along a side, expected 384"):
+        distil(source, replace(settings(), texels=384), device=CPU, directory=tmp_path, report=Heard())
+
+
+def test_rejects_a_recording_without_training_frames(tmp_path: Path) -> None:
+    source = recording(tmp_path / "recording", training=0)
+    with pytest.raises(InputError, match="holds no training frame"):
+        distilled(source, tmp_path / "student", Heard())
