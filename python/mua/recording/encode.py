@@ -1,0 +1,123 @@
+"""What a recording keeps of a texture: its difference from the reference frame, and the dynamic subbands of that."""
+
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.files import replacing
+from mua.recording.layout import DYNAMIC_LEVELS, STATIC_LEVELS, Header
+from mua.texture.channels import ATTRIBUTES, CHANNELS
+from mua.texture.fill import Fill
+from mua.wavelets import analyse_lowpass, wavedec2
+
+HALF_MAX = float(np.finfo(np.float16).max)
+
+
+@dataclass(frozen=True)
+class Dynamic:
+    """The subbands that vary with the frame; detail bands in the order of pywt's (cH, cV, cD)."""
+
+    ll: Array  # [C, n, n]
+    d3: Array  # [3, C, n, n]
+    d2: Array  # [3, C, 2n, 2n]
+
+    def half(self) -> "Dynamic":
+        return Dynamic(self.ll.astype(np.float16), self.d3.astype(np.float16), self.d2.astype(np.float16))
+
+    @property
+    def peak(self) -> float:
+        return float(max(np.abs(band).max() for band in (self.ll, self.d3, self.d2)))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The frame that all others are stored relative to, and the hemisphere that their rotations are brought to."""
+
+    texture: Array  # [N, 23] float32
+    subbands: Dynamic  # float32
+
+
+def dynamic_subbands(
+    texture: Array,  # [N, C] float32 at the valid texels
+    fill: Fill,
+    *,
+    wavelet: str,
+) -> Dynamic:
+    """Fill the empty texels and transform."""
+    image = fill(torch.from_numpy(texture))
+    ll, (d3, d2) = wavedec2(analyse_lowpass(image, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
+    return Dynamic(ll.numpy(), d3.transpose(0, 1).contiguous().numpy(), d2.transpose(0, 1).contiguous().numpy())
+
+
+def align_rotations(
+    texture: Array,  # [N, 23]
+    reference: Array,  # [N, 23]
+) -> Array:
+    """A copy whose raw quaternions lie in the hemisphere of the reference's; q and -q are one rotation."""
+    rotation = ATTRIBUTES["rotation"]
+    aligned = texture.copy()
+    turned = np.einsum("nc,nc->n", texture[:, rotation], reference[:, rotation]) < 0
+    aligned[turned, rotation] *= -1
+    return aligned
+
+
+def check_range(
+    difference: Array,  # [N, 23] from the reference
+    texels: Array,  # [N] row * size + col
+    size: int,
+) -> None:
+    """Raises InputError for the first value that is not finite, or too far from the reference for half precision."""
+    if np.abs(difference).max(initial=0) <= HALF_MAX:  # false for nan as well
+        return
+    texel, channel = np.argwhere(~(np.abs(difference) <= HALF_MAX))[0]
+    row, column = divmod(int(texels[texel]), size)
+    name = next(name for name, where in ATTRIBUTES.items() if where.start <= channel < where.stop)
+    value = difference[texel, channel]
+    problem = f"is {value}" if not np.isfinite(value) else f"differs by {value:.3g} from the reference frame's"
+    raise InputError(
+        f"texture channel {channel} ({name}) at row {row}, column {column} {problem}, "
+        f"expected a finite number no further than {HALF_MAX:.0f} from it"
+    )
+
+
+def valid_texture(
+    texture: Array,  # [N, 23] or [H, W, 23]
+    header: Header,
+    texels: Array,  # [N] row * size + col
+) -> Array:
+    """The values [N, 23] float32 at the valid texels; raises InputError for any other shape."""
+    texture = np.asarray(texture)
+    if texture.shape == (header.valid_texels, CHANNELS):
+        return np.asarray(texture, dtype=np.float32)
+    if texture.shape == (header.texels, header.texels, CHANNELS):
+        return texture.reshape(-1, CHANNELS)[texels].astype(np.float32, copy=False)
+    expected = f"[{header.valid_texels}, 23] at the valid texels or [{header.texels}, {header.texels}, 23]"
+    channels = "offset 3, quaternion 4 (wxyz), log scale 3, opacity logit 1, SH 12 (coefficient-major)"
+    if texture.ndim and texture.shape[-1] == CHANNELS + 3:
+        channels += "; the 3 of the base position follow from the mesh and are left out"
+    raise InputError(f"texture has shape {list(texture.shape)}, expected {expected} with the channels {channels}")
+
+
+def save_reference(path: Path, reference: Reference) -> None:
+    with replacing(path) as temporary:
+        np.savez(temporary, texture=reference.texture, **vars(reference.subbands))
+
+
+def load_reference(path: Path, header: Header) -> Reference:
+    """Raises InputError for a file that is missing, damaged or of other sizes."""
+    shapes = {name: shape[1:] for name, (shape, _) in header.shapes(0, 1).items() if name in ("ll", "d3", "d2")}
+    shapes["texture"] = (header.valid_texels, CHANNELS)
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            arrays = {name: stored[name] for name in shapes}
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: {'is missing' if not path.exists() else f'is damaged: {error}'}") from error
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape:
+            raise InputError(f"{path}: {name} has shape {arrays[name].shape}, expected {shape}")
+    return Reference(arrays.pop("texture"), Dynamic(**arrays))

@@ -1,0 +1,203 @@
+"""The files of a recording: their names, what the JSON among them says, and how they reach the disk whole."""
+
+import json
+import os
+import zlib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.files import write_bytes
+from mua.recording.rig_file import rig_hash
+from mua.rig.rig import Rig
+from mua.texture.channels import CHANNELS
+
+VERSION = 1
+HEADER, RIG, REFERENCE, SHARDS, INDEX = "recording.json", "rig.npz", "reference.npz", "shards", "index.json"
+DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2 vary with the frame, D1 and D0 are means (paper, Methodology)
+STEP = 2 ** (DYNAMIC_LEVELS + STATIC_LEVELS)
+
+
+@dataclass(frozen=True)
+class Header:
+    """What all frames of a recording share."""
+
+    version: int
+    rig: str  # SHA-256
+    rate: float  # frames per second
+    wavelet: str
+    texels: int  # H = W
+    valid_texels: int
+    vertices: int
+    joints: int
+
+    @classmethod
+    def of(cls, rig: Rig, *, rate: float, wavelet: str) -> "Header":
+        valid, vertices, joints = len(rig.texels.texels), len(rig.mesh.vertices), len(rig.skeleton.names)
+        return cls(VERSION, rig_hash(rig), float(rate), wavelet, rig.texels.size, valid, vertices, joints)
+
+    def shapes(self, poses: int, frames: int) -> dict[str, tuple[tuple[int, ...], str]]:
+        """Shape and element type of a shard's arrays that hold a row per pose or per frame; none where no row is."""
+        n = self.texels // STEP
+        shapes: dict[str, tuple[tuple[int, ...], str]] = {}
+        if poses:
+            shapes["rotations"] = ((poses, self.joints, 4), "<f8")
+            shapes["translations"] = ((poses, 3), "<f8")
+        if frames:
+            shapes["meshes"] = ((frames, self.vertices, 3), "<f4")
+            shapes["ll"] = ((frames, CHANNELS, n, n), "<f2")
+            shapes["d3"] = ((frames, 3, CHANNELS, n, n), "<f2")
+            shapes["d2"] = ((frames, 3, CHANNELS, 2 * n, 2 * n), "<f2")
+        return shapes
+
+
+@dataclass
+class Segment:
+    """Consecutive frames of one clip, all of whose poses a shard holds."""
+
+    clip: str
+    held_out: bool
+    start: int  # index in the clip of the first
+    poses: int
+    recorded: list[int]  # indices in the clip of the frames with mesh and subbands, ascending
+    whole: list[int]  # those of them that are kept whole
+
+
+@dataclass(frozen=True)
+class Index:
+    """What one shard holds; its frames are those of its segments, one after the other."""
+
+    segments: list[Segment]
+    complete: list[str]  # clips that ended in this shard
+    training_frames: int  # number of frames in the running sum, from the first shard to this one
+    crc32: dict[str, int]  # of the shard's other files
+
+    @property
+    def poses(self) -> int:
+        return sum(segment.poses for segment in self.segments)
+
+    @property
+    def frames(self) -> int:
+        return sum(len(segment.recorded) for segment in self.segments)
+
+    @property
+    def whole_rows(self) -> list[int]:
+        """The shard's recorded frames that are kept whole, counted over the shard."""
+        kept = [frame in segment.whole for segment in self.segments for frame in segment.recorded]
+        return [row for row, whole in enumerate(kept) if whole]
+
+
+def write_header(directory: Path, header: Header) -> None:
+    write_bytes(directory / HEADER, _to_json(header))
+
+
+def read_header(directory: Path) -> Header:
+    """Raises InputError where `directory` is no recording, or one of a newer version."""
+    path = directory / HEADER
+    if not path.is_file():
+        raise InputError(f"{directory}: not a recording, it holds no {HEADER}")
+    stored = _read_json(path)
+    if stored.get("version") != VERSION:
+        raise InputError(f"{path}: version is {stored.get('version')!r}, this program reads {VERSION}")
+    try:
+        header = Header(**stored)
+    except TypeError as error:
+        raise InputError(f"{path}: not the header of a recording: {error}") from error
+    for field in fields(Header):
+        value = getattr(header, field.name)
+        if not isinstance(value, field.type):  # type: ignore[arg-type]
+            raise InputError(f"{path}: {field.name} is {value!r}, expected {field.type}")
+    return header
+
+
+def read_indices(directory: Path) -> list[Index]:
+    """The indices of all finished shards; raises InputError where one is missing or damaged."""
+    names = sorted(path.name for path in (directory / SHARDS).glob("[0-9]*"))
+    for number, name in enumerate(names):
+        if name != shard_name(number):
+            raise InputError(f"{directory / SHARDS}: shard {shard_name(number)} is missing, {name} is there")
+    return [read_index(directory / SHARDS / name) for name in names]
+
+
+def read_index(shard: Path) -> Index:
+    stored = _read_json(shard / INDEX)
+    try:
+        stored["segments"] = [Segment(**segment) for segment in stored["segments"]]
+        return Index(**stored)
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{shard / INDEX}: not the index of a shard: {error}") from error
+
+
+def shard_name(number: int) -> str:
+    return f"{number:05d}"
+
+
+def whole_name(row: int) -> str:
+    """The name of the array of a shard's recorded frame `row`, kept whole."""
+    return f"whole_{row:05d}"
+
+
+def commit_shard(
+    part: Path,  # the shard's hidden directory; what it already holds becomes part of the shard
+    final: Path,
+    *,
+    arrays: Mapping[str, Array],
+    segments: list[Segment],
+    complete: list[str],
+    training_frames: int,
+) -> None:
+    """Write arrays and index into `part`, sync all of it and rename it to `final`."""
+    part.mkdir(parents=True, exist_ok=True)
+    for name, array in arrays.items():
+        np.save(part / f"{name}.npy", array, allow_pickle=False)
+    crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(part.glob("*.npy"))}
+    index = Index(segments, complete, training_frames, crc)
+    (part / INDEX).write_bytes(_to_json(index))
+    for path in part.iterdir():
+        _sync(path)
+    _sync(part)
+    if final.exists():
+        raise InputError(f"{final} appeared while it was being written: another writer is at work on this recording")
+    part.rename(final)
+    _sync(final.parent)
+
+
+def open_array(path: Path, shape: tuple[int, ...], dtype: str) -> Array:
+    """Map a .npy file of known shape and type into memory; raises InputError where it is anything else."""
+    try:
+        array = np.load(path, mmap_mode="r", allow_pickle=False)
+    except (OSError, ValueError, EOFError) as error:
+        problem = "is missing" if not path.exists() else "is damaged or cut short"
+        raise InputError(f"{path} {problem}, expected {shape} of {dtype}") from error
+    if array.shape != shape or array.dtype != np.dtype(dtype):
+        raise InputError(f"{path} holds {array.shape} of {array.dtype.str}, expected {shape} of {dtype}")
+    return np.asarray(array)
+
+
+def _sync(path: Path) -> None:
+    if path.is_dir() and os.name != "posix":  # only POSIX opens directories
+        return
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _to_json(value: Header | Index) -> bytes:
+    return (json.dumps(asdict(value), indent=1, sort_keys=True) + "\n").encode()
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    try:
+        stored = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: {'is missing' if not path.exists() else 'is damaged: not JSON'}") from error
+    if not isinstance(stored, dict):
+        raise InputError(f"{path}: is damaged, expected a JSON object")
+    return stored

@@ -1,0 +1,228 @@
+"""Reading a recording: memory-mapped, so that it may be larger than memory."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.recording.encode import load_reference
+from mua.recording.layout import (
+    HEADER,
+    INDEX,
+    REFERENCE,
+    RIG,
+    SHARDS,
+    Header,
+    Index,
+    open_array,
+    read_header,
+    read_indices,
+    shard_name,
+    whole_name,
+)
+from mua.recording.rig_file import load_rig, rig_hash
+from mua.texture.channels import CHANNELS
+
+Rows = Sequence[int] | Array | Tensor  # recorded frames of one kind, counted from 0 in the order of recording
+
+
+@dataclass(frozen=True)
+class RecordedClip(Clip):
+    """The poses of all frames of a clip and which of them were recorded with mesh and texture."""
+
+    held_out: bool
+    recorded: Array  # [R] int64 frame indices, ascending
+    complete: bool
+
+
+@dataclass(frozen=True)
+class WholeFrame:
+    """A frame that was kept whole."""
+
+    clip: RecordedClip
+    index: int  # in the clip
+    mesh: Array  # [V, 3] float32 canonical vertices, metres
+    texture: Array  # [N, 23] float32, rotations aligned to the reference frame
+
+
+class Subbands(NamedTuple):
+    """The subbands of F frames that vary with the frame; detail bands in the order of pywt's (cH, cV, cD)."""
+
+    ll: Tensor  # [F, C, n, n] float32
+    d3: Tensor  # [F, 3, C, n, n] float32
+    d2: Tensor  # [F, 3, C, 2n, 2n] float32
+
+
+@dataclass(frozen=True)
+class _Shard:
+    index: Index
+    arrays: dict[str, Array]  # memory maps by name
+
+
+class Recording:
+    """The finished shards of a recording.
+
+    Rows of training (`held_out=False`) and of held-out frames are counted apart, each in the order of recording: clip
+    after clip as `clips` lists them, within a clip as its `recorded` does. Values are absolute, in the teacher's units.
+    """
+
+    def __init__(self, directory: Path | str) -> None:
+        """Raises InputError, a sentence that names the file, for anything missing, cut short or of another shape."""
+        self.directory = Path(directory)
+        self.header = read_header(self.directory)
+        self.rate, self.wavelet = self.header.rate, self.header.wavelet
+        self.rig = load_rig(self.directory / RIG)
+        if rig_hash(self.rig) != self.header.rig:
+            raise InputError(f"{self.directory / RIG}: is not the rig whose hash {HEADER} holds")
+        indices = read_indices(self.directory)
+        self._shards = [_open(self.directory, number, index, self.header) for number, index in enumerate(indices)]
+        self.clips = _clips(self._shards, self.header)
+        self._places = {kind: _places(indices, held_out=kind) for kind in (False, True)}
+        self.whole_count = sum(len(index.whole_rows) for index in indices)
+        if any(index.frames for index in indices):
+            self.reference = load_reference(self.directory / REFERENCE, self.header)
+        if indices:
+            last = self.directory / SHARDS / shard_name(len(indices) - 1) / "sum.npy"
+            self._sum = open_array(last, (self.header.valid_texels, CHANNELS), "<f8")
+
+    def count(self, held_out: bool = False) -> int:
+        """Number of frames with mesh and subbands."""
+        return len(self._places[held_out])
+
+    def subbands(
+        self,
+        channels: slice,  # of the 23
+        rows: Rows,
+        *,
+        held_out: bool = False,
+    ) -> Subbands:
+        """Absolute subbands of some channels and frames: the stored differences plus the reference's."""
+        at = self._places[held_out][np.asarray(rows, dtype=np.int64)]
+        reference = self.reference.subbands
+        return Subbands(
+            torch.from_numpy(self._gather("ll", at, (channels,)) + reference.ll[channels]),
+            torch.from_numpy(self._gather("d3", at, (slice(None), channels)) + reference.d3[:, channels]),
+            torch.from_numpy(self._gather("d2", at, (slice(None), channels)) + reference.d2[:, channels]),
+        )
+
+    def meshes(self, rows: Rows, *, held_out: bool = False) -> Array:
+        """Canonical vertices [F, V, 3] float32, metres."""
+        return self._gather("meshes", self._places[held_out][np.asarray(rows, dtype=np.int64)], ())
+
+    def mean_texture(self) -> Array:
+        """The mean [N, 23] float64 over all training frames, at full precision and not only over those kept whole."""
+        mean = self._sum / self._training_frames
+        mean += self.reference.texture
+        return mean
+
+    def mean_mesh(self) -> Array:
+        """The mean canonical vertices [V, 3] float64 over all training frames, metres."""
+        total = np.zeros((self.header.vertices, 3))
+        for number in np.unique(self._places[False][:, 0]):
+            rows = self._places[False][self._places[False][:, 0] == number, 1]
+            total += self._shards[number].arrays["meshes"][rows].sum(axis=0, dtype=np.float64)
+        return total / self._training_frames
+
+    def whole_frames(self, held_out: bool | None = None) -> Iterator[WholeFrame]:
+        """The frames kept whole, of one kind or (None) of both, in the order of recording."""
+        by_name = {clip.name: clip for clip in self.clips}
+        for shard in self._shards:
+            owners = [(segment, frame) for segment in shard.index.segments for frame in segment.recorded]
+            for row in shard.index.whole_rows:
+                segment, frame = owners[row]
+                if held_out is None or segment.held_out == held_out:
+                    texture = self.reference.texture + shard.arrays[whole_name(row)].astype(np.float32)
+                    yield WholeFrame(by_name[segment.clip], frame, np.array(shard.arrays["meshes"][row]), texture)
+
+    def fingerprint(self) -> str:
+        """A SHA-256 that changes with anything recorded."""
+        digest = hashlib.sha256()
+        for name in (HEADER, REFERENCE):
+            path = self.directory / name
+            digest.update(path.read_bytes() if path.exists() else b"")
+        for number in range(len(self._shards)):
+            digest.update((self.directory / SHARDS / shard_name(number) / INDEX).read_bytes())
+        return digest.hexdigest()
+
+    @cached_property
+    def _training_frames(self) -> int:
+        if not self.count():
+            raise InputError(f"recording {self.directory}: it holds no training frame")
+        return self.count()
+
+    def _gather(
+        self,
+        name: str,
+        places: Array,  # [F, 2] shard, row
+        part: tuple[slice, ...],  # of each row
+    ) -> Array:
+        """Rows [F, ...] of one array, out of as many shards as they lie in, as float32."""
+        if not len(places):
+            shape = self.header.shapes(1, 1)[name][0]
+            return np.zeros(shape, np.float32)[(slice(0), *part)]
+        picked: Array | None = None
+        for number in np.unique(places[:, 0]):
+            here = places[:, 0] == number
+            rows = self._shards[number].arrays[name][(slice(None), *part)][places[here, 1]]
+            if picked is None:
+                picked = np.empty((len(places), *rows.shape[1:]), np.float32)
+            picked[here] = rows
+        assert picked is not None
+        return picked
+
+
+def _open(directory: Path, number: int, index: Index, header: Header) -> _Shard:
+    """Map every array of a shard, whereby its presence, size, shape and type are checked."""
+    expected = header.shapes(index.poses, index.frames)
+    for row in index.whole_rows:
+        expected[whole_name(row)] = ((header.valid_texels, CHANNELS), "<f2")
+    shard = directory / SHARDS / shard_name(number)
+    return _Shard(index, {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()})
+
+
+def _places(indices: Sequence[Index], *, held_out: bool) -> Array:
+    """[F, 2] shard and row in it of each recorded frame of a kind."""
+    places = []
+    for number, index in enumerate(indices):
+        kinds = [segment.held_out for segment in index.segments for _ in segment.recorded]
+        places += [(number, row) for row, kind in enumerate(kinds) if kind == held_out]
+    return np.array(places, dtype=np.int64).reshape(-1, 2)
+
+
+def _clips(shards: Sequence[_Shard], header: Header) -> tuple[RecordedClip, ...]:
+    """Clips in the order of recording, their poses joined over shards."""
+    rotations: dict[str, list[Array]] = {}
+    translations: dict[str, list[Array]] = {}
+    recorded: dict[str, list[int]] = {}
+    held_out: dict[str, bool] = {}
+    for shard in shards:
+        start = 0
+        for segment in shard.index.segments:
+            own = slice(start, start + segment.poses)
+            rotations.setdefault(segment.clip, []).append(shard.arrays["rotations"][own])
+            translations.setdefault(segment.clip, []).append(shard.arrays["translations"][own])
+            recorded.setdefault(segment.clip, []).extend(segment.recorded)
+            held_out[segment.clip] = segment.held_out
+            start += segment.poses
+    complete = {name for shard in shards for name in shard.index.complete}
+    return tuple(
+        RecordedClip(
+            name,
+            header.rate,
+            np.concatenate(rotations[name]),
+            np.concatenate(translations[name]),
+            held_out[name],
+            np.array(recorded[name], dtype=np.int64),
+            name in complete,
+        )
+        for name in rotations
+    )

@@ -1,0 +1,71 @@
+"""The rig as a .npz file without pickles, and the hash that tells rigs apart."""
+
+import hashlib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.files import replacing
+from mua.rig.character import Mesh
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+from mua.rig.texel_map import TexelMap
+
+
+def rig_hash(rig: Rig) -> str:
+    """SHA-256 over names, shapes, types and bytes of everything in `rig`."""
+    digest = hashlib.sha256()
+    for name, array in sorted(_arrays(rig).items()):
+        digest.update(f"{name} {array.shape} {array.dtype}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def save_rig(path: Path, rig: Rig) -> None:
+    with replacing(path) as temporary:
+        np.savez(temporary, allow_pickle=False, **_arrays(rig))
+
+
+def load_rig(path: Path) -> Rig:
+    """Raises InputError for a file that is missing, damaged or lacks an array."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+        return _rig(arrays)
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: not a rig as a recording keeps it: {error}") from error
+
+
+def _arrays(rig: Rig) -> dict[str, Array]:
+    return {
+        "names": np.array(rig.skeleton.names),
+        "parents": rig.skeleton.parents,
+        "bind_rotations": rig.skeleton.bind_rotations,
+        "bind_translations": rig.skeleton.bind_translations,
+        "root": np.array(rig.skeleton.root),
+        "vertices": rig.mesh.vertices,
+        "faces": rig.mesh.faces,
+        "uv": rig.mesh.uv,
+        "uv_faces": rig.mesh.uv_faces,
+        "skin_indices": rig.skin_indices,
+        "skin_weights": rig.skin_weights,
+        "size": np.array(rig.texels.size),
+        "texels": rig.texels.texels,
+        "triangles": rig.texels.triangles,
+        "barycentrics": rig.texels.barycentrics,
+        "claimed_twice": np.array(rig.texels.claimed_twice),
+    }
+
+
+def _rig(a: dict[str, Array]) -> Rig:
+    names = tuple(str(name) for name in a["names"])
+    return Rig(
+        Skeleton(names, a["parents"], a["bind_rotations"], a["bind_translations"], int(a["root"])),
+        Mesh(a["vertices"], a["faces"], a["uv"], a["uv_faces"]),
+        a["skin_indices"],
+        a["skin_weights"],
+        TexelMap(int(a["size"]), a["texels"], a["triangles"], a["barycentrics"], int(a["claimed_twice"])),
+    )

@@ -1,0 +1,327 @@
+"""Writing a recording, frame by frame, from any program that has a teacher."""
+
+import shutil
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.recording.encode import (
+    HALF_MAX,
+    Dynamic,
+    Reference,
+    align_rotations,
+    check_range,
+    dynamic_subbands,
+    load_reference,
+    save_reference,
+    valid_texture,
+)
+from mua.recording.layout import (
+    HEADER,
+    REFERENCE,
+    RIG,
+    SHARDS,
+    STEP,
+    Header,
+    Segment,
+    commit_shard,
+    open_array,
+    read_header,
+    read_indices,
+    shard_name,
+    whole_name,
+    write_header,
+)
+from mua.recording.rig_file import save_rig
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Pose
+from mua.texture.channels import CHANNELS
+from mua.texture.fill import Fill
+from mua.wavelets import filters
+
+POSES_PER_SHARD = 4096  # a shard ends here at the latest, however few of its frames are recorded
+UNIT_LENGTH_ERROR = 1e-3  # of a joint's quaternion: rounding of the source, not another convention
+
+
+@dataclass
+class _ClipState:
+    """How far a clip is."""
+
+    held_out: bool
+    frames: int = 0
+    recorded: list[int] = field(default_factory=list)
+    complete: bool = False
+
+
+@dataclass
+class _Pending:
+    """The shard in memory."""
+
+    segments: list[Segment] = field(default_factory=list)
+    complete: list[str] = field(default_factory=list)
+    rotations: list[Array] = field(default_factory=list)
+    translations: list[Array] = field(default_factory=list)
+    meshes: list[Array] = field(default_factory=list)
+    subbands: list[Dynamic] = field(default_factory=list)
+
+
+class TeacherWriter:
+    """Appends a teacher's frames to a recording; use it as a context manager. See docs/recording.md."""
+
+    def __init__(
+        self,
+        directory: Path | str,
+        rig: Rig,
+        *,
+        rate: float,  # frames per second of every clip
+        wavelet: str = "bior4.4",
+        whole_every: int = 50,  # every how many recorded frames of a clip one is kept whole
+        shard_frames: int = 32,  # recorded frames of a shard: at most so many are lost by a kill
+    ) -> None:
+        """Open `directory` to go on with its recording, or to begin one.
+
+        Raises InputError where it holds a recording of another rig, rate or wavelet, where it is damaged, or where the
+        texture size cannot be halved four times.
+        """
+        filters(wavelet)
+        if rig.texels.size % STEP:
+            raise InputError(f"recording {directory}: texture size {rig.texels.size}, expected a multiple of {STEP}")
+        self.directory = Path(directory)
+        self.rate = float(rate)
+        self._header = Header.of(rig, rate=rate, wavelet=wavelet)
+        self._texels = rig.texels
+        self._whole_every, self._shard_frames = whole_every, shard_frames
+        self._fill = Fill(rig.texels)
+        self._begin(rig)
+        self._remove_leftovers()
+        self._reference: Reference | None = None
+        if (self.directory / REFERENCE).exists():
+            self._reference = load_reference(self.directory / REFERENCE, self._header)
+        self._clips: dict[str, _ClipState] = {}
+        self._clip = ""
+        self._pending = _Pending()
+        self._read_shards()
+
+    def start_clip(self, name: str, *, held_out: bool = False) -> None:
+        """Say which clip the next frames belong to; the clip before it is complete with that.
+
+        A clip that an earlier run left half recorded goes on at `next_frame(name)`. `held_out` frames are kept for
+        evaluation and stay out of the mean. Raises InputError for a complete clip or another `held_out` than before.
+        """
+        if name == self._clip:
+            return
+        state = self._clips.get(name, _ClipState(held_out))
+        if state.complete:
+            raise InputError(f"recording {self.directory}: clip {name!r} is complete, expected another name")
+        if state.held_out != held_out:
+            raise InputError(f"recording {self.directory}: clip {name!r} began with held_out={state.held_out}")
+        for other, before in self._clips.items():
+            if other != name and not before.complete:  # the current clip, or one that a killed run left
+                self._complete(other)
+        self._clips[name], self._clip = state, name
+
+    def add(
+        self,
+        pose: Pose,
+        mesh: Array | None = None,  # [V, 3] canonical template vertices, metres
+        texture: Array | None = None,  # [N, 23] at the valid texels, or [H, W, 23]; raw channels (mua.texture.channels)
+        *,
+        whole: bool | None = None,  # keep the texture itself too, for evaluation; None: every `whole_every`-th time
+    ) -> None:
+        """Append the clip's next frame; without mesh and texture its pose alone, as history of later frames.
+
+        Rotations are brought to the hemisphere of the first texture ever added, texel by texel.
+        Raises InputError that names clip, frame and field for a wrong shape or a value that is not finite.
+        """
+        if not self._clip:
+            raise InputError(f"recording {self.directory}: start_clip comes before the first frame")
+        state = self._clips[self._clip]
+        try:
+            rotations, translation = self._check_pose(pose)
+            if (mesh is None) != (texture is None):
+                raise InputError(f"{'mesh' if mesh is None else 'texture'} is missing, expected both or neither")
+            if mesh is not None and texture is not None:
+                vertices = _checked("mesh", mesh, (self._header.vertices, 3), np.float32)
+                if whole is None:
+                    whole = len(state.recorded) % self._whole_every == 0
+                self._append(state, vertices, texture, whole=whole)
+        except InputError as error:
+            where = f"recording {self.directory}: clip {self._clip!r}, frame {state.frames}"
+            raise InputError(f"{where}: {error}") from None
+        self._pending.rotations.append(rotations)
+        self._pending.translations.append(translation)
+        self._segment(state).poses += 1
+        state.frames += 1
+        if len(self._pending.meshes) >= self._shard_frames or len(self._pending.rotations) >= POSES_PER_SHARD:
+            self._flush()
+
+    def next_frame(self, clip: str) -> int:
+        """The index of the frame of `clip` that is to be added next; after reopening, how many are safely stored."""
+        return self._clips[clip].frames if clip in self._clips else 0
+
+    def recorded(self, clip: str) -> tuple[int, ...]:
+        """The indices of the frames of `clip` that were added with mesh and texture."""
+        return tuple(self._clips[clip].recorded) if clip in self._clips else ()
+
+    def is_complete(self, clip: str) -> bool:
+        """Whether another clip was started after `clip`, or `finish` called."""
+        return clip in self._clips and self._clips[clip].complete
+
+    def finish(self) -> None:
+        """Mark the last clip complete and store what is pending; the writer can go on with another clip."""
+        if self._clip:
+            self._complete(self._clip)
+            self._clip = ""
+        self._flush()
+
+    def __enter__(self) -> "TeacherWriter":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Finish; after an error nothing more is stored, as if the program had been killed there."""
+        if kind is None:
+            self.finish()
+
+    def _begin(self, rig: Rig) -> None:
+        """Write header and rig of a new recording, or compare those of an old one."""
+        if not (self.directory / HEADER).exists():
+            (self.directory / SHARDS).mkdir(parents=True, exist_ok=True)
+            save_rig(self.directory / RIG, rig)
+            write_header(self.directory, self._header)
+            return
+        stored = read_header(self.directory)
+        for name, mine in vars(self._header).items():
+            theirs = getattr(stored, name)
+            if theirs != mine:
+                raise InputError(
+                    f"{self.directory / HEADER}: {name} is {theirs!r}, expected {mine!r}; record into another directory"
+                )
+
+    def _remove_leftovers(self) -> None:
+        for path in self.directory.glob(".*.part*"):
+            path.unlink()
+        for path in (self.directory / SHARDS).glob(".*.part"):
+            shutil.rmtree(path)
+
+    def _read_shards(self) -> None:
+        """Take up the state that the finished shards say."""
+        indices = read_indices(self.directory)
+        for index in indices:
+            for segment in index.segments:
+                state = self._clips.setdefault(segment.clip, _ClipState(segment.held_out))
+                state.frames += segment.poses
+                state.recorded += segment.recorded
+            for name in index.complete:
+                self._clips.setdefault(name, _ClipState(held_out=False)).complete = True
+        self._shards = len(indices)
+        self._training_frames = indices[-1].training_frames if indices else 0
+        self._sum = np.zeros((self._header.valid_texels, CHANNELS))
+        if indices:
+            self._sum += open_array(self._shard(self._shards - 1) / "sum.npy", self._sum.shape, "<f8")
+            self._remove_old_sum(self._shards - 2)
+
+    def _shard(self, number: int) -> Path:
+        return self.directory / SHARDS / shard_name(number)
+
+    @property
+    def _part(self) -> Path:
+        return self.directory / SHARDS / f".{shard_name(self._shards)}.part"
+
+    def _remove_old_sum(self, number: int) -> None:
+        """Only the last shard's running sum is of use; a kill may have left the one before it."""
+        if number >= 0:
+            (self._shard(number) / "sum.npy").unlink(missing_ok=True)
+
+    def _segment(self, state: _ClipState) -> Segment:
+        """The pending shard's segment of the current clip."""
+        segments = self._pending.segments
+        if not segments or segments[-1].clip != self._clip:
+            segments.append(Segment(self._clip, state.held_out, state.frames, 0, [], []))
+        return segments[-1]
+
+    def _complete(self, clip: str) -> None:
+        self._clips[clip].complete = True
+        self._pending.complete.append(clip)
+
+    def _check_pose(self, pose: Pose) -> tuple[Array, Array]:
+        rotations = _checked("pose rotations", pose.rotations, (self._header.joints, 4), np.float64)
+        translation = _checked("pose translation", pose.translation, (3,), np.float64)
+        lengths = np.linalg.norm(rotations, axis=1)
+        joint = int(np.argmax(np.abs(lengths - 1)))
+        if abs(lengths[joint] - 1) > UNIT_LENGTH_ERROR:
+            raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
+        return rotations, translation
+
+    def _append(self, state: _ClipState, mesh: Array, texture: Array, *, whole: bool) -> None:
+        """Add mesh and texture of the current frame to the pending shard, all of it or nothing."""
+        values = valid_texture(texture, self._header, self._texels.texels)
+        if self._reference is None:
+            self._reference = self._keep_reference(values)
+        difference = align_rotations(values, self._reference.texture)
+        difference -= self._reference.texture
+        check_range(difference, self._texels.texels, self._texels.size)
+        subbands = dynamic_subbands(difference, self._fill, wavelet=self._header.wavelet)
+        if subbands.peak > HALF_MAX:
+            raise InputError(f"texture: a subband differs by {subbands.peak:.3g} from the reference frame's")
+        segment, row = self._segment(state), len(self._pending.meshes)
+        if whole:
+            self._part.mkdir(exist_ok=True)
+            np.save(self._part / f"{whole_name(row)}.npy", difference.astype(np.float16))
+            segment.whole.append(state.frames)
+        segment.recorded.append(state.frames)
+        state.recorded.append(state.frames)
+        self._pending.meshes.append(mesh)
+        self._pending.subbands.append(subbands.half())
+        if not state.held_out:
+            self._sum += difference
+            self._training_frames += 1
+
+    def _keep_reference(self, texture: Array) -> Reference:
+        check_range(texture, self._texels.texels, self._texels.size)
+        reference = Reference(texture, dynamic_subbands(texture, self._fill, wavelet=self._header.wavelet))
+        save_reference(self.directory / REFERENCE, reference)
+        return reference
+
+    def _flush(self) -> None:
+        """Store the pending shard, if anything is in it."""
+        pending = self._pending
+        if not pending.rotations and not pending.complete:
+            return
+        columns = {
+            "rotations": pending.rotations,
+            "translations": pending.translations,
+            "meshes": pending.meshes,
+            "ll": [subbands.ll for subbands in pending.subbands],
+            "d3": [subbands.d3 for subbands in pending.subbands],
+            "d2": [subbands.d2 for subbands in pending.subbands],
+        }
+        shapes = self._header.shapes(len(pending.rotations), len(pending.meshes))
+        arrays = {name: np.stack(columns[name]) for name in shapes}
+        commit_shard(
+            self._part,
+            self._shard(self._shards),
+            arrays={**arrays, "sum": self._sum},
+            segments=pending.segments,
+            complete=pending.complete,
+            training_frames=self._training_frames,
+        )
+        self._pending = _Pending()
+        self._shards += 1
+        self._remove_old_sum(self._shards - 2)
+
+
+def _checked(name: str, value: Array, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
+    """A copy of the given type; raises InputError for another shape or a value that is not finite."""
+    array = np.array(value, dtype=dtype)
+    if array.shape != shape:
+        raise InputError(f"{name} has shape {list(array.shape)}, expected {list(shape)}")
+    if not np.isfinite(array).all():
+        where = np.argwhere(~np.isfinite(array))[0].tolist()
+        raise InputError(f"{name} is {array[tuple(where)]} at {where}, expected finite numbers")
+    return array
