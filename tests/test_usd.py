@@ -40,8 +40,10 @@ def write_character(path: Path, *, z_up: bool = True, textured: bool = True, inf
     animation = UsdSkel.Animation.Define(stage, "/Man/Skeleton/Wave")
     animation.CreateJointsAttr(JOINTS)
     for frame in range(FRAMES):
-        turns = [Gf.Quatf(Gf.Rotation(Gf.Vec3d(*a), b * frame).GetQuat())
-                 for a, b in (((0, 0, 1), 3.0), ((1, 0, 0), 5.0), ((0, 1, 0), -7.0))]
+        turns = [
+            Gf.Quatf(Gf.Rotation(Gf.Vec3d(*a), b * frame).GetQuat())
+            for a, b in (((0, 0, 1), 3.0), ((1, 0, 0), 5.0), ((0, 1, 0), -7.0))
+        ]
         moves = [Gf.Vec3f(2.0 * frame, 0, 0), Gf.Vec3f(*up(60)), Gf.Vec3f(*up(60))]
         animation.CreateRotationsAttr().Set(Vt.QuatfArray(turns), 10 * frame)
         animation.CreateTranslationsAttr().Set(Vt.Vec3fArray(moves), 10 * frame)
@@ -73,11 +75,15 @@ def column(stage: Usd.Stage, *, up) -> UsdGeom.Mesh:
     ]
     mesh.CreateFaceVertexCountsAttr([4] * len(faces))
     mesh.CreateFaceVertexIndicesAttr([i for face in faces for i in face])
-    st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(
-        "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying
+    st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying)
+    st.Set(
+        [
+            Gf.Vec2f(u, v)
+            for r in range(3)
+            for k in range(4)
+            for u, v in ((k / 4, r / 3), (k / 4 + 0.25, r / 3), (k / 4 + 0.25, r / 3 + 1 / 3), (k / 4, r / 3 + 1 / 3))
+        ]
     )
-    st.Set([Gf.Vec2f(u, v) for r in range(3) for k in range(4)
-            for u, v in ((k / 4, r / 3), (k / 4 + 0.25, r / 3), (k / 4 + 0.25, r / 3 + 1 / 3), (k / 4, r / 3 + 1 / 3))])
     return mesh
 
 
@@ -223,8 +229,8 @@ def edited(path: Path, change) -> Path:
 
 
 BROKEN = {
-    "bindTransforms": lambda s: UsdSkel.Skeleton.Get(s, "/Man/Skeleton").GetBindTransformsAttr().Set(
-        Vt.Matrix4dArray([Gf.Matrix4d(1)])
+    "bindTransforms": lambda s: (
+        UsdSkel.Skeleton.Get(s, "/Man/Skeleton").GetBindTransformsAttr().Set(Vt.Matrix4dArray([Gf.Matrix4d(1)]))
     ),
     "points": lambda s: UsdGeom.Mesh.Get(s, "/Man/Body").GetPointsAttr().Set([Gf.Vec3f(float("nan"))] * 16),
     "faceVertexIndices": lambda s: UsdGeom.Mesh.Get(s, "/Man/Body").GetFaceVertexIndicesAttr().Set([0, 1, 99]),

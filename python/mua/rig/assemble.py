@@ -68,9 +68,16 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
     """
     if not any(len(part.faces) for part in scene.parts):
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character")
+    flat = np.abs(np.linalg.det(scene.rest[:, :3, :3])) < np.finfo(np.float32).tiny
+    if flat.any():
+        raise InputError(f"{path}: node {scene.node_names[flat.argmax()]} has a scale of 0 in the rest pose")
+    scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
     bind = bind_pose(scene)
     mesh = _merge(scene, bind)
-    correction, told = _correction(scene, bind, vertices=mesh.vertices[np.unique(mesh.faces)])
+    used = mesh.vertices[np.unique(mesh.faces)]
+    if not np.ptp(used, axis=0).any():
+        raise InputError(f"{path}: all vertices of the skinned meshes lie at {used[0].tolist()}, expected a surface")
+    correction, told = _correction(scene, bind, vertices=used)
     if told:
         moved = tuple(replace(motion, worlds=correction @ motion.worlds) for motion in scene.motions)
         scene = replace(scene, rest=correction @ scene.rest, motions=moved)
@@ -80,7 +87,7 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
     rigged = rigid_skeleton(scene, bind)
     joint_of_node = np.zeros(len(scene.parents), np.int32)
     joint_of_node[rigged.nodes] = np.arange(len(rigged.nodes))
-    used, face_material = np.unique(mesh.face_material, return_inverse=True)
+    shown, face_material = np.unique(mesh.face_material, return_inverse=True)
     indices = np.where(mesh.weights > 0, joint_of_node[bind.nodes[mesh.indices]], 0).astype(np.int32)
     return Surfaces(
         name=scene.name,
@@ -90,7 +97,7 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
         uv=mesh.uv,
         uv_faces=mesh.uv_faces.astype(np.int32),
         face_material=face_material.reshape(-1).astype(np.int32),
-        materials=tuple(scene.materials[m] for m in used),
+        materials=tuple(scene.materials[m] for m in shown),
         skin_indices=indices,
         skin_weights=mesh.weights.astype(np.float32),
         clips=rigged.clips,
@@ -100,14 +107,13 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
 
 def limit_influences(
     joints: Array,  # [N, K] int
-    weights: Array,  # [N, K] >= 0, any scale
+    weights: Array,  # [N, K] >= 0, rows sum to 1
 ) -> tuple[Array, Array, float]:
     """Keep the eight largest influences of each vertex, largest first, normalised.
 
     Returns joints [N, 8] int32, weights [N, 8] and the largest share of weight that a vertex lost. A joint named
-    twice counts once with the sum; a vertex without weight goes to its first joint.
+    twice counts once with the sum.
     """
-    weights = weighted(weights)
     order = np.argsort(joints, axis=1, kind="stable")
     joints = np.take_along_axis(joints, order, axis=1)
     weights = np.take_along_axis(weights, order, axis=1)
@@ -167,7 +173,7 @@ def _place(scene: Scene, part: Part, *, bind: Bind, joints: Array) -> tuple[Arra
     Skins bound in different poses or spaces meet here: each vertex is carried by its own weights.
     """
     spaces = bind.matrices[joints] @ scene.skins[part.skin].inverse_binds
-    weights = weighted(part.weights)
+    weights = part.weights
     bound = np.zeros_like(part.positions)
     for k in range(weights.shape[1]):
         space = spaces[part.joints[:, k]]
@@ -257,7 +263,9 @@ def _correction(scene: Scene, bind: Bind, *, vertices: Array) -> tuple[Array, tu
     if turn:
         c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
         correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
-        told.append(f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°.")
+        told.append(
+            f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°."
+        )
     return correction, tuple(told)
 
 

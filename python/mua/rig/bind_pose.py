@@ -28,7 +28,9 @@ class Bind:
     stretch: Array  # [J, 3, 3] scale in bind-pose axes that the rest pose adds to the joint; folded into the mesh
     places: Array  # [J, 3] bind-pose positions with the stretch folded in, metres
     mass: Array  # [J] summed skin weights
-    trusted: Array  # [J] bool: weights or the hierarchy vouch for the joint's inverse bind; else only the rest pose does
+    trusted: (
+        Array  # [J] bool: weights or the hierarchy vouch for the joint's inverse bind; else only the rest pose does
+    )
 
 
 def bind_pose(scene: Scene) -> Bind:
@@ -186,8 +188,11 @@ def _upright_space(
     frame_matrix = scene.rest[frame] if frame >= 0 else np.eye(4)
     frame_rotation = rotations_of(frame_matrix)
     mean = np.tensordot(mass / scale, spaces[:, :3, :3], axes=1)
-    quarters = [np.diag(signs) @ np.eye(3)[list(order)] for order in itertools.permutations(range(3))
-                for signs in itertools.product((1.0, -1.0), repeat=3)]
+    quarters = [
+        np.diag(signs) @ np.eye(3)[list(order)]
+        for order in itertools.permutations(range(3))
+        for signs in itertools.product((1.0, -1.0), repeat=3)
+    ]
     rotation = max((frame_rotation @ quarter for quarter in quarters), key=lambda r: float(np.sum(r * mean)))
     space = np.eye(4)
     space[:3, :3] = np.median(scale) * rotation

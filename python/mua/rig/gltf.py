@@ -58,7 +58,9 @@ def read_gltf(path: Path) -> Surfaces:
     return assemble(_scene(document, tree, skins, parts=parts, materials=materials, notes=notes), path)
 
 
-def _scene(document: Document, tree: _Tree, skins: list[Skin], *, parts: list[Part], materials: Any, notes: list[str]) -> Scene:
+def _scene(
+    document: Document, tree: _Tree, skins: list[Skin], *, parts: list[Part], materials: Any, notes: list[str]
+) -> Scene:
     """Keep the nodes that joints and their ancestors are, renumbered parents first, and sample the clips on them."""
     used = sorted({part.skin for part in parts})
     followed: set[int] = set()

@@ -79,6 +79,8 @@ def _tracks(document: Document, animation: Any, where: str, *, index: dict[int, 
         expected = len(times) * (3 if kind == "CUBICSPLINE" else 1)
         if len(values) != expected:
             raise document.error(f"{at}.output holds {len(values)} elements, expected {expected} for its {kind} keys")
+        if target.path == "rotation" and kind != "CUBICSPLINE" and not values.any(axis=1).all():
+            raise document.error(f"{at}.output holds the rotation 0 0 0 0, expected unit quaternions")
         if (np.diff(times) <= 0).any():
             raise document.error(f"{at}.input holds times that do not increase")
         tracks.append((index[target.node], target.path, times, values, kind))

@@ -49,7 +49,7 @@ class Document:
     def item(self, name: str, index: object, *, field: str) -> Any:
         """The entry of the top-level array `name` that `field` points to."""
         items = getattr(self.gltf, name) or []
-        if not isinstance(index, int) or not 0 <= index < len(items):
+        if type(index) is not int or not 0 <= index < len(items):
             raise self.error(f"{field} is {index}, but {name} holds {len(items)} entries")
         return items[index]
 
@@ -80,7 +80,7 @@ class Document:
             raise self.error(f"{where}.componentType is {accessor.componentType}, expected one of 5120 to 5126")
         if accessor.type not in types:
             raise self.error(f"{where}.type is {accessor.type}, expected {' or '.join(types)} for {field}")
-        if not isinstance(accessor.count, int) or accessor.count < 1:
+        if type(accessor.count) is not int or accessor.count < 1:
             raise self.error(f"{where}.count is {accessor.count}, expected at least 1")
         width = WIDTHS[accessor.type]
         if accessor.bufferView is None:
@@ -109,8 +109,10 @@ class Document:
         sparse, where = accessor.sparse, f"{where}.sparse"
         index_type = COMPONENT_TYPES.get(sparse.indices.componentType)
         if index_type not in (np.uint8, np.uint16, np.uint32):
-            raise self.error(f"{where}.indices.componentType is {sparse.indices.componentType}, expected an unsigned one")
-        if not isinstance(sparse.count, int) or not 1 <= sparse.count <= len(elements):
+            raise self.error(
+                f"{where}.indices.componentType is {sparse.indices.componentType}, expected an unsigned one"
+            )
+        if type(sparse.count) is not int or not 1 <= sparse.count <= len(elements):
             raise self.error(f"{where}.count is {sparse.count}, expected 1 to {len(elements)}")
         count = sparse.count
         rows = self._elements(sparse.indices, f"{where}.indices", dtype=np.dtype(index_type), count=count, width=1)
@@ -175,18 +177,42 @@ def load(path: Path) -> Document:
     text, blob = _glb_chunks(path, content) if content[:4] == b"glTF" else (content, None)
     try:
         raw = json.loads(text)
+        _check_structure(path, raw)
         gltf = pygltflib.GLTF2.gltf_from_json(text.decode("utf-8"))
     except ValueError as broken:
         raise InputError(f"{path}: the glTF JSON cannot be parsed: {broken}") from broken
     except (TypeError, AttributeError, KeyError) as broken:
         raise InputError(f"{path}: the glTF JSON has a field of the wrong kind: {broken}") from broken
-    version = raw.get("asset", {}).get("version") if isinstance(raw, dict) else None
-    if not str(version).startswith("2."):
-        raise InputError(f"{path}: asset.version is {version}, expected 2.0")
     for name in gltf.extensionsRequired or []:
         if name not in READ_EXTENSIONS and not name.startswith(HARMLESS_EXTENSIONS):
             raise InputError(f"{path}: extensionsRequired names {name}, which is not supported")
     return Document(path, gltf, blob)
+
+
+def _check_structure(path: Path, raw: Any) -> None:
+    """Refuse JSON that pygltflib would take although its arrays hold something else than objects."""
+    if not isinstance(raw, dict) or not isinstance(raw.get("asset"), dict):
+        raise InputError(f"{path}: the glTF JSON has no asset object")
+    if not str(raw["asset"].get("version")).startswith("2."):
+        raise InputError(f"{path}: asset.version is {raw['asset'].get('version')}, expected 2.0")
+    for name, entries in raw.items():
+        if isinstance(entries, list) and not name.startswith("extensions"):
+            for index, entry in enumerate(entries):
+                _check_objects(path, entry, f"{name}[{index}]")
+
+
+def _check_objects(path: Path, entry: Any, where: str) -> None:
+    """An entry of an array is an object, and so are those of the arrays of objects inside it."""
+    if not isinstance(entry, dict):
+        raise InputError(f"{path}: {where} is {entry}, expected an object")
+    for name in ("primitives", "channels", "samplers"):
+        inner = entry.get(name, [])
+        if not isinstance(inner, list):
+            raise InputError(f"{path}: {where}.{name} is {inner}, expected an array")
+        for index, item in enumerate(inner):
+            _check_objects(path, item, f"{where}.{name}[{index}]")
+    if "attributes" in entry and not (isinstance(entry["attributes"], dict) and entry["attributes"]):
+        raise InputError(f"{path}: {where}.attributes is {entry['attributes']}, expected an object with a POSITION")
 
 
 def _glb_chunks(path: Path, content: bytes) -> tuple[bytes, bytes | None]:

@@ -44,11 +44,15 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
         return bind, ()
     stray = _Stray(bind, motions)
     above = [_with_ancestors(j, bind.parents) for j in range(len(names))]
-    orphans = {j for j, parent in enumerate(bind.parents) if bind.trusted[j] and not _is_carried(j, parent, bind, stray)}
+    orphans = {
+        j for j, parent in enumerate(bind.parents) if bind.trusted[j] and not _is_carried(j, parent, bind, stray)
+    }
     root = find_root(names, bind, motions=motions)
     top = root if bind.trusted[root] else min(orphans, key=lambda j: (len(above[j]), j))
     orphans -= set(above[top])
-    attached = [j for j in np.flatnonzero(bind.trusted) if not orphans & set(above[j]) and (top in above[j] or j in above[top])]
+    attached = [
+        j for j in np.flatnonzero(bind.trusted) if not orphans & set(above[j]) and (top in above[j] or j in above[top])
+    ]
     parents = bind.parents.copy()
     moved = len(orphans)
     while orphans:
@@ -112,7 +116,9 @@ def _kept(bind: Bind, parents: Array) -> Bind:
     order = sorted(np.flatnonzero(bind.trusted).tolist(), key=lambda j: [*reversed(above[j])])
     rank = {j: n for n, j in enumerate(order)}
     kept = np.array([rank[above[j][1]] if len(above[j]) > 1 else -1 for j in order], np.int32)
-    columns = {name: getattr(bind, name)[order] for name in ("nodes", "matrices", "stretch", "places", "mass", "trusted")}
+    columns = {
+        name: getattr(bind, name)[order] for name in ("nodes", "matrices", "stretch", "places", "mass", "trusted")
+    }
     return Bind(parents=kept, **columns)
 
 
@@ -126,7 +132,7 @@ def _with_ancestors(joint: int, parents: Array) -> list[int]:
 
 
 def _size(bind: Bind) -> float:
-    return float(np.ptp(bind.places, axis=0).max())
+    return float(np.ptp(bind.places, axis=0).max()) or 1.0  # a single joint has no size
 
 
 def _is_hips(name: str) -> bool:

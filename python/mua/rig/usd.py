@@ -111,7 +111,9 @@ def _bones(query: UsdSkel.SkeletonQuery, path: Path, *, first: int) -> _Bones:
     matrices = _columns(binds)
     if not np.isfinite(matrices).all() or (np.abs(np.linalg.det(matrices)) < np.finfo(np.float32).tiny).any():
         raise InputError(f"{path}: {where}.bindTransforms holds a matrix that cannot be inverted")
-    return _Bones(query, first, [str(joint) for joint in query.GetJointOrder()], np.array(topology.GetParentIndices()), matrices)
+    return _Bones(
+        query, first, [str(joint) for joint in query.GetJointOrder()], np.array(topology.GetParentIndices()), matrices
+    )
 
 
 def _columns(matrices: object) -> Array:
