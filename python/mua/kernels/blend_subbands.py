@@ -11,9 +11,9 @@ def blend_ll(
     alpha: Array,  # [C, R]
 ) -> Array:
     """LL [C, n, n] = mean + sum_r alpha(r, c) B(:, :, r, c)."""
-    channels, rank, *plane = basis.shape
-    blended = alpha[:, None, :] @ basis.reshape(channels, rank, -1)
-    return np.asarray(mean + blended.reshape(channels, *plane))
+    channels, rank, rows, columns = basis.shape
+    blended = alpha[:, None, :] @ basis.reshape(channels, rank, rows * columns)
+    return np.asarray(mean + blended.reshape(mean.shape))
 
 
 def blend_detail(

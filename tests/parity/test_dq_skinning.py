@@ -1,0 +1,183 @@
+"""Skinning against OpenUSD's, activations against scipy, the packed splat against numpy's own half floats."""
+
+import numpy as np
+import pytest
+from pxr import Gf, UsdSkel, Vt
+from scipy.spatial.transform import Rotation
+from scipy.special import expit
+
+from mua import rotation
+from mua.arrays import Array
+from mua.kernels.dq_skinning import (
+    METRES2_TO_MM2,
+    blend_texels,
+    blend_vertices,
+    covariances,
+    pack_splats,
+    skin_splats,
+)
+
+COUNTS = [0, 1, 7, 101]
+JOINTS = 5
+REACH = 2.0  # metres; no point or translation in these tests lies farther out
+BLEND_OPERATIONS = 64  # roundings on the way of one coordinate: 8 terms of 3, a norm, two products, two sums
+
+PACKED = np.dtype(
+    [
+        ("centre", "<f4", 3),
+        ("covariance", "<f2", 6),
+        ("turn", "<f2", 4),
+        ("sh", "<f2", 12),
+        ("opacity", "<f4"),
+        ("", "<u4"),
+    ]
+)
+
+
+def position_bound(dtype: type) -> float:
+    return float(BLEND_OPERATIONS * np.finfo(dtype).eps * REACH)
+
+
+def random_joints(rng: np.random.Generator, count: int = JOINTS) -> Array:
+    """Rigid transforms [count, 8] within a quarter turn of each other, so that every blend is well-conditioned."""
+    axes = rotation.normalize(rng.normal(size=(count, 3)))
+    turns = rotation.from_axis_angle(axes, rng.uniform(0, np.pi / 4, count))
+    return rotation.dual_from_rigid(turns, rng.uniform(-1, 1, (count, 3)))
+
+
+def random_influences(rng: np.random.Generator, points: int) -> tuple[Array, Array]:
+    """Indices and weights [points, 8], largest first, the last three empty."""
+    indices, weights = np.zeros((points, 8), np.int32), np.zeros((points, 8), np.float32)
+    weights[:, :JOINTS] = -np.sort(-rng.dirichlet(np.ones(JOINTS), points), axis=1)
+    indices[:, :JOINTS] = np.argsort(rng.random((points, JOINTS)), axis=1)
+    return indices, weights
+
+
+def usd_skinned(joints: Array, indices: Array, weights: Array, points: Array) -> Array:
+    """Points moved by UsdSkel's dual quaternion skinning."""
+    matrices = np.tile(np.eye(4), (len(joints), 1, 1))
+    matrices[:, :3, :3] = rotation.to_matrix(joints[:, :4])
+    matrices[:, :3, 3] = rotation.dual_translation(joints)
+    transforms = Vt.Matrix4dArray([Gf.Matrix4d(*m.T.ravel().tolist()) for m in matrices])  # row vectors
+    pairs = np.stack([indices, weights], axis=-1).reshape(-1, 2).astype(np.float32)
+    influences = Vt.Vec2fArray.FromNumpy(pairs)
+    skinned = Vt.Vec3fArray.FromNumpy(points.astype(np.float32))
+    UsdSkel.SkinPoints("dualQuaternion", Gf.Matrix4d(1), transforms, influences, indices.shape[1], skinned)
+    return np.array(skinned)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("count", COUNTS[1:])
+def test_vertices_move_as_in_usd(count: int, dtype: type) -> None:
+    rng = np.random.default_rng(count)
+    joints = random_joints(rng)
+    indices, weights = random_influences(rng, count)
+    points = rng.uniform(-1, 1, (count, 3))
+    vertex_dq = blend_vertices(joints.astype(dtype), indices, weights)
+    moved = rotation.dual_transform(vertex_dq, points.astype(dtype))
+    assert vertex_dq.dtype == dtype
+    np.testing.assert_allclose(
+        moved, usd_skinned(joints, indices, weights, points), rtol=0, atol=2 * position_bound(np.float32)
+    )
+
+
+def test_a_joint_and_its_negative_blend_alike() -> None:
+    rng = np.random.default_rng(3)
+    joints = random_joints(rng)
+    indices, weights = random_influences(rng, 50)
+    points = rng.uniform(-1, 1, (50, 3))
+    negated = joints * rng.choice([-1.0, 1.0], (JOINTS, 1))
+    moved = [rotation.dual_transform(blend_vertices(j, indices, weights), points) for j in (joints, negated)]
+    np.testing.assert_allclose(moved[0], moved[1], rtol=0, atol=position_bound(np.float64))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("count", COUNTS)
+def test_texels_blend_their_three_vertices_as_usd_would(count: int, dtype: type) -> None:
+    rng = np.random.default_rng(count)
+    vertex_dq = random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))
+    faces = np.array([[0, 1, 2], [2, 3, 4], [5, 3, 1]], np.int32)
+    triangles = rng.integers(0, 3, count, dtype=np.int32)
+    barycentrics = rng.dirichlet([1, 1, 1], count).reshape(count, 3).astype(np.float32)
+    points = rng.uniform(-1, 1, (count, 3))
+    texel_dq = blend_texels(vertex_dq.astype(dtype), faces, triangles, barycentrics)
+    assert texel_dq.shape == (count, 8)
+    assert texel_dq.dtype == dtype
+    if count:
+        moved = rotation.dual_transform(texel_dq, points.astype(dtype))
+        expected = usd_skinned(vertex_dq, faces[triangles], barycentrics, points)
+        np.testing.assert_allclose(moved, expected, rtol=0, atol=2 * position_bound(np.float32))
+
+
+def test_the_real_part_is_unit() -> None:
+    rng = np.random.default_rng(4)
+    vertex_dq = blend_vertices(random_joints(rng), *random_influences(rng, 30))
+    np.testing.assert_allclose(np.linalg.norm(vertex_dq[:, :4], axis=1), 1, rtol=4 * np.finfo(float).eps)
+
+
+def test_rotations_that_cancel_stay_finite() -> None:
+    opposite = np.array([[1.0, 0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 0, 0]], np.float32)
+    indices, weights = np.ones((1, 8), np.int32), np.full((1, 8), 0.125, np.float32)
+    assert np.isfinite(blend_vertices(opposite, indices, weights)).all()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("count", COUNTS)
+def test_splats_are_activated_then_posed(count: int, dtype: type) -> None:
+    rng = np.random.default_rng(count)
+    texel_dq = random_joints(rng, count).astype(dtype)
+    mesh = rng.uniform(-0.5, 0.5, (4, 3)).astype(dtype)
+    faces = np.array([[0, 1, 2], [1, 3, 2]], np.int32)
+    triangles = rng.integers(0, 2, count, dtype=np.int32)
+    barycentrics = rng.dirichlet([1, 1, 1], count).reshape(count, 3).astype(np.float32)
+    texture = rng.normal(size=(count, 23)).astype(dtype)
+    texture[:, 0:3] *= 0.05
+    texture[:, 10] *= 50  # far beyond where exp(-x) of a float32 overflows
+    centres, rotations, scales, opacities = skin_splats(texel_dq, mesh, faces, triangles, barycentrics, texture)
+    assert {a.dtype for a in (centres, rotations, scales, opacities)} == {np.dtype(dtype)}
+    eps = np.finfo(dtype).eps
+    np.testing.assert_allclose(scales, np.exp(texture[:, 7:10].astype(float)), rtol=16 * eps)
+    np.testing.assert_allclose(opacities, expit(texture[:, 10].astype(float)), rtol=0, atol=4 * eps)
+    if count == 0:
+        return
+    turn = Rotation.from_quat(texel_dq[:, :4].astype(float), scalar_first=True)
+    own = Rotation.from_quat(texture[:, 3:7].astype(float), scalar_first=True)
+    canonical = np.einsum("nk,nkx->nx", barycentrics, mesh[faces[triangles]].astype(float)) + texture[:, 0:3]
+    moved = turn.apply(canonical) + rotation.dual_translation(texel_dq.astype(float))
+    np.testing.assert_allclose(centres, moved, rtol=0, atol=position_bound(dtype))
+    np.testing.assert_allclose(
+        rotation.to_matrix(rotations.astype(float)), (turn * own).as_matrix(), rtol=0, atol=32 * eps
+    )
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("count", COUNTS)
+def test_covariance_is_the_squared_axes(count: int, dtype: type) -> None:
+    rng = np.random.default_rng(count)
+    rotations = rotation.normalize(rng.normal(size=(count, 4))).astype(dtype)
+    scales = np.exp(rng.uniform(-9, -3, (count, 3))).astype(dtype)
+    found = covariances(rotations, scales)
+    assert found.shape == (count, 6)
+    assert found.dtype == dtype
+    if count:
+        axes = Rotation.from_quat(rotations.astype(float), scalar_first=True).as_matrix()
+        expected = np.einsum("nij,nj,nkj->nik", axes, scales.astype(float) ** 2, axes)[:, *np.triu_indices(3)]
+        bound = 32 * np.finfo(dtype).eps * scales.max(axis=1, keepdims=True) ** 2
+        assert np.all(np.abs(found - expected) <= bound)
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_packed_splat_holds_floats_and_half_floats_in_64_bytes(count: int) -> None:
+    rng = np.random.default_rng(count)
+    centres, texel_dq = rng.normal(size=(count, 3)), random_joints(rng, count)
+    covariance, sh = 1e-6 * rng.normal(size=(count, 6)), rng.normal(size=(count, 12))
+    opacities = rng.random(count)
+    packed = pack_splats(centres, covariance, opacities, texel_dq, sh)
+    assert packed.dtype == np.uint32
+    assert packed.shape == (count, 16)
+    fields = packed.astype("<u4").view(PACKED)[:, 0] if count else np.zeros(0, PACKED)
+    np.testing.assert_array_equal(fields["centre"], centres.astype(np.float32))
+    np.testing.assert_array_equal(fields["covariance"], (covariance * METRES2_TO_MM2).astype(np.float16))
+    np.testing.assert_array_equal(fields["turn"], texel_dq[:, :4].astype(np.float16))
+    np.testing.assert_array_equal(fields["sh"], sh.astype(np.float16))
+    np.testing.assert_array_equal(fields["opacity"], opacities.astype(np.float32))
