@@ -524,6 +524,12 @@ def test_lumberjack_stands_upright_and_keeps_its_clips(shared_data: Any) -> None
     assert surfaces.vertices[:, 1].max() == pytest.approx(1.7026, abs=1e-3)  # 170.26 centimetres in the file
     assert [(clip.name, len(clip)) for clip in surfaces.clips] == [("Walk", 31), ("Poses", 188)]
     assert surfaces.notes[0] == "Clip A-pose has no length and is left out."
+    skeleton = surfaces.skeleton
+    assert len(skeleton.names) == 33  # of 53: the others carry no weights and have no bind pose
+    assert skeleton.names[skeleton.root] == "DEF-spine_02"
+    parents = {n: skeleton.names[p] for n, p in zip(skeleton.names, skeleton.parents, strict=True) if p >= 0}
+    assert parents["DEF-thigh.L_023"] == parents["DEF-thigh.R_015"] == "DEF-spine_02"
+    assert parents["DEF-upper_arm.L_045"] == "DEF-spine.003_05"
     clip = surfaces.clips[0]
     feet = min(posed(surfaces, r, t)[:, 1].min() for r, t in zip(clip.rotations, clip.translation, strict=True))
     assert abs(feet) < 0.03

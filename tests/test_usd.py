@@ -1,5 +1,6 @@
 """USD characters, written with pxr and compared with UsdSkel's own skinning."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -65,7 +66,7 @@ def write_character(path: Path, *, z_up: bool = True, textured: bool = True, inf
     return path
 
 
-def column(stage: Usd.Stage, *, up) -> UsdGeom.Mesh:
+def column(stage: Usd.Stage, *, up: Callable[[float], tuple[float, float, float]]) -> UsdGeom.Mesh:
     mesh = UsdGeom.Mesh.Define(stage, "/Man/Body")
     square = [(-10, -8), (10, -8), (10, 8), (-10, 8)]
     points = [np.add((x, y, 0) if up(1)[2] else (x, 0, -y), up(50.0 * row)) for row in range(4) for x, y in square]
@@ -221,7 +222,79 @@ def test_polygons_become_fans(character: Path) -> None:
     assert (np.sum(outward * centre, axis=1) > 0).all()
 
 
-def edited(path: Path, change) -> Path:
+def test_subsets_have_their_own_materials(character: Path) -> None:
+    def split(stage: Usd.Stage) -> None:
+        mesh = UsdGeom.Mesh.Get(stage, "/Man/Body")
+        binding = UsdShade.MaterialBindingAPI(mesh.GetPrim())
+        subset = binding.CreateMaterialBindSubset("shoes", Vt.IntArray([0, 1, 2, 3]))
+        material = UsdShade.Material.Define(stage, "/Man/Leather")
+        shader = UsdShade.Shader.Define(stage, "/Man/Leather/Surface")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(0, 0, 1))
+        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(0.5)
+        material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+        UsdShade.MaterialBindingAPI.Apply(subset.GetPrim()).Bind(material)
+
+    surfaces = read_surfaces(edited(character, split))
+    low = surfaces.vertices[surfaces.faces][..., 1].max(axis=1) < 0.51
+    assert {surfaces.materials[m].name for m in surfaces.face_material[low]} == {"Leather"}
+    assert {surfaces.materials[m].name for m in surfaces.face_material[~low]} == {"Skin"}
+    (leather,) = (m for m in surfaces.materials if m.name == "Leather")
+    np.testing.assert_array_equal(leather.image[0, 0], [0, 0, 255, 128])
+    assert len(surfaces.vertices) == 16  # the border is one row of vertices
+
+
+def test_mesh_may_name_joints_in_its_own_order(character: Path) -> None:
+    def reorder(stage: Usd.Stage) -> None:
+        binding = UsdSkel.BindingAPI(stage.GetPrimAtPath("/Man/Body"))
+        binding.CreateJointsAttr([JOINTS[2], JOINTS[0], JOINTS[1]])
+        indices = np.array(binding.GetJointIndicesAttr().Get())
+        binding.GetJointIndicesAttr().Set(Vt.IntArray([[1, 2, 0][i] for i in indices]))
+
+    before = read_surfaces(character).skin_indices
+    np.testing.assert_array_equal(read_surfaces(edited(character, reorder)).skin_indices, before)
+
+
+def test_stage_without_rest_pose_or_clip_is_read(character: Path) -> None:
+    def still(stage: Usd.Stage) -> None:
+        stage.RemovePrim("/Man/Skeleton/Wave")
+        stage.GetPrimAtPath("/Man/Skeleton").RemoveProperty("restTransforms")
+
+    surfaces = read_surfaces(edited(character, still))
+    assert surfaces.clips == ()
+    np.testing.assert_allclose(surfaces.vertices.max(axis=0), [0.1, 1.5, 0.08], atol=1e-7)
+
+
+def test_placed_skeleton_carries_its_character_along(character: Path) -> None:
+    place = Gf.Vec3d(100, 0, 0)
+    stage = Usd.Stage.Open(str(character))
+    UsdGeom.Xformable(stage.GetPrimAtPath("/Man")).AddTranslateOp().Set(place)
+    stage.GetRootLayer().Save()
+    surfaces = read_surfaces(character)
+    np.testing.assert_allclose(surfaces.vertices.min(axis=0), [0.9, 0, -0.08], atol=1e-7)
+    np.testing.assert_allclose(surfaces.clips[0].translation[0], [1, 0, 0], atol=1e-7)
+
+
+def test_texture_coordinates_are_turned_by_a_transform(character: Path) -> None:
+    def turn(stage: Usd.Stage) -> None:
+        transform = UsdShade.Shader.Define(stage, "/Man/Skin/Transform")
+        transform.CreateIdAttr("UsdTransform2d")
+        transform.CreateInput("rotation", Sdf.ValueTypeNames.Float).Set(90.0)
+        transform.CreateInput("scale", Sdf.ValueTypeNames.Float2).Set(Gf.Vec2f(2, 3))
+        reader = UsdShade.Shader.Get(stage, "/Man/Skin/Reader")
+        transform.CreateInput("in", Sdf.ValueTypeNames.Float2).ConnectToSource(reader.GetOutput("result"))
+        image = UsdShade.Shader.Get(stage, "/Man/Skin/Image")
+        image.GetInput("st").ConnectToSource(transform.CreateOutput("result", Sdf.ValueTypeNames.Float2))
+
+    plain = read_surfaces(character)
+    turned = read_surfaces(edited(character, turn))
+    u, v = np.moveaxis(plain.uv[plain.uv_faces], -1, 0)
+    # scaled, then a quarter turn counter-clockwise with v up: (u, v) to (-3 v, 2 u)
+    expected = np.stack([-3 * (1 - v), 1 - 2 * u], axis=-1)
+    np.testing.assert_allclose(turned.uv[turned.uv_faces], expected, atol=1e-6)
+
+
+def edited(path: Path, change: Callable[[Usd.Stage], object]) -> Path:
     stage = Usd.Stage.Open(str(path))
     change(stage)
     stage.GetRootLayer().Save()

@@ -271,7 +271,7 @@ def _correction(scene: Scene, bind: Bind, *, vertices: Array) -> tuple[Array, tu
 
 def _quarter_turn(scene: Scene, bind: Bind) -> int:
     """Quarter turns about +Y that make the character face +Z, by the sides that its joint names tell."""
-    names = [scene.node_names[node].lower() for node in bind.nodes]
+    names = [re.sub(r"_\d+$", "", scene.node_names[node].lower()) for node in bind.nodes]  # some tools number them
     index = {name: j for j, name in enumerate(names)}
     across = np.zeros(3)
     for name, j in index.items():

@@ -9,13 +9,10 @@ import numpy as np
 from mua.arrays import Array
 from mua.rig.assemble import Surfaces, assemble
 from mua.rig.gltf_animation import chain, compose, read_animations
-from mua.rig.gltf_compression import decode_draco
 from mua.rig.gltf_document import Document, load
-from mua.rig.gltf_materials import Coordinates, read_materials
+from mua.rig.gltf_materials import read_materials
+from mua.rig.gltf_mesh import read_parts
 from mua.rig.scene import Part, Scene, Skin
-
-DRACO = "KHR_draco_mesh_compression"
-TRIANGLES, STRIP, FAN = 4, 5, 6
 
 
 @dataclass(frozen=True)
@@ -54,7 +51,9 @@ def read_gltf(path: Path) -> Surfaces:
             skin = len(skins) - 1
         elif skin >= skin_nodes:
             raise document.error(f"nodes[{node}].skin is {skin}, but skins holds {skin_nodes} entries")
-        parts += _parts(document, node, skin=skin, bones=len(skins[skin].joints), coordinates=coordinates, notes=notes)
+        parts += read_parts(
+            document, node, skin=skin, bones=len(skins[skin].joints), coordinates=coordinates, notes=notes
+        )
     return assemble(_scene(document, tree, skins, parts=parts, materials=materials, notes=notes), path)
 
 
@@ -174,128 +173,3 @@ def _skins(document: Document) -> tuple[list[Skin], int]:
                 raise document.error(f"{field}[{int(singular.argmax())}] cannot be inverted, expected a rigid matrix")
         skins.append(Skin(np.array(joints, int), binds))
     return skins, len(skins)
-
-
-def _parts(
-    document: Document,
-    node: int,
-    *,
-    skin: int,
-    bones: int,
-    coordinates: tuple[Coordinates, ...],
-    notes: list[str],
-) -> list[Part]:
-    source = document.gltf.nodes[node]
-    mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
-    name = mesh.name or f"mesh{source.mesh}"
-    parts = []
-    for p, primitive in enumerate(mesh.primitives or []):
-        where = f"meshes[{source.mesh}].primitives[{p}]"
-        mode = TRIANGLES if primitive.mode is None else primitive.mode
-        if mode not in (TRIANGLES, STRIP, FAN):
-            notes.append(f"Mesh {name} holds points or lines, which are left out.")
-            continue
-        if primitive.targets:
-            notes.append(f"The morph targets of mesh {name} are left out.")
-        material = len(coordinates) - 1 if primitive.material is None else primitive.material
-        if not 0 <= material < len(coordinates):
-            raise document.error(f"{where}.material is {material}, but materials holds {len(coordinates) - 1} entries")
-        geometry = _geometry(document, primitive, where)
-        faces = _triangles(geometry["indices"], mode)
-        rigid = source.skin is None
-        joints, weights = _influences(document, geometry, where, bones=bones, rigid=rigid)
-        uv = geometry.get(f"TEXCOORD_{coordinates[material].texcoord}")
-        if uv is None:
-            notes.append(f"Mesh {name} has no texture coordinates.")
-        parts.append(
-            Part(
-                name=name,
-                group=node,
-                positions=geometry["POSITION"].astype(float),
-                faces=faces,
-                uv=np.zeros((0, 2)) if uv is None else coordinates[material].apply(uv.astype(float)),
-                uv_faces=np.full_like(faces, -1) if uv is None else faces,
-                material=material,
-                skin=skin,
-                joints=joints,
-                weights=weights,
-            )
-        )
-    return parts
-
-
-def _geometry(document: Document, primitive: Any, where: str) -> dict[str, Array]:
-    """Attributes [V, n] that matter here, and "indices" [I]; all of one length and in range."""
-    wanted = {
-        name: accessor
-        for name, accessor in vars(primitive.attributes).items()
-        if accessor is not None and name.split("_")[0] in ("POSITION", "TEXCOORD", "JOINTS", "WEIGHTS")
-    }
-    if "POSITION" not in wanted:
-        raise document.error(f"{where}.attributes has no POSITION")
-    draco = (primitive.extensions or {}).get(DRACO)
-    packed = _draco(document, draco, where, wanted=wanted) if draco else {}
-    geometry = dict(packed)
-    for name, accessor in wanted.items():
-        if name not in packed:
-            types = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",)}.get(name.split("_")[0], ("VEC4",))
-            geometry[name] = document.accessor(accessor, field=f"{where}.attributes.{name}", types=types)
-    count = len(geometry["POSITION"])
-    for name in wanted:
-        if len(geometry[name]) != count:
-            raise document.error(f"{where}.attributes.{name} holds {len(geometry[name])} elements for {count} vertices")
-    if "indices" not in geometry:
-        if primitive.indices is None:
-            geometry["indices"] = np.arange(count)
-        else:
-            field = f"{where}.indices"
-            geometry["indices"] = document.accessor(primitive.indices, field=field, types=("SCALAR",))[:, 0].astype(int)
-    if geometry["indices"].max(initial=-1) >= count:
-        raise document.error(f"{where}.indices holds {geometry['indices'].max()}, but there are {count} vertices")
-    return geometry
-
-
-def _draco(document: Document, extension: dict[str, Any], where: str, *, wanted: dict[str, int]) -> dict[str, Array]:
-    where = f"{where}.extensions.{DRACO}"
-    content = document.view(extension.get("bufferView"), field=f"{where}.bufferView")
-    ids = {name: unique for name, unique in (extension.get("attributes") or {}).items() if name in wanted}
-    try:
-        faces, attributes = decode_draco(content, ids)
-    except ValueError as broken:
-        raise document.error(f"{where} cannot be decoded: {broken}") from broken
-    geometry = {"indices": faces.reshape(-1).astype(int)}
-    for name, stored in attributes.items():
-        accessor = document.item("accessors", wanted[name], field=f"{where}.attributes.{name}")
-        geometry[name] = document.numbers(stored, f"{where}.attributes.{name}", normalized=bool(accessor.normalized))
-    return geometry
-
-
-def _triangles(indices: Array, mode: int) -> Array:
-    """Triangles [F, 3] of an index list, a strip or a fan; an incomplete last one is dropped."""
-    if mode == TRIANGLES:
-        return indices[: len(indices) // 3 * 3].reshape(-1, 3)
-    count = max(len(indices) - 2, 0)
-    steps = np.arange(count)
-    if mode == FAN:
-        return np.stack([indices[steps + 1], indices[steps + 2], np.repeat(indices[:1], count)], axis=1)
-    odd = steps % 2
-    return np.stack([indices[steps], indices[steps + 1 + odd], indices[steps + 2 - odd]], axis=1)
-
-
-def _influences(
-    document: Document, geometry: dict[str, Array], where: str, *, bones: int, rigid: bool
-) -> tuple[Array, Array]:
-    count = len(geometry["POSITION"])
-    if rigid:
-        return np.zeros((count, 1), int), np.ones((count, 1))
-    sets = sorted(name for name in geometry if name.startswith("JOINTS_"))
-    if not sets or any(name.replace("JOINTS", "WEIGHTS") not in geometry for name in sets):
-        raise document.error(f"{where}.attributes of a skinned mesh lacks JOINTS_0 with WEIGHTS_0, expected both")
-    joints = np.concatenate([geometry[name] for name in sets], axis=1).astype(int)
-    weights = np.concatenate([geometry[name.replace("JOINTS", "WEIGHTS")] for name in sets], axis=1).astype(float)
-    if weights.min() < 0:
-        raise document.error(f"{where}.attributes.WEIGHTS holds {weights.min()}, expected no negative weight")
-    beyond = (joints >= bones) & (weights > 0)
-    if beyond.any():
-        raise document.error(f"{where}.attributes.JOINTS holds {joints[beyond].max()}, but the skin has {bones} joints")
-    return np.where(weights > 0, joints, 0), weights

@@ -53,10 +53,10 @@ class Document:
             raise self.error(f"{field} is {index}, but {name} holds {len(items)} entries")
         return items[index]
 
-    def view(self, index: int, *, field: str) -> bytes:
+    def view(self, index: Any, *, field: str) -> bytes:
         """The bytes of a buffer view, decompressed."""
+        view = self.item("bufferViews", index, field=field)
         if index not in self._views:
-            view = self.item("bufferViews", index, field=field)
             compressed = (view.extensions or {}).get(MESHOPT)
             if compressed:
                 where = f"bufferViews[{index}].extensions.{MESHOPT}"

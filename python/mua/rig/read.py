@@ -8,6 +8,7 @@ from mua.rig.assemble import Surfaces
 from mua.rig.character import Character
 from mua.rig.gltf import read_gltf
 from mua.rig.usd import read_usd
+from mua.rig.uv import build_atlas
 
 READERS = {".glb": read_gltf, ".gltf": read_gltf} | dict.fromkeys((".usd", ".usda", ".usdc", ".usdz"), read_usd)
 
@@ -24,6 +25,4 @@ def read_surfaces(path: Path) -> Surfaces:
 
 def read_character(path: Path, uv: Literal["keep", "unwrap", "auto"] = "auto", *, atlas_size: int = 2048) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    from mua.rig.uv import build_atlas
-
     return build_atlas(read_surfaces(path), uv=uv, size=atlas_size)
