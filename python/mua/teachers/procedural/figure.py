@@ -1,0 +1,231 @@
+"""Trunk, arms and legs of the figure: tubes lofted through tables of rings (metres, A-pose)."""
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.teachers.procedural.grid import Part, angles, close, mirrored, rows_by_length, smoothstep, spline
+from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, PLACES, UPPER_ARM, chain_weights
+
+COLUMNS = 48  # of trunk and head
+ARM_COLUMNS = 20  # the perimeter of an armhole in quads
+LEG_COLUMNS = 18
+SLEEVE_END = 0.365  # metres along the arm
+
+_ARMHOLE_ROWS = slice(4, 8)
+_LEFT_ARMHOLE = slice(33, 39)  # columns of quads
+_RIGHT_ARMHOLE = slice(9, 15)
+
+# ring, half width, front z, back z, y at the sides, at the front, at the back
+_TRUNK = np.array(
+    [
+        [0, 0.058, 0.038, -0.064, 1.428, 1.405, 1.445],
+        [1, 0.080, 0.050, -0.076, 1.423, 1.390, 1.436],
+        [2, 0.105, 0.062, -0.087, 1.416, 1.372, 1.424],
+        [3, 0.126, 0.071, -0.095, 1.406, 1.354, 1.410],
+        [4, 0.140, 0.078, -0.101, 1.392, 1.337, 1.394],
+        [6, 0.150, 0.091, -0.107, 1.345, 1.303, 1.348],
+        [8, 0.147, 0.103, -0.107, 1.290, 1.268, 1.297],
+        [10, 0.140, 0.110, -0.100, 1.240, 1.232, 1.245],
+        [12, 0.128, 0.097, -0.091, 1.190, 1.186, 1.192],
+        [14, 0.117, 0.087, -0.084, 1.142, 1.140, 1.143],
+        [16, 0.109, 0.081, -0.079, 1.098, 1.098, 1.098],
+        [18, 0.107, 0.079, -0.078, 1.062, 1.062, 1.062],
+        [20, 0.112, 0.083, -0.081, 1.030, 1.030, 1.030],
+    ]
+)
+
+# metres along the arm, half thickness across it in the plane of the arms, half depth
+_ARM = np.array(
+    [
+        [0.040, 0.054, 0.055],
+        [0.070, 0.050, 0.051],
+        [0.120, 0.045, 0.046],
+        [0.200, 0.041, 0.042],
+        [0.265, 0.038, 0.040],
+        [0.300, 0.039, 0.041],
+        [0.365, 0.045, 0.047],
+    ]
+)
+_HAND = np.array(
+    [
+        [0.350, 0.034, 0.035],
+        [0.380, 0.033, 0.034],
+        [0.430, 0.029, 0.031],
+        [0.470, 0.023, 0.027],
+        [0.500, 0.020, 0.026],
+        [0.530, 0.018, 0.034],
+        [0.560, 0.0165, 0.040],
+        [0.590, 0.0145, 0.041],
+        [0.630, 0.012, 0.037],
+        [0.655, 0.0095, 0.030],
+        [0.672, 0.0065, 0.019],
+        [0.680, 0.0, 0.0],
+    ]
+)
+_SLEEVE_RINGS = np.array([0.045, 0.07, 0.1, 0.135, 0.17, 0.205, 0.24, 0.265, 0.29, 0.325, 0.36, 0.365])
+SLEEVE_EDGE = len(_SLEEVE_RINGS)  # the ring of the arm where cloth ends
+_HAND_RINGS = np.array([0.35, 0.38, 0.42, 0.46, 0.49, 0.515, 0.54, 0.565, 0.59, 0.615, 0.64, 0.66, 0.673, 0.68])
+
+# ring, centre x, y, z, tilt (degrees, 90: the ring stands and faces forward), half width, reach to front and back
+_LEG = np.array(
+    [
+        [0, 0.086, 0.880, 0.000, 0, 0.082, 0.085, 0.090],
+        [2, 0.084, 0.740, 0.004, 0, 0.072, 0.076, 0.076],
+        [4, 0.081, 0.580, 0.006, 0, 0.058, 0.060, 0.056],
+        [5, 0.080, 0.520, 0.006, 0, 0.052, 0.054, 0.048],
+        [6, 0.079, 0.475, 0.006, 0, 0.049, 0.051, 0.046],
+        [7, 0.078, 0.430, 0.002, 0, 0.047, 0.046, 0.050],
+        [9, 0.077, 0.335, -0.006, 0, 0.048, 0.041, 0.057],
+        [11, 0.075, 0.215, -0.012, 0, 0.038, 0.035, 0.043],
+        [12, 0.074, 0.150, -0.015, 0, 0.031, 0.032, 0.034],
+        [13, 0.074, 0.105, -0.018, 4, 0.030, 0.034, 0.036],
+        [14, 0.074, 0.080, -0.014, 22, 0.032, 0.042, 0.048],
+        [15, 0.075, 0.060, -0.004, 48, 0.034, 0.048, 0.070],
+        [16, 0.077, 0.042, 0.026, 74, 0.034, 0.038, 0.060],
+        [17, 0.080, 0.032, 0.060, 86, 0.036, 0.030, 0.045],
+        [18, 0.083, 0.024, 0.098, 90, 0.041, 0.024, 0.034],
+        [19, 0.085, 0.020, 0.130, 90, 0.038, 0.018, 0.030],
+        [20, 0.086, 0.017, 0.155, 90, 0.026, 0.014, 0.022],
+        [21, 0.087, 0.015, 0.166, 90, 0.012, 0.008, 0.012],
+        [22, 0.087, 0.014, 0.170, 90, 0.0, 0.0, 0.0],
+    ]
+)
+
+_SPINE_LINKS = (("Hips", 0.0, 0.0), ("Spine", 1.03, 0.05), ("Spine1", 1.13, 0.05), ("Spine2", 1.23, 0.05))
+_NECK_LINKS = (*_SPINE_LINKS, ("Neck", 1.43, 0.03), ("Head", 1.485, 0.025))
+
+
+def trunk_weights(points: Array) -> Array:
+    """Weights [..., J] along spine, neck and head by height, the back of the neck rising with the jaw line."""
+    return chain_weights(points[..., 1] + 0.3 * np.minimum(points[..., 2], 0.05) * (points[..., 1] > 1.4), _NECK_LINKS)
+
+
+def neckline(points: Array) -> Array:
+    """Signed metres [...] above the edge of the bodice's wide neckline: positive on skin."""
+    x, y, z = np.moveaxis(points, -1, 0)
+    edge = 1.392 - 0.055 * np.exp(-((x / 0.085) ** 2)) * (z > 0) - 0.012 * np.exp(-((x / 0.08) ** 2)) * (z <= 0)
+    return np.asarray(y - edge - 0.35 * np.maximum(np.abs(x) - 0.1, 0))
+
+
+def trunk_ring(keys: Array, theta: Array) -> Array:
+    """Points [R, C + 1, 3] of rings given as (half width, front z, back z, y at sides, front, back)."""
+    width, front, back, side, ahead, behind = (keys[:, i, None] for i in range(6))
+    sine, cosine = np.sin(theta), np.cos(theta)
+    middle = (front + back) / 2 * 0.4
+    squareness = 0.9  # a little fuller than an ellipse
+    across = width * np.sign(sine) * np.abs(sine) ** squareness
+    depth = np.where(cosine > 0, front - middle, middle - back) * np.sign(cosine) * np.abs(cosine) ** squareness
+    height = side + np.where(cosine > 0, ahead - side, behind - side) * cosine**2
+    return np.stack([across, height, middle + depth], axis=-1)
+
+
+def _bust(points: Array) -> Array:
+    x, y, z = np.moveaxis(points, -1, 0)
+    bump = sum(np.exp(-(((x - side) / 0.042) ** 2) - ((y - 1.243) / 0.042) ** 2) for side in (-0.066, 0.066))
+    return np.stack([x, y, z + 0.020 * bump * (z > 0)], axis=-1)
+
+
+def build_trunk() -> Part:
+    """From the base of the neck to the waist, with a rectangular hole for each arm."""
+    keys = spline(_TRUNK, np.arange(_TRUNK[-1, 0] + 1))
+    points = close(_bust(trunk_ring(keys, angles(COLUMNS))))
+    hole = np.zeros((len(points) - 1, COLUMNS), dtype=bool)
+    hole[_ARMHOLE_ROWS, _LEFT_ARMHOLE] = hole[_ARMHOLE_ROWS, _RIGHT_ARMHOLE] = True
+    return Part(
+        "trunk",
+        points,
+        cell=(0.0, 0.34, 0.5, 0.64),
+        rows=rows_by_length(points),
+        looseness=0.15 * smoothstep(0.01, -0.02, neckline(points)),
+        weights=trunk_weights(points),
+        hole=hole,
+    )
+
+
+def _armhole(trunk: Array) -> Array:
+    """The perimeter [C + 1, 3] of the left armhole, from the middle of its back edge under the arm to the front."""
+    top, bottom = _ARMHOLE_ROWS.start, _ARMHOLE_ROWS.stop
+    front, back = _LEFT_ARMHOLE.start, _LEFT_ARMHOLE.stop
+    middle = (top + bottom) // 2
+    path = [(row, back) for row in range(middle, bottom)]
+    path += [(bottom, column) for column in range(back, front, -1)]
+    path += [(row, front) for row in range(bottom, top, -1)]
+    path += [(top, column) for column in range(front, back)]
+    path += [(row, back) for row in range(top, middle + 1)]
+    return np.stack([trunk[place] for place in path])
+
+
+def _arm_ring(along: Array, keys: Array) -> Array:
+    """Rings [R, C + 1, 3] at `along` [R] or [R, C + 1] metres from the shoulder; keys [R, 2] half thickness and depth."""
+    theta = angles(ARM_COLUMNS)
+    across = np.array([-ARM_DIRECTION[1], ARM_DIRECTION[0], 0.0])
+    outward = (keys[:, :1] * np.sin(theta))[..., None] * across
+    ahead = (keys[:, 1:] * np.cos(theta))[..., None] * np.array([0.0, 0, 1])
+    center = PLACES["LeftArm"] + np.broadcast_to(along, outward.shape[:2])[..., None] * ARM_DIRECTION
+    return np.asarray(center + outward + ahead)
+
+
+def _arm_points(trunk: Array) -> Array:
+    """The left arm [R, C + 1, 3]: armhole, sleeve, the sleeve's edge folded inward, forearm and hand."""
+    theta = angles(ARM_COLUMNS)
+    lean = 0.045 * smoothstep(0.16, 0.03, _SLEEVE_RINGS)[:, None]  # first rings lean like the armhole
+    sleeve = _arm_ring(_SLEEVE_RINGS[:, None] - lean * np.sin(theta), spline(_ARM, _SLEEVE_RINGS))
+    sleeve -= 0.012 * smoothstep(0.14, 0.03, _SLEEVE_RINGS)[:, None, None] * np.array([0.7, 0.7, 0])
+    hand = _arm_ring(_HAND_RINGS[:, None], spline(_HAND, _HAND_RINGS))
+    points = np.concatenate([_armhole(trunk)[None], sleeve, hand])
+    for _ in range(6):  # ease the first rings into the shoulder
+        inner = slice(1, 5)
+        points[inner] = 0.5 * points[inner] + 0.25 * (points[0:4] + points[2:6])
+    return close(points)
+
+
+def arm_weights(along: Array) -> Array:
+    """Weights [..., J] of the left arm's chain at `along` metres from the shoulder."""
+    links = (("LeftArm", 0.0, 0.0), ("LeftForeArm", UPPER_ARM, 0.045), ("LeftHand", UPPER_ARM + FOREARM, 0.03))
+    return chain_weights(along, links)
+
+
+def build_arm(trunk: Array) -> Part:
+    """The left arm in its sleeve, welded to the armhole of the trunk's points."""
+    points = _arm_points(trunk)
+    along = (points - PLACES["LeftArm"]) @ ARM_DIRECTION
+    loose = np.zeros(points.shape[:2])
+    loose[: len(_SLEEVE_RINGS) + 1] = (0.15 + 0.3 * smoothstep(0.25, SLEEVE_END, np.r_[0, _SLEEVE_RINGS]))[:, None]
+    return Part("left arm", points, (0.36, 0.64, 0.52, 1.0), rows_by_length(points), loose, arm_weights(along))
+
+
+def build_leg() -> Part:
+    """The left leg and its shoe, open at the top under the skirt."""
+    keys = spline(_LEG, np.arange(_LEG[-1, 0] + 1))
+    x, y, z, tilt, width, front, back = (keys[:, i, None] for i in range(7))
+    theta, tilt = angles(LEG_COLUMNS), np.radians(tilt)
+    reach = np.where(np.cos(theta) > 0, front, back) * np.cos(theta)
+    points = np.stack(
+        np.broadcast_arrays(x + width * np.sin(theta), y + reach * np.sin(tilt), z + reach * np.cos(tilt)), axis=-1
+    )
+    points = close(points.copy())
+    points[..., 1] = np.maximum(points[..., 1], 0)
+    rows = rows_by_length(points)
+    links = (("LeftUpLeg", 0.0, 0.0), ("LeftLeg", -0.485, 0.05), ("LeftFoot", -0.09, 0.03))
+    weights = chain_weights(-points[..., 1], links)
+    foot = smoothstep(0.085, 0.125, points[..., 2]) * (points[..., 1] < 0.1)
+    weights = weights * (1 - foot)[..., None] + chain_weights(foot, (("LeftToeBase", 0.0, 0.0),)) * foot[..., None]
+    return Part("left leg", points, (0.0, 0.64, 0.18, 1.0), rows, np.zeros(points.shape[:2]), weights)
+
+
+def other_side(part: Part, *, cell: tuple[float, float, float, float]) -> Part:
+    """The right twin of a left part; its joints are those of the right side."""
+    from mua.teachers.procedural.joints import NAMES
+
+    partner = [
+        NAMES.index("Right" + name[4:]) if name.startswith("Left") else NAMES.index(name.replace("Right", "Left", 1))
+        for name in NAMES
+    ]
+    return Part(
+        part.name.replace("left", "right"),
+        mirrored(part.points),
+        cell,
+        part.rows,
+        part.looseness[:, ::-1],
+        part.weights[:, ::-1][..., partner],
+    )
