@@ -34,7 +34,7 @@ def read_gltf(path: Path) -> Surfaces:
     document = load(path)
     tree = _tree(document)
     materials, coordinates = read_materials(document)
-    skins, skin_nodes = _skins(document)
+    skins = _skins(document)
     joints = {int(node) for skin in skins for node in skin.joints}
     parts: list[Part] = []
     notes: list[str] = []
@@ -49,8 +49,8 @@ def read_gltf(path: Path) -> Surfaces:
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             skin = len(skins) - 1
-        elif skin >= skin_nodes:
-            raise document.error(f"nodes[{node}].skin is {skin}, but skins holds {skin_nodes} entries")
+        else:
+            document.item("skins", skin, field=f"nodes[{node}].skin")
         parts += read_parts(
             document, node, skin=skin, bones=len(skins[skin].joints), coordinates=coordinates, notes=notes
         )
@@ -155,7 +155,7 @@ def _nearest(node: int, parents: dict[int, int], joints: set[int]) -> int | None
     return above
 
 
-def _skins(document: Document) -> tuple[list[Skin], int]:
+def _skins(document: Document) -> list[Skin]:
     skins = []
     for s, skin in enumerate(document.gltf.skins or []):
         joints = skin.joints or []
@@ -172,4 +172,4 @@ def _skins(document: Document) -> tuple[list[Skin], int]:
             if singular.any():
                 raise document.error(f"{field}[{int(singular.argmax())}] cannot be inverted, expected a rigid matrix")
         skins.append(Skin(np.array(joints, int), binds))
-    return skins, len(skins)
+    return skins
