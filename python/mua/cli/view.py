@@ -16,7 +16,7 @@ from mua.errors import InputError
 from mua.files import replacing
 from mua.motion.clip import Clip
 from mua.motion.resample import resample
-from mua.render import frame_bounds, render
+from mua.render import frame_bounds, render, to_bytes
 
 LARGEST = 8192  # pixels along a side
 
@@ -29,7 +29,7 @@ def view(
         "view.png"
     ),
     size: Annotated[str, typer.Option(help="WIDTHxHEIGHT in pixels, or one number for a square.")] = "640x960",
-    azimuth: Annotated[float, typer.Option(help="Degrees round the character to its left; 0 is its front.")] = 0,
+    azimuth: Annotated[float, typer.Option(help="Degrees round it to its left; 0 is the front of its bind pose.")] = 0,
     elevation: Annotated[float, typer.Option(help="Degrees from which the camera looks down.")] = 0,
     background: Annotated[str, typer.Option(help="Colour name or #rrggbb.")] = "white",
 ) -> None:
@@ -44,7 +44,7 @@ def view(
     camera = orbit(frame_bounds(posed), screen=screen, azimuth=np.radians(azimuth), elevation=np.radians(elevation))
     image = render(posed, camera, background=color)
     with replacing(output) as temporary:
-        Image.fromarray(np.uint8(np.clip(image, 0, 1) * 255 + 0.5)).save(temporary)
+        Image.fromarray(to_bytes(image)).save(temporary)
 
 
 def run() -> None:

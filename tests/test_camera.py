@@ -1,0 +1,46 @@
+"""The orbit camera: where it stands and what it frames."""
+
+import numpy as np
+import pytest
+
+from mua.arrays import Array
+from mua.camera import FILL, Camera, orbit
+
+BOX = np.array([[-0.3, 0.1, -0.2], [0.5, 1.9, 0.4]])
+ROUNDING = 64 * np.finfo(float).eps
+
+
+def ndc(camera: Camera, points: Array) -> Array:
+    clip = np.concatenate([points, np.ones((len(points), 1))], axis=1) @ (camera.projection @ camera.view).T
+    assert np.all(clip[:, 3] > 0)
+    return np.asarray(clip[:, :2] / clip[:, 3:])
+
+
+@pytest.mark.parametrize("screen", [(640, 960), (1, 1), (997, 13)])
+@pytest.mark.parametrize(("azimuth", "elevation"), [(0, 0), (0.7, 0.3), (-2.5, 1.5), (3, -1)])
+def test_the_whole_box_is_in_the_image_and_touches_its_margin(
+    screen: tuple[int, int], azimuth: float, elevation: float
+) -> None:
+    camera = orbit(BOX, screen=screen, azimuth=azimuth, elevation=elevation)
+    corners = np.array(np.meshgrid(*BOX.T)).reshape(3, -1).T
+    assert np.abs(ndc(camera, corners)).max() == pytest.approx(FILL, abs=ROUNDING)
+    np.testing.assert_allclose(ndc(camera, BOX.mean(axis=0)[None]), 0, atol=ROUNDING)
+
+
+def test_azimuth_goes_round_to_the_left_and_elevation_up() -> None:
+    middle = BOX.mean(axis=0)
+    places = {(0, 0): [0, 0, 1], (np.pi / 2, 0): [1, 0, 0], (0, np.pi / 2): [0, 1, 0]}
+    for (azimuth, elevation), direction in places.items():
+        away = orbit(BOX, screen=(64, 64), azimuth=azimuth, elevation=elevation).position - middle
+        np.testing.assert_allclose(away / np.linalg.norm(away), direction, atol=ROUNDING)
+
+
+def test_up_is_up_and_the_characters_left_is_on_the_right_of_its_front_view() -> None:
+    camera = orbit(BOX, screen=(64, 64))
+    up, left = ndc(camera, BOX.mean(axis=0) + np.array([[0, 0.1, 0], [0.1, 0, 0]]))
+    assert up[1] > 0
+    assert left[0] > 0
+
+
+def test_a_single_point_can_be_framed() -> None:
+    assert np.isfinite(orbit(np.zeros((2, 3)), screen=(64, 64)).view).all()

@@ -1,0 +1,140 @@
+"""Decoding against PyWavelets and plain sums; posing by what a rigid motion must do."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import pywt
+from synthetic_avatar import synthetic_avatar, synthetic_rig
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar, Branch, Mlp
+from mua.decode import Frame, decode, decode_clip_frame, pose_splats
+from mua.motion.descriptor import describe
+from mua.rig.skeleton import Pose
+
+# Sums on the way of one value: four layers of at most 63 terms, 4 basis maps, 4 levels of 2 x 10 taps, 20 in posing.
+OPERATIONS = 4 * 63 + 4 + 80 + 20
+WAVELETS = ["bior1.1", "bior2.2", "bior4.4", "bior6.8"]
+
+
+def perceptron(mlp: Mlp, x: Array) -> Array:
+    for i, layer in enumerate(mlp):
+        x = layer.weight.astype(float) @ x + layer.bias
+        x = x if i == len(mlp) - 1 else np.maximum(x, 0)
+    return x
+
+
+def descriptor(avatar: Avatar, frame: int) -> Array:
+    clip = avatar.clips[0]
+    raw = describe(avatar.rig.skeleton, avatar.encoding, clip.rotations, clip.translation)[frame]
+    return np.asarray((raw - avatar.normalization.mean) / avatar.normalization.scale)
+
+
+def synthesised(branch: Branch, avatar: Avatar, x: Array) -> Array:
+    """Raw channels [N, C] by pywt.waverec2, the two finest levels without details."""
+    alphas = perceptron(branch.mlp, x)
+    bands, start = [], 0
+    for rank in branch.ranks:
+        count = branch.channels * rank
+        bands.append(alphas[start : start + count].reshape(branch.channels, rank))
+        start += count
+    ll = branch.ll_mean + np.einsum("cr,crij->cij", bands[0], branch.ll_basis.astype(float))
+    details = [
+        tuple(band.mean + np.einsum("cr,scri,scrj->scij", alpha, band.h.astype(float), band.w.astype(float)))
+        for band, alpha in zip(branch.details, bands[1:], strict=True)
+    ]
+    missing = [(None, None, None)] * (avatar.wavelet.levels - len(details))
+    texture = pywt.waverec2([ll, *details, *missing], avatar.wavelet.name, "periodization", axes=(1, 2))
+    return np.asarray((texture.reshape(branch.channels, -1)[:, avatar.rig.texels.texels] + branch.static).T)
+
+
+@pytest.mark.parametrize("name", WAVELETS)
+def test_texture_equals_pywt_synthesis_of_the_blended_subbands(name: str) -> None:
+    avatar = synthetic_avatar(wavelet=name)
+    posed = decode_clip_frame(avatar, avatar.clips[0], frame=4, dtype=np.float64)
+    x = descriptor(avatar, 4)
+    expected = np.concatenate([synthesised(b, avatar, x) for b in (avatar.geometry, avatar.appearance)], axis=1)
+    bound = OPERATIONS * np.finfo(float).eps * np.abs(expected).max()
+    np.testing.assert_allclose(posed.texture, expected, rtol=0, atol=bound)
+
+
+def test_canonical_mesh_is_the_mean_and_the_predicted_components() -> None:
+    avatar = synthetic_avatar()
+    posed = decode_clip_frame(avatar, avatar.clips[0], frame=2, dtype=np.float64)
+    coefficients = perceptron(avatar.coarse.mlp, descriptor(avatar, 2))
+    expected = avatar.coarse.mean + np.tensordot(coefficients, avatar.coarse.basis.astype(float), 1)
+    np.testing.assert_allclose(posed.canonical, expected, rtol=0, atol=OPERATIONS * np.finfo(float).eps)
+
+
+def test_float32_stays_near_float64() -> None:
+    avatar = synthetic_avatar()
+    single = decode_clip_frame(avatar, avatar.clips[0], frame=3)
+    double = decode_clip_frame(avatar, avatar.clips[0], frame=3, dtype=np.float64)
+    for field in dataclasses.fields(Frame):
+        found, expected = getattr(single, field.name), getattr(double, field.name)
+        assert (found.dtype, expected.dtype) == (np.float32, np.float64)
+        bound = OPERATIONS * np.finfo(np.float32).eps * max(np.abs(double.texture).max(), 1)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=bound, err_msg=field.name)
+
+
+def test_a_frame_of_a_clip_is_its_window_newest_first() -> None:
+    avatar = synthetic_avatar()
+    clip = avatar.clips[0]
+    for frame, window in ((3, [3, 2, 1]), (1, [1, 0, 0]), (0, [0, 0, 0])):
+        expected = decode(avatar, clip.rotations[window], translation=clip.translation[window])
+        np.testing.assert_array_equal(decode_clip_frame(avatar, clip, frame=frame).centres, expected.centres)
+
+
+def test_an_avatar_without_texels_decodes_to_no_splats() -> None:
+    avatar = synthetic_avatar()
+    texels = dataclasses.replace(
+        avatar.rig.texels,
+        texels=np.zeros(0, np.int32),
+        triangles=np.zeros(0, np.int32),
+        barycentrics=np.zeros((0, 3), np.float32),
+    )
+    bare = {
+        name: dataclasses.replace(branch, static=branch.static[:, :0])
+        for name, branch in (("geometry", avatar.geometry), ("appearance", avatar.appearance))
+    }
+    empty = dataclasses.replace(avatar, rig=dataclasses.replace(avatar.rig, texels=texels), **bare)
+    posed = decode_clip_frame(empty, avatar.clips[0], frame=0)
+    assert posed.centres.shape == (0, 3)
+    assert posed.texture.shape == (0, 23)
+
+
+def random_texture(texels: int) -> Array:
+    return np.random.default_rng(0).normal(size=(texels, 23)) * 0.1 + np.eye(1, 23, 3)
+
+
+def test_bind_pose_leaves_splats_on_the_canonical_surface() -> None:
+    rig = synthetic_rig()
+    texture = random_texture(len(rig.texels.texels))
+    posed = pose_splats(rig, rig.mesh.vertices, texture=texture, pose=rig.skeleton.bind_pose)
+    corners = rig.mesh.vertices[rig.mesh.faces[rig.texels.triangles]]
+    on_surface = np.einsum("nk,nkx->nx", rig.texels.barycentrics, corners)
+    bound = OPERATIONS * np.finfo(float).eps
+    np.testing.assert_allclose(posed.mesh, rig.mesh.vertices, rtol=0, atol=bound)
+    np.testing.assert_allclose(posed.centres, on_surface + texture[:, 0:3], rtol=0, atol=bound)
+    np.testing.assert_allclose(posed.rotations, rotation.normalize(texture[:, 3:7]), rtol=0, atol=bound)
+    np.testing.assert_array_equal(posed.sh, texture[:, 11:])
+
+
+def test_moving_the_root_moves_everything_rigidly() -> None:
+    rig = synthetic_rig()
+    texture = random_texture(len(rig.texels.texels))
+    turn = rotation.from_axis_angle(np.array([0.6, 0, 0.8]), 2.0)
+    moved = np.array([1.0, 2, 3])
+    pose = Pose(np.concatenate([turn[None], rig.skeleton.bind_rotations[1:]]), moved)
+    still = pose_splats(rig, rig.mesh.vertices, texture=texture, pose=rig.skeleton.bind_pose)
+    posed = pose_splats(rig, rig.mesh.vertices, texture=texture, pose=pose)
+    pivot = rig.skeleton.bind_translations[0]
+    bound = OPERATIONS * np.finfo(float).eps
+    for name in ("mesh", "centres"):
+        expected = rotation.rotate(turn, getattr(still, name) - pivot) + moved
+        np.testing.assert_allclose(getattr(posed, name), expected, rtol=0, atol=bound)
+    np.testing.assert_allclose(posed.rotations, rotation.multiply(turn, still.rotations), rtol=0, atol=bound)
+    np.testing.assert_allclose(posed.texel_dq[:, :4], np.broadcast_to(turn, (len(texture), 4)), rtol=0, atol=bound)
+    np.testing.assert_array_equal(posed.scales, still.scales)
