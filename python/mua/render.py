@@ -49,3 +49,8 @@ def frame_bounds(frame: Frame) -> Array:
     if len(frame.centres) == 0:
         return np.zeros((2, 3))
     return np.stack([frame.centres.min(axis=0), frame.centres.max(axis=0)])
+
+
+def to_bytes(image: Array) -> Array:
+    """sRGB in 0..1 to 8 bits."""
+    return (np.clip(image, 0, 1) * 255 + 0.5).astype(np.uint8)
