@@ -12,6 +12,8 @@ from torch.nn import functional
 from mua.errors import InputError
 from mua.rig.texel_map import TexelMap
 
+CACHED_VALUES = 1 << 19  # channels are filled a few at a time, as many as the cache of a CPU holds
+
 
 class Fill:
     """The filling of one texel map; what depends on the map alone is computed once."""
@@ -36,12 +38,12 @@ class Fill:
         values: Tensor,  # [N, C] any float type, at the valid texels in the order of the map
     ) -> Tensor:
         """Images [C, H, W] of the same type that keep `values` at the valid texels and are smooth elsewhere."""
-        planes = values.T.contiguous()
-        images = torch.zeros(len(planes), self._size**2, dtype=values.dtype, device=self._texels.device)
+        images = torch.zeros(values.shape[1], self._size**2, dtype=values.dtype, device=self._texels.device)
         weights = [weight.to(values.dtype) for weight in self._weights]
-        for image, plane in zip(images, planes, strict=True):  # one by one: a plane fits a CPU's cache, not a stack
-            image[self._texels] = plane.to(image.device)
-            known = image.view(1, 1, self._size, self._size)
+        together = max(CACHED_VALUES // self._size**2, 1)
+        for image, planes in zip(images.split(together), values.T.split(together), strict=True):
+            image[:, self._texels] = planes.to(image.device)
+            known = image.view(-1, 1, self._size, self._size)
             known.copy_(self._pull(self._push(known, weights)))
         return images.view(-1, self._size, self._size)
 
@@ -55,7 +57,7 @@ class Fill:
     def _pull(self, levels: list[Tensor]) -> Tensor:
         """The finest level with every empty texel filled from the coarser ones."""
         valid = self._valid[-1]
-        filled = torch.where(valid, levels[-1], levels[-1].sum() / valid.sum())
+        filled = torch.where(valid, levels[-1], levels[-1].sum(dim=(-2, -1), keepdim=True) / valid.sum())
         for known, valid in zip(levels[-2::-1], self._valid[-2::-1], strict=True):
             filled = torch.where(valid, known, _upsample(filled))
             filled = torch.where(valid, known, _mean_of_neighbours(filled))
@@ -63,13 +65,13 @@ class Fill:
 
 
 def _upsample(image: Tensor) -> Tensor:
-    """[1, 1, n, n] to [1, 1, 2 n, 2 n], bilinear and periodic."""
+    """[C, 1, n, n] to [C, 1, 2 n, 2 n], bilinear and periodic."""
     wrapped = functional.pad(image, (1, 1, 1, 1), mode="circular")
     return functional.interpolate(wrapped, scale_factor=2, mode="bilinear", align_corners=False)[..., 2:-2, 2:-2]
 
 
 def _mean_of_neighbours(image: Tensor) -> Tensor:
-    """The mean of the four texels around each of [1, 1, n, n], periodic."""
+    """The mean of the four texels around each of [C, 1, n, n], periodic."""
     wrapped = functional.pad(image, (1, 1, 1, 1), mode="circular")
     mean = wrapped[..., 1:-1, :-2] + wrapped[..., 1:-1, 2:]
     mean += wrapped[..., :-2, 1:-1]
