@@ -1,0 +1,1 @@
+"""The main job: a rigged character and its motion become a verified `.muaavatar`, stage by stage."""

@@ -1,0 +1,68 @@
+"""Which clips are held out and which frames are recorded."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.recording import PlannedClip
+
+HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out
+HELD_FRAMES = 40  # recorded of each held-out clip, all of them whole
+WHOLE_FRAMES = 60  # of all training frames, kept whole to measure the error on
+SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
+
+
+def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip], list[Clip]]:
+    """Training and held-out clips: those named, or the end of every clip where none is.
+
+    Errors: InputError for a name that no clip has, or where nothing is left to train on.
+    """
+    names = [clip.name for clip in clips]
+    for name in hold_out:
+        if name not in names:
+            raise InputError(f"--hold-out {name}: there is no such clip, only {', '.join(names)}")
+    if not hold_out:
+        return _cut(clips)
+    training = [clip for clip in clips if clip.name not in hold_out]
+    if not training:
+        raise InputError(f"--hold-out {' '.join(hold_out)}: leaves no clip to train on")
+    return training, [clip for clip in clips if clip.name in hold_out]
+
+
+def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[Clip]]:
+    training, held = [], []
+    for clip in clips:
+        at = len(clip) - len(clip) // HELD_SHARE
+        if len(clip) < SHORTEST:
+            training.append(clip)
+            continue
+        training.append(replace(clip, rotations=clip.rotations[:at], translation=clip.translation[:at]))
+        end = replace(clip, rotations=clip.rotations[at:], translation=clip.translation[at:])
+        held.append(replace(end, name=f"{clip.name} (end)"))
+    return training, held
+
+
+def plan(training: Sequence[Clip], held: Sequence[Clip], *, frames: int) -> list[PlannedClip]:
+    """Record `frames` training frames, evenly over all training clips, and some of each held-out clip."""
+    if frames < 1:
+        raise InputError(f"--frames {frames}: expected at least 1")
+    starts = np.cumsum([0, *(len(clip) for clip in training)])
+    chosen = _evenly(int(starts[-1]), frames)
+    kept = chosen[_evenly(len(chosen), WHOLE_FRAMES)]
+    planned = []
+    for clip, start, stop in zip(training, starts[:-1], starts[1:], strict=True):
+        wanted, whole = (frozenset((f[(f >= start) & (f < stop)] - start).tolist()) for f in (chosen, kept))
+        planned.append(PlannedClip(clip, held_out=False, wanted=wanted, whole=whole))
+    for clip in held:
+        wanted = frozenset(_evenly(len(clip), HELD_FRAMES).tolist())
+        planned.append(PlannedClip(clip, held_out=True, wanted=wanted, whole=wanted))
+    return planned
+
+
+def _evenly(count: int, wanted: int) -> np.ndarray:
+    """At most `wanted` of `count` indices, ascending, each in the middle of its share."""
+    wanted = min(count, wanted)
+    return ((np.arange(wanted) + 0.5) * count / wanted).astype(int)

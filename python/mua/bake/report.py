@@ -1,0 +1,68 @@
+"""The figures that a bake ends with: errors beside two baselines, as a terminal table, Markdown and JSON."""
+
+import json
+import math
+from collections.abc import Mapping
+
+from rich.table import Table
+
+from mua.evaluate import PICTURES, UNITS, Errors
+
+STAND_IN = "the teacher is a simulated stand-in, not a capture"
+HEADINGS = ("frames", "attribute", "unit", "mean texture", "best coefficients", "student", "explained")
+
+
+def rows(groups: Mapping[str, Errors]) -> list[tuple[str, ...]]:
+    """One row for each group and attribute, in the order of HEADINGS."""
+    lines = []
+    for name, errors in groups.items():
+        for attribute, (unit, _) in UNITS.items():
+            rms = [f"{errors.rms(attribute, picture):.3g}" for picture in ("mean", "best", "student")]
+            lines.append((f"{name} ({errors.frames})", attribute, unit, *rms, percent(errors.explained(attribute))))
+        mesh = [f"{errors.rms('mesh', 'mean'):.3g}", "", f"{errors.rms('mesh', 'student'):.3g}"]
+        lines.append((f"{name} ({errors.frames})", "mesh", "mm", *mesh, percent(errors.explained("mesh"))))
+    return lines
+
+
+def percent(share: float) -> str:
+    return "nothing varies" if math.isnan(share) else f"{100 * share:.1f} %"
+
+
+def table(groups: Mapping[str, Errors]) -> Table:
+    """For the terminal."""
+    shown = Table(*HEADINGS, title=f"RMS error ({STAND_IN})")
+    last = ""
+    for name, *cells in rows(groups):
+        shown.add_row("" if name == last else name, *cells, end_section=cells[0] == "mesh")
+        last = name
+    return shown
+
+
+def markdown(groups: Mapping[str, Errors]) -> str:
+    """The table, and what the student misses split by cause, in shares of the variance about the mean texture."""
+    lines = ["| " + " | ".join(HEADINGS) + " |", "|" + " --- |" * len(HEADINGS)]
+    lines += ["| " + " | ".join(row) + " |" for row in rows(groups)]
+    lines += ["", "| frames | attribute | D1 and D0 left out | bases too small | mispredicted |", "|" + " --- |" * 5]
+    for name, errors in groups.items():
+        lines += [f"| {name} | {attribute} | {' | '.join(missed(errors, attribute))} |" for attribute in UNITS]
+    return "\n".join([*lines, "", f"RMS errors of whole vectors; {STAND_IN}.", ""])
+
+
+def missed(errors: Errors, attribute: str) -> tuple[str, str, str]:
+    """Shares of the variance that are lost to the static bands, to the bases and to the MLP."""
+    bands, best, student = (errors.explained(attribute, picture) for picture in ("bands", "best", "student"))
+    return percent(1 - bands), percent(bands - best), percent(best - student)
+
+
+def as_json(groups: Mapping[str, Errors]) -> str:
+    """Every figure, unrounded."""
+    told = {
+        name: {
+            "frames": errors.frames,
+            "rms": {a: {p: errors.rms(a, p) for p in PICTURES} for a in UNITS},
+            "explained": {a: {p: errors.explained(a, p) for p in PICTURES} for a in UNITS},
+            "mesh mm": {p: errors.rms("mesh", p) for p in ("mean", "student")},
+        }
+        for name, errors in groups.items()
+    }
+    return json.dumps({"teacher": STAND_IN, "groups": told}, indent=1)

@@ -1,0 +1,110 @@
+"""mua-bake: a rigged character and its motion become a verified `.muaavatar`."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+import torch
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from mua.asset.tensors import Storage
+from mua.bake.pipeline import Order, bake
+from mua.bake.report import table
+from mua.cli.failure import refusing
+from mua.errors import InputError
+from mua.motion.joint_names import read_mapping
+from mua.student.settings import preset
+
+
+def main(
+    character: Annotated[
+        Path | None, typer.Argument(help="Rigged character: .glb, .gltf, .usd* or .usdz; none: the procedural one.")
+    ] = None,
+    motion: Annotated[
+        list[Path], typer.Option(help="Motion file or directory, may be repeated; none: the character's own clips.")
+    ] = [],  # noqa: B006 typer copies it
+    output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
+    preset_name: Annotated[str, typer.Option("--preset", help="tiny, preview or paper.")] = "preview",
+    frames: Annotated[int | None, typer.Option(help="Training frames to record; the preset's if left out.")] = None,
+    texels: Annotated[int | None, typer.Option(help="Texels along a side; the preset's if left out.")] = None,
+    hold_out: Annotated[
+        list[str], typer.Option(help="Clip to keep from training, may be repeated; none: the end of every clip.")
+    ] = [],  # noqa: B006 typer copies it
+    mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: target joint to source joint.")] = None,
+    uv: Annotated[
+        Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
+    ] = "auto",
+    storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
+    seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
+    device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
+    work: Annotated[Path | None, typer.Option(help="Work directory; beside the output if left out.")] = None,
+) -> None:
+    """Record a teacher, distil it and write a .muaavatar, with a table of errors and a contact sheet beside it.
+
+    A run that was interrupted goes on where it stopped when the same command is given again.
+    """
+    settings = replace(preset(preset_name), seed=seed)
+    settings = replace(settings, frames=settings.frames if frames is None else frames)
+    settings = replace(settings, texels=settings.texels if texels is None else texels)
+    order = Order(
+        output=output,
+        work=output.with_suffix(".work") if work is None else work,
+        settings=settings,
+        character=character,
+        motions=tuple(motion),
+        hold_out=tuple(hold_out),
+        mapping=None if mapping is None else read_mapping(mapping),
+        uv=uv,
+        storage=storage,
+        device=_device(device),
+    )
+    console = Console()
+    with Display(console) as display:
+        baked = bake(order, display)
+    console.print(table(baked.errors))
+    for path in (baked.output, baked.sheet, baked.figures):
+        console.print(path, highlight=False)
+
+
+def run() -> None:
+    """Entry point of the command."""
+    refusing(main)
+
+
+def _device(name: str) -> torch.device:
+    found = torch.cuda.is_available()
+    if name == "cuda" and not found:
+        raise InputError("--device cuda: torch finds no GPU here")
+    return torch.device("cuda" if found and name != "cpu" else "cpu")
+
+
+class Display:
+    """Shows a bake on the terminal: one bar for each stage."""
+
+    def __init__(self, console: Console) -> None:
+        self.console = console
+        columns = (TextColumn("{task.description:<24}"), BarColumn(), TextColumn("{task.fields[detail]:<32}"))
+        self.progress = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console)
+        self.task: TaskID | None = None
+
+    def __enter__(self) -> "Display":
+        self.progress.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.progress.stop()
+
+    def stage(self, name: str) -> None:
+        """End the bar of the stage before and begin one."""
+        if self.task is not None:
+            self.progress.update(self.task, total=1, completed=1)
+        self.task = self.progress.add_task(name, total=None, detail="")
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        if self.task is not None:
+            self.progress.update(self.task, completed=done, total=total, detail=detail)
+
+    def note(self, sentence: str) -> None:
+        self.console.print(f"  {sentence}", highlight=False)
