@@ -60,12 +60,13 @@ def splat_draw(
     front_to_back = order[::-1][ellipses[order[::-1], 4] > 0]
     ellipses, colors, opacities = ellipses[front_to_back], colors[front_to_back], opacities[front_to_back]
     low, high = _pixel_boxes(ellipses, opacities, screen)
+    quads = np.concatenate([ellipses, half_lengths(ellipses, opacities), opacities[:, None]], axis=1)
     rows = BAND_PIXELS // width
     for top in range(0, height, rows):
         bottom = min(top + rows, height)
         band = image[top * width : bottom * width]
         for splats, column, row in _pairs(low, high, top, bottom):
-            alphas = _alphas(ellipses[splats], opacities[splats], column, row)
+            alphas = _alphas(quads[splats], column.astype(quads.dtype), row.astype(quads.dtype))
             drawn = np.flatnonzero(alphas)
             pixels = (row[drawn] - top) * width + column[drawn]
             _blend(band, colors, splats[drawn], pixels, alphas[drawn])
@@ -121,17 +122,16 @@ def _pairs(
 
 
 def _alphas(
-    ellipses: Array,  # [P, 6]
-    opacities: Array,  # [P]
+    quads: Array,  # [P, 9] ellipse, half lengths, opacity
     column: Array,  # [P]
     row: Array,  # [P]
 ) -> Array:
     """Opacity [P] of each pair, 0 where the pixel centre is outside the quad."""
-    x, y = column + 0.5 - ellipses[:, 0], row + 0.5 - ellipses[:, 1]
-    cosine, sine, major, minor = ellipses[:, 2:6].T
+    middle_x, middle_y, cosine, sine, major, minor, half_along, half_across, opacity = quads.T
+    x, y = column + 0.5 - middle_x, row + 0.5 - middle_y
     along, across = cosine * x + sine * y, cosine * y - sine * x
-    inside = np.all(np.abs(np.stack([along, across], axis=1)) <= half_lengths(ellipses, opacities), axis=1)
-    alphas = opacities * pixel_integral(along, across, major, minor)
+    inside = (np.abs(along) <= half_along) & (np.abs(across) <= half_across)
+    alphas = opacity * pixel_integral(along, across, major, minor)
     return np.where(inside, np.minimum(alphas, MOST_ALPHA), 0)
 
 
