@@ -3,7 +3,7 @@
 import numpy as np
 
 from mua.rig.character import MAX_INFLUENCES, Character
-from mua.teachers.procedural.figure import build_arm, build_leg, build_trunk, other_side
+from mua.teachers.procedural.figure import build_arm, build_leg, build_thumb, build_trunk, other_side
 from mua.teachers.procedural.grid import weld
 from mua.teachers.procedural.head import build_hair, build_head
 from mua.teachers.procedural.joints import build_skeleton
@@ -23,7 +23,7 @@ def procedural_character(*, seed: int = 0) -> Character:
     rng = np.random.default_rng(seed)
     skeleton = build_skeleton()
     trunk = build_trunk()
-    arm, leg = build_arm(trunk.points), build_leg()
+    arm, thumb, leg = build_arm(trunk.points), build_thumb(), build_leg()
     parts = (
         build_skirt(trunk.points, rng.uniform(-np.pi, np.pi, size=2)),
         trunk,
@@ -31,6 +31,8 @@ def procedural_character(*, seed: int = 0) -> Character:
         build_hair(),
         arm,
         other_side(arm, cell=(0.52, 0.64, 0.68, 1.0)),
+        thumb,
+        other_side(thumb, cell=(0.84, 0.93, 1.0, 1.0)),
         leg,
         other_side(leg, cell=(0.18, 0.64, 0.36, 1.0)),
     )

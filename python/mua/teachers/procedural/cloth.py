@@ -4,8 +4,9 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface, color, filled, inside, over
-from mua.teachers.procedural.complexion import SKIN
-from mua.teachers.procedural.figure import SLEEVE_EDGE, neckline
+from mua.teachers.procedural.complexion import SKIN, paint_hand
+from mua.teachers.procedural.figure import SLEEVE_EDGE, along_arm, neckline
+from mua.teachers.procedural.joints import PLACES
 
 IVORY, TEAL, CORAL, MUSTARD, LEAF = color("f3e6cf"), color("17505e"), color("d9573f"), color("e2a63a"), color("4f8a7b")
 _APEX = 0.197  # metres from the cone's apex to the waist: waist girth / pi, for a half circle of cloth
@@ -39,7 +40,7 @@ def paint_skirt(surface: Surface) -> Array:
     cloth = over(cloth, LEAF, inside(np.hypot(cx, cy) - 0.007))
 
     above_hem = surface.along.max() - surface.along - 0.02
-    scallop = _TRIM + 0.010 * np.abs(np.cos(surface.around * np.pi * 54))
+    scallop = _TRIM + 0.016 * np.abs(np.sin(surface.around * np.pi * 40))
     cloth = over(cloth, TEAL, inside(above_hem - scallop))
     return over(cloth, MUSTARD, inside(np.abs(above_hem - 0.022) - 0.004))
 
@@ -58,4 +59,6 @@ def paint_sleeve(surface: Surface) -> Array:
     """The top's sleeve with its cuff, then the bare forearm and hand."""
     cloth = filled(surface.around, TEAL)
     cloth = over(cloth, MUSTARD, inside(np.abs(surface.ring - SLEEVE_EDGE) - 1, edge=0.05))
-    return over(cloth, SKIN, inside(SLEEVE_EDGE + 0.7 - surface.ring, edge=0.05))
+    across = surface.points[..., 2] - PLACES["LeftArm"][2]
+    skin = paint_hand(filled(surface.around, SKIN), along_arm(surface.points), across)
+    return over(cloth, skin, inside(SLEEVE_EDGE + 0.7 - surface.ring, edge=0.05))

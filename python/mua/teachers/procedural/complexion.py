@@ -4,6 +4,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface, color, filled, inside, over
+from mua.teachers.procedural.grid import smoothstep
 from mua.teachers.procedural.head import EYE, MOUTH, NOSE_TIP
 
 SKIN, BLUSH, LIPS = color("e3b495"), color("d98a72"), color("b5483f")
@@ -20,8 +21,8 @@ def _ellipse(x: Array, y: Array, wide: float, high: float) -> Array:
 def _eye(face: Array, x: Array, y: Array) -> Array:
     """One eye, x growing outward from its centre."""
     lifted = y - 0.12 * x  # the outer corner a little higher
-    almond = np.maximum(np.abs(lifted + 0.1 * lifted) - 0.0062 * np.sqrt(np.clip(1 - (x / 0.0145) ** 2, 0, 1)), -1)
-    white = inside(almond)
+    almond = np.abs(lifted) - 0.0064 * np.sqrt(np.clip(1 - (x / 0.0145) ** 2, 0, 1))
+    white = inside(np.maximum(almond, np.abs(x) - 0.0145))
     face = over(face, WHITE, white)
     face = over(face, IRIS, inside(np.hypot(x, lifted - 0.0005) - 0.0058) * white)
     face = over(face, LASH, inside(np.hypot(x, lifted - 0.0005) - 0.0028) * white)
@@ -57,6 +58,20 @@ def paint_hair(surface: Surface) -> Array:
     strand = 0.5 + 0.25 * np.sin(surface.around * 131 + 2 * np.sin(surface.along * 9))
     strand += 0.25 * np.sin(surface.around * 83 + 1.0)
     return over(filled(surface.around, HAIR), HAIR_LIGHT, 0.6 * strand)
+
+
+def paint_hand(skin: Array, along: Array, z: Array) -> Array:
+    """Lines between the fingers of a closed hand and a little blush on its tip, `along` metres from the shoulder."""
+    spread = np.interp(along, [0.59, 0.66, 0.68], [1.0, 0.8, 0.4])
+    for line in (-0.019, 0.0, 0.019):
+        gap = np.maximum(np.abs(z - line * spread) - 0.0008, 0.6 - along)
+        skin = over(skin, BLUSH, 0.8 * inside(gap, edge=0.0015))
+    return over(skin, BLUSH, 0.35 * smoothstep(0.62, 0.68, along))
+
+
+def paint_thumb(surface: Surface) -> Array:
+    """Plain skin."""
+    return filled(surface.around, SKIN)
 
 
 def paint_leg(surface: Surface) -> Array:

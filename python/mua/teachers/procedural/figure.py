@@ -1,14 +1,17 @@
 """Trunk, arms and legs of the figure: tubes lofted through tables of rings (metres, A-pose)."""
 
+import re
+
 import numpy as np
 
 from mua.arrays import Array
 from mua.teachers.procedural.grid import Part, angles, close, mirrored, rows_by_length, smoothstep, spline
-from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, PLACES, UPPER_ARM, chain_weights
+from mua.teachers.procedural.joints import ARM_DIRECTION, FOREARM, INDEX, NAMES, PLACES, UPPER_ARM, chain_weights
 
 COLUMNS = 48  # of trunk and head
 ARM_COLUMNS = 20  # the perimeter of an armhole in quads
 LEG_COLUMNS = 18
+_THUMB_COLUMNS = 8
 SLEEVE_END = 0.365  # metres along the arm
 
 _ARMHOLE_ROWS = slice(4, 8)
@@ -18,11 +21,11 @@ _RIGHT_ARMHOLE = slice(9, 15)
 # ring, half width, front z, back z, y at the sides, at the front, at the back
 _TRUNK = np.array(
     [
-        [0, 0.058, 0.038, -0.064, 1.428, 1.405, 1.445],
+        [0, 0.054, 0.036, -0.064, 1.430, 1.405, 1.445],
         [1, 0.080, 0.050, -0.076, 1.423, 1.390, 1.436],
-        [2, 0.105, 0.062, -0.087, 1.416, 1.372, 1.424],
-        [3, 0.126, 0.071, -0.095, 1.406, 1.354, 1.410],
-        [4, 0.140, 0.078, -0.101, 1.392, 1.337, 1.394],
+        [2, 0.103, 0.062, -0.087, 1.418, 1.372, 1.424],
+        [3, 0.126, 0.071, -0.095, 1.411, 1.354, 1.411],
+        [4, 0.145, 0.078, -0.101, 1.401, 1.337, 1.396],
         [6, 0.150, 0.091, -0.107, 1.345, 1.303, 1.348],
         [8, 0.147, 0.103, -0.107, 1.290, 1.268, 1.297],
         [10, 0.140, 0.110, -0.100, 1.240, 1.232, 1.245],
@@ -37,31 +40,32 @@ _TRUNK = np.array(
 # metres along the arm, half thickness across it in the plane of the arms, half depth
 _ARM = np.array(
     [
-        [0.040, 0.054, 0.055],
-        [0.070, 0.050, 0.051],
-        [0.120, 0.045, 0.046],
-        [0.200, 0.041, 0.042],
-        [0.265, 0.038, 0.040],
-        [0.300, 0.039, 0.041],
-        [0.365, 0.045, 0.047],
+        [0.040, 0.048, 0.050],
+        [0.070, 0.045, 0.047],
+        [0.120, 0.041, 0.043],
+        [0.200, 0.037, 0.038],
+        [0.265, 0.0345, 0.036],
+        [0.300, 0.036, 0.038],
+        [0.365, 0.046, 0.048],
     ]
 )
 _HAND = np.array(
     [
-        [0.350, 0.034, 0.035],
-        [0.380, 0.033, 0.034],
-        [0.430, 0.029, 0.031],
-        [0.470, 0.023, 0.027],
-        [0.500, 0.020, 0.026],
-        [0.530, 0.018, 0.034],
-        [0.560, 0.0165, 0.040],
-        [0.590, 0.0145, 0.041],
-        [0.630, 0.012, 0.037],
-        [0.655, 0.0095, 0.030],
-        [0.672, 0.0065, 0.019],
+        [0.350, 0.030, 0.031],
+        [0.380, 0.030, 0.031],
+        [0.430, 0.026, 0.028],
+        [0.470, 0.020, 0.024],
+        [0.500, 0.0165, 0.023],
+        [0.530, 0.0165, 0.031],
+        [0.560, 0.0155, 0.037],
+        [0.590, 0.0135, 0.038],
+        [0.630, 0.011, 0.034],
+        [0.655, 0.009, 0.027],
+        [0.672, 0.006, 0.017],
         [0.680, 0.0, 0.0],
     ]
 )
+_CURL = 1.4  # per metre: how the fingers bend toward the palm
 _SLEEVE_RINGS = np.array([0.045, 0.07, 0.1, 0.135, 0.17, 0.205, 0.24, 0.265, 0.29, 0.325, 0.36, 0.365])
 SLEEVE_EDGE = len(_SLEEVE_RINGS)  # the ring of the arm where cloth ends
 _HAND_RINGS = np.array([0.35, 0.38, 0.42, 0.46, 0.49, 0.515, 0.54, 0.565, 0.59, 0.615, 0.64, 0.66, 0.673, 0.68])
@@ -73,12 +77,12 @@ _LEG = np.array(
         [2, 0.084, 0.740, 0.004, 0, 0.072, 0.076, 0.076],
         [4, 0.081, 0.580, 0.006, 0, 0.058, 0.060, 0.056],
         [5, 0.080, 0.520, 0.006, 0, 0.052, 0.054, 0.048],
-        [6, 0.079, 0.475, 0.006, 0, 0.049, 0.051, 0.046],
-        [7, 0.078, 0.430, 0.002, 0, 0.047, 0.046, 0.050],
-        [9, 0.077, 0.335, -0.006, 0, 0.048, 0.041, 0.057],
-        [11, 0.075, 0.215, -0.012, 0, 0.038, 0.035, 0.043],
-        [12, 0.074, 0.150, -0.015, 0, 0.031, 0.032, 0.034],
-        [13, 0.074, 0.105, -0.018, 4, 0.030, 0.034, 0.036],
+        [6, 0.079, 0.475, 0.006, 0, 0.046, 0.048, 0.043],
+        [7, 0.078, 0.430, 0.002, 0, 0.044, 0.044, 0.047],
+        [9, 0.077, 0.335, -0.006, 0, 0.046, 0.038, 0.057],
+        [11, 0.075, 0.215, -0.012, 0, 0.034, 0.031, 0.041],
+        [12, 0.074, 0.150, -0.015, 0, 0.0265, 0.027, 0.031],
+        [13, 0.074, 0.105, -0.018, 4, 0.0265, 0.030, 0.034],
         [14, 0.074, 0.080, -0.014, 22, 0.032, 0.042, 0.048],
         [15, 0.075, 0.060, -0.004, 48, 0.034, 0.048, 0.070],
         [16, 0.077, 0.042, 0.026, 74, 0.034, 0.038, 0.060],
@@ -103,8 +107,9 @@ def trunk_weights(points: Array) -> Array:
 def neckline(points: Array) -> Array:
     """Signed metres [...] above the edge of the bodice's wide neckline: positive on skin."""
     x, y, z = np.moveaxis(points, -1, 0)
-    edge = 1.392 - 0.055 * np.exp(-((x / 0.085) ** 2)) * (z > 0) - 0.012 * np.exp(-((x / 0.08) ** 2)) * (z <= 0)
-    return np.asarray(y - edge - 0.35 * np.maximum(np.abs(x) - 0.1, 0))
+    scoop = np.clip(1 - (x / 0.112) ** 2, 0, 1)
+    depth = np.where(z > -0.01, 0.075, 0.012)
+    return np.asarray(y - 1.418 + depth * scoop)
 
 
 def trunk_ring(keys: Array, theta: Array) -> Array:
@@ -172,11 +177,19 @@ def _arm_points(trunk: Array) -> Array:
     sleeve = _arm_ring(_SLEEVE_RINGS[:, None] - lean * np.sin(theta), spline(_ARM, _SLEEVE_RINGS))
     sleeve -= 0.012 * smoothstep(0.14, 0.03, _SLEEVE_RINGS)[:, None, None] * np.array([0.7, 0.7, 0])
     hand = _arm_ring(_HAND_RINGS[:, None], spline(_HAND, _HAND_RINGS))
+    curl = _CURL * np.maximum(_HAND_RINGS - 0.56, 0) ** 2
+    hand += curl[:, None, None] * np.array([ARM_DIRECTION[1], -ARM_DIRECTION[0], 0.0])
     points = np.concatenate([_armhole(trunk)[None], sleeve, hand])
     for _ in range(6):  # ease the first rings into the shoulder
         inner = slice(1, 5)
         points[inner] = 0.5 * points[inner] + 0.25 * (points[0:4] + points[2:6])
     return close(points)
+
+
+def along_arm(points: Array) -> Array:
+    """Metres [...] along the straight arm of either side."""
+    mirrored_x = np.stack([np.abs(points[..., 0]), points[..., 1], points[..., 2]], axis=-1)
+    return np.asarray((mirrored_x - PLACES["LeftArm"]) @ ARM_DIRECTION)
 
 
 def arm_weights(along: Array) -> Array:
@@ -188,10 +201,27 @@ def arm_weights(along: Array) -> Array:
 def build_arm(trunk: Array) -> Part:
     """The left arm in its sleeve, welded to the armhole of the trunk's points."""
     points = _arm_points(trunk)
-    along = (points - PLACES["LeftArm"]) @ ARM_DIRECTION
+    along = along_arm(points)
     loose = np.zeros(points.shape[:2])
     loose[: len(_SLEEVE_RINGS) + 1] = (0.15 + 0.3 * smoothstep(0.25, SLEEVE_END, np.r_[0, _SLEEVE_RINGS]))[:, None]
     return Part("left arm", points, (0.36, 0.64, 0.52, 1.0), rows_by_length(points), loose, arm_weights(along))
+
+
+def build_thumb() -> Part:
+    """The left thumb, rooted in the palm and pointing forward along the hand."""
+    root = PLACES["LeftArm"] + 0.522 * ARM_DIRECTION + np.array([0, 0, 0.018])
+    pointing = 0.8 * ARM_DIRECTION + np.array([-0.12, -0.1, 0.55])
+    pointing /= np.linalg.norm(pointing)
+    across = np.cross(pointing, np.array([0.0, 0, 1]))
+    across /= np.linalg.norm(across)
+    reach = np.array([0.0, 0.02, 0.04, 0.052, 0.06, 0.063])
+    radius = np.array([0.0125, 0.0115, 0.0095, 0.0085, 0.0055, 0.0])[:, None]
+    theta = angles(_THUMB_COLUMNS)
+    ring = np.sin(theta)[:, None] * -across + np.cos(theta)[:, None] * np.cross(-across, -pointing)
+    points = close(root + reach[:, None, None] * pointing + radius[..., None] * ring)
+    weights = chain_weights(np.zeros(points.shape[:2]), (("LeftHand", 0.0, 0.0),))
+    loose = np.zeros(points.shape[:2])
+    return Part("left thumb", points, (0.68, 0.93, 0.84, 1.0), rows_by_length(points), loose, weights)
 
 
 def build_leg() -> Part:
@@ -215,12 +245,8 @@ def build_leg() -> Part:
 
 def other_side(part: Part, *, cell: tuple[float, float, float, float]) -> Part:
     """The right twin of a left part; its joints are those of the right side."""
-    from mua.teachers.procedural.joints import NAMES
-
-    partner = [
-        NAMES.index("Right" + name[4:]) if name.startswith("Left") else NAMES.index(name.replace("Right", "Left", 1))
-        for name in NAMES
-    ]
+    swap = {"Left": "Right", "Right": "Left"}
+    partner = [INDEX[re.sub("^(Left|Right)", lambda side: swap[side[0]], name)] for name in NAMES]
     return Part(
         part.name.replace("left", "right"),
         mirrored(part.points),

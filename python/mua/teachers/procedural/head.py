@@ -26,27 +26,27 @@ _HEAD = np.array(
         [17, 0.061, 0.089, -0.069, 1.533, 1.519, 1.531],
         [19, 0.055, 0.088, -0.064, 1.520, 1.502, 1.521],
         [21, 0.047, 0.084, -0.061, 1.506, 1.486, 1.510],
-        [22, 0.042, 0.070, -0.059, 1.497, 1.478, 1.503],
-        [23, 0.041, 0.048, -0.058, 1.486, 1.470, 1.494],
-        [24, 0.042, 0.035, -0.058, 1.472, 1.452, 1.482],
-        [26, 0.048, 0.033, -0.061, 1.445, 1.424, 1.460],
+        [22, 0.041, 0.070, -0.057, 1.497, 1.478, 1.503],
+        [23, 0.038, 0.046, -0.055, 1.486, 1.470, 1.494],
+        [24, 0.038, 0.032, -0.054, 1.472, 1.452, 1.482],
+        [26, 0.043, 0.030, -0.058, 1.447, 1.424, 1.460],
     ]
 )
-_CROWN, _ENDS = 1.712, 1.490  # y of the hair
-_PART = -0.45  # angle of the parting
+_CROWN, _ENDS = 1.712, 1.488  # y of the hair
 # fraction of the way from crown to ends, half width, front z, back z, y
 _HAIR = np.array(
     [
         [0.00, 0.000, 0.000, 0.000, _CROWN],
-        [0.10, 0.030, 0.040, -0.044, 1.707],
-        [0.25, 0.062, 0.078, -0.082, 1.686],
-        [0.40, 0.080, 0.096, -0.102, 1.650],
-        [0.55, 0.087, 0.104, -0.110, 1.606],
-        [0.75, 0.091, 0.106, -0.107, 1.560],
-        [0.90, 0.092, 0.104, -0.098, 1.515],
-        [1.00, 0.086, 0.096, -0.086, _ENDS],
+        [0.08, 0.028, 0.036, -0.040, 1.708],
+        [0.20, 0.056, 0.070, -0.076, 1.692],
+        [0.33, 0.074, 0.091, -0.098, 1.662],
+        [0.50, 0.083, 0.100, -0.109, 1.615],
+        [0.72, 0.089, 0.102, -0.108, 1.562],
+        [0.88, 0.093, 0.102, -0.099, 1.516],
+        [1.00, 0.088, 0.094, -0.084, _ENDS],
     ]
 )
+_HAIRLINE = 0.30  # the same fraction, above the forehead
 
 
 def _features(points: Array) -> Array:
@@ -73,17 +73,20 @@ def build_head(trunk: Array) -> Part:
 
 
 def build_hair() -> Part:
-    """A chin-length bob, parted over the left eye; its last rings turn in toward the neck."""
+    """A chin-length bob, parted on the right and swept to the left; its last ring turns in toward the head."""
     theta = angles(HAIR_COLUMNS)
-    gap = np.abs((theta - _PART + np.pi) % (2 * np.pi) - np.pi)
-    length = 0.36 + 0.64 * smoothstep(0.25, 1.25, gap)
-    down = np.linspace(0, 1, 14)[:, None] * length
+    drawn = np.where(theta < 0, smoothstep(-0.62, -1.12, theta), smoothstep(0.38, 1.18, theta))
+    length = _HAIRLINE + (1 - _HAIRLINE) * drawn
+    down = np.linspace(0, 1, 13)[:, None] * length
     width, front, back, height = np.moveaxis(spline(_HAIR, down), -1, 0)
     sine, cosine = np.sin(theta), np.cos(theta)
-    outer = np.stack([width * sine, height, np.where(cosine > 0, front, -back) * cosine], axis=-1)
-    inward = np.array([0.55, 1, 0.55]) * outer[-1] + np.array([0, 0.012, 0])
+    close_to_face = 1 - 0.07 * smoothstep(0.7, 1.0, down / length) * (1 - drawn)
+    depth = np.where(cosine > 0, front, -back) * cosine
+    height = height - 0.018 * cosine * down**2  # longer toward the chin
+    outer = np.stack([width * sine * close_to_face, height, depth * close_to_face], axis=-1)
+    inward = outer[-1] * np.array([0.72, 1, 0.72]) + np.array([0, 0.012, 0])
     points = close(np.concatenate([outer, inward[None]]))
     weights = np.zeros((*points.shape[:2], len(NAMES)))
     weights[..., INDEX["Head"]] = 1
     loose = 0.5 * smoothstep(1.6, _ENDS, points[..., 1])
-    return Part("hair", points, (0.68, 0.64, 1.0, 1.0), rows_by_length(points), loose, weights)
+    return Part("hair", points, (0.68, 0.64, 1.0, 0.93), rows_by_length(points), loose, weights)

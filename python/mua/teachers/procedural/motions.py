@@ -132,8 +132,8 @@ def _reach() -> Performance:
     low = smoothstep(0.48, 0.68, t) * smoothstep(0.98, 0.80, t)
     h, w = high[:, None], low[:, None]
     right = Arm(
-        _HANGING + h * (np.array([0.35, 0.95, 0.45]) - _HANGING) + w * np.array([0.1, 0.1, -0.45]),
-        _HANGING_FORE + h * (np.array([0.12, 1.0, 0.35]) - _HANGING_FORE) + w * np.array([0.1, 0.15, -0.25]),
+        _HANGING + h * (np.array([0.62, 0.55, 0.55]) - _HANGING) + w * np.array([0.1, 0.1, -0.45]),
+        _HANGING_FORE + h * (np.array([0.38, 0.95, 0.45]) - _HANGING_FORE) + w * np.array([0.1, 0.15, -0.25]),
     )
     left = Arm(
         _HANGING + h * np.array([0.25, 0.1, -0.15]) + w * (np.array([-0.05, -0.55, 0.9]) - _HANGING),
@@ -163,8 +163,8 @@ def _dance() -> Performance:
     arms = []
     for _, side in SIDES:
         lead = np.clip(side * sway, -1, 1)[:, None]
-        open_, up = np.array([1.0, -0.35, 0.25]), np.array([0.75, 0.8, 0.12])
-        open_fore, up_fore = np.array([0.85, -0.2, 0.45]), np.array([-0.15, 1.0, 0.15])
+        open_, up = np.array([1.0, -0.35, 0.25]), np.array([1.0, 0.45, 0.25])
+        open_fore, up_fore = np.array([0.85, -0.2, 0.45]), np.array([0.25, 1.0, 0.3])
         s = spin[:, None]
         upper = (1 - s) * (open_ + lead * [0, 0.35, 0]) + s * up
         fore = (1 - s) * (open_fore + lead * [0.2, 0.45, -0.1]) + s * up_fore

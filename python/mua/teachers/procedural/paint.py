@@ -7,7 +7,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.teachers.procedural.brush import Surface
 from mua.teachers.procedural.cloth import paint_bodice, paint_skirt, paint_sleeve
-from mua.teachers.procedural.complexion import paint_hair, paint_head, paint_leg
+from mua.teachers.procedural.complexion import paint_hair, paint_head, paint_leg, paint_thumb
 from mua.teachers.procedural.grid import Part
 
 ATLAS = 1024  # texels a side
@@ -38,6 +38,8 @@ _BRUSHES: dict[str, Callable[[Surface], Array]] = {
     "hair": paint_hair,
     "left arm": paint_sleeve,
     "right arm": paint_sleeve,
+    "left thumb": paint_thumb,
+    "right thumb": paint_thumb,
     "left leg": paint_leg,
     "right leg": paint_leg,
 }

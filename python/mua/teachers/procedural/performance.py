@@ -121,6 +121,13 @@ def _gesture(local: Array, side: str, arm: Arm, outward: float) -> None:
     local[:, INDEX[f"{side}ForeArm"]] = rotation.between(bone, rotation.rotate(rotation.conjugate(turned), fore))
 
 
+def _steady(rotations: Array) -> Array:
+    """The same rotations [F, J, 4] without jumps between q and -q."""
+    flips = np.where(np.sum(rotations[1:] * rotations[:-1], axis=-1) < 0, -1.0, 1.0)
+    rotations[1:] *= np.cumprod(flips, axis=0)[..., None]
+    return rotations
+
+
 def joint_rotations(skeleton: Skeleton, performance: Performance) -> Array:
     """Local rotations [F, J, 4] of a performance; its hips are the root's translation."""
     local = np.tile(skeleton.bind_rotations, (len(performance.hips), 1, 1))
@@ -134,4 +141,4 @@ def joint_rotations(skeleton: Skeleton, performance: Performance) -> Array:
     for (side, outward), foot, arm in zip(SIDES, performance.feet, performance.arms, strict=True):
         _tread(local, side, foot, (hips, performance.hips))
         _gesture(local, side, arm, outward)
-    return local
+    return _steady(local)

@@ -10,15 +10,15 @@ from mua.teachers.procedural.joints import INDEX, NAMES
 SKIRT_COLUMNS = 72
 RINGS = 17
 FOLDS = 9
-HEM = 0.43  # y, metres
+HEM = 0.39  # y, metres
 _HEM_RADIUS = np.array([0.40, 0.38])  # x, z
-_FOLD_DEPTH = 0.03
+_FOLD_DEPTH = 0.042
 
 
 def _weights(points: Array) -> Array:
     """Hips, with a growing share for the thigh of each side so that a step does not pierce the cloth."""
     x, y, z = np.moveaxis(points, -1, 0)
-    thigh = 0.6 * smoothstep(0.95, 0.55, y)
+    thigh = 0.45 * smoothstep(0.95, 0.55, y)
     left = smoothstep(-0.8, 0.8, x / np.maximum(np.hypot(x, z), 1e-6))
     waist = 0.5 * smoothstep(0.98, 1.08, y)
     weights = np.zeros((*points.shape[:-1], len(NAMES)))
