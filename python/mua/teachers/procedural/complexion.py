@@ -7,7 +7,7 @@ from mua.teachers.procedural.brush import Surface, color, filled, inside, over
 from mua.teachers.procedural.grid import smoothstep
 from mua.teachers.procedural.head import EYE, MOUTH, NOSE_TIP
 
-SKIN, BLUSH, LIPS = color("e3b495"), color("d98a72"), color("b5483f")
+SKIN, BLUSH, LIPS = color("e8bb9d"), color("dd8f78"), color("b9504a")
 WHITE, IRIS, LASH, BROW = color("f6f1ea"), color("4d6b52"), color("2a1a15"), color("4a2c20")
 HAIR, HAIR_LIGHT = color("3b2018"), color("6b3d27")
 SHOE = color("c8452f")
@@ -20,7 +20,7 @@ def _ellipse(x: Array, y: Array, wide: float, high: float) -> Array:
 
 def _eye(face: Array, x: Array, y: Array) -> Array:
     """One eye, x growing outward from its centre."""
-    lifted = y - 0.12 * x  # the outer corner a little higher
+    lifted = y - 0.07 * x  # the outer corner a little higher
     almond = np.abs(lifted) - 0.0064 * np.sqrt(np.clip(1 - (x / 0.0145) ** 2, 0, 1))
     white = inside(np.maximum(almond, np.abs(x) - 0.0145))
     face = over(face, WHITE, white)
@@ -29,8 +29,8 @@ def _eye(face: Array, x: Array, y: Array) -> Array:
     face = over(face, WHITE, inside(np.hypot(x + 0.002, lifted - 0.003) - 0.0012) * white)
     lid = np.abs(lifted - 0.0062 * np.sqrt(np.clip(1 - (x / 0.0155) ** 2, 0, 1))) - 0.0013 - 0.05 * np.maximum(x, 0)
     face = over(face, LASH, inside(np.maximum(lid, np.abs(x - 0.001) - 0.0165)))
-    brow = np.abs(y - 0.0195 + 9 * (x - 0.004) ** 2 - 0.1 * x) - 0.0022 + 0.06 * np.maximum(x, 0)
-    return over(face, BROW, inside(np.maximum(brow, np.abs(x - 0.001) - 0.019)) * 0.9)
+    brow = np.abs(y - 0.0205 + 12 * (x - 0.003) ** 2) - 0.0017 + 0.04 * np.maximum(x, 0)
+    return over(face, BROW, inside(np.maximum(brow, np.abs(x - 0.001) - 0.0175)) * 0.85)
 
 
 def paint_head(surface: Surface) -> Array:
@@ -46,7 +46,7 @@ def paint_head(surface: Surface) -> Array:
         face = np.where(front[..., None], _eye(face, side * x - EYE[0], y - EYE[1]), face)
         nostril = _ellipse(side * x - 0.006, y - NOSE_TIP + 0.0095, 0.003, 0.0016)
         face = over(face, BLUSH, inside(nostril) * front)
-    smile = y - MOUTH - 3 * x**2
+    smile = y - MOUTH - 8 * x**2
     bow = 0.0062 * (1 - (np.abs(x) / 0.022) ** 1.6) - 0.0012 * np.exp(-((x / 0.003) ** 2))
     lips = np.maximum(smile - np.where(np.abs(x) < 0.022, bow, -1), -smile - 0.0072 * (1 - (x / 0.022) ** 2))
     face = over(face, LIPS, inside(np.maximum(lips, np.abs(x) - 0.022)) * front)

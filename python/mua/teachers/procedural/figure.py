@@ -23,9 +23,9 @@ _TRUNK = np.array(
     [
         [0, 0.054, 0.036, -0.064, 1.430, 1.405, 1.445],
         [1, 0.080, 0.050, -0.076, 1.423, 1.390, 1.436],
-        [2, 0.103, 0.062, -0.087, 1.418, 1.372, 1.424],
-        [3, 0.126, 0.071, -0.095, 1.411, 1.354, 1.411],
-        [4, 0.145, 0.078, -0.101, 1.401, 1.337, 1.396],
+        [2, 0.104, 0.062, -0.087, 1.418, 1.372, 1.424],
+        [3, 0.130, 0.071, -0.095, 1.413, 1.354, 1.412],
+        [4, 0.153, 0.078, -0.101, 1.405, 1.337, 1.397],
         [6, 0.150, 0.091, -0.107, 1.345, 1.303, 1.348],
         [8, 0.147, 0.103, -0.107, 1.290, 1.268, 1.297],
         [10, 0.140, 0.110, -0.100, 1.240, 1.232, 1.245],
@@ -175,12 +175,13 @@ def _arm_points(trunk: Array) -> Array:
     theta = angles(ARM_COLUMNS)
     lean = 0.045 * smoothstep(0.16, 0.03, _SLEEVE_RINGS)[:, None]  # first rings lean like the armhole
     sleeve = _arm_ring(_SLEEVE_RINGS[:, None] - lean * np.sin(theta), spline(_ARM, _SLEEVE_RINGS))
-    sleeve -= 0.012 * smoothstep(0.14, 0.03, _SLEEVE_RINGS)[:, None, None] * np.array([0.7, 0.7, 0])
+    rounded = smoothstep(0.16, 0.03, _SLEEVE_RINGS)[:, None] * np.where(theta > 0, 0.009, 0.012) * np.sin(theta)
+    sleeve += rounded[..., None] * np.abs([ARM_DIRECTION[1], ARM_DIRECTION[0], 0.0])
     hand = _arm_ring(_HAND_RINGS[:, None], spline(_HAND, _HAND_RINGS))
     curl = _CURL * np.maximum(_HAND_RINGS - 0.56, 0) ** 2
     hand += curl[:, None, None] * np.array([ARM_DIRECTION[1], -ARM_DIRECTION[0], 0.0])
     points = np.concatenate([_armhole(trunk)[None], sleeve, hand])
-    for _ in range(6):  # ease the first rings into the shoulder
+    for _ in range(3):  # ease the first rings into the shoulder
         inner = slice(1, 5)
         points[inner] = 0.5 * points[inner] + 0.25 * (points[0:4] + points[2:6])
     return close(points)

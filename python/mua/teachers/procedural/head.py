@@ -46,7 +46,8 @@ _HAIR = np.array(
         [1.00, 0.088, 0.094, -0.084, _ENDS],
     ]
 )
-_HAIRLINE = 0.30  # the same fraction, above the forehead
+_HAIRLINE = 0.27  # the same fraction, above the forehead
+_PARTING = -0.3  # its angle
 
 
 def _features(points: Array) -> Array:
@@ -76,7 +77,8 @@ def build_hair() -> Part:
     """A chin-length bob, parted on the right and swept to the left; its last ring turns in toward the head."""
     theta = angles(HAIR_COLUMNS)
     drawn = np.where(theta < 0, smoothstep(-0.62, -1.12, theta), smoothstep(0.38, 1.18, theta))
-    length = _HAIRLINE + (1 - _HAIRLINE) * drawn
+    hairline = _HAIRLINE + 0.05 * np.clip((theta - _PARTING) / 0.8, -1, 1) ** 2
+    length = hairline + (1 - hairline) * drawn
     down = np.linspace(0, 1, 13)[:, None] * length
     width, front, back, height = np.moveaxis(spline(_HAIR, down), -1, 0)
     sine, cosine = np.sin(theta), np.cos(theta)

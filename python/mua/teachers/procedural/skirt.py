@@ -13,6 +13,7 @@ FOLDS = 9
 HEM = 0.39  # y, metres
 _HEM_RADIUS = np.array([0.40, 0.38])  # x, z
 _FOLD_DEPTH = 0.042
+_WAVE = 0.008  # metres that the hem rises where a fold stands out
 
 
 def _weights(points: Array) -> Array:
@@ -40,7 +41,7 @@ def build_skirt(trunk: Array, phases: Array) -> Part:
     round_waist = np.stack([0.112 * np.sin(theta), np.full_like(theta, trunk[-1, 0, 1]), 0.082 * np.cos(theta)], axis=-1)
     reach = np.stack([_HEM_RADIUS[0] * np.sin(theta), np.zeros_like(theta), _HEM_RADIUS[1] * np.cos(theta)], axis=-1)
     points = round_waist + swell[..., None] * (reach - round_waist * [1, 0, 1])
-    points[..., 1] = trunk[-1, 0, 1] + (HEM - trunk[-1, 0, 1]) * down
+    points[..., 1] = trunk[-1, 0, 1] + (HEM - trunk[-1, 0, 1]) * down + _WAVE * down**2 * fold
     points[0] = waist
     turned_in = points[-1] * [0.97, 1, 0.97] + [0, 0.015, 0]
     points = close(np.concatenate([points, turned_in[None]]))
