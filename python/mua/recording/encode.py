@@ -1,6 +1,5 @@
 """What a recording keeps of a texture: its difference from the reference frame, and the dynamic subbands of that."""
 
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.files import replacing
 from mua.recording.layout import DYNAMIC_LEVELS, STATIC_LEVELS, Header
+from mua.recording.npz import read_npz
 from mua.texture.channels import ATTRIBUTES, CHANNELS
 from mua.texture.fill import Fill
 from mua.wavelets import analyse_lowpass, wavedec2
@@ -112,11 +112,7 @@ def load_reference(path: Path, header: Header) -> Reference:
     """Raises InputError for a file that is missing, damaged or of other sizes."""
     shapes = {name: shape[1:] for name, (shape, _) in header.shapes(0, 1).items() if name in ("ll", "d3", "d2")}
     shapes["texture"] = (header.valid_texels, CHANNELS)
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in shapes}
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: {'is missing' if not path.exists() else f'is damaged: {error}'}") from error
+    arrays = read_npz(path, shapes)
     for name, shape in shapes.items():
         if arrays[name].shape != shape:
             raise InputError(f"{path}: {name} has shape {arrays[name].shape}, expected {shape}")

@@ -1,9 +1,6 @@
-"""The files of a recording: their names, what the JSON among them says, and how they reach the disk whole."""
+"""The files of a recording: their names, what the JSON among them says, and the shapes of arrays."""
 
 import json
-import os
-import zlib
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -18,7 +15,8 @@ from mua.rig.rig import Rig
 from mua.texture.channels import CHANNELS
 
 VERSION = 1
-HEADER, RIG, REFERENCE, SHARDS, INDEX = "recording.json", "rig.npz", "reference.npz", "shards", "index.json"
+HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
+INDEX, SUM = "index.json", "sum.npy"
 DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2 vary with the frame, D1 and D0 are means (paper, Methodology)
 STEP = 2 ** (DYNAMIC_LEVELS + STATIC_LEVELS)
 
@@ -93,7 +91,7 @@ class Index:
 
 
 def write_header(directory: Path, header: Header) -> None:
-    write_bytes(directory / HEADER, _to_json(header))
+    write_bytes(directory / HEADER, to_json(header))
 
 
 def read_header(directory: Path) -> Header:
@@ -133,6 +131,10 @@ def read_index(shard: Path) -> Index:
         raise InputError(f"{shard / INDEX}: not the index of a shard: {error}") from error
 
 
+def to_json(value: Header | Index) -> bytes:
+    return (json.dumps(asdict(value), indent=1, sort_keys=True) + "\n").encode()
+
+
 def shard_name(number: int) -> str:
     return f"{number:05d}"
 
@@ -140,31 +142,6 @@ def shard_name(number: int) -> str:
 def whole_name(row: int) -> str:
     """The name of the array of a shard's recorded frame `row`, kept whole."""
     return f"whole_{row:05d}"
-
-
-def commit_shard(
-    part: Path,  # the shard's hidden directory; what it already holds becomes part of the shard
-    final: Path,
-    *,
-    arrays: Mapping[str, Array],
-    segments: list[Segment],
-    complete: list[str],
-    training_frames: int,
-) -> None:
-    """Write arrays and index into `part`, sync all of it and rename it to `final`."""
-    part.mkdir(parents=True, exist_ok=True)
-    for name, array in arrays.items():
-        np.save(part / f"{name}.npy", array, allow_pickle=False)
-    crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(part.glob("*.npy"))}
-    index = Index(segments, complete, training_frames, crc)
-    (part / INDEX).write_bytes(_to_json(index))
-    for path in part.iterdir():
-        _sync(path)
-    _sync(part)
-    if final.exists():
-        raise InputError(f"{final} appeared while it was being written: another writer is at work on this recording")
-    part.rename(final)
-    _sync(final.parent)
 
 
 def open_array(path: Path, shape: tuple[int, ...], dtype: str) -> Array:
@@ -177,20 +154,6 @@ def open_array(path: Path, shape: tuple[int, ...], dtype: str) -> Array:
     if array.shape != shape or array.dtype != np.dtype(dtype):
         raise InputError(f"{path} holds {array.shape} of {array.dtype.str}, expected {shape} of {dtype}")
     return np.asarray(array)
-
-
-def _sync(path: Path) -> None:
-    if path.is_dir() and os.name != "posix":  # only POSIX opens directories
-        return
-    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-def _to_json(value: Header | Index) -> bytes:
-    return (json.dumps(asdict(value), indent=1, sort_keys=True) + "\n").encode()
 
 
 def _read_json(path: Path) -> dict[str, Any]:

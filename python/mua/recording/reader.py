@@ -21,6 +21,7 @@ from mua.recording.layout import (
     REFERENCE,
     RIG,
     SHARDS,
+    SUM,
     Header,
     Index,
     open_array,
@@ -91,7 +92,7 @@ class Recording:
         if any(index.frames for index in indices):
             self.reference = load_reference(self.directory / REFERENCE, self.header)
         if indices:
-            last = self.directory / SHARDS / shard_name(len(indices) - 1) / "sum.npy"
+            last = self.directory / SHARDS / shard_name(len(indices) - 1) / SUM
             self._sum = open_array(last, (self.header.valid_texels, CHANNELS), "<f8")
 
     def count(self, held_out: bool = False) -> int:

@@ -1,18 +1,23 @@
 """The rig as a .npz file without pickles, and the hash that tells rigs apart."""
 
 import hashlib
-import zipfile
 from pathlib import Path
 
 import numpy as np
 
 from mua.arrays import Array
-from mua.errors import InputError
 from mua.files import replacing
+from mua.recording.npz import read_npz
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap
+
+NAMES = (
+    *("names", "parents", "bind_rotations", "bind_translations", "root"),
+    *("vertices", "faces", "uv", "uv_faces", "skin_indices", "skin_weights"),
+    *("size", "texels", "triangles", "barycentrics", "claimed_twice"),
+)
 
 
 def rig_hash(rig: Rig) -> str:
@@ -31,12 +36,7 @@ def save_rig(path: Path, rig: Rig) -> None:
 
 def load_rig(path: Path) -> Rig:
     """Raises InputError for a file that is missing, damaged or lacks an array."""
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-        return _rig(arrays)
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: not a rig as a recording keeps it: {error}") from error
+    return _rig(read_npz(path, NAMES))
 
 
 def _arrays(rig: Rig) -> dict[str, Array]:

@@ -26,17 +26,16 @@ from mua.recording.layout import (
     RIG,
     SHARDS,
     STEP,
+    SUM,
     Header,
-    Segment,
-    commit_shard,
     open_array,
     read_header,
     read_indices,
     shard_name,
-    whole_name,
     write_header,
 )
 from mua.recording.rig_file import save_rig
+from mua.recording.shard import Shard
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.texture.channels import CHANNELS
@@ -57,16 +56,13 @@ class _ClipState:
     complete: bool = False
 
 
-@dataclass
-class _Pending:
-    """The shard in memory."""
+@dataclass(frozen=True)
+class _Encoded:
+    """A frame as it is stored."""
 
-    segments: list[Segment] = field(default_factory=list)
-    complete: list[str] = field(default_factory=list)
-    rotations: list[Array] = field(default_factory=list)
-    translations: list[Array] = field(default_factory=list)
-    meshes: list[Array] = field(default_factory=list)
-    subbands: list[Dynamic] = field(default_factory=list)
+    mesh: Array  # [V, 3] float32
+    difference: Array  # [N, 23] float32 from the reference texture
+    subbands: Dynamic  # float16, of the difference
 
 
 class TeacherWriter:
@@ -103,7 +99,6 @@ class TeacherWriter:
             self._reference = load_reference(self.directory / REFERENCE, self._header)
         self._clips: dict[str, _ClipState] = {}
         self._clip = ""
-        self._pending = _Pending()
         self._read_shards()
 
     def start_clip(self, name: str, *, held_out: bool = False) -> None:
@@ -142,21 +137,17 @@ class TeacherWriter:
         state = self._clips[self._clip]
         try:
             rotations, translation = self._check_pose(pose)
-            if (mesh is None) != (texture is None):
-                raise InputError(f"{'mesh' if mesh is None else 'texture'} is missing, expected both or neither")
-            if mesh is not None and texture is not None:
-                vertices = _checked("mesh", mesh, (self._header.vertices, 3), np.float32)
-                if whole is None:
-                    whole = len(state.recorded) % self._whole_every == 0
-                self._append(state, vertices, texture, whole=whole)
+            frame = self._encode(mesh, texture)
         except InputError as error:
             where = f"recording {self.directory}: clip {self._clip!r}, frame {state.frames}"
             raise InputError(f"{where}: {error}") from None
-        self._pending.rotations.append(rotations)
-        self._pending.translations.append(translation)
-        self._segment(state).poses += 1
+        self._shard.add_pose(
+            self._clip, state.frames, held_out=state.held_out, rotations=rotations, translation=translation
+        )
+        if frame is not None:
+            self._keep(state, frame, whole=len(state.recorded) % self._whole_every == 0 if whole is None else whole)
         state.frames += 1
-        if len(self._pending.meshes) >= self._shard_frames or len(self._pending.rotations) >= POSES_PER_SHARD:
+        if self._shard.frames >= self._shard_frames or self._shard.poses >= POSES_PER_SHARD:
             self._flush()
 
     def next_frame(self, clip: str) -> int:
@@ -219,35 +210,17 @@ class TeacherWriter:
                 state.recorded += segment.recorded
             for name in index.complete:
                 self._clips.setdefault(name, _ClipState(held_out=False)).complete = True
-        self._shards = len(indices)
         self._training_frames = indices[-1].training_frames if indices else 0
         self._sum = np.zeros((self._header.valid_texels, CHANNELS))
         if indices:
-            self._sum += open_array(self._shard(self._shards - 1) / "sum.npy", self._sum.shape, "<f8")
-            self._remove_old_sum(self._shards - 2)
-
-    def _shard(self, number: int) -> Path:
-        return self.directory / SHARDS / shard_name(number)
-
-    @property
-    def _part(self) -> Path:
-        return self.directory / SHARDS / f".{shard_name(self._shards)}.part"
-
-    def _remove_old_sum(self, number: int) -> None:
-        """Only the last shard's running sum is of use; a kill may have left the one before it."""
-        if number >= 0:
-            (self._shard(number) / "sum.npy").unlink(missing_ok=True)
-
-    def _segment(self, state: _ClipState) -> Segment:
-        """The pending shard's segment of the current clip."""
-        segments = self._pending.segments
-        if not segments or segments[-1].clip != self._clip:
-            segments.append(Segment(self._clip, state.held_out, state.frames, 0, [], []))
-        return segments[-1]
+            self._sum += open_array(
+                self.directory / SHARDS / shard_name(len(indices) - 1) / SUM, self._sum.shape, "<f8"
+            )
+        self._begin_shard(len(indices))
 
     def _complete(self, clip: str) -> None:
         self._clips[clip].complete = True
-        self._pending.complete.append(clip)
+        self._shard.complete.append(clip)
 
     def _check_pose(self, pose: Pose) -> tuple[Array, Array]:
         rotations = _checked("pose rotations", pose.rotations, (self._header.joints, 4), np.float64)
@@ -258,8 +231,13 @@ class TeacherWriter:
             raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
         return rotations, translation
 
-    def _append(self, state: _ClipState, mesh: Array, texture: Array, *, whole: bool) -> None:
-        """Add mesh and texture of the current frame to the pending shard, all of it or nothing."""
+    def _encode(self, mesh: Array | None, texture: Array | None) -> _Encoded | None:
+        """Check and transform what was added, relative to the reference frame, which the first texture becomes."""
+        if mesh is None and texture is None:
+            return None
+        if mesh is None or texture is None:
+            raise InputError(f"{'mesh' if mesh is None else 'texture'} is missing, expected both or neither")
+        vertices = _checked("mesh", mesh, (self._header.vertices, 3), np.float32)
         values = valid_texture(texture, self._header, self._texels.texels)
         if self._reference is None:
             self._reference = self._keep_reference(values)
@@ -269,17 +247,14 @@ class TeacherWriter:
         subbands = dynamic_subbands(difference, self._fill, wavelet=self._header.wavelet)
         if subbands.peak > HALF_MAX:
             raise InputError(f"texture: a subband differs by {subbands.peak:.3g} from the reference frame's")
-        segment, row = self._segment(state), len(self._pending.meshes)
-        if whole:
-            self._part.mkdir(exist_ok=True)
-            np.save(self._part / f"{whole_name(row)}.npy", difference.astype(np.float16))
-            segment.whole.append(state.frames)
-        segment.recorded.append(state.frames)
+        return _Encoded(vertices, difference, subbands.half())
+
+    def _keep(self, state: _ClipState, frame: _Encoded, *, whole: bool) -> None:
+        kept = frame.difference.astype(np.float16) if whole else None
+        self._shard.add_frame(state.frames, mesh=frame.mesh, subbands=frame.subbands, whole=kept)
         state.recorded.append(state.frames)
-        self._pending.meshes.append(mesh)
-        self._pending.subbands.append(subbands.half())
         if not state.held_out:
-            self._sum += difference
+            self._sum += frame.difference
             self._training_frames += 1
 
     def _keep_reference(self, texture: Array) -> Reference:
@@ -289,31 +264,17 @@ class TeacherWriter:
         return reference
 
     def _flush(self) -> None:
-        """Store the pending shard, if anything is in it."""
-        pending = self._pending
-        if not pending.rotations and not pending.complete:
+        """Store the gathered shard, if anything is in it."""
+        if self._shard.is_empty:
             return
-        columns = {
-            "rotations": pending.rotations,
-            "translations": pending.translations,
-            "meshes": pending.meshes,
-            "ll": [subbands.ll for subbands in pending.subbands],
-            "d3": [subbands.d3 for subbands in pending.subbands],
-            "d2": [subbands.d2 for subbands in pending.subbands],
-        }
-        shapes = self._header.shapes(len(pending.rotations), len(pending.meshes))
-        arrays = {name: np.stack(columns[name]) for name in shapes}
-        commit_shard(
-            self._part,
-            self._shard(self._shards),
-            arrays={**arrays, "sum": self._sum},
-            segments=pending.segments,
-            complete=pending.complete,
-            training_frames=self._training_frames,
-        )
-        self._pending = _Pending()
-        self._shards += 1
-        self._remove_old_sum(self._shards - 2)
+        self._shard.commit(self._sum, training_frames=self._training_frames)
+        self._begin_shard(self._number + 1)
+
+    def _begin_shard(self, number: int) -> None:
+        self._number = number
+        self._shard = Shard(self.directory / SHARDS, number, self._header)
+        if number > 1:  # only the last shard's running sum is of use; a kill may have left the one before it
+            (self.directory / SHARDS / shard_name(number - 2) / SUM).unlink(missing_ok=True)
 
 
 def _checked(name: str, value: Array, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:

@@ -1,0 +1,106 @@
+"""The shard that a writer gathers, and how it reaches the disk: whole or not at all."""
+
+import os
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.recording.encode import Dynamic
+from mua.recording.layout import INDEX, Header, Index, Segment, shard_name, to_json, whole_name
+
+
+class Shard:
+    """Frames gathered in memory; those kept whole go to the shard's hidden directory at once, being large."""
+
+    def __init__(self, shards: Path, number: int, header: Header) -> None:
+        self._final = shards / shard_name(number)
+        self._part = shards / f".{shard_name(number)}.part"
+        self._header = header
+        self.complete: list[str] = []  # clips that end here
+        self._segments: list[Segment] = []
+        self._rotations: list[Array] = []
+        self._translations: list[Array] = []
+        self._meshes: list[Array] = []
+        self._subbands: list[Dynamic] = []
+
+    @property
+    def poses(self) -> int:
+        return len(self._rotations)
+
+    @property
+    def frames(self) -> int:
+        return len(self._meshes)
+
+    @property
+    def is_empty(self) -> bool:
+        return not self._rotations and not self.complete
+
+    def add_pose(self, clip: str, index: int, *, held_out: bool, rotations: Array, translation: Array) -> None:
+        """Append frame `index` of `clip`, so far its pose alone."""
+        if not self._segments or self._segments[-1].clip != clip:
+            self._segments.append(Segment(clip, held_out, index, 0, [], []))
+        self._segments[-1].poses += 1
+        self._rotations.append(rotations)
+        self._translations.append(translation)
+
+    def add_frame(
+        self,
+        index: int,  # of the frame whose pose was added last
+        *,
+        mesh: Array,  # [V, 3] float32
+        subbands: Dynamic,  # float16
+        whole: Array | None,  # [N, 23] float16 difference from the reference, if it is to be kept
+    ) -> None:
+        """Give the last pose its mesh and subbands."""
+        if whole is not None:
+            self._part.mkdir(exist_ok=True)
+            np.save(self._part / f"{whole_name(self.frames)}.npy", whole, allow_pickle=False)
+            self._segments[-1].whole.append(index)
+        self._segments[-1].recorded.append(index)
+        self._meshes.append(mesh)
+        self._subbands.append(subbands)
+
+    def commit(
+        self,
+        total: Array,  # [N, 23] float64 running sum
+        *,
+        training_frames: int,  # summed in it
+    ) -> None:
+        """Write the hidden directory, sync it and rename it; raises InputError where another writer did so."""
+        self._part.mkdir(exist_ok=True)
+        for name, array in {**self._arrays(), "sum": total}.items():
+            np.save(self._part / f"{name}.npy", array, allow_pickle=False)
+        crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(self._part.glob("*.npy"))}
+        index = Index(self._segments, self.complete, training_frames, crc)
+        (self._part / INDEX).write_bytes(to_json(index))
+        for path in (*self._part.iterdir(), self._part):
+            _sync(path)
+        if self._final.exists():
+            raise InputError(f"{self._final} has appeared: another writer is at work on this recording")
+        self._part.rename(self._final)
+        _sync(self._final.parent)
+
+    def _arrays(self) -> dict[str, Array]:
+        columns = {
+            "rotations": self._rotations,
+            "translations": self._translations,
+            "meshes": self._meshes,
+            "ll": [subbands.ll for subbands in self._subbands],
+            "d3": [subbands.d3 for subbands in self._subbands],
+            "d2": [subbands.d2 for subbands in self._subbands],
+        }
+        return {name: np.stack(columns[name]) for name in self._header.shapes(self.poses, self.frames)}
+
+
+def _sync(path: Path) -> None:
+    """Make a file's content, or a directory's names, survive a loss of power."""
+    if path.is_dir() and os.name != "posix":  # only POSIX opens directories
+        return
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
