@@ -5,8 +5,9 @@ channels. Four pictures of each frame stand beside the teacher's: the mean textu
 the dynamic subbands could do (D1 and D0 at their mean); the best coefficients for the learnt bases; the student's own.
 """
 
+import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,13 +17,16 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
-from mua.student.model import Bands, Student
+from mua.student.model import STATIC_LEVELS, Bands, Student
 from mua.student.train import best_coefficients
 from mua.texture.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.texture.fill import Fill
 from mua.wavelets import analyse_lowpass, wavedec2
 
 TRAINING = "training"
+MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
+BATCH = 16  # frames
+DYNAMIC_LEVELS = 2  # D3 and D2
 PICTURES = ("mean", "bands", "best", "student")
 
 # what an RMS error of 1 in raw channels means to a person
@@ -32,7 +36,16 @@ UNITS = {
     "scale": ("%", 100.0),  # of a length: d log s
     "opacity": ("logit", 1.0),
     "SH": ("/255", 255 * SH_C0),  # as if all of it were the constant term
+    "mesh": ("mm", 1000.0),
 }
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What stands beside a teacher's frame."""
+
+    texture: Array  # [N, 23] raw channels
+    mesh: Array | None = None  # [V, 3] canonical vertices, metres
 
 
 @dataclass
@@ -40,20 +53,33 @@ class Errors:
     """Sums of squared errors of one group of frames by attribute and picture."""
 
     frames: int = 0
-    squares: dict[str, dict[str, float]] = field(
-        default_factory=lambda: {name: dict.fromkeys(PICTURES, 0.0) for name in (*ATTRIBUTES, "mesh")}
-    )
-    counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys((*ATTRIBUTES, "mesh"), 0))
+    squares: dict[tuple[str, str], float] = field(default_factory=dict)
+    vectors: dict[str, int] = field(default_factory=dict)
+
+    def add(self, frame: WholeFrame, pictures: Mapping[str, Picture]) -> None:
+        """Count one frame."""
+        self.frames += 1
+        for name, picture in pictures.items():
+            by_channel = np.square(picture.texture - frame.texture, dtype=np.float64).sum(axis=0)
+            for attribute, channels in ATTRIBUTES.items():
+                self._count(attribute, name, float(by_channel[channels].sum()))
+            if picture.mesh is not None:
+                self._count(MESH, name, float(np.square(picture.mesh - frame.mesh, dtype=np.float64).sum()))
+        for attribute in ATTRIBUTES:
+            self.vectors[attribute] = self.vectors.get(attribute, 0) + len(frame.texture)
+        self.vectors[MESH] = self.vectors.get(MESH, 0) + len(frame.mesh)
+
+    def _count(self, attribute: str, picture: str, square: float) -> None:
+        self.squares[attribute, picture] = self.squares.get((attribute, picture), 0.0) + square
 
     def rms(self, attribute: str, picture: str) -> float:
         """Root mean square error of a vector (all components of the attribute together) in its unit."""
-        scale = UNITS[attribute][1] if attribute in UNITS else 1000.0
-        return scale * math.sqrt(self.squares[attribute][picture] / max(self.counts[attribute], 1))
+        return UNITS[attribute][1] * math.sqrt(self.squares[attribute, picture] / self.vectors[attribute])
 
     def explained(self, attribute: str, picture: str = "student") -> float:
         """Share of the variance about the mean texture that a picture explains; nan where nothing varies."""
-        variance = self.squares[attribute]["mean"]
-        return 1 - self.squares[attribute][picture] / variance if variance > 0 else math.nan
+        variance = self.squares[attribute, "mean"]
+        return 1 - self.squares[attribute, picture] / variance if variance > 0 else math.nan
 
 
 def evaluate(
@@ -66,11 +92,14 @@ def evaluate(
     """Errors by group: all training frames together, then each held-out clip by its name."""
     judge = _Judge(recording, student, avatar)
     groups: dict[str, Errors] = {}
-    total = recording.whole_count
-    for done, frame in enumerate(recording.whole_frames(), 1):
-        group = frame.clip.name if frame.clip.held_out else TRAINING
-        judge.add(groups.setdefault(group, Errors()), frame)
-        progress(done, total)
+    frames = recording.whole_frames()
+    done = 0
+    while batch := list(itertools.islice(frames, BATCH)):
+        for frame, pictures in zip(batch, judge.pictures(batch), strict=True):
+            group = frame.clip.name if frame.clip.held_out else TRAINING
+            groups.setdefault(group, Errors()).add(frame, pictures)
+            done += 1
+            progress(done, recording.whole_count)
     return dict(sorted(groups.items(), key=lambda item: item[0] != TRAINING))
 
 
@@ -79,32 +108,29 @@ class _Judge:
 
     def __init__(self, recording: Recording, student: Student, avatar: Avatar) -> None:
         self.student, self.avatar = student, avatar
-        self.mean = recording.mean_texture()
-        self.mesh = recording.mean_mesh()
+        self.mean = Picture(recording.mean_texture(), recording.mean_mesh())
         self.fill = Fill(recording.rig.texels)
 
-    def add(self, errors: Errors, frame: WholeFrame) -> None:
-        posed = decode_clip_frame(self.avatar, frame.clip, frame=frame.index)
-        bands, best = self._closest(frame.texture)
-        pictures = {"mean": self.mean, "bands": bands, "best": best, "student": posed.texture}
-        for picture, texture in pictures.items():
-            squares = np.square(texture - frame.texture, dtype=np.float64).sum(axis=0)
-            for attribute, channels in ATTRIBUTES.items():
-                errors.squares[attribute][picture] += float(squares[channels].sum())
-        for picture, mesh in {"mean": self.mesh, "student": posed.canonical}.items():
-            errors.squares["mesh"][picture] += float(np.square(mesh - frame.mesh, dtype=np.float64).sum())
-        errors.frames += 1
-        for attribute in ATTRIBUTES:
-            errors.counts[attribute] += len(frame.texture)
-        errors.counts["mesh"] += len(frame.mesh)
+    def pictures(self, frames: Sequence[WholeFrame]) -> Iterator[dict[str, Picture]]:
+        """The pictures of each frame by name; together, because the bases are factorised once for all of them."""
+        bands, best = self._closest(frames)
+        for i, frame in enumerate(frames):
+            posed = decode_clip_frame(self.avatar, frame.clip, frame=frame.index)
+            yield {
+                "mean": self.mean,
+                "bands": Picture(bands[i]),
+                "best": Picture(best[i]),
+                "student": Picture(posed.texture, posed.canonical),
+            }
 
     @torch.no_grad()
-    def _closest(self, texture: Array) -> tuple[Array, Array]:
-        """The texture whose D1 and D0 are at their mean, and the one of the best coefficients, [N, 23]."""
-        image = self.fill(torch.as_tensor(texture, dtype=torch.float32))
-        ll, (d3, d2) = wavedec2(analyse_lowpass(image, self.student.wavelet, 2), self.student.wavelet, 2)
-        bands = Bands(ll[None], d3.transpose(0, 1)[None], d2.transpose(0, 1)[None])
+    def _closest(self, frames: Sequence[WholeFrame]) -> tuple[Array, Array]:
+        """Textures [F, N, 23] whose D1 and D0 are at their mean, and those of the best coefficients."""
+        images = torch.stack([self.fill(torch.from_numpy(frame.texture)) for frame in frames])
+        wavelet = self.student.wavelet
+        ll, (d3, d2) = wavedec2(analyse_lowpass(images, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
+        bands = Bands(ll, d3.transpose(1, 2), d2.transpose(1, 2))
         parts = zip(self.student.branches, (GEOMETRY, APPEARANCE), strict=True)
         alphas = [best_coefficients(branch, bands.of(channels)) for branch, channels in parts]
         best = self.student.synthesize((alphas[0], alphas[1]))
-        return self.student.texture(bands)[0].numpy(), self.student.texture(best)[0].numpy()
+        return self.student.texture(bands).numpy(), self.student.texture(best).numpy()

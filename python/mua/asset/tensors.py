@@ -1,7 +1,7 @@
 """The Tensor of the file: shape, element type, bytes, and one scale for each row where the type is i8."""
 
 import math
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from mua.errors import InputError
 
 Storage = Literal["f32", "f16", "i8"]
 
-DTYPES = {"F32": np.dtype("<f4"), "F16": np.dtype("<f2"), "I8": np.dtype("i1"), "I32": np.dtype("<i4")}
+DTYPES: dict[str, np.dtype[Any]] = {"F32": np.dtype("<f4"), "F16": np.dtype("<f2"), "I8": np.dtype("i1"), "I32": np.dtype("<i4")}
 MAX_RANK = 4
 
 

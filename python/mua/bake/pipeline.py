@@ -116,7 +116,7 @@ def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
     for array in (character.mesh.vertices, character.mesh.uv, character.skin_weights, character.base_color):
         digest.update(array.tobytes())
     for clip in planned:
-        digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole)}".encode())
+        digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
         digest.update(clip.clip.rotations.tobytes() + clip.clip.translation.tobytes())
     return digest.hexdigest()[:12]
 

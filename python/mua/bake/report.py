@@ -6,10 +6,16 @@ from collections.abc import Mapping
 
 from rich.table import Table
 
-from mua.evaluate import PICTURES, UNITS, Errors
+from mua.evaluate import MESH, PICTURES, UNITS, Errors
+from mua.texture.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"
-HEADINGS = ("frames", "attribute", "unit", "mean texture", "best coefficients", "student", "explained")
+LEGEND = (
+    "Errors are root mean squares of whole vectors. Mean: the mean texture of the training frames. Best: the best "
+    f"coefficients for the learnt bases. Explained: of the variance about the mean. Note: {STAND_IN}."
+)
+BASELINES = ("mean", "best", "student")
+HEADINGS = ("frames", "attribute", "unit", "mean", "best", "student", "explained")
 
 
 def rows(groups: Mapping[str, Errors]) -> list[tuple[str, ...]]:
@@ -17,10 +23,9 @@ def rows(groups: Mapping[str, Errors]) -> list[tuple[str, ...]]:
     lines = []
     for name, errors in groups.items():
         for attribute, (unit, _) in UNITS.items():
-            rms = [f"{errors.rms(attribute, picture):.3g}" for picture in ("mean", "best", "student")]
+            shown = ("mean", "student") if attribute == MESH else ("mean", "best", "student")
+            rms = [f"{errors.rms(attribute, picture):.3g}" if picture in shown else "" for picture in BASELINES]
             lines.append((f"{name} ({errors.frames})", attribute, unit, *rms, percent(errors.explained(attribute))))
-        mesh = [f"{errors.rms('mesh', 'mean'):.3g}", "", f"{errors.rms('mesh', 'student'):.3g}"]
-        lines.append((f"{name} ({errors.frames})", "mesh", "mm", *mesh, percent(errors.explained("mesh"))))
     return lines
 
 
@@ -30,10 +35,10 @@ def percent(share: float) -> str:
 
 def table(groups: Mapping[str, Errors]) -> Table:
     """For the terminal."""
-    shown = Table(*HEADINGS, title=f"RMS error ({STAND_IN})")
+    shown = Table(*HEADINGS, title="RMS error", caption=LEGEND)
     last = ""
     for name, *cells in rows(groups):
-        shown.add_row("" if name == last else name, *cells, end_section=cells[0] == "mesh")
+        shown.add_row("" if name == last else name, *cells, end_section=cells[0] == MESH)
         last = name
     return shown
 
@@ -44,8 +49,8 @@ def markdown(groups: Mapping[str, Errors]) -> str:
     lines += ["| " + " | ".join(row) + " |" for row in rows(groups)]
     lines += ["", "| frames | attribute | D1 and D0 left out | bases too small | mispredicted |", "|" + " --- |" * 5]
     for name, errors in groups.items():
-        lines += [f"| {name} | {attribute} | {' | '.join(missed(errors, attribute))} |" for attribute in UNITS]
-    return "\n".join([*lines, "", f"RMS errors of whole vectors; {STAND_IN}.", ""])
+        lines += [f"| {name} | {attribute} | {' | '.join(missed(errors, attribute))} |" for attribute in ATTRIBUTES]
+    return "\n".join([*lines, "", LEGEND, ""])
 
 
 def missed(errors: Errors, attribute: str) -> tuple[str, str, str]:
@@ -59,9 +64,9 @@ def as_json(groups: Mapping[str, Errors]) -> str:
     told = {
         name: {
             "frames": errors.frames,
-            "rms": {a: {p: errors.rms(a, p) for p in PICTURES} for a in UNITS},
-            "explained": {a: {p: errors.explained(a, p) for p in PICTURES} for a in UNITS},
-            "mesh mm": {p: errors.rms("mesh", p) for p in ("mean", "student")},
+            "rms": {a: {p: errors.rms(a, p) for p in PICTURES} for a in ATTRIBUTES},
+            "explained": {a: {p: errors.explained(a, p) for p in PICTURES} for a in ATTRIBUTES},
+            "mesh mm": {p: errors.rms(MESH, p) for p in ("mean", "student")},
         }
         for name, errors in groups.items()
     }

@@ -39,7 +39,8 @@ def load_clips(
         if not character.clips:
             raise InputError(f"{character.name}: holds no animation: give --motion a file or directory")
         return [resample(clip, RATE) for clip in character.clips], []
-    clips, notes = [], []
+    clips: list[Clip] = []
+    notes: list[str] = []
     for path in motions:
         for source in read_motion(path):
             if same_joints(source.skeleton, character.skeleton):

@@ -29,9 +29,9 @@ def find_root(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> in
         moved |= np.ptp(offsets, axis=0).max(axis=-1) > MOVES * _size(bind)
     if moved[_with_ancestors(trunk, bind.parents)].any():
         return trunk
-    highest = [j for j in np.flatnonzero(moved) if below[j] >= body]
+    highest = [int(j) for j in np.flatnonzero(moved) if below[j] >= body]
     hips = [j for j, name in enumerate(names) if _is_hips(name) and below[j] >= body]
-    return int([*highest, *hips, trunk][0])
+    return [*highest, *hips, trunk][0]
 
 
 def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> tuple[Bind, tuple[str, ...]]:
@@ -51,7 +51,9 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
     top = root if bind.trusted[root] else min(orphans, key=lambda j: (len(above[j]), j))
     orphans -= set(above[top])
     attached = [
-        j for j in np.flatnonzero(bind.trusted) if not orphans & set(above[j]) and (top in above[j] or j in above[top])
+        int(j)
+        for j in np.flatnonzero(bind.trusted)
+        if not orphans & set(above[j]) and (top in above[j] or j in above[top])
     ]
     parents = bind.parents.copy()
     moved = len(orphans)
