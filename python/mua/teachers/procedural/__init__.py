@@ -16,7 +16,7 @@ __all__ = ["procedural_character"]
 
 
 def procedural_character(*, seed: int = 0) -> Character:
-    """A clothed human figure, 1.7 m tall, facing +Z in an A-pose, with walk, turn, reach and dance at 30 frames a second.
+    """A clothed human figure, 1.7 m tall, facing +Z in an A-pose, that walks, turns, reaches and dances.
 
     The seed varies the fall of the skirt's folds. Same seed, same bytes.
     """

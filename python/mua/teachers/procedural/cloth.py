@@ -30,9 +30,7 @@ def paint_skirt(surface: Surface) -> Array:
     i, j = np.round(x), np.round(y)
     x, y, even = (x - i) * _REPEAT, (y - j) * _REPEAT, (i + j) % 2 == 0
     cloth = filled(surface.around, IVORY)
-    flower = np.where(
-        even, _flower(x, y, radius=0.043, petals=6), _flower(x, y, radius=0.024, petals=4)
-    )
+    flower = np.where(even, _flower(x, y, radius=0.043, petals=6), _flower(x, y, radius=0.024, petals=4))
     cloth = over(cloth, np.where(even[..., None], CORAL, TEAL), inside(flower))
     cloth = over(cloth, IVORY, inside(np.abs(np.hypot(x, y) - 0.020) - 0.0022) * even)
     cloth = over(cloth, MUSTARD, inside(np.hypot(x, y) - np.where(even, 0.013, 0.009)))
@@ -51,7 +49,7 @@ def paint_bodice(surface: Surface) -> Array:
     height = surface.points[..., 1]
     cloth = over(cloth, CORAL, inside(np.abs(height - 1.048) - 0.020))
     edge = neckline(surface.points)
-    cloth = over(cloth, MUSTARD, inside(np.abs(edge + 0.004) - 0.004))
+    cloth = over(cloth, MUSTARD, inside(np.abs(edge + 0.003) - 0.005))
     return over(cloth, SKIN, inside(-edge))
 
 

@@ -21,14 +21,14 @@ def _ellipse(x: Array, y: Array, wide: float, high: float) -> Array:
 def _eye(face: Array, x: Array, y: Array) -> Array:
     """One eye, x growing outward from its centre."""
     lifted = y - 0.07 * x  # the outer corner a little higher
-    almond = np.abs(lifted) - 0.0064 * np.sqrt(np.clip(1 - (x / 0.0145) ** 2, 0, 1))
-    white = inside(np.maximum(almond, np.abs(x) - 0.0145))
+    almond = np.abs(lifted) - 0.0072 * np.sqrt(np.clip(1 - (x / 0.0155) ** 2, 0, 1))
+    white = inside(np.maximum(almond, np.abs(x) - 0.0155))
     face = over(face, WHITE, white)
-    face = over(face, IRIS, inside(np.hypot(x, lifted - 0.0005) - 0.0058) * white)
-    face = over(face, LASH, inside(np.hypot(x, lifted - 0.0005) - 0.0028) * white)
+    face = over(face, IRIS, inside(np.hypot(x, lifted - 0.0005) - 0.0066) * white)
+    face = over(face, LASH, inside(np.hypot(x, lifted - 0.0005) - 0.0033) * white)
     face = over(face, WHITE, inside(np.hypot(x + 0.002, lifted - 0.003) - 0.0012) * white)
-    lid = np.abs(lifted - 0.0062 * np.sqrt(np.clip(1 - (x / 0.0155) ** 2, 0, 1))) - 0.0013 - 0.05 * np.maximum(x, 0)
-    face = over(face, LASH, inside(np.maximum(lid, np.abs(x - 0.001) - 0.0165)))
+    lid = np.abs(lifted - 0.0072 * np.sqrt(np.clip(1 - (x / 0.0165) ** 2, 0, 1))) - 0.0016 - 0.05 * np.maximum(x, 0)
+    face = over(face, LASH, inside(np.maximum(lid, np.abs(x - 0.001) - 0.0175)))
     brow = np.abs(y - 0.0205 + 12 * (x - 0.003) ** 2) - 0.0017 + 0.04 * np.maximum(x, 0)
     return over(face, BROW, inside(np.maximum(brow, np.abs(x - 0.001) - 0.0175)) * 0.85)
 

@@ -161,7 +161,7 @@ def _armhole(trunk: Array) -> Array:
 
 
 def _arm_ring(along: Array, keys: Array) -> Array:
-    """Rings [R, C + 1, 3] at `along` [R] or [R, C + 1] metres from the shoulder; keys [R, 2] half thickness and depth."""
+    """Rings [R, C + 1, 3] at `along` [R] or [R, C + 1] metres from the shoulder; keys [R, 2]: half sizes."""
     theta = angles(ARM_COLUMNS)
     across = np.array([-ARM_DIRECTION[1], ARM_DIRECTION[0], 0.0])
     outward = (keys[:, :1] * np.sin(theta))[..., None] * across
@@ -236,7 +236,8 @@ def build_leg() -> Part:
     )
     points = close(points.copy())
     points[..., 1] = np.maximum(points[..., 1], 0)
-    rows = rows_by_length(points)
+    hidden = np.where(np.arange(len(points) - 1) < 5, 0.4, 1.0)
+    rows = rows_by_length(points, hidden)
     links = (("LeftUpLeg", 0.0, 0.0), ("LeftLeg", -0.485, 0.05), ("LeftFoot", -0.09, 0.03))
     weights = chain_weights(-points[..., 1], links)
     foot = smoothstep(0.085, 0.125, points[..., 2]) * (points[..., 1] < 0.1)

@@ -60,9 +60,12 @@ def mirrored(points: Array) -> Array:
     return np.asarray(points[:, ::-1] * np.array([-1.0, 1, 1]))
 
 
-def rows_by_length(points: Array) -> Array:
+def rows_by_length(
+    points: Array,  # [R, C + 1, 3]
+    density: Array | float = 1.0,  # [R - 1] how much finer than elsewhere the texels between two rings shall be
+) -> Array:
     """[R] chart positions of rings in proportion to their mean distance."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1) * density
     return np.concatenate([[0], np.cumsum(steps) / steps.sum()])
 
 
@@ -95,7 +98,9 @@ def weld(parts: tuple[Part, ...]) -> tuple[Mesh, Array, Array]:
     starts = np.cumsum([0, *sizes[:-1]])
     uv_faces = np.concatenate([_part_faces(part) + start for part, start in zip(parts, starts, strict=True)])
     _, first, place = np.unique(points.round(7), axis=0, return_index=True, return_inverse=True)
-    faces = place.reshape(-1)[uv_faces]
+    order = np.argsort(first)  # of appearance, so that neighbours stay near each other
+    first, place = first[order], np.argsort(order)[place.reshape(-1)]
+    faces = place[uv_faces]
     whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     faces, uv_faces = faces[whole], uv_faces[whole]
 
@@ -114,6 +119,6 @@ def weld(parts: tuple[Part, ...]) -> tuple[Mesh, Array, Array]:
         ]
     )
     sums = np.zeros((len(first), values.shape[1]))
-    np.add.at(sums, place.reshape(-1), values)
-    means = (sums / np.bincount(place.reshape(-1), minlength=len(first))[:, None])[used]
+    np.add.at(sums, place, values)
+    means = (sums / np.bincount(place, minlength=len(first))[:, None])[used]
     return mesh, means[:, :-1], means[:, -1]

@@ -11,7 +11,7 @@ HAIR_COLUMNS = 40
 EYE = np.array([0.031, 1.587])  # x, y
 NOSE_TIP, MOUTH = 1.553, 1.526  # y
 
-_FRONT_DENSITY = 0.35  # columns gather at the face
+_FRONT_DENSITY = 0.5  # columns gather at the face and spread evenly again down the neck
 
 # ring, half width, front z, back z, y at the sides, at the front, at the back
 _HEAD = np.array(
@@ -66,11 +66,18 @@ def _features(points: Array) -> Array:
 def build_head(trunk: Array) -> Part:
     """From inside the hair down to the base of the neck, welded to the first ring of the trunk's points."""
     keys = spline(_HEAD, np.arange(_HEAD[-1, 0] + 1))
-    phi = angles(COLUMNS)
-    points = close(_features(trunk_ring(keys, phi - _FRONT_DENSITY * np.sin(phi))))
+    phi, below_chin = angles(COLUMNS), smoothstep(20, 27, np.arange(len(keys)))[:, None]
+    points = close(_features(trunk_ring(keys, phi - _FRONT_DENSITY * (1 - below_chin) * np.sin(phi))))
     points = np.concatenate([points, trunk[:1]])
-    loose = np.zeros(points.shape[:2])
-    return Part("head", points, (0.5, 0.34, 1.0, 0.64), rows_by_length(points), loose, trunk_weights(points))
+    face = np.where(np.isin(np.arange(len(points) - 1), range(3, 22)), 1.5, 1.0)
+    return Part(
+        "head",
+        points,
+        cell=(0.5, 0.34, 1.0, 0.64),
+        rows=rows_by_length(points, face),
+        looseness=np.zeros(points.shape[:2]),
+        weights=trunk_weights(points),
+    )
 
 
 def build_hair() -> Part:

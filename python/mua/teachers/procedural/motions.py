@@ -76,19 +76,21 @@ def _walk() -> Performance:
     )
 
 
-def _stepping_feet(heading: Array, *, step: float, lift: float, center: Array, heel: Array) -> tuple[Foot, Foot]:
-    """Feet under a body that turns on the spot: they take turns to follow its heading [F] by `step` radians each.
+def _stepping_feet(heading: Array, *, steps: int, lift: float, heel: Array) -> tuple[Foot, Foot]:
+    """Feet under a body that turns once on the spot: they take turns to follow its heading [F], `steps` in all.
 
-    `center` [F, 3] is the point turned about, `heel` [F] the pitch in radians.
+    The right foot sets out with half a step and closes with another; `heel` [F] is the pitch in radians.
     """
     feet = []
-    for (_, side), late in zip(SIDES, (0.0, 1.0), strict=True):
-        count = (np.abs(heading) / step + late) / 2
+    progress = heading / (2 * np.pi) * (steps + 1)
+    for (_, side), late in zip(SIDES, (1, 0), strict=True):
+        count = (progress - late) / 2
         part = count - np.floor(count)
-        follow = np.sign(heading) * step * np.maximum(2 * (np.floor(count) + smoothstep(0, 0.5, part)) - late, 0)
-        raised = lift * np.sin(np.pi * np.clip(part / 0.5, 0, 1)) ** 2 * (np.abs(heading) > 0)
+        reached = np.clip(2 * (np.floor(count) + smoothstep(0, 0.5, part)) - (1 - late), 0, steps)
+        follow = reached * 2 * np.pi / steps
+        raised = lift * np.sin(np.pi * np.clip(part / 0.5, 0, 1)) ** 2
         out = side * _STANCE
-        ground = center + np.stack([out * np.cos(follow), raised, -out * np.sin(follow)], axis=-1)
+        ground = np.stack([out * np.cos(follow), raised, -out * np.sin(follow)], axis=-1)
         feet.append(Foot(ground, follow + side * np.radians(7), heel, np.ones_like(heading)))
     return feet[0], feet[1]
 
@@ -110,7 +112,7 @@ def _turn() -> Performance:
         pelvis=_degrees(1.0, still, 2 * rhythm * speed),
         spine=_degrees(2 * speed, 16 * speed, -3 * rhythm * speed),
         head=_degrees(-2.0, 26 * speed, 0.0),
-        feet=_stepping_feet(heading, step=np.pi / 6, lift=0.045, center=np.zeros((frames, 3)), heel=still),
+        feet=_stepping_feet(heading, steps=12, lift=0.045, heel=still),
         arms=(left, right),
     )
 
@@ -140,7 +142,9 @@ def _reach() -> Performance:
         _HANGING_FORE + h * np.array([0.2, 0.1, 0.1]) + w * (np.array([-0.35, -0.35, 0.9]) - _HANGING_FORE),
     )
     return Performance(
-        hips=np.stack([-0.035 * high + 0.015 * low, _HIPS + 0.012 * high - 0.10 * low, 0.02 * high - 0.05 * low], axis=-1),
+        hips=np.stack(
+            [-0.035 * high + 0.015 * low, _HIPS + 0.012 * high - 0.10 * low, 0.02 * high - 0.05 * low], axis=-1
+        ),
         heading=np.zeros(len(t)),
         pelvis=_degrees(-2 * high + 14 * low, 6 * high - 10 * low, -5 * high + 2 * low),
         spine=_degrees(-8 * high + 24 * low, 14 * high - 24 * low, 9 * high),
@@ -158,7 +162,6 @@ def _dance() -> Performance:
     sway, dip = _loop([(0, 0, 0), (0.09, 1, 1), (0.17, 0.1, 0.2), (0.26, -1, 1), (0.36, 0, 0.3), (0.5, 0, 0),
                        (0.62, 0, 0), (0.78, 0, 0.3), (0.88, 0.3, 0.7)], t).T  # fmt: skip
     still = np.zeros(len(t))
-    center = np.stack([0.03 * sway, still, still], axis=-1)
     heel = np.radians(24 * spin)
     arms = []
     for _, side in SIDES:
@@ -176,7 +179,7 @@ def _dance() -> Performance:
         pelvis=_degrees(2.0, 10 * sway, -4 * sway),
         spine=_degrees(-3 - 4 * spin, -8 * sway, -12 * sway),
         head=_degrees(-4.0, 10 * sway + 22 * spin * (1 - 2 * smoothstep(0.45, 0.65, t)), 8 * sway),
-        feet=_stepping_feet(heading, step=np.pi / 4, lift=0.03, center=center * 0, heel=heel),
+        feet=_stepping_feet(heading, steps=8, lift=0.03, heel=heel),
         arms=(arms[0], arms[1]),
     )
 

@@ -1,4 +1,4 @@
-"""A performance told by hips, trunk, feet on the ground and directions of the arms, and the joint rotations it needs."""
+"""A performance told by hips, trunk, feet on the ground and directions of the arms, turned into joint rotations."""
 
 from dataclasses import dataclass
 
@@ -39,7 +39,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Performance:
-    """All that a clip shows; angles in radians: lean (about X, forward), twist (about Y, to the left), tilt (about Z)."""
+    """All that a clip shows; angles in radians: lean (about X, forward), twist (Y, to the left), tilt (Z)."""
 
     hips: Array  # [F, 3] metres
     heading: Array  # [F]
@@ -83,7 +83,7 @@ def _knee(hip: Array, ankle: Array, ahead: Array, *, thigh: float, shin: float) 
 
 
 def _ankle(foot: Foot, turn: Array) -> Array:
-    """Ankles [F, 3] of feet rolled by their pitch over heel or ball; `turn` [F, 4] is the world rotation of the foot."""
+    """Ankles [F, 3] of feet rolled by their pitch over heel or ball; `turn` [F, 4] is the foot's world rotation."""
     pivot = np.where(foot.pitch[:, None] > 0, _BALL_ON_GROUND, _HEEL)
     yaw = rotation.from_axis_angle(Y, foot.heading)
     above = PLACES["LeftFoot"][1] * Y

@@ -8,7 +8,7 @@ from mua.rig.character import Mesh
 from mua.teachers.procedural.grid import smoothstep
 from mua.teachers.procedural.joints import PLACES
 
-_ROUNDS = 40  # of averaging over neighbours: blends over some four rings
+_ROUNDS = 16  # of averaging over neighbours: blends over some three rings
 
 
 def _neighbours(mesh: Mesh) -> csr_matrix:
@@ -24,7 +24,7 @@ def eased(mesh: Mesh, weights: Array) -> Array:
     """Blend weights [V, J] across the shoulders, where chains of the arms end at those of the trunk."""
     average = _neighbours(mesh)
     away = np.min([np.linalg.norm(mesh.vertices - PLACES[f"{side}Arm"], axis=1) for side in ("Left", "Right")], axis=0)
-    share = 0.5 * smoothstep(0.16, 0.10, away)[:, None]
+    share = 0.5 * smoothstep(0.15, 0.10, away)[:, None]
     for _ in range(_ROUNDS):
         weights = (1 - share) * weights + share * (average @ weights)
     return weights

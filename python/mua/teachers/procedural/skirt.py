@@ -38,7 +38,9 @@ def build_skirt(trunk: Array, phases: Array) -> Part:
     down = np.linspace(0, 1, RINGS)[:, None]
     fold = np.cos(FOLDS * theta + 0.5 * np.sin(2 * theta + phases[0]) + 0.4 * np.sin(3 * theta + phases[1]))
     swell = down**0.9 + _FOLD_DEPTH / _HEM_RADIUS[0] * smoothstep(0.05, 1.0, down) * fold
-    round_waist = np.stack([0.112 * np.sin(theta), np.full_like(theta, trunk[-1, 0, 1]), 0.082 * np.cos(theta)], axis=-1)
+    round_waist = np.stack(
+        [0.112 * np.sin(theta), np.full_like(theta, trunk[-1, 0, 1]), 0.082 * np.cos(theta)], axis=-1
+    )
     reach = np.stack([_HEM_RADIUS[0] * np.sin(theta), np.zeros_like(theta), _HEM_RADIUS[1] * np.cos(theta)], axis=-1)
     points = round_waist + swell[..., None] * (reach - round_waist * [1, 0, 1])
     points[..., 1] = trunk[-1, 0, 1] + (HEM - trunk[-1, 0, 1]) * down + _WAVE * down**2 * fold
