@@ -10,6 +10,7 @@ from mua.rig.texel_map import cover
 
 PACK_SIZE = 512  # texels along the square that charts are packed in
 PACK_GUTTER = 2  # of these texels between charts
+PLACES_TRIED = 256  # up to so many charts every place is tried for each
 ROOM = 8  # texels along the square that the smallest chart and its gutter need
 FULL = 0.8  # share of the square that the first attempt wants to fill
 SHRINK = 0.985  # texel density of the next attempt, when the charts did not fit
@@ -106,31 +107,34 @@ def pack(
     """Place the charts in the unit square, as large as they fit without overlap: [F, 3, 2]."""
     size = max(PACK_SIZE, int(ROOM * np.sqrt(charts.max() + 1)))
     scale = size * np.sqrt(FULL / max(areas(corners).sum(), np.finfo(float).tiny))
-    while (placed := _placed(corners * scale, charts, size)) is None:
-        scale *= SHRINK
-    return placed
+    while True:
+        atlas = _packed(corners * scale, charts, size)
+        if atlas.atlas_count <= 1:
+            break
+        filled = [atlas.get_utilization(k) for k in range(atlas.atlas_count)]
+        scale *= min(SHRINK, (filled[0] / sum(filled)) ** 0.25)  # half of what the squares too many ask for
+    _, flat, uv = atlas.get_mesh(0)
+    return uv[flat].astype(np.float64)
 
 
-def _placed(
+def _packed(
     corners: Array,  # [F, 3, 2] in texels, because xatlas leaves out what is small in absolute terms
     charts: Array,  # [F]
     size: int,
-) -> Array | None:
-    """The charts moved and turned into a square of `size` texels, as [F, 3, 2] in 0..1; None where they do not fit."""
+) -> xatlas.Atlas:
+    """The charts moved and turned into as many squares of `size` texels as they need."""
     rows = np.column_stack([np.repeat(charts, 3), corners.reshape(-1, 2).astype(np.float32)])
     nodes, index = np.unique(rows, axis=0, return_inverse=True)
+    triangles = index.reshape(-1, 3).astype(np.uint32)
     atlas = xatlas.Atlas()
-    atlas.add_uv_mesh(
-        nodes[:, 1:].astype(np.float32), index.reshape(-1, 3).astype(np.uint32), charts.astype(np.uint32)[:, None]
-    )
+    atlas.add_uv_mesh(nodes[:, 1:].astype(np.float32), triangles, charts.astype(np.uint32)[:, None])
     options = xatlas.PackOptions()
     options.resolution, options.padding, options.texels_per_unit = size, PACK_GUTTER, 1.0
-    options.bruteForce = True  # fills a tenth more of the square in the same time
+    options.bruteForce = (
+        charts.max() < PLACES_TRIED
+    )  # fills a tenth more of the square, but slowly where there are many
     atlas.generate(xatlas.ChartOptions(), options)
-    if atlas.atlas_count > 1:
-        return None
-    _, flat, uv = atlas.get_mesh(0)
-    return uv[flat].astype(np.float64)
+    return atlas
 
 
 def signed_areas(
@@ -161,7 +165,7 @@ def _overlap(
     low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(low, charts, corners.min(axis=1))
     np.maximum.at(high, charts, corners.max(axis=1))
-    scale = cell / np.maximum((high - low).max(axis=1), np.finfo(float).tiny)
+    scale = _ratio(np.full(count, float(cell)), (high - low).max(axis=1))
     place = np.stack(np.divmod(charts, across)[::-1], axis=1) * cell
     owner, claims = cover((corners - low[charts, None]) * scale[charts, None, None] + place[:, None], across * cell)
     filled = owner >= 0

@@ -81,6 +81,8 @@ def _decimate(
             break
         triangles *= vertices / count
     faces, uv_faces = left.reshape(-1, 3, 2).astype(np.int32).transpose(2, 0, 1)
+    flat = (faces == np.roll(faces, 1, axis=1)).any(axis=1)  # between two UVs of one vertex, as at the pole of an eye
+    faces, uv_faces = faces[~flat], uv_faces[~flat]
     return Mesh(vertices=mesh.vertices, faces=faces, uv=mesh.uv, uv_faces=uv_faces)
 
 
