@@ -12,7 +12,7 @@ from mua.teachers.procedural.performance import SIDES, Arm, Foot, Performance, j
 RATE = 30.0  # frames per second
 _STANCE = 0.075  # metres from the middle to a foot
 _HIPS = 0.928  # metres, standing with soft knees
-_HANGING, _HANGING_FORE = np.array([0.30, -1.0, -0.02]), np.array([0.16, -1.0, 0.22])
+_HANGING, _HANGING_FORE = np.array([0.34, -1.0, -0.02]), np.array([0.24, -1.0, 0.22])
 
 
 def _loop(keys: list[tuple[float, ...]], t: Array) -> Array:
@@ -143,10 +143,10 @@ def _reach() -> Performance:
     )
     return Performance(
         hips=np.stack(
-            [-0.035 * high + 0.015 * low, _HIPS + 0.012 * high - 0.10 * low, 0.02 * high - 0.05 * low], axis=-1
+            [-0.035 * high + 0.015 * low, _HIPS + 0.012 * high - 0.065 * low, 0.02 * high - 0.05 * low], axis=-1
         ),
         heading=np.zeros(len(t)),
-        pelvis=_degrees(-2 * high + 14 * low, 6 * high - 10 * low, -5 * high + 2 * low),
+        pelvis=_degrees(-2 * high + 12 * low, 6 * high - 10 * low, -5 * high + 2 * low),
         spine=_degrees(-8 * high + 24 * low, 14 * high - 24 * low, 9 * high),
         head=_degrees(-20 * high + 2 * low, -12 * high - 8 * low, 3 * high),
         feet=_standing_feet(np.stack([18 * high, 4 * high], axis=-1)),
