@@ -66,7 +66,7 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
         apart = np.linalg.norm(bind.places[attached] - bind.places[child], axis=1)
         parents[child] = attached[int(np.argmin(np.where(distances[child] <= least + TIE, apart, np.inf)))]
         orphans.remove(child)
-        attached += [j for j in np.flatnonzero(bind.trusted) if child in above[j] and not orphans & set(above[j])]
+        attached += [int(j) for j in np.flatnonzero(bind.trusted) if child in above[j] and not orphans & set(above[j])]
     kept = _kept(bind, parents)
     left_out = len(names) - len(kept.nodes)
     if not moved and not left_out:
