@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+
 from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.rig.texel_map import TexelMap, build_texel_map, points_on_surface

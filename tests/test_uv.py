@@ -182,7 +182,16 @@ def test_surface_drawn_with_one_point_of_a_palette_is_cut_anew() -> None:
     texels, colours = texels_and_colours(character)
     assert set(texels.triangles.tolist()) == set(range(18))
     assert np.ptp(colours, axis=0).max() <= ROUNDED  # the point lies between two bytes
-    assert "100% of its surface has no area of its own" in character.notes[-1]
+    assert "100% of its surface has next to no texels" in character.notes[-1]
+
+
+def test_a_band_with_too_few_texels_is_cut_anew() -> None:
+    vertices, faces, uv = patch(12, at=0, uv=uv_map(1, 1, at=(0, 0)))
+    uv[:, 0] = np.where(uv[:, 0] < 0.5, 1.9 * uv[:, 0], 0.9 + 0.1 * uv[:, 0])
+    character = build_atlas(surfaces_of((vertices, faces, uv), images=(ramp(256),)), uv="auto", size=64)
+    assert "of its surface has next to no texels: 1 charts of the file are kept" in character.notes[-1]
+    drawn = areas(character.mesh.uv[character.mesh.uv_faces])
+    assert np.mean(drawn < drawn.max() / 4) < 0.02
 
 
 def test_a_chart_that_winds_over_itself_is_cut_anew_and_others_are_kept() -> None:

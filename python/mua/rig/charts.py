@@ -12,13 +12,16 @@ PACK_SIZE = 512  # texels along the square that charts are packed in
 PACK_GUTTER = 2  # of these texels between charts
 PLACES_TRIED = 256  # up to so many charts every place is tried for each
 ROOM = 8  # texels along the square that the smallest chart and its gutter need
-FULL = 0.8  # share of the square that the first attempt wants to fill
+FULL = 0.75  # share of the square that the first attempt wants to fill
 SHRINK = 0.985  # texel density of the next attempt, when the charts did not fit
 
 SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is no chart
 CELL = 128  # texels along the square in which a chart is searched for overlap
 CELLS_SIZE = 2048  # texels along all these squares together
-COLLAPSED = 1e-4  # a triangle with less UV area for its surface than this share of the chart's has none
+
+STARVED = 1 / 6  # of its chart's texels for each square metre
+SMOOTHING = 3  # rounds over neighbours
+PATCH = 0.01  # of the character's surface
 
 
 def find_charts(
@@ -47,19 +50,51 @@ def find_charts(
     return np.unique(joins[charts], return_inverse=True)[1].astype(np.int32)
 
 
-def unusable(
+def overlapping(
     corners: Array,  # [F, 3, 2] UV
-    surface: Array,  # [F] surface area of each triangle, m2
     charts: Array,  # [F]
-    *,
-    allowed: float,
 ) -> Array:
-    """Say for each chart whether more than the share `allowed` of it overlaps itself or has no area in UV: [K] bool."""
-    uv = np.abs(signed_areas(corners))
-    ratio = np.bincount(charts, uv) / np.maximum(np.bincount(charts, surface), np.finfo(float).tiny)
-    collapsed = uv <= COLLAPSED * ratio[charts] * surface
-    lost = np.bincount(charts, surface * collapsed) > allowed * np.bincount(charts, surface)
-    return lost | (_overlap(corners, charts) > allowed)
+    """Share of each chart's texels [K] that two of its own triangles claim, each chart seen in a square of its own."""
+    count = charts.max() + 1
+    across = int(np.ceil(np.sqrt(count)))
+    cell = max(min(CELL, CELLS_SIZE // across), 4)
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+    np.minimum.at(low, charts, corners.min(axis=1))
+    np.maximum.at(high, charts, corners.max(axis=1))
+    scale = _ratio(np.full(count, float(cell)), (high - low).max(axis=1))
+    place = np.stack(np.divmod(charts, across)[::-1], axis=1) * cell
+    owner, claims = cover((corners - low[charts, None]) * scale[charts, None, None] + place[:, None], across * cell)
+    filled = owner >= 0
+    chart = charts[owner[filled]]
+    return _ratio(np.bincount(chart, claims[filled] > 1, minlength=count), np.bincount(chart, minlength=count))
+
+
+def starved(
+    corners: Array,  # [F, 3, 2] UV
+    positions: Array,  # [F, 3, 3] metres
+    nodes: Array,  # [F, 3] int, as for find_charts
+    *,
+    charts: Array,  # [F]
+) -> Array:
+    """Say which triangles [F] have far fewer texels for their surface than the rest of their chart, or none.
+
+    Areas are smoothed over neighbours, and a patch counts where it is a good part of its chart or of the character, so
+    that a skirt drawn in a narrow band is found and a nostril is not.
+    """
+    surface, drawn = areas(positions), areas(isometric(corners, positions, charts))
+    touches = coo_matrix((np.ones(nodes.size), (np.repeat(np.arange(len(nodes)), 3), nodes.ravel()))).tocsr()
+    there, here = surface, drawn
+    for _ in range(SMOOTHING):
+        there, here = touches @ (touches.T @ there), touches @ (touches.T @ here)
+    poor = here < STARVED * there
+    patch = np.zeros(len(nodes), np.int64)
+    inside = touches[poor]
+    patch[poor] = 1 + connected_components(inside @ inside.T, directed=False)[1]
+    sizes = np.bincount(patch, surface)
+    large = (sizes[patch] > PATCH * surface.sum()) | (sizes[patch] > np.bincount(charts, surface)[charts] / 2)
+    found = poor & large
+    beside = touches @ (touches.T @ found) > 0  # smoothing hid the border of the patch
+    return found | (beside & (drawn < STARVED * surface))
 
 
 def isometric(
@@ -108,21 +143,23 @@ def pack(
     size = max(PACK_SIZE, int(ROOM * np.sqrt(charts.max() + 1)))
     scale = size * np.sqrt(FULL / max(areas(corners).sum(), np.finfo(float).tiny))
     while True:
-        atlas = _packed(corners * scale, charts, size)
-        if atlas.atlas_count <= 1:
-            break
+        for upright in (True, False):  # which of the two packs better differs from character to character
+            atlas = _packed(corners * scale, charts, size, upright=upright)
+            if atlas.atlas_count <= 1:
+                _, flat, uv = atlas.get_mesh(0)
+                return uv[flat].astype(np.float64)
         filled = [atlas.get_utilization(k) for k in range(atlas.atlas_count)]
         scale *= min(SHRINK, (filled[0] / sum(filled)) ** 0.25)  # half of what the squares too many ask for
-    _, flat, uv = atlas.get_mesh(0)
-    return uv[flat].astype(np.float64)
 
 
 def _packed(
     corners: Array,  # [F, 3, 2] in texels, because xatlas leaves out what is small in absolute terms
     charts: Array,  # [F]
     size: int,
+    *,
+    upright: bool,
 ) -> xatlas.Atlas:
-    """The charts moved and turned into as many squares of `size` texels as they need."""
+    """The charts moved and turned (`upright`: along their longest side) into as many squares of `size` as they need."""
     rows = np.column_stack([np.repeat(charts, 3), corners.reshape(-1, 2).astype(np.float32)])
     nodes, index = np.unique(rows, axis=0, return_inverse=True)
     triangles = index.reshape(-1, 3).astype(np.uint32)
@@ -133,6 +170,7 @@ def _packed(
     options.bruteForce = (
         charts.max() < PLACES_TRIED
     )  # fills a tenth more of the square, but slowly where there are many
+    options.rotate_charts_to_axis = upright
     atlas.generate(xatlas.ChartOptions(), options)
     return atlas
 
@@ -152,25 +190,6 @@ def areas(
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     squares = (a * a).sum(axis=1) * (b * b).sum(axis=1) - (a * b).sum(axis=1) ** 2
     return np.sqrt(np.maximum(squares, 0)) / 2
-
-
-def _overlap(
-    corners: Array,  # [F, 3, 2] UV
-    charts: Array,  # [F]
-) -> Array:
-    """Share of each chart's texels [K] that two of its own triangles claim, each chart seen in a square of its own."""
-    count = charts.max() + 1
-    across = int(np.ceil(np.sqrt(count)))
-    cell = max(min(CELL, CELLS_SIZE // across), 4)
-    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
-    np.minimum.at(low, charts, corners.min(axis=1))
-    np.maximum.at(high, charts, corners.max(axis=1))
-    scale = _ratio(np.full(count, float(cell)), (high - low).max(axis=1))
-    place = np.stack(np.divmod(charts, across)[::-1], axis=1) * cell
-    owner, claims = cover((corners - low[charts, None]) * scale[charts, None, None] + place[:, None], across * cell)
-    filled = owner >= 0
-    chart = charts[owner[filled]]
-    return _ratio(np.bincount(chart, claims[filled] > 1, minlength=count), np.bincount(chart, minlength=count))
 
 
 def _ratio(a: Array, b: Array) -> Array:

@@ -9,13 +9,13 @@ from mua.arrays import Array
 from mua.rig.assemble import Surfaces
 from mua.rig.bake_texture import bake_texture
 from mua.rig.character import Character, Mesh
-from mua.rig.charts import areas, find_charts, isometric, pack, unusable, unwrap
+from mua.rig.charts import areas, find_charts, isometric, overlapping, pack, starved, unwrap
 from mua.rig.texel_map import build_texel_map, cover
 
 UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]
 
 JUDGED_SIZE = 512  # texels along the map in which overlap is counted
-LOSS_ALLOWED = 0.02  # share of texels claimed twice, or of surface without area in UV
+LOSS_ALLOWED = 0.02  # share of texels claimed twice, or of surface with next to no texels
 EMPHASIS = 2.0  # charts that their artist made finer or coarser stay so, up to this factor of length
 BORDER = 1e-3  # a UV this far beyond the texture counts as inside
 
@@ -29,6 +29,7 @@ class _Source:
     corners: Array  # [F, 3, 2] raw UV, 0 where there are none
     present: Array  # [F] bool, there are some
     charts: Array  # [F]
+    starved: Array  # [F] bool, has next to no texels for its surface, or none
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,8 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int) -> Character:
 
     `keep` leaves every chart where its artist put it, several materials side by side as whole squares; `unwrap` cuts
     everything anew with xatlas; `auto` keeps the only texture's layout unless more than 2 % of the valid texels are
-    claimed twice, else moves the artist's charts apart and cuts anew only what overlaps itself or has no area in UV.
+    claimed twice or the surface has next to no texels; else it moves the artist's charts apart and cuts anew only what
+    overlaps itself or is starved of texels.
 
     The picture is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
@@ -56,8 +58,8 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int) -> Character:
         layout = _keep(source)
         trouble = _trouble(source, layout)
         if uv == "auto" and (trouble or not layout.as_is):
-            bad = unusable(source.corners, areas(source.positions), source.charts, allowed=LOSS_ALLOWED)[source.charts]
-            layout = _lay_out(source, bad | ~source.present, trouble or "its materials have a texture each")
+            wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
+            layout = _lay_out(source, wound | source.starved, trouble or "its materials have a texture each")
         elif trouble:
             layout = _Layout(layout.corners, layout.as_is, (f"The UV layout was kept although {trouble}.",))
     return _character(source, layout, size)
@@ -69,12 +71,15 @@ def _read(surfaces: Surfaces) -> _Source:
     corners = np.zeros((len(surfaces.faces), 3, 2))
     corners[present] = surfaces.uv[surfaces.uv_faces[present]]
     rows = np.column_stack([np.repeat(surfaces.face_material, 3), surfaces.faces.ravel(), corners.reshape(-1, 2)])
+    positions, nodes = surfaces.vertices[surfaces.faces], _numbered(rows)
+    charts = find_charts(nodes, corners)
     return _Source(
         surfaces=surfaces,
-        positions=surfaces.vertices[surfaces.faces],
+        positions=positions,
         corners=corners,
         present=present,
-        charts=find_charts(_numbered(rows), corners),
+        charts=charts,
+        starved=starved(corners, positions, nodes, charts=charts) | ~present,
     )
 
 
@@ -102,10 +107,8 @@ def _trouble(source: _Source, layout: _Layout) -> str | None:
     if twice > LOSS_ALLOWED * valid:
         return f"{twice / valid:.0%} of its texels are claimed by more than one triangle"
     surface = areas(source.positions)
-    bad = unusable(source.corners, surface, source.charts, allowed=LOSS_ALLOWED)[source.charts]
-    if surface[bad].sum() > LOSS_ALLOWED * surface.sum():
-        return f"{surface[bad].sum() / surface.sum():.0%} of its surface has no area of its own in UV space"
-    return None
+    short = surface[source.starved].sum() / surface.sum()
+    return f"{short:.0%} of its surface has next to no texels" if short > LOSS_ALLOWED else None
 
 
 def _lay_out(
@@ -115,14 +118,14 @@ def _lay_out(
 ) -> _Layout:
     """Keep the other faces' charts, cut these anew, and pack all of them at the scale of the surface."""
     corners, charts = source.corners.copy(), source.charts.copy()
-    emphasis = np.where(anew, 1.0, _emphasis(source))
     if anew.any():
         corners[anew] = _cut(source, anew)
         rows = np.column_stack([source.surfaces.faces[anew].ravel(), corners[anew].reshape(-1, 2)])
         charts[anew] = charts.max() + 1 + find_charts(_numbered(rows), corners[anew])
     charts = np.unique(charts, return_inverse=True)[1]
     total = charts.max() + 1
-    flat = isometric(corners, source.positions, charts) * emphasis[:, None, None]
+    emphasis = (np.bincount(charts, _emphasis(source)) / np.bincount(charts))[charts, None, None]
+    flat = isometric(corners, source.positions, charts) * emphasis
     cut = len(np.unique(charts[anew]))
     note = (
         f"The UV layout was made anew because {because}: {total - cut} charts of the file are kept but moved, and "
@@ -133,12 +136,12 @@ def _lay_out(
 
 def _emphasis(source: _Source) -> Array:
     """How much finer in length [F] each face's chart is drawn than its material on average, within bounds."""
-    surface = areas(isometric(source.corners, source.positions, source.charts))
-    finer = []
-    for group in (source.charts, source.surfaces.face_material):
-        drawn = np.bincount(group, areas(source.corners)) / np.maximum(np.bincount(group, surface), 1e-30)
-        finer.append(np.maximum(drawn, 1e-30)[group])
-    return np.clip(np.sqrt(finer[0] / finer[1]), 1 / EMPHASIS, EMPHASIS)
+    drawn, surface = areas(source.corners), areas(isometric(source.corners, source.positions, source.charts))
+    finer = np.ones(len(drawn))
+    for group, power in ((source.charts, 0.5), (source.surfaces.face_material, -0.5)):
+        area, there = np.bincount(group, drawn)[group], np.bincount(group, surface)[group]
+        finer *= np.divide(area, there, out=np.ones(len(drawn)), where=(area > 0) & (there > 0)) ** power
+    return np.clip(np.where(drawn > 0, finer, 1.0), 1 / EMPHASIS, EMPHASIS)
 
 
 def _cut(
