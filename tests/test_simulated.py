@@ -13,7 +13,8 @@ from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.teachers.bones import fit_bones
-from mua.teachers.simulated import SimulatedTeacher, low_pass
+from mua.teachers.folds import Folds
+from mua.teachers.simulated import SimulatedTeacher
 from mua.teachers.simulation import Simulation
 from mua.teachers.teacher import TeacherFrame
 from mua.texture.channels import ATTRIBUTES, CHANNELS
@@ -133,29 +134,19 @@ def test_appearance_does_not_depend_on_heading_or_place(teacher: SimulatedTeache
     np.testing.assert_allclose(second.mesh, first.mesh, atol=single_in_motion)
 
 
-def test_low_pass_keeps_long_waves_and_halves_those_of_its_length() -> None:
-    character = tube(rings=200, sides=7)
-    height = character.mesh.vertices[:, 1]
-    inner = np.abs(height - 0.875) < 0.4
-    for ratio, gain in ((0.5, 1 / 5), (1.0, 1 / 2), (4.0, 16 / 17)):
-        wave = np.sin(2 * np.pi * height / (0.12 * ratio))[:, None]
-        smooth = low_pass(character.mesh.vertices, character.mesh.faces, 0.12)(wave)
-        np.testing.assert_allclose(
-            smooth[inner], gain * wave[inner], atol=0.02
-        )  # edges of 9 mm: sampling, and the rims
-
-
 def simulated_vertices(character: Character, clip: Clip) -> list[np.ndarray]:
-    """Positions [V, 3] of the dense surface in every frame, from the simulation itself."""
+    """Positions [V, 3] of the dense surface in every frame, from folds and simulation themselves, seed 0."""
     assert character.looseness is not None
     bones = fit_bones(character, character.looseness)
     mesh = character.mesh
     state = Simulation(mesh.vertices, mesh.faces, looseness=character.looseness, bones=bones)
+    folds = Folds(mesh.vertices, mesh.faces, looseness=character.looseness, rng=np.random.default_rng(0))
     result = []
     for frame, joints in enumerate(character.skeleton.skinning(clip.rotations, clip.translation)):
         dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
-        skinned = rotation.dual_transform(dual, mesh.vertices), dual[:, :4], bones.posed(joints)
+        turn, ends = dual[:, :4], bones.posed(joints)
+        target = folds(rotation.dual_transform(dual, mesh.vertices), turn)
         if frame == 0:
-            state.settle(*skinned)
-        result.append(state.advance(*skinned, seconds=1 / clip.rate))
+            state.settle(target, turn, ends)
+        result.append(state.advance(target, turn, ends, seconds=1 / clip.rate))
     return result

@@ -6,11 +6,9 @@ What of the deformation is longer than about 12 cm goes into the canonical mesh,
 posed by T_tex, both together are the teacher's surface.
 """
 
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Container, Iterator
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse import linalg
 
 from mua import rotation
 from mua.arrays import Array
@@ -23,20 +21,24 @@ from mua.rig.skeleton import Pose
 from mua.rig.template import make_template
 from mua.rig.texel_map import build_texel_map
 from mua.teachers.bones import figure_scale, fit_bones
+from mua.teachers.folds import Folds
 from mua.teachers.looseness import estimate_looseness
 from mua.teachers.shading import Light, shade, visibility
 from mua.teachers.simulation import Simulation
+from mua.teachers.smoothing import low_pass
 from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames, vertex_normals
 
 COARSE_WAVELENGTH = 0.12  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets
+TURN_WAVELENGTH = 0.08  # metres on a person: in the crease of a knee skinning turns the surface faster than texels hold
 
 
 class SimulatedTeacher:
     """Teacher frames of a character (mua.teachers.teacher); `rig` is the template that they stand on."""
 
-    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000) -> None:
+    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000, seed: int = 0) -> None:
+        """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
         mesh = character.mesh
         template = make_template(character, vertices=template_vertices)
         self.rig = Rig(
@@ -51,9 +53,13 @@ class SimulatedTeacher:
         looseness = estimate_looseness(character) if character.looseness is None else character.looseness
         self._bones = fit_bones(character, looseness)
         self._simulation = Simulation(mesh.vertices, mesh.faces, looseness=looseness, bones=self._bones)
+        rng = np.random.default_rng(seed)
+        self._folds = Folds(mesh.vertices, mesh.faces, looseness=looseness, rng=rng)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
-        self._low_pass = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
+        scale = figure_scale(mesh.vertices)
+        self._coarse = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * scale)
+        self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * scale)
         self._texels = SurfaceTexels(character, self.rig)
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
@@ -62,10 +68,11 @@ class SimulatedTeacher:
         skinning = character.skeleton.skinning(clip.rotations, clip.translation)
         for frame, joints in enumerate(skinning):
             dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
-            target, ends = rotation.dual_transform(dual, character.mesh.vertices), bones.posed(joints)
+            turn, ends = dual[:, :4], bones.posed(joints)
+            target = self._folds(rotation.dual_transform(dual, character.mesh.vertices), turn)
             if frame == 0:
-                self._simulation.settle(target, dual[:, :4], ends)
-            moved = self._simulation.advance(target, dual[:, :4], ends, seconds=1 / clip.rate)
+                self._simulation.settle(target, turn, ends)
+            moved = self._simulation.advance(target, turn, ends, seconds=1 / clip.rate)
             pose = Pose(clip.rotations[frame], clip.translation[frame])
             yield self._whole(pose, joints, dual, moved) if frame in wanted else pose
 
@@ -73,11 +80,11 @@ class SimulatedTeacher:
         """The frame whose dense surface, posed by `dual` [V, 8], lies at `moved` [V, 3]."""
         bind = self._character.mesh.vertices
         displacement = rotation.dual_transform(rotation.dual_inverse(dual), moved) - bind
-        coarse = self._low_pass(displacement)[self._template]
+        coarse = self._coarse(displacement)[self._template]
         back = rotation.conjugate(dual[:, :4])
         turn, log_stretch = self._surface(moved)
         turn = rotation.multiply(back, turn)
-        turn = np.where(turn[:, :1] < 0, -turn, turn)
+        turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
         texture = self._texels.texture(
             displacement,
             coarse,
@@ -95,25 +102,3 @@ class SimulatedTeacher:
         heading = heading_of(joints[self._character.skeleton.root, :4])
         light = shade(normals, visible, heading=heading)
         return Light(gain=light.gain, sheen=rotation.rotate(rotation.conjugate(dual[:, :4]), light.sheen))
-
-
-def low_pass(vertices: Array, faces: Array, wavelength: float) -> Callable[[Array], Array]:
-    """A filter for fields [V, c] on a surface that halves waves of this length and keeps longer ones: (M + t L)^-1 M.
-
-    L is the cotangent Laplacian without its negative weights, M the area about each vertex.
-    """
-    a, b, c = vertices[faces].swapaxes(0, 1)
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    count = len(vertices)
-    mass = np.bincount(faces.ravel(), np.repeat(area / 3, 3), count)
-    mass = sparse.diags(np.maximum(mass, 1e-6 * mass.mean()))
-    links = sparse.csr_matrix((count, count))
-    for corner, (p, q, r) in enumerate(((a, b, c), (b, c, a), (c, a, b))):
-        cotangent = np.sum((q - p) * (r - p), axis=1) / np.maximum(4 * area, 1e-12)
-        ends = faces[:, (corner + 1) % 3], faces[:, (corner + 2) % 3]
-        links = links + sparse.csr_matrix((cotangent, ends), shape=(count, count))
-    links = (links + links.T).maximum(0)
-    stiffness = sparse.diags(np.asarray(links.sum(axis=1)).ravel()) - links
-    t = (wavelength / (2 * np.pi)) ** 2
-    factors = linalg.splu((mass + t * stiffness).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    return lambda field: np.asarray(factors.solve(np.asarray(mass @ field)))

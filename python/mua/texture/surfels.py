@@ -20,8 +20,8 @@ LARGEST = 2e-2  # metres
 class Surfels:
     """The Gaussians of the texels on a surface at rest."""
 
-    rotations: Array  # [N, 4] x along u, z along the normal; unit, wxyz, one sign over each chart
-    log_scales: Array  # [N, 3] along u, across it in the surface, along the normal; natural logarithms of metres
+    rotations: Array  # [N, 4] x about along u, z along the normal; unit, wxyz, one sign over each chart
+    log_scales: Array  # [N, 3] along x, y, z; natural logarithms of metres
 
 
 def rest_surfels(
@@ -32,16 +32,22 @@ def rest_surfels(
     triangles: Array,  # [N] into the mesh's faces
     barycentrics: Array,  # [N, 3]
 ) -> Surfels:
-    """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart."""
-    along_u, along_v = _footprints(mesh, size)
-    log_lengths = np.log(np.maximum(np.linalg.norm(np.stack([along_u, along_v], axis=1), axis=2), 1e-9))
-    at_corners = _mean_at_corners(mesh.uv_faces, np.concatenate([along_u, log_lengths], axis=1), len(mesh.uv))
-    tangents, widths = np.split(_interpolate(at_corners, mesh.uv_faces[triangles], barycentrics), [3], axis=1)
+    """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart.
+
+    The frame is the rotation nearest to the map from texture to surface (polar decomposition in the surface), so that a
+    sheared chart gets rounder surfels, not spikes across its texels.
+    """
+    steps = _interpolate(_steps(mesh, size), mesh.uv_faces[triangles], barycentrics)
     normals = _interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
-    widths = np.clip(widths + np.log(SPREAD), np.log(SMALLEST), np.log(LARGEST))
+    along_u, along_v = steps[:, :3], steps[:, 3:]
+    upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
+    frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
+    axes = frames[:, :, :2]
+    widths = np.hypot(*(np.einsum("nka,nk->na", axes, step) for step in (along_u, along_v)))
+    widths = np.log(np.clip(SPREAD * widths, SMALLEST, LARGEST))
     thickness = np.maximum(widths.min(axis=1) + np.log(FLATNESS), np.log(SMALLEST))
     return Surfels(
-        rotations=align_neighbours(rotation.from_matrix(_frames(tangents, normals)), texels, size),
+        rotations=align_neighbours(rotation.from_matrix(frames), texels, size),
         log_scales=np.concatenate([widths, thickness[:, None]], axis=1),
     )
 
@@ -62,6 +68,16 @@ class SurfaceFrames:
         frames, size = self._measure(vertices)
         turn = np.einsum("vik,vjk->vij", frames, self._rest)
         return rotation.from_matrix(turn), np.log(size / self._rest_size)
+
+    def squeeze(
+        self,
+        vertices: Array,  # [V, 3] deformed
+    ) -> Array:
+        """How much shorter the surface is in its most compressed direction [V]: minus the log of length, >= 0."""
+        t, b = np.asarray(self._tangents @ vertices).reshape(2, -1, 3)
+        tt, bb, tb = (np.einsum("vc,vc->v", p, q) for p, q in ((t, t), (b, b), (t, b)))
+        least = (tt + bb) / 2 - np.hypot((tt - bb) / 2, tb)  # eigenvalue of the metric, 1 at rest
+        return np.maximum(-0.5 * np.log(np.maximum(least, 1e-6)), 0)
 
     def _measure(self, vertices: Array) -> tuple[Array, Array]:
         """Frames [V, 3, 3], columns x, y, z, and lengths [V] of the unit tangents carried along.
@@ -116,29 +132,28 @@ def vertex_normals(
 ) -> Array:
     """Unit normals [V, 3], faces weighted by area; upward where they cancel."""
     a, b, c = vertices[faces].swapaxes(0, 1)
-    flat = np.cross(b - a, c - a)
-    total = np.stack([np.bincount(faces.ravel(), np.repeat(n, 3), len(vertices)) for n in flat.T], axis=1)
+    total = _sum_at_corners(faces, np.cross(b - a, c - a), len(vertices))
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.where(length > 1e-15, total / np.maximum(length, 1e-15), [0.0, 1.0, 0.0])
 
 
-def _footprints(mesh: Mesh, size: int) -> tuple[Array, Array]:
-    """Where on each face a step of one texel along u and along v leads, [F, 3] metres; 0 without UV area."""
+def _steps(mesh: Mesh, size: int) -> Array:
+    """Where a step of one texel along u (3) and along v (3) leads from each UV corner, [T, 6] metres.
+
+    Means over the faces around it weighted by their area in the texture: a face without any says nothing.
+    """
     p, t = mesh.vertices[mesh.faces], mesh.uv[mesh.uv_faces] * size
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    (u1, v1), (u2, v2) = (t[:, 1] - t[:, 0]).T, (t[:, 2] - t[:, 0]).T
+    u1, v1, u2, v2 = np.concatenate([t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]], axis=1).T[..., None]
     area = u1 * v2 - u2 * v1
-    inverse = np.where(np.abs(area) > 1e-12, 1 / np.where(area == 0, 1, area), 0)[:, None]
-    along_u = (e1 * v2[:, None] - e2 * v1[:, None]) * inverse
-    along_v = (e2 * u1[:, None] - e1 * u2[:, None]) * inverse
-    return along_u, along_v
+    weighted = np.sign(area) * np.concatenate([e1 * v2 - e2 * v1, e2 * u1 - e1 * u2], axis=1)
+    total = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, np.abs(area)], axis=1), len(mesh.uv))
+    return np.asarray(total[:, :6] / np.maximum(total[:, 6:], 1e-12))
 
 
-def _mean_at_corners(faces: Array, values: Array, count: int) -> Array:
-    """Means [count, c] over the faces around each corner of the values [F, c] of the faces."""
-    number = np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
-    total = np.stack([np.bincount(faces.ravel(), np.repeat(column, 3), count) for column in values.T], axis=1)
-    return np.asarray(total / number[:, None])
+def _sum_at_corners(faces: Array, values: Array, count: int) -> Array:
+    """Sums [count, c] over the faces around each corner of the values [F, c] of the faces."""
+    return np.stack([np.bincount(faces.ravel(), np.repeat(column, 3), count) for column in values.T], axis=1)
 
 
 def _interpolate(values: Array, corners: Array, barycentrics: Array) -> Array:
