@@ -16,7 +16,7 @@ class TeacherFrame:
 
     pose: Pose
     mesh: Array  # [V, 3] float32 canonical template vertices, metres
-    texture: Array  # [N, 23] float32 raw channels (mua.texture.channels) at the valid texels, in the order of the texel map
+    texture: Array  # [N, 23] float32 raw channels (mua.texture.channels) at the valid texels of the map
 
 
 class Teacher(Protocol):
@@ -26,5 +26,5 @@ class Teacher(Protocol):
     def rig(self) -> Rig: ...
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
-        """Yield, for every frame of `clip` in order, a whole frame where its index is in `wanted`, else the pose alone."""
+        """Yield, for each frame of `clip` in order, a whole frame where `wanted` holds its index, else the pose."""
         ...

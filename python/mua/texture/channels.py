@@ -1,7 +1,7 @@
-"""The 23 channels of a Gaussian texture, before activation (paper, Sec. Teacher Model; design: geometry 11, appearance 12).
+"""The 23 channels of a Gaussian texture, before activation (paper, Sec. Teacher Model): geometry 11, appearance 12.
 
-Offsets are metres in canonical space; quaternions wxyz raw; scales are natural logarithms of metres; opacity is a logit;
-SH is degree 1, coefficient-major (coefficient, rgb), in canonical space:
+Offsets are metres in canonical space; quaternions wxyz raw; scales are natural logarithms of metres;
+opacity is a logit; SH is degree 1, coefficient-major (coefficient, rgb), in canonical space:
 colour = 0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3) for the unit direction (x, y, z) from camera to splat.
 """
 

@@ -1,0 +1,175 @@
+"""The main job on a very small order, and every way in which bad input ends it."""
+
+import dataclasses
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from PIL import Image
+
+from mua.asset import read
+from mua.bake.pipeline import Baked, Order, bake
+from mua.bake.plan import plan, split
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.student.settings import Ranks, Schedule, preset
+from mua.texture.channels import ATTRIBUTES
+
+SMALL = dataclasses.replace(
+    preset("tiny"),
+    texels=64,
+    frames=12,
+    geometry=Ranks(4, 3, 2),
+    appearance=Ranks(4, 3, 2),
+    components=4,
+    hidden=16,
+    sweeps=1,
+    regression=Schedule(steps=10, batch=8, rate=1e-3),
+    finetune=Schedule(steps=2, batch=4, rate=1e-4),
+)
+
+
+class Silent:
+    def stage(self, name: str) -> None: ...
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
+
+    def note(self, sentence: str) -> None: ...
+
+
+@pytest.fixture(scope="module")
+def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
+    directory = tmp_path_factory.mktemp("bake")
+    order = Order(directory / "a.muaavatar", directory / "work", SMALL, torch.device("cpu"))
+    return bake(order, Silent())
+
+
+def test_leaves_an_avatar_that_reads_back(baked: Baked) -> None:
+    avatar = read(baked.output)
+    assert avatar.rig.texels.size == 64
+    assert [clip.name for clip in avatar.clips[:4]] == [f"{name} (end)" for name in ("walk", "turn", "reach", "dance")]
+    assert avatar.thumbnail
+
+
+def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
+    with Image.open(baked.sheet) as sheet:
+        assert np.asarray(sheet).std() > 0
+    told = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert set(told["groups"]["training"]["rms"]) == set(ATTRIBUTES)
+    assert "explained" in baked.figures.read_text()
+
+
+def test_baselines_stand_in_the_only_possible_order(baked: Baked) -> None:
+    """Best coefficients beat the mean, and full bands beat best coefficients, on frames trained on."""
+    errors = baked.errors["training"]
+    for attribute in ("offset", "rotation", "SH"):
+        assert errors.rms(attribute, "bands") < errors.rms(attribute, "best") < errors.rms(attribute, "mean")
+
+
+def test_same_order_gives_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
+    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, torch.device("cpu")), Silent())
+    assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
+
+
+def clip(name: str, frames: int) -> Clip:
+    return Clip(name, 30.0, np.tile([1.0, 0, 0, 0], (frames, 1, 1)), np.zeros((frames, 3)))
+
+
+def test_plan_spreads_frames_over_all_training_clips() -> None:
+    planned = plan([clip("a", 30), clip("b", 10)], [clip("c", 100)], frames=8)
+    assert [len(p.wanted) for p in planned] == [6, 2, 40]
+    assert [p.held_out for p in planned] == [False, False, True]
+
+
+def test_plan_takes_every_frame_where_more_are_asked_for() -> None:
+    (planned,) = plan([clip("a", 7)], [], frames=1000)
+    assert planned.wanted == frozenset(range(7))
+
+
+def test_without_names_the_end_of_every_clip_is_held_out() -> None:
+    training, held = split([clip("a", 50), clip("b", 3)], [])
+    assert [(c.name, len(c)) for c in training] == [("a", 40), ("b", 3)]
+    assert [(c.name, len(c)) for c in held] == [("a (end)", 10)]
+
+
+def test_unknown_held_out_clip_is_named() -> None:
+    with pytest.raises(InputError, match="--hold-out z: there is no such clip, only a"):
+        split([clip("a", 50)], ["z"])
+
+
+def test_holding_out_everything_is_refused() -> None:
+    with pytest.raises(InputError, match="no clip to train on"):
+        split([clip("a", 50)], ["a"])
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-c", "from mua.cli.bake import run; run()", *map(str, arguments)]
+
+
+def refused(directory: Path, *arguments: object) -> str:
+    """The sentence that mua-bake ends with; an earlier result must survive and nothing new be left."""
+    output = directory / "out.muaavatar"
+    output.write_bytes(b"an earlier result")
+    before = sorted(directory.iterdir())
+    run = subprocess.run(command(*arguments, "-o", output), capture_output=True, text=True, check=False)
+    assert run.returncode == 1, run.stderr
+    assert output.read_bytes() == b"an earlier result"
+    assert sorted(directory.iterdir()) == before
+    lines = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
+    assert len(lines) == 1
+    return lines[0]
+
+
+def test_absent_character_is_named(tmp_path: Path) -> None:
+    assert "nobody.glb" in refused(tmp_path, tmp_path / "nobody.glb")
+
+
+def test_truncated_character_is_named(tmp_path: Path) -> None:
+    (tmp_path / "half.glb").write_bytes(b"glTF\x02\0\0\0\xff\0\0\0")
+    assert "half.glb" in refused(tmp_path, tmp_path / "half.glb")
+
+
+def test_empty_motion_is_named(tmp_path: Path) -> None:
+    (tmp_path / "empty.bvh").write_text(
+        "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
+        "Zposition\n}\nMOTION\nFrames: 0\nFrame Time: 0.03\n"
+    )
+    assert "empty.bvh" in refused(tmp_path, "--motion", tmp_path / "empty.bvh")
+
+
+def test_motion_whose_joints_match_nothing_is_named(tmp_path: Path) -> None:
+    (tmp_path / "alien.bvh").write_text(
+        "HIERARCHY\nROOT qqq\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT zzz\n{\nOFFSET 0 1 0\n"
+        "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
+        "MOTION\nFrames: 2\nFrame Time: 0.03\n0 0 0 0 0 0\n0 0 0 1 0 0\n"
+    )
+    sentence = refused(tmp_path, "--motion", tmp_path / "alien.bvh")
+    assert "alien.bvh" in sentence
+    assert "no joint name" in sentence
+
+
+def test_unknown_preset_is_named(tmp_path: Path) -> None:
+    assert "huge" in refused(tmp_path, "--preset", "huge")
+
+
+def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
+    """kill -9 while it records, then while it trains; the third run ends as an undisturbed one."""
+    code = (
+        "import sys, torch; from pathlib import Path; sys.path.insert(0, sys.argv[1]); from test_bake import *;"
+        "d = Path(sys.argv[2]); bake(Order(d / 'a.muaavatar', d / 'work', SMALL, torch.device('cpu')), Silent())"
+    )
+    run = [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)]
+    for sign in ("recording-*/reference.npz", "student/*"):
+        process = subprocess.Popen(run)
+        while process.poll() is None and not list((tmp_path / "work").glob(sign)):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    subprocess.run(run, check=True)
+    assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
