@@ -25,6 +25,8 @@ def blend_vertices(
     reference = joints[indices[:, 0], :4]
     total = np.zeros((len(indices), 8), dtype=joints.dtype)
     for joint, weight in zip(indices.T, weights.T, strict=True):
+        if not weight.any():  # largest first: no vertex has more influences
+            break
         _accumulate(total, joints[joint], weight, reference)
     return _normalize(total)
 
