@@ -12,7 +12,7 @@ from torch.nn import functional
 from mua.errors import InputError
 from mua.rig.texel_map import TexelMap
 
-CACHED_VALUES = 1 << 19  # channels are filled a few at a time, as many as the cache of a CPU holds
+CACHED_VALUES = 1 << 21  # channels are filled a few at a time, as many as the cache of a CPU holds
 
 
 class Fill:
