@@ -100,6 +100,14 @@ def test_rows_and_columns_have_equal_length_and_coefficients_unit_variance() -> 
     assert torch.allclose(found.coefficients.square().mean(0), torch.ones(4), rtol=100 * FLOAT32)
 
 
+def test_factors_of_a_channel_whose_modes_differ_by_many_magnitudes_stay_finite() -> None:
+    modes = random(40, 3, 12, 12, seed=1) * torch.logspace(0, -7, 40)[:, None, None, None]
+    x = torch.einsum("fk,ksij->fsij", random(60, 40), modes)
+    found = separable_blendshapes(x, 64, sweeps=10, generator=generator())
+    assert torch.isfinite(found.h).all()
+    assert squared_error(x, found) < 0.5 * float(x.square().sum())
+
+
 @pytest.mark.parametrize("frames", [1, 2])
 def test_more_blendshapes_than_the_data_hold_still_fit(frames: int) -> None:
     x = smooth_bands(frames, 5)

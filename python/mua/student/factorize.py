@@ -114,7 +114,7 @@ def sweep(
     """One round of alternating least squares: coefficients, then rows, then columns; the error never rises."""
     a = fit_coefficients(x, factors)
     y = torch.einsum("fr,fp->rp", a, x.flatten(1)).unflatten(1, x.shape[1:])
-    gram = a.T @ a
+    gram = _gram(a.T)
     h = _update(torch.einsum("rsij,srj->sri", y, factors.w), gram * _gram(factors.w), factors.h)
     w = _update(torch.einsum("rsij,sri->srj", y, h), gram * _gram(h), factors.w)
     return _balance(Factors(a, h, w))
@@ -130,6 +130,8 @@ def fit_coefficients(
 
 
 def _gram(rows: Tensor) -> Tensor:
+    """Inner products of rows [..., R, n] in double precision: their eigenvalues span more than single holds."""
+    rows = rows.double()
     return rows @ rows.transpose(-1, -2)
 
 
@@ -138,7 +140,7 @@ def _update(right: Tensor, gram: Tensor, previous: Tensor) -> Tensor:
     pull = PROXIMAL * gram.diagonal(dim1=-2, dim2=-1).mean(-1)[..., None, None] + torch.finfo(gram.dtype).tiny
     identity = torch.eye(gram.shape[-1], dtype=gram.dtype, device=gram.device)
     factor = torch.linalg.cholesky(gram + pull * identity)
-    return torch.cholesky_solve(right + pull * previous, factor)
+    return torch.cholesky_solve(right + pull * previous, factor).to(right)
 
 
 def _balance(factors: Factors) -> Factors:

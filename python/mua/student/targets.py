@@ -60,25 +60,25 @@ def joint_targets(
     )
     alphas = branch.split(flat)
     roots = [_root(basis, weights) for basis in bases]
-    worth = [torch.einsum("fcr,crk->fck", alpha, root) for alpha, root in zip(alphas, roots, strict=True)]
+    worth = [torch.einsum("fcr,crk->fck", alpha, root.to(alpha)) for alpha, root in zip(alphas, roots, strict=True)]
     u, s, v = truncated_svd(torch.cat([level.flatten(1) for level in worth], dim=1), rank, generator=generator)
     parts = branch.split(v)
     expand = [
-        torch.linalg.solve_triangular(root, part.transpose(0, 1), upper=False, left=False).transpose(0, 1).flatten(1)
+        torch.linalg.solve_triangular(root, part.transpose(0, 1).double(), upper=False, left=False).transpose(0, 1)
         for root, part in zip(roots, parts, strict=True)
     ]
-    return Targets(u * s, torch.cat(expand, dim=1))
+    return Targets(u * s, torch.cat([part.flatten(1) for part in expand], dim=1).to(u))
 
 
 def _root(
     basis: Tensor,  # [C, R, P]
     weights: Tensor,  # [C]
 ) -> Tensor:
-    """The Cholesky roots L [C, R, R] of the weighted Gram matrices, so that |alpha L| is the norm of alpha's texture.
+    """The Cholesky roots L [C, R, R], double, of the weighted Gram matrices: |alpha L| is the norm of alpha's texture.
 
     A ridge keeps them invertible where terms are alike, or zero because there were fewer frames than blendshapes.
     """
-    weighted = basis * weights[:, None, None]
+    weighted = (basis * weights[:, None, None]).double()
     gram = weighted @ weighted.transpose(1, 2)
     ridge = GRAM_RIDGE * gram.diagonal(dim1=1, dim2=2).mean(1) + torch.finfo(gram.dtype).tiny
     return torch.linalg.cholesky(gram + ridge[:, None, None] * torch.eye(gram.shape[1]).to(gram))
