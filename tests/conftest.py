@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+
 SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 
 
