@@ -42,7 +42,8 @@ def main() -> None:
             before, count = after, count + 1
         writer.finish()
     total = sum(spent.values())
-    print(f"{character.name}, {arguments.texels} texels, {len(teacher.rig.texels.texels)} of them valid, {count} frames")
+    valid = len(teacher.rig.texels.texels)
+    print(f"{character.name}, {arguments.texels} texels, {valid} of them valid, {count} frames")
     print(*(f"{name} {1000 * seconds / count:.0f} ms a frame" for name, seconds in spent.items()), sep=", ")
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     print(f"{count / total:.2f} frames a second, peak memory {peak:.2f} GiB")
