@@ -13,7 +13,7 @@ from mua.teachers.smoothing import low_pass
 from mua.texture.surfels import SurfaceFrames, vertex_normals
 
 WAVELENGTH = 0.08  # metres on a person, of the folds
-HEIGHT = 0.008  # metres on a person: standard deviation of the loosest cloth when fully squeezed
+HEIGHT = 0.012  # metres on a person: standard deviation of the loosest cloth when fully squeezed
 FULL_SQUEEZE = 0.3  # log of length lost at which folds near their full height
 
 

@@ -2,7 +2,7 @@
 
 It stands in for a captured teacher. Its surface is defined in canonical space: the simulated vertices are brought
 back to the bind pose by the dual quaternions that skinned them, and a texel lies at a fixed point of that surface.
-What of the deformation is longer than about 12 cm goes into the canonical mesh, the rest into the texels' offsets;
+What of the deformation is longer than about 20 cm goes into the canonical mesh, the rest into the texels' offsets;
 posed by T_tex, both together are the teacher's surface.
 """
 
@@ -30,7 +30,7 @@ from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames, vertex_normals
 
-COARSE_WAVELENGTH = 0.12  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets
+COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets
 TURN_WAVELENGTH = 0.08  # metres on a person: in the crease of a knee skinning turns the surface faster than texels hold
 
 

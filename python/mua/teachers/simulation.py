@@ -32,6 +32,7 @@ GRAVITY = 9.81
 STRETCH = 0.5  # share of an edge's error that an iteration takes out where looseness is 1
 SLACK = 0.3  # share of that for an edge shorter than at rest: cloth folds before it shortens
 BENDING = 0.5  # m^2 / s^2: (length over which displacements even out x frequency of the spring)^2
+SHORTEST_EDGE = 1e-4  # metres on a person
 LOOSE = 0.5  # cloth above this looseness collides with the bones
 GAP = 0.01  # metres between cloth and bones' skin
 
@@ -89,7 +90,8 @@ def relax(
     place = now[i]
     shift = place - target[i]
     pull = wp.vec3(0.0, 0.0, 0.0)
-    mean = wp.vec3(0.0, 0.0, 0.0)
+    even = wp.vec3(0.0, 0.0, 0.0)
+    total = wp.float32(1.0)
     for k in range(starts[i], starts[i + 1]):
         j = neighbours[k]
         edge = now[j] - place
@@ -98,9 +100,10 @@ def relax(
         if error < 0.0:
             error = error * slack
         pull += edge * (error / length * own / (own + looseness[j]))
-        mean += now[j] - target[j] - shift
+        even += (now[j] - target[j] - shift) * evening[k]
+        total += evening[k]
     count = wp.max(float(starts[i + 1] - starts[i]), 1.0)
-    ahead[i] = place + (pull * (stretch * own * own) + mean * evening[i]) / count
+    ahead[i] = place + pull * (stretch * own * own / count) + even / total
 
 
 @wp.kernel(enable_backward=False)
@@ -139,12 +142,11 @@ class Simulation:
         self._scale = figure_scale(vertices)
         starts, neighbours = one_rings(faces, len(vertices))
         own = np.repeat(np.arange(len(vertices)), np.diff(starts))
-        lengths = np.linalg.norm(vertices[neighbours] - vertices[own], axis=1)
+        lengths = np.maximum(np.linalg.norm(vertices[neighbours] - vertices[own], axis=1), SHORTEST_EDGE * self._scale)
         self._starts, self._neighbours = _ints(starts), _ints(neighbours)
         self._lengths, self._looseness = _floats(lengths), _floats(looseness)
-        spacing = np.bincount(own, lengths, len(vertices)) / np.maximum(np.diff(starts), 1) / self._scale
-        stiffness = BENDING * SUBSTEP**2 / ITERATIONS / np.maximum(spacing, 1e-6) ** 2
-        self._evening = _floats(4 * stiffness / (1 + 4 * stiffness))
+        per_ring = 4 / np.diff(starts)[own]  # of edges, in the discrete Laplacian
+        self._evening = _floats(per_ring * BENDING * SUBSTEP**2 / ITERATIONS / (lengths / self._scale) ** 2)
         softness = np.maximum(looseness, 1e-3)
         self._frequency = _floats(2 * np.pi * CLOTH_FREQUENCY / softness**FIRMING)
         self._drag = _floats(DRAG * looseness)
