@@ -55,11 +55,27 @@ def test_footprint_is_the_distance_of_texels() -> None:
     found, _ = tube_surfels(sides=60)
     scales = np.exp(found.log_scales)
     wide, high = 2 * np.pi * RADIUS / (0.8 * SIZE), HEIGHT / (0.8 * SIZE)
-    corner = 1 - np.cos(2 * np.pi / 60)  # what means of vectors lose over two sides of the 60-gon
-    np.testing.assert_allclose(scales[:, 0], surfels.SPREAD * wide, rtol=corner)
-    np.testing.assert_allclose(scales[:, 1], min(surfels.SPREAD * high, surfels.LARGEST), rtol=corner)
+    chord = np.sinc(1 / 60)  # a side of the 60-gon over its arc
+    tilt = 1 - np.cos(2 * np.pi / 60)  # smooth normals lie between those of two sides
+    np.testing.assert_allclose(scales[:, 0], surfels.SPREAD * wide * chord, rtol=tilt)
+    np.testing.assert_allclose(scales[:, 1], min(surfels.SPREAD * high, surfels.LARGEST), rtol=tilt)
     assert np.all(scales[:, 2] >= surfels.SMALLEST * (1 - 1e-6))
     assert np.all(scales[:, 2] <= scales[:, :2].min(axis=1))
+
+
+def test_surfels_on_a_sharp_edge_still_cover_their_texels() -> None:
+    """The extent along any direction in a triangle's plane is at least that of the footprint there, less flattening."""
+    found, _ = tube_surfels(sides=3)  # corners of 120 degrees
+    mesh = tube(sides=3).mesh
+    texels = build_texel_map(mesh, SIZE)
+    a, b, c = mesh.vertices[mesh.faces[texels.triangles]].swapaxes(0, 1)
+    normals = np.cross(b - a, c - a)
+    across = np.cross([0, 1.0, 0], normals / np.linalg.norm(normals, axis=1, keepdims=True))
+    along_axes = np.einsum("nka,nk->na", rotation.to_matrix(found.rotations), across)
+    extent = np.linalg.norm(along_axes * np.exp(found.log_scales), axis=1)
+    side = 2 * RADIUS * np.sin(np.pi / 3)
+    footprint = surfels.SPREAD * side / (0.8 * SIZE / 3)
+    assert np.all(extent > 0.7 * footprint)  # 1 / sqrt(2): an axis-aligned ellipsoid about a diagonal footprint
 
 
 @pytest.mark.parametrize("seed", [0, 1])

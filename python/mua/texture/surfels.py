@@ -34,21 +34,25 @@ def rest_surfels(
 ) -> Surfels:
     """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart.
 
-    The frame is the rotation nearest to the map from texture to surface (polar decomposition in the surface), so that a
-    sheared chart gets rounder surfels, not spikes across its texels.
+    The frame is the rotation nearest to the map from texture to surface (polar decomposition in the surface), so that
+    a sheared chart gets rounder surfels, not spikes across its texels. The extents along its axes are those of the
+    texel's footprint on its own triangle: across an edge that smooth normals round off, surfels are thick and leave
+    no gap.
     """
-    steps = _interpolate(_steps(mesh, size), mesh.uv_faces[triangles], barycentrics)
+    weighted, area = _weighted_steps(mesh, size)
+    at_corners = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, area], axis=1), len(mesh.uv))
+    means = at_corners[:, :6] / np.maximum(at_corners[:, 6:], 1e-12)
+    steps = _interpolate(means, mesh.uv_faces[triangles], barycentrics)
     normals = _interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
     along_u, along_v = steps[:, :3], steps[:, 3:]
     upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
     frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
-    axes = frames[:, :, :2]
-    widths = np.hypot(*(np.einsum("nka,nk->na", axes, step) for step in (along_u, along_v)))
-    widths = np.log(np.clip(SPREAD * widths, SMALLEST, LARGEST))
-    thickness = np.maximum(widths.min(axis=1) + np.log(FLATNESS), np.log(SMALLEST))
+    footprint = (weighted / np.maximum(area, 1e-12))[triangles].reshape(-1, 2, 3)
+    extents = SPREAD * np.linalg.norm(footprint @ frames, axis=1)
+    extents[:, 2] = np.maximum(extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
     return Surfels(
         rotations=align_neighbours(rotation.from_matrix(frames), texels, size),
-        log_scales=np.concatenate([widths, thickness[:, None]], axis=1),
+        log_scales=np.log(np.clip(extents, SMALLEST, LARGEST)),
     )
 
 
@@ -137,18 +141,18 @@ def vertex_normals(
     return np.where(length > 1e-15, total / np.maximum(length, 1e-15), [0.0, 1.0, 0.0])
 
 
-def _steps(mesh: Mesh, size: int) -> Array:
-    """Where a step of one texel along u (3) and along v (3) leads from each UV corner, [T, 6] metres.
+def _weighted_steps(mesh: Mesh, size: int) -> tuple[Array, Array]:
+    """Where a step of one texel along u (3) and along v (3) leads on each face, and the face's area in the texture.
 
-    Means over the faces around it weighted by their area in the texture: a face without any says nothing.
+    Returns the steps times the area, [F, 6] metres x texels^2, and the area [F, 1]: means weighted by area never divide
+    by that of one face, which may be 0.
     """
     p, t = mesh.vertices[mesh.faces], mesh.uv[mesh.uv_faces] * size
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     u1, v1, u2, v2 = np.concatenate([t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]], axis=1).T[..., None]
     area = u1 * v2 - u2 * v1
     weighted = np.sign(area) * np.concatenate([e1 * v2 - e2 * v1, e2 * u1 - e1 * u2], axis=1)
-    total = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, np.abs(area)], axis=1), len(mesh.uv))
-    return np.asarray(total[:, :6] / np.maximum(total[:, 6:], 1e-12))
+    return weighted, np.abs(area)
 
 
 def _sum_at_corners(faces: Array, values: Array, count: int) -> Array:
