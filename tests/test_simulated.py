@@ -130,7 +130,7 @@ def test_appearance_does_not_depend_on_heading_or_place(teacher: SimulatedTeache
     turned = Clip("turned", clip.rate, rotations, rotation.rotate(yaw, clip.translation - origin) + origin + [3, 0, 1])
     first, second = whole_frames(teacher, clip)[-1], whole_frames(teacher, turned)[-1]
     single_in_motion = 100 * SINGLE  # the simulation divides positions of up to 4 m by substeps
-    np.testing.assert_allclose(second.texture, first.texture, atol=100 * single_in_motion)
+    np.testing.assert_allclose(second.texture, first.texture, atol=single_in_motion)
     np.testing.assert_allclose(second.mesh, first.mesh, atol=single_in_motion)
 
 
