@@ -14,7 +14,6 @@ from mua.student.settings import Ranks, Schedule, Settings
 from mua.student.train import Samples
 from mua.texture.channels import ATTRIBUTES, CHANNELS
 
-
 SIZE = 48  # LL 3 x 3
 ENCODING = PoseEncoding(joints=(), rate=30.0, window=1)
 INPUTS = ENCODING.width

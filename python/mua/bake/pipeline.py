@@ -102,7 +102,7 @@ def _record(order: Order, character: Character, planned: list[PlannedClip], list
     """The teacher's recording, taken up where an earlier run of the same order left it."""
     directory = order.work / f"recording-{_key(order, character, planned)}"
     listener.stage("teacher")
-    teacher = SimulatedTeacher(character, texels=order.settings.texels)
+    teacher = SimulatedTeacher(character, texels=order.settings.texels, seed=order.settings.seed)
     listener.stage("recording")
     total = sum(len(clip.wanted) for clip in planned)
     with TeacherWriter(directory, teacher.rig, rate=RATE) as writer:
