@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from mua.student.model import Bands, Branch
-from mua.student.optimise import Run, draw_batch, optimise
+from mua.student.optimise import Run, optimise
 from mua.student.regress import WEIGHT_DECAY
 from mua.student.settings import Schedule
 
@@ -52,7 +52,7 @@ def finetune(
     """Train bases and MLP together on the paper's loss over weighted subbands."""
 
     def loss() -> Tensor:
-        batch = draw_batch(len(inputs), schedule.batch, run.generator)
+        batch = torch.randperm(len(inputs), generator=run.generator)[: schedule.batch]
         ll, d3, d2 = (band.to(run.device) for band in bands(batch))
         scale = weights[:, None, None]
         return subband_loss(branch(inputs[batch.to(inputs.device)]), Bands(ll * scale, d3 * scale, d2 * scale))

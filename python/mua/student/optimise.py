@@ -88,8 +88,3 @@ def _keep(module: nn.Module, optimizer: torch.optim.Optimizer, step: int, *, sta
         "step": step,
     }
     run.checkpoints.save(stage, state)
-
-
-def draw_batch(frames: int, batch: int, generator: torch.Generator) -> Tensor:
-    """Indices [min(batch, frames)] of different frames."""
-    return torch.randperm(frames, generator=generator)[:batch]

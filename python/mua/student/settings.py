@@ -61,9 +61,9 @@ PRESETS = {
         geometry=Ranks(192, 128, 96),
         appearance=Ranks(128, 128, 96),
         components=128,
-        hidden=256,
+        hidden=384,
         sweeps=15,
-        regression=Schedule(steps=3000, batch=512, rate=2e-3),
+        regression=Schedule(steps=2000, batch=512, rate=2e-3),
         finetune=Schedule(steps=600, batch=64, rate=3e-4),
     ),
     "paper": Settings(
@@ -72,9 +72,9 @@ PRESETS = {
         geometry=Ranks(192, 128, 96),
         appearance=Ranks(128, 128, 96),
         components=128,
-        hidden=256,
+        hidden=384,
         sweeps=20,
-        regression=Schedule(steps=20000, batch=1024, rate=2e-3),
+        regression=Schedule(steps=20000, batch=512, rate=2e-3),
         finetune=Schedule(steps=20000, batch=32, rate=3e-4),
     ),
 }
