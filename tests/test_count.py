@@ -11,7 +11,9 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.asset.count import flops, parameters
 from mua.motion.encoding import PoseEncoding
+from mua.student.settings import Ranks, preset
 
+PAPER = preset("paper")
 PAPER_PARAMETERS = 26.67e6  # paper, Tab. Comparison
 PAPER_FLOPS = 0.52e9
 PAPER_TEXELS = 300_000  # paper, Animatable Coarse Geometry
@@ -27,15 +29,15 @@ def mlp(*sizes: int) -> Mlp:
     return tuple(Layer(blank(n, m), blank(n)) for m, n in itertools.pairwise(sizes))
 
 
-def paper_branch(channels: int, rank: int, inputs: int) -> Branch:
+def paper_branch(channels: int, ranks: Ranks, inputs: int) -> Branch:
     details = tuple(
         DetailBand(blank(3, channels, n, n), blank(3, channels, r, n), blank(3, channels, r, n))
-        for n, r in ((48, 128), (96, 96))
+        for n, r in ((48, ranks.d3), (96, ranks.d2))
     )
     return Branch(
-        mlp=mlp(inputs, 256, 256, channels * (rank + 128 + 96)),
+        mlp=mlp(inputs, PAPER.hidden, PAPER.hidden, channels * ranks.total),
         ll_mean=blank(channels, 48, 48),
-        ll_basis=blank(channels, rank, 48, 48),
+        ll_basis=blank(channels, ranks.ll, 48, 48),
         details=details,
         static=blank(channels, PAPER_TEXELS),
     )
@@ -47,9 +49,13 @@ def paper_avatar() -> Avatar:
     return dataclasses.replace(
         synthetic_avatar(),
         encoding=encoding,
-        coarse=Coarse(mlp(encoding.width, 256, 256, 128), blank(PAPER_VERTICES, 3), blank(128, PAPER_VERTICES, 3)),
-        geometry=paper_branch(11, 192, encoding.width),
-        appearance=paper_branch(12, 128, encoding.width),
+        coarse=Coarse(
+            mlp(encoding.width, PAPER.hidden, PAPER.hidden, PAPER.components),
+            blank(PAPER_VERTICES, 3),
+            blank(PAPER.components, PAPER_VERTICES, 3),
+        ),
+        geometry=paper_branch(11, PAPER.geometry, encoding.width),
+        appearance=paper_branch(12, PAPER.appearance, encoding.width),
         wavelet=Wavelet("bior4.4", 4, np.array(taps.rec_lo), np.array(taps.rec_hi)),
     )
 
