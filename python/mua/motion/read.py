@@ -34,9 +34,9 @@ def read_motion(path: Path) -> list[SourceMotion]:
 
 
 def _read_rig_clips(path: Path) -> list[SourceMotion]:
-    from mua.rig.read import read_surfaces  # here, because scene readers are slow to import
+    from mua.rig.read import read_animation  # here, because scene readers are slow to import
 
-    rig = read_surfaces(path)
-    if not rig.clips:
+    animation = read_animation(path)
+    if not animation.clips:
         raise InputError(f"{path}: expected an animation, found none")
-    return [SourceMotion(rig.skeleton, clip) for clip in rig.clips]
+    return [SourceMotion(animation.skeleton, clip, animation.notes) for clip in animation.clips]

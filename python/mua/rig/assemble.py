@@ -1,6 +1,5 @@
 """From the pieces that a scene file holds to one surface on one rigid skeleton; shared by all readers."""
 
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.rig.bind_pose import Bind, bind_pose
 from mua.rig.character import MAX_INFLUENCES
+from mua.rig.correction import check_scales, corrected
 from mua.rig.rigid_skeleton import rigid_skeleton
 from mua.rig.scene import Material, Part, Scene
 from mua.rig.scene import Wrap as Wrap  # part of what Surfaces says to the atlas
@@ -18,11 +18,7 @@ from mua.rig.skeleton import Skeleton
 
 WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
 WEIGHT_STEP = 1e-5  # weights nearer than this are equal
-HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
-ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be another than it says
-UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
 LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
-FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
 
 @dataclass(frozen=True)
@@ -68,19 +64,15 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
     """
     if not any(len(part.faces) for part in scene.parts):
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character")
-    flat = np.abs(np.linalg.det(scene.rest[:, :3, :3])) < np.finfo(np.float32).tiny
-    if flat.any():
-        raise InputError(f"{path}: node {scene.node_names[flat.argmax()]} has a scale of 0 in the rest pose")
+    check_scales(scene, path)
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
     bind = bind_pose(scene)
     mesh = _merge(scene, bind)
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.ptp(used, axis=0).any():
         raise InputError(f"{path}: all vertices of the skinned meshes lie at {used[0].tolist()}, expected a surface")
-    correction, told = _correction(scene, bind, vertices=used)
+    scene, told = corrected(scene, bind, points=used)
     if told:
-        moved = tuple(replace(motion, worlds=correction @ motion.worlds) for motion in scene.motions)
-        scene = replace(scene, rest=correction @ scene.rest, motions=moved)
         bind = bind_pose(scene)
         mesh = _merge(scene, bind)
     mesh = _weld(mesh)
@@ -243,44 +235,3 @@ def _corners(faces: Array, uv: Array, *, uv_faces: Array, face_material: Array) 
     joined = np.full(uv_faces.shape, -1)
     joined[mapped] = welded.reshape(-1, 3)
     return uv[corners[first]].reshape(-1, 2), joined
-
-
-def _correction(scene: Scene, bind: Bind, *, vertices: Array) -> tuple[Array, tuple[str, ...]]:
-    """A similarity [4, 4] to a plausible height in metres and to facing +Z, with a sentence for each change."""
-    correction = np.eye(4)
-    told = []
-    height = float(np.ptp(vertices[:, 1]))
-    if not ODD_HEIGHTS[0] <= height <= ODD_HEIGHTS[1]:
-        for unit in UNITS:
-            if HEIGHTS[0] <= height * unit <= HEIGHTS[1]:
-                correction[:3, :3] *= unit
-                told.append(
-                    f"The character is {height:.3g} units high; one unit is taken as {unit:g} m, not as 1 m, "
-                    f"which makes it {height * unit:.2f} m."
-                )
-                break
-    turn = _quarter_turn(scene, bind)
-    if turn:
-        c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
-        correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
-        told.append(
-            f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°."
-        )
-    return correction, tuple(told)
-
-
-def _quarter_turn(scene: Scene, bind: Bind) -> int:
-    """Quarter turns about +Y that make the character face +Z, by the sides that its joint names tell."""
-    names = [re.sub(r"_\d+$", "", scene.node_names[node].lower()) for node in bind.nodes]  # some tools number them
-    index = {name: j for j, name in enumerate(names)}
-    across = np.zeros(3)
-    for name, j in index.items():
-        for left, right in (("left", "right"), (r"(?<![a-z])l(?![a-z])", "r")):
-            other = index.get(re.sub(left, right, name))
-            if other is not None and other != j:
-                across += bind.places[j] - bind.places[other]
-    front = np.array([-across[2], across[0]])  # x and z of left cross up
-    length = np.linalg.norm(front)
-    if length < 1e-6 or front[1] / length >= FACING:
-        return 0
-    return int(np.round(-np.arctan2(front[0], front[1]) / (np.pi / 2))) % 4

@@ -1,14 +1,15 @@
 """Characters from .glb and .gltf files."""
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.rig.animation import Animation, bare_animation
 from mua.rig.assemble import Surfaces, assemble
-from mua.rig.gltf_animation import chain, compose, read_animations
+from mua.rig.gltf_animation import chain, compose, moved_nodes, read_animations
 from mua.rig.gltf_document import Document, load
 from mua.rig.gltf_materials import read_materials
 from mua.rig.gltf_mesh import read_parts
@@ -32,7 +33,24 @@ def read_gltf(path: Path) -> Surfaces:
     holds no skinned mesh.
     """
     document = load(path)
+    return assemble(_meshes(document, _tree(document)), path)
+
+
+def read_gltf_animation(path: Path) -> Animation:
+    """Read the skeleton and clips of a .glb or .gltf: those of its skinned meshes, else of its skins or moved nodes.
+
+    Raises an InputError where `read_gltf` does, except that a mesh may be missing where there are joints.
+    """
+    document = load(path)
     tree = _tree(document)
+    scene = _meshes(document, tree)
+    if any(len(part.faces) for part in scene.parts):
+        rig = assemble(scene, path)
+        return Animation(rig.skeleton, rig.clips, ())
+    return bare_animation(_scene(document, tree, _bare_skins(document, tree)), path)
+
+
+def _meshes(document: Document, tree: _Tree) -> Scene:
     materials, coordinates = read_materials(document)
     skins = _skins(document)
     joints = {int(node) for skin in skins for node in skin.joints}
@@ -54,17 +72,46 @@ def read_gltf(path: Path) -> Surfaces:
         parts += read_parts(
             document, node, skin=skin, bones=len(skins[skin].joints), coordinates=coordinates, notes=notes
         )
-    return assemble(_scene(document, tree, skins, parts=parts, materials=materials, notes=notes), path)
-
-
-def _scene(
-    document: Document, tree: _Tree, skins: list[Skin], *, parts: list[Part], materials: Any, notes: list[str]
-) -> Scene:
-    """Keep the nodes that joints and their ancestors are, renumbered parents first, and sample the clips on them."""
     used = sorted({part.skin for part in parts})
+    parts = [replace(part, skin=used.index(part.skin)) for part in parts]
+    scene = _scene(document, tree, [skins[s] for s in used])
+    return replace(scene, parts=tuple(parts), materials=materials, notes=(*notes, *scene.notes))
+
+
+def _bare_skins(document: Document, tree: _Tree) -> list[Skin]:
+    """The file's skins, bound in the rest pose where they do not say how; without any, the tree that clips move most.
+
+    Nodes that the rest pose scales to nothing are no joints.
+    """
+    skins = _skins(document)
+    found = [
+        skin if source.inverseBindMatrices is not None else _at_rest(tree, skin.joints.tolist())
+        for skin, source in zip(skins, document.gltf.skins or [], strict=True)
+    ]
+    if any(len(skin.joints) for skin in found):
+        return [skin for skin in found if len(skin.joints)]
+    moved = Counter(_top(node, tree.parents) for node in moved_nodes(document))
+    if not moved:
+        return []
+    return [_at_rest(tree, _below(document, [max(moved, key=lambda top: moved[top])]))]
+
+
+def _at_rest(tree: _Tree, nodes: list[int]) -> Skin:
+    solid = [node for node in nodes if abs(np.linalg.det(tree.world[node][:3, :3])) >= np.finfo(np.float32).tiny]
+    return Skin(np.array(solid, int), np.linalg.inv(tree.world[solid]))
+
+
+def _top(node: int, parents: dict[int, int]) -> int:
+    while node in parents:
+        node = parents[node]
+    return node
+
+
+def _scene(document: Document, tree: _Tree, skins: list[Skin]) -> Scene:
+    """Keep the nodes that joints and their ancestors are, renumbered parents first, and sample the clips on them."""
     followed: set[int] = set()
-    for skin in used:
-        for node in skins[skin].joints:
+    for skin in skins:
+        for node in skin.joints:
             while node is not None and int(node) not in followed:
                 followed.add(int(node))
                 node = tree.parents.get(int(node))
@@ -78,14 +125,11 @@ def _scene(
         node_names=tuple(_node_name(document, node) for node in nodes),
         parents=parents,
         rest=chain(rest, parents),
-        skins=tuple(
-            Skin(np.array([index[int(node)] for node in skins[s].joints]), skins[s].inverse_binds, skins[s].rigid)
-            for s in used
-        ),
-        parts=tuple(Part(**{**vars(part), "skin": used.index(part.skin)}) for part in parts),
-        materials=materials,
+        skins=tuple(replace(skin, joints=np.array([index[int(node)] for node in skin.joints])) for skin in skins),
+        parts=(),
+        materials=(),
         motions=motions,
-        notes=(*notes, *left_out),
+        notes=left_out,
     )
 
 

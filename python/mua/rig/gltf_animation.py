@@ -32,6 +32,18 @@ def chain(local: Array, parents: Array) -> Array:
     return world
 
 
+def moved_nodes(document: Document) -> list[int]:
+    """The glTF nodes that some clip moves, in order."""
+    moved = set()
+    for a, animation in enumerate(document.gltf.animations or []):
+        for c, channel in enumerate(animation.channels or []):
+            if channel.target is not None and channel.target.node is not None and channel.target.path in WIDTHS:
+                field = f"animations[{a}].channels[{c}].target.node"
+                document.item("nodes", channel.target.node, field=field)
+                moved.add(int(channel.target.node))
+    return sorted(moved)
+
+
 def read_animations(
     document: Document,
     nodes: list[int],  # glTF nodes to follow, parents first

@@ -30,7 +30,7 @@ def find_root(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> in
     if moved[_with_ancestors(trunk, bind.parents)].any():
         return trunk
     highest = [int(j) for j in np.flatnonzero(moved) if below[j] >= body]
-    hips = [j for j, name in enumerate(names) if _is_hips(name) and below[j] >= body]
+    hips = [j for j, name in enumerate(names) if is_hips(name) and below[j] >= body]
     return [*highest, *hips, trunk][0]
 
 
@@ -137,6 +137,7 @@ def _size(bind: Bind) -> float:
     return float(np.ptp(bind.places, axis=0).max()) or 1.0  # a single joint has no size
 
 
-def _is_hips(name: str) -> bool:
+def is_hips(name: str) -> bool:
+    """Whether a joint's name says that it is the middle of the hips."""
     words = re.findall("[a-z]+", name.lower())
     return any(word.endswith(HIPS) for word in words) and not {"l", "r", "left", "right"} & set(words)

@@ -4,23 +4,35 @@ from pathlib import Path
 from typing import Literal
 
 from mua.errors import InputError
+from mua.rig.animation import Animation
 from mua.rig.assemble import Surfaces
 from mua.rig.character import Character
-from mua.rig.gltf import read_gltf
-from mua.rig.usd import read_usd
+from mua.rig.gltf import read_gltf, read_gltf_animation
+from mua.rig.usd import read_usd, read_usd_animation
 from mua.rig.uv import build_atlas
 
-READERS = {".glb": read_gltf, ".gltf": read_gltf} | dict.fromkeys((".usd", ".usda", ".usdc", ".usdz"), read_usd)
+GLTF = (".glb", ".gltf")
+USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
 def read_surfaces(path: Path) -> Surfaces:
     """Read a rigged character by its suffix; raises an InputError where that is unknown or the file is missing."""
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
-        raise InputError(f"{path}: the suffix is {path.suffix or 'missing'}, expected one of {', '.join(READERS)}")
+    return read_gltf(path) if _checked_suffix(path) in GLTF else read_usd(path)
+
+
+def read_animation(path: Path) -> Animation:
+    """Read a file's skeleton and clips by its suffix, with or without a mesh; raises as `read_surfaces` does."""
+    return read_gltf_animation(path) if _checked_suffix(path) in GLTF else read_usd_animation(path)
+
+
+def _checked_suffix(path: Path) -> str:
+    suffix = path.suffix.lower()
+    known = (*GLTF, *USD)
+    if suffix not in known:
+        raise InputError(f"{path}: the suffix is {path.suffix or 'missing'}, expected one of {', '.join(known)}")
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
-    return reader(path)
+    return suffix
 
 
 def read_character(path: Path, uv: Literal["keep", "unwrap", "auto"] = "auto", *, atlas_size: int = 2048) -> Character:

@@ -1,6 +1,6 @@
 """Characters from .usd, .usda, .usdc and .usdz files, by UsdSkel."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +8,7 @@ from pxr import Tf, Usd, UsdGeom, UsdShade, UsdSkel
 
 from mua.arrays import Array
 from mua.errors import InputError
+from mua.rig.animation import Animation, bare_animation
 from mua.rig.assemble import Surfaces, assemble
 from mua.rig.scene import Material, Motion, Part, Scene, Skin
 from mua.rig.usd_materials import Look, read_look
@@ -33,19 +34,42 @@ def read_usd(path: Path) -> Surfaces:
 
     Raises an InputError that names the prim and attribute where the stage is broken or holds no skinned mesh.
     """
+    return assemble(_meshes(_opened(path), path), path)
+
+
+def read_usd_animation(path: Path) -> Animation:
+    """Read the skeletons of a stage and the animation bound to them: those of its skinned meshes, else all animated.
+
+    Raises an InputError where `read_usd` does, except that a mesh may be missing where a skeleton is animated.
+    """
+    stage = _opened(path)
+    scene = _meshes(stage, path)
+    if any(len(part.faces) for part in scene.parts):
+        rig = assemble(scene, path)
+        return Animation(rig.skeleton, rig.clips, ())
+    skeletons: list[_Bones] = []
+    for query in _animated(stage):
+        skeletons.append(_bones(query, path, first=_node_count(skeletons)))
+    joints = [bones.first + 1 + np.arange(len(bones.paths)) for bones in skeletons]
+    skins = [Skin(at, np.linalg.inv(bones.binds)) for at, bones in zip(joints, skeletons, strict=True)]
+    return bare_animation(_scene(stage, skeletons, skins, name=path.stem), path)
+
+
+def _opened(path: Path) -> Usd.Stage:
     try:
-        stage = Usd.Stage.Open(str(path))
+        return Usd.Stage.Open(str(path))
     except Tf.ErrorException as broken:
         raise InputError(f"{path}: USD cannot open the stage: {str(broken).strip().splitlines()[-1]}") from broken
-    world = _to_metres(stage)
+
+
+def _meshes(stage: Usd.Stage, path: Path) -> Scene:
     skeletons: list[_Bones] = []
     skins: list[Skin] = []
     parts: list[Part] = []
     materials: list[Material] = []
     notes: list[str] = []
     for skeleton, targets in _bindings(stage):
-        first = sum(len(bones.paths) + 1 for bones in skeletons)
-        bones = _bones(skeleton, path, first=first)
+        bones = _bones(skeleton, path, first=_node_count(skeletons))
         skeletons.append(bones)
         for target in targets:
             skins.append(_skin(target, bones, path))
@@ -57,20 +81,29 @@ def read_usd(path: Path) -> Surfaces:
                 at = {"skin": len(skins) - 1, "bones": len(skins[-1].joints), "material": len(materials)}
                 parts.append(_part(target, look, path, chosen=faces, notes=notes, **at))
                 materials.append(look.material)
-    scene = Scene(
-        name=path.stem,
+    scene = _scene(stage, skeletons, skins, name=path.stem)
+    return replace(scene, parts=tuple(parts), materials=tuple(materials), notes=tuple(notes))
+
+
+def _scene(stage: Usd.Stage, skeletons: list[_Bones], skins: list[Skin], *, name: str) -> Scene:
+    world = _to_metres(stage)
+    return Scene(
+        name=name,
         node_names=tuple(name for bones in skeletons for name in _names(bones)),
         parents=np.concatenate([_parents(bones) for bones in skeletons]) if skeletons else np.zeros(0, int),
         rest=world @ np.concatenate([_worlds(bones, NO_TIME, at_rest=True) for bones in skeletons])
         if skeletons
         else np.zeros((0, 4, 4)),
         skins=tuple(skins),
-        parts=tuple(parts),
-        materials=tuple(materials),
+        parts=(),
+        materials=(),
         motions=tuple(_motions(stage, skeletons, world=world)),
-        notes=tuple(notes),
+        notes=(),
     )
-    return assemble(scene, path)
+
+
+def _node_count(skeletons: list[_Bones]) -> int:
+    return sum(len(bones.paths) + 1 for bones in skeletons)
 
 
 def _to_metres(stage: Usd.Stage) -> Array:
@@ -96,6 +129,17 @@ def _bindings(stage: Usd.Stage) -> list[tuple[UsdSkel.SkeletonQuery, list[UsdSke
             if targets:
                 found.append((cache.GetSkelQuery(binding.GetSkeleton()), targets))
     return found
+
+
+def _animated(stage: Usd.Stage) -> list[UsdSkel.SkeletonQuery]:
+    """Each skeleton of the stage that an animation is bound to."""
+    cache = UsdSkel.Cache()
+    prims = list(stage.Traverse(PREDICATE))
+    for prim in prims:
+        if prim.IsA(UsdSkel.Root):
+            cache.Populate(UsdSkel.Root(prim), PREDICATE)
+    queries = [cache.GetSkelQuery(UsdSkel.Skeleton(prim)) for prim in prims if prim.IsA(UsdSkel.Skeleton)]
+    return [query for query in queries if query and query.GetAnimQuery()]
 
 
 def _bones(query: UsdSkel.SkeletonQuery, path: Path, *, first: int) -> _Bones:

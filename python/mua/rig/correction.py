@@ -1,0 +1,73 @@
+"""A scene brought to a plausible height in metres and to facing +Z, where it does not say so itself."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.rig.bind_pose import Bind
+from mua.rig.scene import Scene
+
+HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
+ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be another than it says
+UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
+FACING = 0.5  # cosine between a character's front and +Z below which it is turned
+
+
+def check_scales(scene: Scene, path: Path) -> None:
+    """Raise an InputError that names a node which the rest pose scales to nothing."""
+    flat = np.abs(np.linalg.det(scene.rest[:, :3, :3])) < np.finfo(np.float32).tiny
+    if flat.any():
+        raise InputError(f"{path}: node {scene.node_names[flat.argmax()]} has a scale of 0 in the rest pose")
+
+
+def corrected(
+    scene: Scene,
+    bind: Bind,
+    *,
+    points: Array,  # [N, 3] what the scene shows in the bind pose, at least one
+) -> tuple[Scene, tuple[str, ...]]:
+    """The scene at a plausible height in metres and facing +Z, with a sentence for each change."""
+    correction = np.eye(4)
+    told = []
+    height = float(np.ptp(points[:, 1]))
+    if not ODD_HEIGHTS[0] <= height <= ODD_HEIGHTS[1]:
+        for unit in UNITS:
+            if HEIGHTS[0] <= height * unit <= HEIGHTS[1]:
+                correction[:3, :3] *= unit
+                told.append(
+                    f"The character is {height:.3g} units high; one unit is taken as {unit:g} m, not as 1 m, "
+                    f"which makes it {height * unit:.2f} m."
+                )
+                break
+    turn = _quarter_turn(scene, bind)
+    if turn:
+        c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
+        correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
+        told.append(
+            f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°."
+        )
+    if not told:
+        return scene, ()
+    moved = tuple(replace(motion, worlds=correction @ motion.worlds) for motion in scene.motions)
+    return replace(scene, rest=correction @ scene.rest, motions=moved), tuple(told)
+
+
+def _quarter_turn(scene: Scene, bind: Bind) -> int:
+    """Quarter turns about +Y that make the character face +Z, by the sides that its joint names tell."""
+    names = [re.sub(r"_\d+$", "", scene.node_names[node].lower()) for node in bind.nodes]  # some tools number them
+    index = {name: j for j, name in enumerate(names)}
+    across = np.zeros(3)
+    for name, j in index.items():
+        for left, right in (("left", "right"), (r"(?<![a-z])l(?![a-z])", "r")):
+            other = index.get(re.sub(left, right, name))
+            if other is not None and other != j:
+                across += bind.places[j] - bind.places[other]
+    front = np.array([-across[2], across[0]])  # x and z of left cross up
+    length = np.linalg.norm(front)
+    if length < 1e-6 or front[1] / length >= FACING:
+        return 0
+    return int(np.round(-np.arctan2(front[0], front[1]) / (np.pi / 2))) % 4
