@@ -144,8 +144,25 @@ def test_attributes_count_alike_and_one_that_never_varies_is_not_raised() -> Non
     variance = torch.tensor([1e-4] * 3 + [0.04] * 4 + [0.09] * 3 + [0.0])
     weights = channel_weights(variance, GEOMETRY)
     assert torch.allclose(weights[:10], torch.tensor([100.0] * 3 + [5.0] * 4 + [1 / 0.3] * 3))
-    assert weights[10] == 100  # a hundredth of a logit is the least that counts
+    assert float(weights[10]) == pytest.approx(1000)  # a thousandth of a logit is the least that counts
     assert len(channel_weights(torch.ones(12), APPEARANCE)) == 12
+
+
+def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
+    descriptors, bands = bands_of_frames()
+    opacity = 10
+    for band in (bands.ll[:, opacity], bands.d3[:, :, opacity], bands.d2[:, :, opacity]):
+        band.mul_(1e-6).add_(2)
+    student, data = (
+        new_student(),
+        replace(samples(), subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part)))),
+    )
+    checkpoints = Checkpoints(tmp_path, "k")
+    train(student, data, settings=quick(), checkpoints=checkpoints, device=CPU, report=lambda _: None)
+    assert torch.equal(
+        student.predict(descriptors).ll[:, opacity], student.geometry.ll_mean[opacity].expand(FRAMES, -1, -1)
+    )
+    assert not student.geometry.d2.h[:, opacity].any()
 
 
 def test_the_folded_mlp_reads_plain_descriptors(tmp_path: Path) -> None:

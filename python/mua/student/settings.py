@@ -52,8 +52,8 @@ PRESETS = {
         components=24,
         hidden=128,
         sweeps=10,
-        regression=Schedule(steps=600, batch=256, rate=3e-3),
-        finetune=Schedule(steps=100, batch=32, rate=3e-4),
+        regression=Schedule(steps=1000, batch=256, rate=3e-3),
+        finetune=Schedule(steps=60, batch=64, rate=1e-4),
     ),
     "preview": Settings(
         texels=384,
@@ -64,7 +64,7 @@ PRESETS = {
         hidden=384,
         sweeps=15,
         regression=Schedule(steps=2000, batch=512, rate=2e-3),
-        finetune=Schedule(steps=600, batch=64, rate=3e-4),
+        finetune=Schedule(steps=150, batch=64, rate=1e-4),
     ),
     "paper": Settings(
         texels=768,
@@ -75,7 +75,7 @@ PRESETS = {
         hidden=384,
         sweeps=20,
         regression=Schedule(steps=20000, batch=512, rate=2e-3),
-        finetune=Schedule(steps=20000, batch=32, rate=3e-4),
+        finetune=Schedule(steps=5000, batch=64, rate=1e-4),
     ),
 }
 

@@ -4,6 +4,7 @@ Coefficients are first expressed so that a squared error in them is the squared 
 for; the few hundred directions that matter are regressed, and the linear map back is folded into the MLP's last layer.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import torch
@@ -14,7 +15,7 @@ from mua.student.model import Branch, outer_products
 from mua.texture.channels import ATTRIBUTES
 
 # No one sees an attribute vary by less than this, in its own unit (metres, quaternion, log scale, logit, SH).
-LEAST_SPREAD = {"offset": 1e-4, "rotation": 1e-3, "scale": 1e-3, "opacity": 1e-2, "SH": 1e-3}
+LEAST_SPREAD = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3, "SH": 1e-4}
 GRAM_RIDGE = 1e-6
 
 
@@ -36,11 +37,27 @@ def channel_weights(
     channels would all but ignore offsets, which are metres beside logits.
     """
     weights = torch.empty_like(variance)
+    for name, own in _attributes(channels):
+        weights[own] = 1 / variance[own].mean().sqrt().clamp(min=LEAST_SPREAD[name])
+    return weights
+
+
+def still_channels(
+    variance: Tensor,  # [C] over training frames and texels
+    channels: slice,  # which of the 23 these are
+) -> Tensor:
+    """Which channels [C] hardly vary: what their blendshapes would hold is rounding."""
+    still = torch.zeros_like(variance, dtype=torch.bool)
+    for name, own in _attributes(channels):
+        still[own] = variance[own].sqrt() < LEAST_SPREAD[name]
+    return still
+
+
+def _attributes(channels: slice) -> Iterator[tuple[str, slice]]:
+    """The attributes that lie within `channels`, and where in it."""
     for name, where in ATTRIBUTES.items():
         if channels.start <= where.start and where.stop <= channels.stop:
-            own = slice(where.start - channels.start, where.stop - channels.start)
-            weights[own] = 1 / variance[own].mean().sqrt().clamp(min=LEAST_SPREAD[name])
-    return weights
+            yield name, slice(where.start - channels.start, where.stop - channels.start)
 
 
 @torch.no_grad()
@@ -76,9 +93,10 @@ def _root(
 ) -> Tensor:
     """The Cholesky roots L [C, R, R], double, of the weighted Gram matrices: |alpha L| is the norm of alpha's texture.
 
-    A ridge keeps them invertible where terms are alike, or zero because there were fewer frames than blendshapes.
+    A ridge keeps them invertible where terms are alike; a channel without blendshapes gets the identity.
     """
     weighted = (basis * weights[:, None, None]).double()
     gram = weighted @ weighted.transpose(1, 2)
-    ridge = GRAM_RIDGE * gram.diagonal(dim1=1, dim2=2).mean(1) + torch.finfo(gram.dtype).tiny
+    size = gram.diagonal(dim1=1, dim2=2).mean(1)
+    ridge = torch.where(size > 0, GRAM_RIDGE * size, 1)
     return torch.linalg.cholesky(gram + ridge[:, None, None] * torch.eye(gram.shape[1]).to(gram))

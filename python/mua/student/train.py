@@ -15,7 +15,7 @@ from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
 from mua.student.regress import regress, squared_error, unfold_last_layer
 from mua.student.settings import Settings
-from mua.student.targets import channel_weights, joint_targets
+from mua.student.targets import channel_weights, joint_targets, still_channels
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
 HELD_BYTES = 2 << 30  # a branch's subbands up to this size are kept in memory, larger ones are read batch by batch
@@ -82,6 +82,7 @@ def fit_branch(
     flat, variance = factorize_branch(
         branch, source, frames=len(inputs), settings=settings, stage=f"{name} bases", run=run
     )
+    hold_still(branch, flat, still_channels(variance, channels))
     weights = channel_weights(variance, channels)
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
     targets = joint_targets(branch, flat, weights, rank=rank, generator=run.generator)
@@ -162,6 +163,21 @@ def factorize_channel(
         coefficients.append(factors.coefficients)
         energy = energy + band.square().sum()
     return Alphas(*coefficients), energy
+
+
+@torch.no_grad()
+def hold_still(
+    branch: Branch,
+    flat: Tensor,  # [F, M] coefficients, changed in place
+    still: Tensor,  # [C] bool
+) -> None:
+    """Take blendshapes and coefficients from channels; no gradient reaches either then, and they stay at their mean."""
+    branch.ll_basis[still] = 0
+    for detail in (branch.d3, branch.d2):
+        detail.h[:, still] = 0
+        detail.w[:, still] = 0
+    for level in branch.split(flat):
+        level[:, still] = 0
 
 
 @torch.no_grad()
