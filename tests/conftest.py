@@ -22,3 +22,13 @@ class SharedData:
 @pytest.fixture(scope="session")
 def shared_data() -> SharedData:
     return SharedData()
+
+
+@pytest.fixture(scope="session")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A recording that nothing disturbed; tests leave it as it is."""
+    from recordings import write  # here, because few tests need torch
+
+    directory = tmp_path_factory.mktemp("recordings") / "undisturbed"
+    write(directory)
+    return directory

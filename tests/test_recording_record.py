@@ -1,0 +1,82 @@
+"""Recording a plan: what is resumed, what is held in memory, what is refused."""
+
+import shutil
+import tracemalloc
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from recordings import RATE, FormulaTeacher, clip, content, plan, write
+from synthetic_avatar import synthetic_rig
+
+from mua.errors import InputError
+from mua.recording import PlannedClip, Recording, TeacherWriter, record
+
+
+def test_complete_recording_is_not_touched_again(written: Path, tmp_path: Path) -> None:
+    directory = tmp_path / "copy"
+    shutil.copytree(written, directory)
+    assert write(directory).computed == []
+    assert content(directory) == content(written)
+
+
+def test_resuming_asks_the_teacher_only_for_what_is_missing(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    teacher = FormulaTeacher(rig)
+    walk = clip(rig, "walk", 10)
+    planned = [PlannedClip(walk, held_out=False, wanted=frozenset(range(10)))]
+    heard: list[int] = []
+
+    class Stop(Exception):
+        pass
+
+    def stop_at_six(done: int) -> None:
+        if done == 6:
+            raise Stop
+
+    with pytest.raises(Stop), TeacherWriter(tmp_path, rig, rate=RATE, shard_frames=4) as writer:
+        record(teacher, planned, writer, progress=stop_at_six)
+    with TeacherWriter(tmp_path, rig, rate=RATE, shard_frames=4) as writer:
+        assert writer.next_frame("walk") == 4
+        assert writer.recorded("walk") == (0, 1, 2, 3)
+        assert not writer.is_complete("walk")
+        teacher.computed.clear()
+        record(teacher, planned, writer, progress=heard.append)
+    assert teacher.computed == [("walk", index) for index in range(4, 10)]
+    assert heard == [4, 5, 6, 7, 8, 9, 10]
+    assert Recording(tmp_path).count() == 10
+
+
+def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    teacher = FormulaTeacher(rig)
+
+    def peak(frames: int) -> int:
+        planned = [PlannedClip(clip(rig, "walk", frames), held_out=False, wanted=frozenset(range(frames)))]
+        with TeacherWriter(tmp_path / str(frames), rig, rate=RATE, shard_frames=4, whole_every=1) as writer:
+            tracemalloc.start()
+            record(teacher, planned, writer)
+            allocated = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+        return allocated
+
+    peak(4)  # fills caches
+    texture = teacher.frame(clip(rig, "walk", 1), 0).texture.nbytes
+    assert peak(96) < peak(16) + texture  # of the 80 frames more not even one is held
+
+
+def test_refuses_another_plan(written: Path, tmp_path: Path) -> None:
+    shutil.copytree(written, tmp_path / "copy")
+    rig = synthetic_rig()
+    changed = [replace(plan(rig)[0], wanted=frozenset({0, 1}))]
+    with (
+        TeacherWriter(tmp_path / "copy", rig, rate=RATE) as writer,
+        pytest.raises(InputError, match="clip 'walk' holds other frames than are wanted now"),
+    ):
+        record(FormulaTeacher(rig), changed, writer)
+    slow = [PlannedClip(replace(clip(rig, "slow", 3), rate=12.0), held_out=False, wanted=frozenset({0}))]
+    with (
+        TeacherWriter(tmp_path / "copy", rig, rate=RATE) as writer,
+        pytest.raises(InputError, match=r"clip 'slow': rate is 12\.0 .* expected 24\.0"),
+    ):
+        record(FormulaTeacher(rig), slow, writer)

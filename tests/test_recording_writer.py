@@ -1,0 +1,188 @@
+"""Recordings written: what a kill leaves, which frames and directories are refused."""
+
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recordings import RATE, FormulaTeacher, clip, content, write
+from synthetic_avatar import synthetic_rig
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.recording import Recording, TeacherWriter
+from mua.rig.skeleton import Pose
+
+
+def test_full_images_are_taken_at_the_valid_texels(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    size = rig.texels.size
+    first = FormulaTeacher(rig).frame(clip(rig, "walk", 1), 0)
+    image = np.full((size * size, 23), np.nan, dtype=np.float32)
+    image[rig.texels.texels] = first.texture
+    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+        writer.start_clip("walk")
+        writer.add(first.pose, first.mesh, image.reshape(size, size, 23))
+    np.testing.assert_array_equal(Recording(tmp_path).mean_texture(), first.texture)
+
+
+class Killed(BaseException):
+    """Stands for the death of the process."""
+
+
+def test_death_at_any_step_of_a_write_loses_and_doubles_nothing(
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Die before the k-th of the calls that change the disk; then go on."""
+    budget = [0]
+
+    def dying(call):  # type: ignore[no-untyped-def]
+        def step(*args, **kwargs):  # type: ignore[no-untyped-def]
+            budget[0] -= 1
+            if budget[0] == 0:
+                raise Killed
+            return call(*args, **kwargs)
+
+        return step
+
+    with monkeypatch.context() as patch:
+        patch.setattr(np, "save", dying(np.save))
+        patch.setattr(np, "savez", dying(np.savez))
+        patch.setattr(os, "fsync", dying(os.fsync))
+        for method in ("rename", "unlink", "write_bytes", "replace"):
+            patch.setattr(Path, method, dying(getattr(Path, method)))
+        for step in range(1, 10_000, 11):  # some of the steps of every shard; all would take minutes
+            directory = tmp_path / str(step)
+            budget[0] = step
+            try:
+                write(directory)
+            except Killed:
+                if (directory / "recording.json").exists():
+                    Recording(directory)
+                budget[0] = 0
+                write(directory)
+                assert content(directory) == content(written)
+                shutil.rmtree(directory)
+            else:
+                break
+    assert step > 50
+
+
+def test_kill_9_at_random_moments_loses_and_doubles_nothing(written: Path, tmp_path: Path) -> None:
+    program = "import sys, recordings as t; print('ready', flush=True); t.write(t.Path(sys.argv[1]))"
+    paths = os.pathsep.join([str(Path(__file__).parent), *sys.path])
+    rng = random.Random(3)
+    kills = 0
+    for attempt in range(20):
+        child = subprocess.Popen(
+            [sys.executable, "-c", program, str(tmp_path / "killed")],
+            env={**os.environ, "PYTHONPATH": paths},
+            stdout=subprocess.PIPE,
+        )
+        with child:
+            assert child.stdout is not None
+            child.stdout.readline()
+            if attempt < 3:
+                time.sleep(rng.uniform(0.02, 0.3))
+                child.kill()
+        if child.returncode == 0:
+            break
+        kills += 1
+    assert kills > 0
+    assert content(tmp_path / "killed") == content(written)
+
+
+def test_interleaved_clips_stay_contiguous_after_a_kill(tmp_path: Path) -> None:
+    """A clip that a killed run left is complete once another is started."""
+    rig = synthetic_rig()
+    teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 3)
+    killed = TeacherWriter(tmp_path, rig, rate=RATE, shard_frames=2)
+    killed.start_clip("walk")
+    for frame in (teacher.frame(walk, index) for index in range(3)):
+        killed.add(frame.pose, frame.mesh, frame.texture)
+    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+        writer.start_clip("turn")
+        with pytest.raises(InputError, match="clip 'walk' is complete"):
+            writer.start_clip("walk")
+    assert [(c.name, len(c), c.complete) for c in Recording(tmp_path).clips] == [("walk", 2, True)]
+
+
+def nan_at(array: Array, *where: int) -> Array:
+    array = array.copy()
+    array[where] = np.nan
+    return array
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda f: replace(f, mesh=f.mesh[1:]), r"mesh has shape \[11, 3\], expected \[12, 3\]"),
+        (lambda f: replace(f, mesh=nan_at(f.mesh, 2, 1)), r"mesh is nan at \[2, 1\]"),
+        (
+            lambda f: replace(f, texture=f.texture[:-1]),
+            r"texture has shape .* expected \[\d+, 23\] at the valid",
+        ),
+        (lambda f: replace(f, texture=np.zeros((32, 32, 26))), r"\[32, 32, 26\].*the 3 of the base position"),
+        (
+            lambda f: replace(f, texture=nan_at(f.texture, 0, 4)),
+            r"channel 4 \(rotation\) at row \d+, column \d+ is",
+        ),
+        (lambda f: replace(f, texture=f.texture + np.inf), r"channel 0 \(offset\) .* is inf"),
+        (lambda f: replace(f, texture=f.texture * 1e6), "differs by .* from the reference frame's"),
+        (lambda f: replace(f, pose=Pose(f.pose.rotations[:2], f.pose.translation)), r"rotations has shape \[2, 4\]"),
+        (lambda f: replace(f, pose=Pose(f.pose.rotations * 2, f.pose.translation)), "of joint 0 has length 2"),
+        (lambda f: replace(f, pose=Pose(f.pose.rotations, nan_at(f.pose.translation, 0))), "pose translation is nan"),
+        (lambda f: replace(f, mesh=None), "mesh is missing, expected both or neither"),
+    ],
+)
+def test_refuses_a_bad_frame_and_goes_on(tmp_path: Path, change, message: str) -> None:  # type: ignore[no-untyped-def]
+    rig = synthetic_rig()
+    teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 2)
+    good, second = teacher.frame(walk, 0), teacher.frame(walk, 1)
+    bad = change(second)
+    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+        writer.start_clip("walk")
+        writer.add(good.pose, good.mesh, good.texture)
+        with pytest.raises(InputError, match=f"clip 'walk', frame 1: .*{message}"):
+            writer.add(bad.pose, bad.mesh, bad.texture)
+        writer.add(second.pose, second.mesh, second.texture)
+    assert Recording(tmp_path).count() == 2
+
+
+def test_refuses_a_first_frame_that_is_not_finite(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    frame = FormulaTeacher(rig).frame(clip(rig, "walk", 1), 0)
+    writer = TeacherWriter(tmp_path, rig, rate=RATE)
+    writer.start_clip("walk")
+    with pytest.raises(InputError, match="is nan"):
+        writer.add(frame.pose, frame.mesh, nan_at(frame.texture, 3, 3))
+    assert not (tmp_path / "reference.npz").exists()
+
+
+def test_refuses_a_frame_before_a_clip(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    with pytest.raises(InputError, match="start_clip comes before"):
+        TeacherWriter(tmp_path, rig, rate=RATE).add(rig.skeleton.bind_pose)
+
+
+def test_refuses_a_directory_of_another_rig_rate_or_wavelet(written: Path) -> None:
+    rig = synthetic_rig()
+    other = replace(rig, skin_weights=rig.skin_weights[::-1])
+    with pytest.raises(InputError, match=r"rig is .* record into another directory"):
+        TeacherWriter(written, other, rate=RATE)
+    with pytest.raises(InputError, match=r"rate is 24\.0, expected 30\.0"):
+        TeacherWriter(written, rig, rate=30)
+    with pytest.raises(InputError, match=r"wavelet is 'bior4\.4', expected 'bior2\.2'"):
+        TeacherWriter(written, rig, rate=RATE, wavelet="bior2.2")
+
+
+def test_refuses_a_texture_size_that_four_levels_do_not_halve(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    with pytest.raises(InputError, match="texture size 40, expected a multiple of 16"):
+        TeacherWriter(tmp_path, replace(rig, texels=replace(rig.texels, size=40)), rate=RATE)
