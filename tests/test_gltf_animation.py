@@ -1,0 +1,62 @@
+"""Clips of glTF files."""
+
+from pathlib import Path
+
+import numpy as np
+from gltf_files import FLOAT_BOUND, HALF_TURN, animate, body, read
+
+from mua.rig.gltf_animation import sample
+
+
+def test_clip_turns_and_moves_the_joints(tmp_path: Path) -> None:
+    glb = body()
+    animate(glb, 1, "rotation", times=[0.0, 1.0], values=HALF_TURN)
+    animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [3, 0, 0]])
+    (clip,) = read(glb, tmp_path).clips
+    assert (clip.name, clip.rate, len(clip)) == ("wave", 30.0, 31)
+    np.testing.assert_allclose(clip.translation[15], [1.5, 0, 0], atol=FLOAT_BOUND)
+    np.testing.assert_allclose(clip.rotations[15, 1], [np.sqrt(0.5), 0, 0, np.sqrt(0.5)], atol=1e-7)
+    np.testing.assert_allclose(clip.rotations[:, 2], np.tile([1, 0, 0, 0], (31, 1)), atol=1e-7)
+
+
+def test_clip_of_no_length_is_dropped_with_a_note(tmp_path: Path) -> None:
+    glb = body()
+    animate(glb, 1, "rotation", times=[0.0], values=HALF_TURN[:1], name="pose")
+    surfaces = read(glb, tmp_path)
+    assert not surfaces.clips
+    assert surfaces.notes == ("Clip pose has no length and is left out.",)
+
+
+def test_motion_above_the_skeleton_moves_its_root(tmp_path: Path) -> None:
+    glb = body()
+    glb.json["nodes"].append({"name": "armature", "children": [0]})
+    glb.json["scenes"][0]["nodes"] = [3, 4]
+    animate(glb, 4, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [0, 0, 2]])
+    animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
+    surfaces = read(glb, tmp_path)
+    positions = surfaces.skeleton.world(surfaces.clips[0].rotations, surfaces.clips[0].translation)[1]
+    hips = surfaces.skeleton.names.index("hips")
+    np.testing.assert_allclose(positions[-1, hips], [1, 0, 2], atol=FLOAT_BOUND)
+    assert surfaces.skeleton.root == hips
+
+
+def test_dropped_translation_and_scale_are_told(tmp_path: Path) -> None:
+    glb = body()
+    animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
+    animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0, 0.51, 0]])
+    animate(glb, 2, "scale", times=[0.0, 1.0], values=[[1, 1, 1], [1.5, 1, 1]])
+    assert read(glb, tmp_path).notes == (
+        "Translations of joints other than hips are dropped; the largest is 10 mm, of head in clip wave.",
+        "Animated scales are dropped; the largest is 50 %, of head in clip wave.",
+    )
+
+
+def test_step_holds_and_cubic_passes_its_keys() -> None:
+    times, keys = np.array([0.0, 1.0, 3.0]), np.array([[0.0], [1.0], [5.0]])
+    at = np.array([-1, 0, 0.99, 1, 2.5, 3, 9])
+    np.testing.assert_array_equal(sample(times, keys, at, kind="STEP", spherical=False)[:, 0], [0, 0, 0, 1, 1, 5, 5])
+    slopes = np.gradient(times**2, times, edge_order=2)  # a parabola, which cubic segments hold exactly
+    cubic = np.stack([slopes, times**2, slopes], axis=1).reshape(-1, 1)
+    inside = np.linspace(0, 3, 13)
+    values = sample(times, cubic, inside, kind="CUBICSPLINE", spherical=False)[:, 0]
+    np.testing.assert_allclose(values, inside**2, atol=1e-12)

@@ -1,0 +1,65 @@
+"""Textures of glTF materials and their coordinates."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gltf_files import PICTURE, TRIANGLES, UV, read, textured
+from PIL import Image
+
+from mua.errors import InputError
+
+
+def test_opaque_texture_has_full_opacity(tmp_path: Path) -> None:
+    (material,) = read(textured(PICTURE), tmp_path).materials
+    np.testing.assert_array_equal(material.image[..., :3], PICTURE[..., :3])
+    assert (material.image[..., 3] == 255).all()
+    assert (material.wrap_u, material.wrap_v) == ("clamp", "mirror")
+
+
+def test_masked_texture_keeps_its_alpha_times_the_factor(tmp_path: Path) -> None:
+    model = {"baseColorFactor": [1, 1, 1, 0.5]}
+    (material,) = read(textured(PICTURE, alphaMode="MASK", model=model), tmp_path).materials
+    np.testing.assert_array_equal(material.image[..., 3], np.round(PICTURE[..., 3] * 0.5))
+
+
+def test_factor_is_multiplied_in_linear_light(tmp_path: Path) -> None:
+    picture = np.full((1, 1, 4), 188, np.uint8)  # sRGB 188 is half of the light of 255
+    model = {"baseColorFactor": [0.5, 1, 0, 1]}
+    (material,) = read(textured(picture, model=model), tmp_path).materials
+    np.testing.assert_allclose(material.image[0, 0, :3], [137, 188, 0], atol=1)
+
+
+def test_reads_webp_textures(tmp_path: Path) -> None:
+    glb = textured(PICTURE, kind="webp", alphaMode="BLEND")
+    glb.json["textures"] = [{"extensions": {"EXT_texture_webp": {"source": 0}}}]
+    glb.json["extensionsRequired"] = ["EXT_texture_webp"]
+    (material,) = read(glb, tmp_path).materials
+    visible = PICTURE[..., 3] > 0
+    np.testing.assert_array_equal(material.image[visible], PICTURE[visible])
+
+
+def test_reads_texture_beside_the_file(tmp_path: Path) -> None:
+    glb = textured(PICTURE)
+    Image.fromarray(PICTURE).save(tmp_path / "cloth.png")
+    glb.json["images"] = [{"uri": "cloth.png"}]
+    assert read(glb, tmp_path).materials[0].image.shape == PICTURE.shape
+
+
+def test_texture_transform_scales_turns_and_moves(tmp_path: Path) -> None:
+    glb = textured(PICTURE)
+    transform = {"offset": [0.1, 0.2], "rotation": np.pi / 2, "scale": [2, 3]}
+    info = {"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": transform | {"texCoord": 0}}}
+    glb.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = info
+    glb.json["extensionsRequired"] = ["KHR_texture_transform"]
+    surfaces = read(glb, tmp_path)
+    u, v = np.moveaxis(UV[TRIANGLES], -1, 0)
+    # a quarter turn counter-clockwise with v down takes +u to -v and +v to +u
+    np.testing.assert_allclose(surfaces.uv[surfaces.uv_faces], np.stack([3 * v + 0.1, -2 * u + 0.2], -1), atol=1e-6)
+
+
+def test_texture_that_is_no_image_is_named(tmp_path: Path) -> None:
+    glb = textured(PICTURE)
+    glb.json["images"][0]["bufferView"] = 0
+    with pytest.raises(InputError, match=r"images\[0\] is not a PNG"):
+        read(glb, tmp_path)
