@@ -10,6 +10,8 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
 
 from mua import rotation
 from mua.errors import InputError
+from mua.motion.read import read_motion
+from mua.motion.retarget import retarget
 from mua.rig.assemble import Surfaces
 from mua.rig.read import read_surfaces
 
@@ -18,6 +20,7 @@ HEIGHTS = (0.0, 60.0, 120.0)  # of the joints above the floor, centimetres, alon
 FRAMES = 11  # at 10 time codes apart, 24 codes a second
 # Float32 points of about 150 centimetres skinned by a chain of matrices: a dozen roundings.
 SKINNING_BOUND = 12 * 150 * 2**-23 * 0.01
+TURN_BOUND = 16 * 2**-23  # rotations through float32 keys, matrices and back
 
 
 def row_matrix(angle: float, axis: tuple[float, float, float], offset: tuple[float, float, float]) -> Gf.Matrix4d:
@@ -263,6 +266,24 @@ def test_stage_without_rest_pose_or_clip_is_read(character: Path) -> None:
     surfaces = read_surfaces(edited(character, still))
     assert surfaces.clips == ()
     np.testing.assert_allclose(surfaces.vertices.max(axis=0), [0.1, 1.5, 0.08], atol=1e-7)
+
+
+def test_motion_without_a_mesh_is_the_identity_on_its_own_rig(character: Path) -> None:
+    surfaces = read_surfaces(character)
+    (source,) = read_motion(edited(character, lambda stage: stage.RemovePrim("/Man/Body")))
+    clip, notes = retarget(source, surfaces.skeleton)
+    np.testing.assert_allclose(clip.rotations, surfaces.clips[0].rotations, atol=TURN_BOUND)
+    np.testing.assert_allclose(clip.translation, surfaces.clips[0].translation, atol=SKINNING_BOUND)
+    assert not notes
+
+
+def test_stage_without_mesh_and_animated_skeleton_is_no_motion(character: Path) -> None:
+    def strip(stage: Usd.Stage) -> None:
+        stage.RemovePrim("/Man/Body")
+        stage.GetPrimAtPath("/Man/Skeleton").RemoveProperty("skel:animationSource")
+
+    with pytest.raises(InputError, match=r"man\.usda: no skinned mesh, skeleton or animated nodes"):
+        read_motion(edited(character, strip))
 
 
 def test_placed_skeleton_carries_its_character_along(character: Path) -> None:

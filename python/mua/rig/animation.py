@@ -43,8 +43,13 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
 
 
 def _stand_in(scene: Scene, skin: int, carries: Array) -> Part:
-    """A part without triangles, with one vertex for each joint of a skin that belongs to the body."""
-    joints = np.flatnonzero(carries[scene.skins[skin].joints])[:, None]
+    """A part without triangles, with one vertex for each joint of a skin that belongs to the body.
+
+    Tools leave the matrices of joints that carry nothing at the identity; only one joint can truly be bound there.
+    """
+    source = scene.skins[skin]
+    unbound = _is_identity(source.inverse_binds) & ~_is_identity(scene.rest[source.joints])
+    joints = np.flatnonzero(carries[source.joints] & ~(unbound & (unbound.sum() > 1)))[:, None]
     return Part(
         name=scene.name,
         group=skin,
@@ -57,6 +62,10 @@ def _stand_in(scene: Scene, skin: int, carries: Array) -> Part:
         joints=joints,
         weights=np.ones(joints.shape),
     )
+
+
+def _is_identity(matrices: Array) -> Array:
+    return np.asarray(np.isclose(matrices, np.eye(4)).all(axis=(1, 2)))
 
 
 def _body(scene: Scene) -> Array:
