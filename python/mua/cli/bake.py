@@ -85,7 +85,7 @@ class Display:
 
     def __init__(self, console: Console) -> None:
         self.console = console
-        columns = (TextColumn("{task.description:<24}"), BarColumn(), TextColumn("{task.fields[detail]:<32}"))
+        columns = (TextColumn("{task.description:<23}"), BarColumn(12), TextColumn("{task.fields[detail]:<26}"))
         self.progress = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console)
         self.task: TaskID | None = None
 
