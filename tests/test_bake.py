@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import torch
 from PIL import Image
+from silent import Silent
 
 from mua.asset import read, write
 from mua.asset.tensors import Storage
@@ -39,14 +40,6 @@ SMALL = dataclasses.replace(
     regression=Schedule(steps=10, batch=8, rate=1e-3),
     finetune=Schedule(steps=2, batch=4, rate=1e-4),
 )
-
-
-class Silent:
-    def stage(self, name: str) -> None: ...
-
-    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
-
-    def note(self, sentence: str) -> None: ...
 
 
 @pytest.fixture(scope="module")

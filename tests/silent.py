@@ -1,0 +1,9 @@
+"""A listener for bakes and distillations that tells nobody."""
+
+
+class Silent:
+    def stage(self, name: str) -> None: ...
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
+
+    def note(self, sentence: str) -> None: ...

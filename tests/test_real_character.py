@@ -1,0 +1,35 @@
+"""The bars that a student of a real character must pass; about 20 minutes on two cores (`make test-long`)."""
+
+from pathlib import Path
+
+import pytest
+import torch
+from conftest import SharedData
+from silent import Silent
+
+from mua.bake.pipeline import Order, bake
+from mua.evaluate import TRAINING
+from mua.student.settings import preset
+
+LEAST_TRAINING = 0.80  # share of the variance about the mean texture
+LEAST_HELD_OUT = 0.50  # on a walk, when walks are trained on
+
+
+def order(shared_data: SharedData, directory: Path) -> Order:
+    return Order(
+        directory / "white.muaavatar",
+        directory / "work",
+        preset("preview"),
+        torch.device("cpu"),
+        character=shared_data.path("characters/White_F_3_Casual.glb"),
+        motions=(shared_data.path("motion/cmu"),),
+        hold_out=("02_02", "01_05", "02_08", "02_09"),
+    )
+
+
+@pytest.mark.long
+def test_student_explains_a_clothed_woman(shared_data: SharedData, tmp_path: Path) -> None:
+    errors = bake(order(shared_data, tmp_path), Silent()).errors
+    for attribute in ("offset", "rotation", "SH"):
+        assert errors[TRAINING].explained(attribute) >= LEAST_TRAINING
+        assert errors["02_02"].explained(attribute) >= LEAST_HELD_OUT
