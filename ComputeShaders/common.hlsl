@@ -1,0 +1,74 @@
+// What several kernels share: elements of stored tensors, half floats in pairs, quaternions and dual quaternions.
+// References: python/mua/asset/tensors.py, python/mua/rotation.py.
+
+#ifndef MUA_COMMON_HLSL
+#define MUA_COMMON_HLSL
+
+// Element types of stored tensors, as in schemas/muaavatar.fbs.
+static const uint STORED_F32 = 0;
+static const uint STORED_F16 = 1;
+static const uint STORED_I8 = 2;
+
+// The half float in the low half of a word (lane 0) or in its high half (lane 1).
+float halfAt(uint word, uint lane)
+{
+    return f16tof32((word >> (16 * lane)) & 0xffff);
+}
+
+// The signed byte of a word, lane 0 (lowest) to 3, before its scale.
+int byteAt(uint word, uint lane)
+{
+    return int(word << (24 - 8 * lane)) >> 24;
+}
+
+// Element `index` of a stored tensor. tensorLayout = (element type, elements for each scale, index of the first scale's word).
+float stored(StructuredBuffer<uint> words, uint3 tensorLayout, uint index)
+{
+    float value = 0;
+    if (tensorLayout.x == STORED_F32)
+        value = asfloat(words[index]);
+    else if (tensorLayout.x == STORED_F16)
+        value = halfAt(words[index / 2], index % 2);
+    else
+        value = byteAt(words[index / 4], index % 4) * asfloat(words[tensorLayout.z + index / tensorLayout.y]);
+    return value;
+}
+
+// Two half floats in one word, values.x in its low half.
+uint packHalves(float2 values)
+{
+    return f32tof16(values.x) | (f32tof16(values.y) << 16);
+}
+
+float2 unpackHalves(uint word)
+{
+    return float2(halfAt(word, 0), halfAt(word, 1));
+}
+
+// Quaternions are float4(w, x, y, z).
+
+// Hamilton product: the rotation b, then a.
+float4 quaternionMultiply(float4 a, float4 b)
+{
+    return float4(a.x * b.x - dot(a.yzw, b.yzw), a.x * b.yzw + b.x * a.yzw + cross(a.yzw, b.yzw));
+}
+
+float4 quaternionConjugate(float4 q)
+{
+    return float4(q.x, -q.yzw);
+}
+
+// A vector turned by a unit quaternion.
+float3 quaternionRotate(float4 q, float3 v)
+{
+    float3 t = 2 * cross(q.yzw, v);
+    return v + q.x * t + cross(q.yzw, t);
+}
+
+// A point moved by a unit dual quaternion: real = rotation, dual = 0.5 (0, translation) rotation.
+float3 dualTransform(float4 real, float4 dual, float3 p)
+{
+    return quaternionRotate(real, p) + 2 * quaternionMultiply(dual, quaternionConjugate(real)).yzw;
+}
+
+#endif
