@@ -1,0 +1,208 @@
+"""The texel grid as one closed triangle mesh over the splat centres: the paper's detailed geometry (section System).
+
+Inside a UV chart neighbouring texels make triangles. Along a seam the nearest texel of one side is followed by that of
+the other, and the two rows are zipped. What then stays open where several charts meet is filled.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from mua.arrays import Array
+from mua.rig.character import Mesh
+from mua.rig.charts import find_charts, signed_areas
+from mua.rig.texel_map import TexelMap
+
+STRETCH = 4.0  # times its texel's footprint that an edge of the grid may span; a longer one crosses a slit in a chart
+SEAM_STEP = 0.5  # texels between the samples along a seam, so that no texel beside it is stepped over
+REACH = 2.0  # texels from a seam to the nearest of its chart; a chart without one there lends the nearest in space
+LARGEST_HOLE = 12  # edges round a hole that is closed; the surface's own openings are longer
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Triangles over N texels, counter-clockwise seen from outside, and the triangles about each texel."""
+
+    triangles: Array  # [T, 3] uint32 into the texels
+    ring_starts: Array  # [N + 1] uint32 into `ring`
+    ring: Array  # [3 T, 2] uint32: the other two corners of each triangle about a texel, in turning order
+
+
+def build_surface(mesh: Mesh, texels: TexelMap) -> Surface:
+    """Triangulate the valid texels of a template whose vertices are at rest."""
+    count = len(texels.texels)
+    if not count:
+        return _with_rings(np.empty((0, 3), np.int64), 0)
+    places = np.einsum("nk,nki->ni", texels.barycentrics, mesh.vertices[mesh.faces[texels.triangles]])
+    charts = find_charts(_nodes(mesh), mesh.uv[mesh.uv_faces])
+    inner = _grid(mesh, texels, places=places, charts=charts)
+    seams = _seams(mesh, texels, places=places, charts=charts)
+    triangles = _distinct(np.concatenate([inner, seams]))
+    return _with_rings(np.concatenate([triangles, _patches(triangles)]), count)
+
+
+def _nodes(mesh: Mesh) -> Array:
+    """Corners [F, 3] numbered so that they are equal where vertex and UV are."""
+    pairs = np.stack([mesh.faces, mesh.uv_faces], axis=-1).reshape(-1, 2)
+    return np.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
+
+
+def _grid(
+    mesh: Mesh,
+    texels: TexelMap,
+    *,
+    places: Array,  # [N, 3] rest positions, metres
+    charts: Array,  # [F]
+) -> Array:
+    """Triangles [T, 3] of the 2 x 2 blocks of texels that lie in one chart."""
+    size = texels.size
+    rank = np.full((size + 1, size + 1), -1)
+    rank[np.divmod(texels.texels, size)] = np.arange(len(texels.texels))
+    a, b, c, d = (rank[r : r + size, s : s + size].ravel() for r in (0, 1) for s in (0, 1))
+    full = (a >= 0) & (b >= 0) & (c >= 0) & (d >= 0)
+    falling = np.linalg.norm(places[a] - places[d], axis=1) <= np.linalg.norm(places[b] - places[c], axis=1)
+    along_ad, along_bc = full & falling, full & ~falling
+    # A block with one empty corner keeps the triangle of the other three.
+    halves = [
+        ((a, b, d), along_ad | ((c < 0) & ~full)),
+        ((a, d, c), along_ad | ((b < 0) & ~full)),
+        ((a, b, c), along_bc | ((d < 0) & ~full)),
+        ((b, d, c), along_bc | ((a < 0) & ~full)),
+    ]
+    triangles = np.concatenate([np.stack(corners, axis=1)[chosen] for corners, chosen in halves])
+    triangles = triangles[(triangles >= 0).all(axis=1)]
+    chart = charts[texels.triangles[triangles]]
+    longest = _edge_lengths(places, triangles)
+    whole = (chart == chart[:, :1]).all(axis=1) & (longest <= STRETCH * _footprints(mesh, texels)[triangles].max(axis=1))
+    turned = np.bincount(charts, signed_areas(mesh.uv[mesh.uv_faces])) < 0  # a mirrored chart
+    triangles, chart = triangles[whole], chart[whole, 0]
+    return np.where(turned[chart, None], triangles[:, ::-1], triangles)
+
+
+def _footprints(mesh: Mesh, texels: TexelMap) -> Array:
+    """Greatest length [N] on the surface, metres, of one step along a texel's diagonal."""
+    uv = mesh.uv[mesh.uv_faces] * texels.size
+    across = np.linalg.pinv(uv[:, 1:] - uv[:, :1]) @ (mesh.vertices[mesh.faces[:, 1:]] - mesh.vertices[mesh.faces[:, :1]])
+    return np.sqrt(2) * np.linalg.norm(across, ord=2, axis=(1, 2))[texels.triangles]
+
+
+def _edge_lengths(places: Array, triangles: Array) -> Array:
+    """Longest edge [T], metres."""
+    corners = places[triangles]
+    return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+
+def _seams(
+    mesh: Mesh,
+    texels: TexelMap,
+    *,
+    places: Array,  # [N, 3] rest positions, metres
+    charts: Array,  # [F]
+) -> Array:
+    """Triangles [T, 3] that zip the texels on both sides of every edge that UV or charts cut."""
+    left, right = _cut_edges(mesh, charts)
+    ends = [mesh.uv[mesh.uv_faces[f[:, None], k]] * texels.size for f, k in (left, right)]  # [S, 2, 2]
+    steps = np.ceil(np.max([np.linalg.norm(e[:, 1] - e[:, 0], axis=1) for e in ends], axis=0) / SEAM_STEP)
+    steps = np.maximum(steps, 1).astype(np.int64)
+    edge = np.repeat(np.arange(len(steps)), steps + 1)
+    within = np.arange(len(edge)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)
+    t = (within / steps[edge])[:, None]
+    face, corner = left
+    rest = mesh.vertices[mesh.faces[face[:, None], corner]][edge]
+    rest = rest[:, 0] * (1 - t) + rest[:, 1] * t
+    rows = [
+        _nearest(texels, charts, places=places, chart=charts[f][edge], at=e[edge, 0] * (1 - t) + e[edge, 1] * t, rest=rest)
+        for (f, _), e in zip((left, right), ends, strict=True)
+    ]
+    (a, b), on = rows, within[1:] > 0  # `on` marks the steps inside one edge
+    a0, a1, b0, b1 = a[:-1][on], a[1:][on], b[:-1][on], b[1:][on]
+    return np.concatenate([np.stack([b0, b1, a1], axis=1), np.stack([b0, a1, a0], axis=1)])
+
+
+def _cut_edges(mesh: Mesh, charts: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """The faces left [S] and right [S] of every cut edge, and which of their corners are its start and end [S, 2]."""
+    face, k = np.divmod(np.arange(3 * len(mesh.faces)), 3)
+    start, end = mesh.faces[face, k].astype(np.int64), mesh.faces[face, (k + 1) % 3].astype(np.int64)
+    name, back = start * len(mesh.vertices) + end, end * len(mesh.vertices) + start
+    order = np.argsort(name)
+    found = order[np.minimum(np.searchsorted(name[order], back), len(name) - 1)]
+    paired = (name[found] == back) & (start < end)
+    one, other = np.flatnonzero(paired), found[paired]
+    corners = np.stack([k, (k + 1) % 3], axis=1)
+    left, right = (face[one], corners[one]), (face[other], corners[other][:, ::-1])
+    uv_left, uv_right = (mesh.uv_faces[f[:, None], c] for f, c in (left, right))
+    cut = (uv_left != uv_right).any(axis=1) | (charts[left[0]] != charts[right[0]])
+    return (left[0][cut], left[1][cut]), (right[0][cut], right[1][cut])
+
+
+def _nearest(
+    texels: TexelMap,
+    charts: Array,  # [F]
+    *,
+    places: Array,  # [N, 3] rest positions, metres
+    chart: Array,  # [P]
+    at: Array,  # [P, 2] texels
+    rest: Array,  # [P, 3] metres
+) -> Array:
+    """The nearest texel [P] of a chart to points of its border."""
+    row, column = np.divmod(texels.texels, texels.size)
+    apart = 4 * texels.size  # farther than any two points of one chart
+    tree = cKDTree(np.stack([column + 0.5, row + 0.5, apart * charts[texels.triangles]], axis=1))
+    distance, nearest = tree.query(np.column_stack([at, apart * chart]))
+    bare = distance > REACH
+    if bare.any():
+        nearest[bare] = cKDTree(places).query(rest[bare])[1]
+    return np.asarray(nearest)
+
+
+def _distinct(triangles: Array) -> Array:
+    """The triangles of three different corners, each once."""
+    a, b, c = triangles.T
+    triangles = triangles[(a != b) & (b != c) & (c != a)]
+    first = np.argmin(triangles, axis=1)[:, None]
+    turned = np.take_along_axis(triangles, (first + np.arange(3)) % 3, axis=1)
+    return np.unique(turned, axis=0)
+
+
+def _patches(triangles: Array) -> Array:
+    """Triangles [T, 3] that close the small holes, each a fan about its first corner."""
+    fans = [
+        np.stack([np.full(len(loop) - 2, loop[0]), loop[1:-1], loop[2:]], axis=1)
+        for loop in _openings(triangles)
+        if 3 <= len(loop) <= LARGEST_HOLE
+    ]
+    return np.concatenate([np.empty((0, 3), np.int64), *fans])
+
+
+def _openings(triangles: Array) -> list[Array]:
+    """Corners of every simple loop of edges that one triangle has and no other; a triangle on it turns with the rest."""
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    count = triangles.max(initial=0) + 1
+    name, back = start * count + end, end * count + start
+    following: dict[int, list[int]] = {}
+    open_edges = ~np.isin(name, back)
+    for s, e in zip(start[open_edges].tolist(), end[open_edges].tolist(), strict=True):
+        following.setdefault(e, []).append(s)
+    loops: list[Array] = []
+    for first in list(following):
+        path, place = [first], {first: 0}
+        while following.get(path[-1]):
+            corner = following[path[-1]].pop()
+            if corner in place:
+                loops.append(np.array(path[place[corner] :]))
+                for left in path[place[corner] + 1 :]:
+                    del place[left]
+                del path[place[corner] + 1 :]
+            else:
+                place[corner] = len(path)
+                path.append(corner)
+    return loops
+
+
+def _with_rings(triangles: Array, count: int) -> Surface:
+    """The surface of `count` texels, with the triangles sorted about their corners."""
+    ring = np.concatenate([np.roll(triangles, -k, axis=1) for k in range(3)])
+    order = np.argsort(ring[:, 0], kind="stable")
+    starts = np.searchsorted(ring[order, 0], np.arange(count + 1))
+    return Surface(triangles.astype(np.uint32), starts.astype(np.uint32), ring[order, 1:].astype(np.uint32))
