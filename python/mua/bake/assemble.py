@@ -4,14 +4,12 @@ import io
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
 from PIL import Image
 
-from mua import __version__, rotation
-from mua.arrays import Array
+from mua import __version__
 from mua.asset.avatar import Avatar
+from mua.bounds import playback_bounds
 from mua.decode import decode_clip_frame
-from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.motion.encoding import PoseEncoding
 from mua.portrait import portrait
@@ -22,7 +20,6 @@ from mua.student.model import Student
 
 PLAYBACK_CLIPS = 8  # stored for playback; held-out ones first, so that a viewer sees what the student never saw
 PLAYBACK_SECONDS = 10.0
-MARGIN = 0.1  # metres that cloth may leave the skinned template
 THUMBNAIL = 256  # pixels
 
 
@@ -54,20 +51,6 @@ def assemble(
         notes=notes,
     )
     return replace(avatar, thumbnail=thumbnail(avatar))
-
-
-def playback_bounds(rig: Rig, clips: Sequence[Clip]) -> Array:
-    """Lowest and highest corner [2, 3] float32 of the skinned template over all frames, about the root joint."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for clip in clips:
-        _, placed = rig.skeleton.world(clip.rotations, clip.translation)
-        for joints, root in zip(
-            rig.skeleton.skinning(clip.rotations, clip.translation), placed[:, rig.skeleton.root], strict=True
-        ):
-            dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
-            posed = rotation.dual_transform(dual, rig.mesh.vertices) - root
-            low, high = np.minimum(low, posed.min(axis=0)), np.maximum(high, posed.max(axis=0))
-    return np.stack([low - MARGIN, high + MARGIN]).astype(np.float32)
 
 
 def thumbnail(avatar: Avatar) -> bytes:

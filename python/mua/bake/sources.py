@@ -1,19 +1,15 @@
 """What a bake starts from: a character, and clips of motion on its skeleton."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
-from mua.motion.read import read_motion
+from mua.motion.load import load_motion, unique_names
 from mua.motion.resample import resample
-from mua.motion.retarget import retarget
-from mua.motion.source import SourceMotion
 from mua.rig.character import Character
 from mua.rig.read import read_character
-from mua.rig.skeleton import Skeleton
 from mua.teachers.procedural import procedural_character
 
 RATE = 30.0  # frames per second of every clip, and of the window that the student sees
@@ -42,36 +38,7 @@ def load_clips(
     clips: list[Clip] = []
     notes: list[str] = []
     for path in motions:
-        for source in read_motion(path):
-            if same_joints(source.skeleton, character.skeleton):
-                clip, told = resample(source.clip, RATE), source.notes
-            else:
-                clip, told = _retargeted(path, source, character.skeleton, mapping=mapping)
-            clips.append(clip)
-            notes += told
+        loaded, told = load_motion(path, character.skeleton, mapping=mapping, rate=RATE)
+        clips += loaded
+        notes += told
     return unique_names(clips), list(dict.fromkeys(notes))
-
-
-def _retargeted(
-    path: Path, source: SourceMotion, skeleton: Skeleton, *, mapping: Mapping[str, str] | None
-) -> tuple[Clip, tuple[str, ...]]:
-    try:
-        return retarget(source, skeleton, mapping=mapping, rate=RATE)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-
-
-def same_joints(a: Skeleton, b: Skeleton) -> bool:
-    """Whether motion on one skeleton is motion on the other as it stands."""
-    same = a.names == b.names and a.root == b.root and (a.parents == b.parents).all()
-    return bool(same and abs(a.bind_translations - b.bind_translations).max() < 1e-4)
-
-
-def unique_names(clips: Sequence[Clip]) -> list[Clip]:
-    """The clips, with a number after every name that came before."""
-    seen: dict[str, int] = {}
-    named = []
-    for clip in clips:
-        count = seen[clip.name] = seen.get(clip.name, 0) + 1
-        named.append(clip if count == 1 else replace(clip, name=f"{clip.name} {count}"))
-    return named

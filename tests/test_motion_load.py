@@ -1,0 +1,72 @@
+"""Motion from files arrives on the character's own skeleton, as it stands or retargeted."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mua import rotation
+from mua.errors import InputError
+from mua.motion.load import load_motion, same_joints
+from mua.motion.read import read_motion
+from mua.rig.skeleton import Skeleton
+
+BVH = """HIERARCHY
+ROOT hips
+{
+  OFFSET 0 90 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT spine
+  {
+    OFFSET 0 20 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 20 0
+    }
+  }
+}
+MOTION
+Frames: 3
+Frame Time: 0.1
+0 90 0 0 0 0 0 0 0
+0 90 5 0 0 0 10 0 0
+0 90 9 0 0 0 20 0 0
+"""
+
+
+@pytest.fixture
+def motion(tmp_path: Path) -> Path:
+    path = tmp_path / "wave.bvh"
+    path.write_text(BVH)
+    return path
+
+
+def twice_as_large(skeleton: Skeleton) -> Skeleton:
+    """The same joints by names that say nothing."""
+    names = tuple(f"j{i}" for i in range(len(skeleton.names)))
+    return replace(skeleton, names=names, bind_translations=2 * skeleton.bind_translations)
+
+
+def test_takes_motion_on_the_same_joints_as_it_stands(motion: Path) -> None:
+    source = read_motion(motion)[0]
+    assert same_joints(source.skeleton, source.skeleton)
+    clips, _ = load_motion(motion, source.skeleton, mapping=None, rate=20.0)
+    assert [(clip.rate, len(clip)) for clip in clips] == [(20.0, 5)]
+    np.testing.assert_allclose(clips[0].rotations[::2], source.clip.rotations, atol=1e-12)
+
+
+def test_puts_motion_on_joints_of_other_names_by_a_mapping(motion: Path) -> None:
+    source = read_motion(motion)[0]
+    other = twice_as_large(source.skeleton)
+    clips, _ = load_motion(motion, other, mapping={"j0": "hips", "j1": "spine"}, rate=10.0)
+    assert len(clips[0]) == 3
+    turned = rotation.multiply(rotation.conjugate(clips[0].rotations[0, 1]), clips[0].rotations[2, 1])
+    assert np.degrees(2 * np.arccos(abs(turned[0]))) == pytest.approx(20, abs=1e-6)
+
+
+def test_refuses_motion_whose_joints_match_none_and_names_the_file(motion: Path) -> None:
+    source = read_motion(motion)[0]
+    with pytest.raises(InputError, match=r"wave\.bvh"):
+        load_motion(motion, twice_as_large(source.skeleton), mapping=None, rate=10.0)
