@@ -1,0 +1,148 @@
+"""An avatar of random numbers in the shapes of a preset, so that a device can be measured without an asset.
+
+Its body is a tube of a person's size, about as many of its texels are valid as of the paper's avatars, and its splats
+are as large as their distance, so that visibility, sort and overdraw are those of a real avatar seen from its front.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import pywt
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.motion.clip import Clip
+from mua.motion.encoding import Normalization, PoseEncoding
+from mua.rig.character import MAX_INFLUENCES, Mesh
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+from mua.rig.texel_map import build_texel_map
+from mua.student.settings import Ranks, Settings
+
+HEIGHT, RADIUS = 1.7, 0.18  # metres
+RINGS, SPOKES = 102, 54  # 5,508 vertices; the template of the paper's family has 5,514
+JOINTS = 54  # all of them encoded, as in the family's released character
+VALID = 300_000 / 768**2  # of the texels (paper, Animatable Coarse Geometry)
+WAVELET, LEVELS = "bior4.4", 4
+ENCODING = PoseEncoding(joints=tuple(range(1, JOINTS)), rate=25.0)
+FRAMES = 50  # of the clip
+SWING = 0.02  # radians of one joint; 53 of them bend the tube by at most 60 degrees
+OFFSET, TURN, SPREAD, LOGIT, SHADE = 0.003, 0.05, 0.1, 0.3, 0.2  # deviations of the channels that move
+
+
+def random_avatar(settings: Settings, *, seed: int = 0) -> Avatar:
+    """The same avatar for the same arguments; it is not trained, only as large and as visible as one that is."""
+    rng = np.random.default_rng(seed)
+    rig = _rig(settings.texels)
+    vertices = rig.mesh.vertices.astype(np.float32)
+    scale = np.log(0.6 * np.sqrt(2 * np.pi * RADIUS * HEIGHT / len(rig.texels.texels)))
+    geometry_means = [0.0] * 3 + [1.0, 0.0, 0.0, 0.0] + [scale] * 3 + [2.0]
+    geometry_spreads = [OFFSET] * 3 + [TURN] * 4 + [SPREAD] * 3 + [LOGIT]
+    return Avatar(
+        name=f"random numbers, {settings.texels} texels",
+        producer="mua-bench",
+        rig=rig,
+        encoding=ENCODING,
+        normalization=Normalization(np.zeros(ENCODING.width, np.float32), np.ones(ENCODING.width, np.float32)),
+        coarse=Coarse(
+            _mlp(rng, ENCODING.width, settings.hidden, settings.components),
+            vertices,
+            _normal(rng, (settings.components, *vertices.shape), OFFSET / np.sqrt(settings.components)),
+        ),
+        geometry=_branch(rng, rig, settings, settings.geometry, geometry_means, geometry_spreads),
+        appearance=_branch(rng, rig, settings, settings.appearance, [0.0] * 12, [SHADE] * 12),
+        wavelet=_wavelet(),
+        clips=(_clip(rig.skeleton),),
+        bounds=np.array([[-1, -0.3, -1], [1, HEIGHT + 0.3, 1]], dtype=np.float32),
+        thumbnail=b"",
+        notes="random numbers for mua-bench, not a trained avatar",
+    )
+
+
+def _rig(texels: int) -> Rig:
+    """A chain of joints up a tube that is open at both ends; its one UV chart fills VALID of the texture."""
+    heights = np.linspace(0, HEIGHT, JOINTS)
+    skeleton = Skeleton(
+        names=tuple(f"joint {j}" for j in range(JOINTS)),
+        parents=np.arange(-1, JOINTS - 1, dtype=np.int32),
+        bind_rotations=np.tile([1.0, 0, 0, 0], (JOINTS, 1)),
+        bind_translations=np.stack([np.zeros(JOINTS), np.diff(heights, prepend=0), np.zeros(JOINTS)], axis=1),
+        root=0,
+    )
+    mesh = _tube()
+    closeness = np.maximum(1 - np.abs(mesh.vertices[:, 1:2] - heights) / (MAX_INFLUENCES / 2 * heights[1]), 0)
+    indices = np.argsort(-closeness, axis=1, kind="stable")[:, :MAX_INFLUENCES].astype(np.int32)
+    weights = np.take_along_axis(closeness, indices, axis=1)
+    weights = (weights / weights.sum(axis=1, keepdims=True)).astype(np.float32)
+    return Rig(skeleton, mesh, indices, weights, build_texel_map(mesh, texels))
+
+
+def _tube() -> Mesh:
+    height, angle = np.meshgrid(np.linspace(0, HEIGHT, RINGS), 2 * np.pi * np.arange(SPOKES) / SPOKES, indexing="ij")
+    vertices = np.stack([RADIUS * np.sin(angle), height, RADIUS * np.cos(angle)], axis=-1).reshape(-1, 3)
+    margin = (1 - np.sqrt(VALID)) / 2
+    columns, rows = np.meshgrid(np.linspace(margin, 1 - margin, SPOKES + 1), np.linspace(1 - margin, margin, RINGS))
+    ring, spoke = (i.ravel() for i in np.indices((RINGS - 1, SPOKES)))
+    quads = np.stack([(ring, spoke), (ring, spoke + 1), (ring + 1, spoke + 1), (ring + 1, spoke)])  # [4, 2, quads]
+    triangles = np.concatenate([quads[[0, 1, 2]], quads[[0, 2, 3]]], axis=2).transpose(2, 0, 1)  # [F, 3, 2]
+    return Mesh(
+        vertices=vertices,
+        faces=(triangles[..., 0] * SPOKES + triangles[..., 1] % SPOKES).astype(np.int32),
+        uv=np.stack([columns, rows], axis=-1).reshape(-1, 2),
+        uv_faces=(triangles[..., 0] * (SPOKES + 1) + triangles[..., 1]).astype(np.int32),
+    )
+
+
+def _clip(skeleton: Skeleton) -> Clip:
+    """The tube sways to its sides and back."""
+    swing = SWING * np.sin(2 * np.pi * np.arange(FRAMES) / FRAMES)
+    axes = np.tile([0.0, 0.0, 1.0], (FRAMES, JOINTS, 1))
+    rotations = rotation.from_axis_angle(axes, np.tile(swing[:, None], (1, JOINTS)))
+    return Clip("sway", ENCODING.rate, rotations, np.tile(skeleton.bind_translations[skeleton.root], (FRAMES, 1)))
+
+
+def _wavelet() -> Wavelet:
+    taps = pywt.Wavelet(WAVELET)
+    return Wavelet(WAVELET, LEVELS, np.array(taps.rec_lo), np.array(taps.rec_hi))
+
+
+def _branch(
+    rng: np.random.Generator,
+    rig: Rig,
+    settings: Settings,
+    ranks: Ranks,
+    means: Sequence[float],  # [C] of the texture's channels
+    spreads: Sequence[float],  # [C] their deviations
+) -> Branch:
+    """Bands whose deviation is the channel's; a constant gains two per level through the analysis."""
+    channels, side = len(means), settings.texels >> LEVELS
+    mean, spread = (np.array(a, dtype=np.float32)[:, None, None] for a in (means, spreads))
+    return Branch(
+        mlp=_mlp(rng, ENCODING.width, settings.hidden, channels * ranks.total),
+        ll_mean=2**LEVELS * (mean + spread * _normal(rng, (channels, side, side), 0.1)),
+        ll_basis=spread[..., None] * _normal(rng, (channels, ranks.ll, side, side), 1 / np.sqrt(ranks.ll)),
+        details=tuple(_band(rng, spread, rank, side << i) for i, rank in enumerate((ranks.d3, ranks.d2))),
+        static=spread[..., 0] * _normal(rng, (channels, len(rig.texels.texels)), 0.1),
+    )
+
+
+def _band(
+    rng: np.random.Generator,
+    spread: Array,  # [C, 1, 1]
+    rank: int,
+    side: int,
+) -> DetailBand:
+    shape = (3, len(spread), rank, side)
+    mean = spread * _normal(rng, (3, len(spread), side, side), 0.1)
+    return DetailBand(mean, spread * _normal(rng, shape, 1 / np.sqrt(rank)), _normal(rng, shape, 1.0))
+
+
+def _mlp(rng: np.random.Generator, inputs: int, hidden: int, outputs: int) -> Mlp:
+    sizes = (inputs, hidden, hidden, outputs)
+    return tuple(Layer(_normal(rng, (n, m), 1 / np.sqrt(m)), _normal(rng, (n,), 0.1)) for m, n in pairwise(sizes))
+
+
+def _normal(rng: np.random.Generator, shape: tuple[int, ...], scale: float) -> Array:
+    return np.float32(scale) * rng.standard_normal(shape, dtype=np.float32)

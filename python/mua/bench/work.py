@@ -1,0 +1,186 @@
+"""Bytes moved and floating-point operations of every kernel of a frame, from the shapes of its dispatches.
+
+Bytes: every element that a dispatch needs, read once and written once, in the type that it has on the device; what a
+cache saves or a gather costs beyond that shows as a fraction of the copy bandwidth that is above or below the truth.
+Operations: a multiply-add is two, a square root, division, exponential or comparison is one; bias additions are left
+out, as in mua.asset.count, whose sums the network part equals.
+"""
+
+from dataclasses import dataclass
+
+from mua.asset.flatbuffer import Tree
+from mua.texture.channels import CHANNELS
+
+FLOAT = UINT = 4  # bytes
+DUAL_QUATERNION, SPLAT, ELLIPSE, COLOR = 8 * FLOAT, 64, 6 * FLOAT, 8  # bytes
+INFLUENCES = 8
+PROJECT_GROUP = 256  # splats that share one count
+SORT_GROUP = 2048  # keys that share one histogram
+DIGITS = 256
+PASSES = 2  # of the radix sort
+
+# Operations of the posing kernels, counted on their references.
+BLEND_TERM = 8 + 16  # dot product with the reference of the signs, 8 multiply-adds
+NORMALIZE_DUAL = 8 + 1 + 8  # squared norm, root, 8 quotients
+DUAL_TRANSFORM = 30 + 24 + 6  # rotate a vector; 2 vec(dual conj(real)); add both
+QUATERNION_PRODUCT = 28
+UNIT_QUATERNION = 8 + 1 + 4
+COVARIANCE = 30 + 9 + 36 + 6  # rotation matrix, its scaled columns, six products of rows, mm^2
+ACTIVATIONS = 3 + 4  # three exponentials, the logistic function
+SKIN = 3 * BLEND_TERM + NORMALIZE_DUAL + 18 + DUAL_TRANSFORM + QUATERNION_PRODUCT + UNIT_QUATERNION + COVARIANCE
+SKIN += ACTIVATIONS  # 18: the barycentric point and the offset
+PROJECT_EYE = 24 + 15 + 24 + 36 + 18 + 18 + 6 + 25  # eye space, slopes, Jacobian, J S, J S J^T, axes, pixel, quad's box
+PROJECT_SHARED = 12 + 30 + 27 + 11  # direction, turned back, SH; key
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a kernel must do in one frame."""
+
+    bytes: int
+    flops: int
+
+    def __add__(self, other: "Work") -> "Work":
+        return Work(self.bytes + other.bytes, self.flops + other.flops)
+
+
+def frame_work(
+    tree: Tree,  # of the file, for the sizes and stored types of its tensors
+    *,
+    visible: int,  # splats that some eye sees
+    eyes: int,
+) -> dict[str, Work]:
+    """Work of one frame by kernel entry point, in frame order; the drawing depends on overdraw and is left out."""
+    texels = int(tree["texels"]["texels"]["shape"][0])
+    return {
+        **_decode(tree),
+        "BlendVertices": blend_vertices(len(tree["skeleton"]["names"]), _shape(tree["template"]["skin_indices"])[0]),
+        "SkinSplats": skin_splats(texels, _shape(tree["coarse"]["mean"])[0], _shape(tree["template"]["faces"])[0]),
+        "SplatProject": splat_project(texels, visible, eyes),
+        "ScanCounts": scan_counts(texels),
+        "SplatCompact": splat_compact(texels, visible),
+        **splat_sort(visible),
+    }
+
+
+def mlp_matmul(layer: Tree) -> Work:
+    """W [out, in] x + b: W, b and x read, y written; out x in multiply-adds."""
+    outputs, inputs = _shape(layer["weight"])
+    return Work(_stored(layer["weight"], layer["bias"]) + FLOAT * (inputs + outputs), 2 * outputs * inputs)
+
+
+def mlp_matmul_transposed(coarse: Tree) -> Work:
+    """The PCA mesh: basis [K, V, 3], mean and K coefficients read, 3 V coordinates written; 3 K V multiply-adds."""
+    components, vertices, _ = _shape(coarse["basis"])
+    moved = _stored(coarse["basis"], coarse["mean"]) + FLOAT * (components + 3 * vertices)
+    return Work(moved, 2 * 3 * components * vertices)
+
+
+def blend_ll(branch: Tree) -> Work:
+    """Mean, basis [C, R, n, n] and alpha [C, R] read, C n^2 written; C R n^2 multiply-adds."""
+    channels, rank, size, _ = _shape(branch["ll_basis"])
+    moved = _stored(branch["ll_mean"], branch["ll_basis"]) + FLOAT * channels * (rank + size**2)
+    return Work(moved, 2 * channels * rank * size**2)
+
+
+def blend_detail(band: Tree) -> Work:
+    """Mean, h, w [3, C, R, n] and alpha read, 3 C n^2 written; alpha h: 3 C R n, its products with w: 3 C R n^2."""
+    _, channels, rank, size = _shape(band["h"])
+    moved = _stored(band["mean"], band["h"], band["w"]) + FLOAT * channels * (rank + 3 * size**2)
+    return Work(moved, 2 * 3 * channels * rank * (size + size**2))
+
+
+def inverse_dwt(channels: int, size: int, taps: int) -> Work:
+    """Four bands [C, n, n] and two filters read, [C, 2n, 2n] written; taps (2n)^2 multiply-adds along either axis."""
+    moved = FLOAT * (channels * (4 * size**2 + (2 * size) ** 2) + 2 * taps)
+    return Work(moved, 2 * channels * 2 * taps * (2 * size) ** 2)
+
+
+def inverse_dwt_low_pass(channels: int, size: int, taps: int) -> Work:
+    """LL [C, n, n] and one filter read, [C, 2n, 2n] written; taps / 2 multiply-adds for 2n^2, then for 4n^2 samples."""
+    moved = FLOAT * (channels * (size**2 + (2 * size) ** 2) + taps)
+    return Work(moved, 2 * channels * (taps // 2) * (2 * size**2 + 4 * size**2))
+
+
+def add_static(branch: Tree) -> Work:
+    """Texel indices, static offset and the valid texels [C, N] of the texture read, [C, N] written; C N additions."""
+    channels, texels = _shape(branch["static_offset"])
+    moved = _stored(branch["static_offset"]) + UINT * texels + 2 * FLOAT * channels * texels
+    return Work(moved, channels * texels)
+
+
+def blend_vertices(joints: int, vertices: int) -> Work:
+    """Joints' dual quaternions, 8 indices and weights for each vertex read, V dual quaternions written."""
+    influences = INFLUENCES * (UINT + FLOAT)
+    moved = DUAL_QUATERNION * (joints + vertices) + influences * vertices
+    return Work(moved, vertices * (INFLUENCES * BLEND_TERM + NORMALIZE_DUAL))
+
+
+def skin_splats(texels: int, vertices: int, faces: int) -> Work:
+    """Vertices and faces, triangle, two barycentrics and 23 channels for each texel read, 64 bytes of splat written."""
+    shared = (DUAL_QUATERNION + 3 * FLOAT) * vertices + 3 * UINT * faces
+    return Work(shared + texels * (UINT + 2 * FLOAT + CHANNELS * FLOAT + SPLAT), texels * SKIN)
+
+
+def splat_project(texels: int, visible: int, eyes: int) -> Work:
+    """Splats read; flags and colours, counts of groups and an ellipse for each eye of the visible written."""
+    written = texels * (UINT + COLOR) + visible * eyes * ELLIPSE + UINT * _groups(texels, PROJECT_GROUP)
+    return Work(texels * SPLAT + written, texels * (eyes * PROJECT_EYE + PROJECT_SHARED))
+
+
+def scan_counts(texels: int) -> Work:
+    """The groups' counts read and written, 8 arguments written; integers only."""
+    return Work(2 * UINT * _groups(texels, PROJECT_GROUP) + 8 * UINT, 0)
+
+
+def splat_compact(texels: int, visible: int) -> Work:
+    """Flags and the groups' counts read, index and key of what is visible written; integers only."""
+    return Work(UINT * (texels + _groups(texels, PROJECT_GROUP)) + 2 * UINT * visible, 0)
+
+
+def splat_sort(visible: int) -> dict[str, Work]:
+    """Both passes: keys counted; a histogram for each group scanned; keys and indices read and scattered."""
+    histograms = UINT * DIGITS * _groups(visible, SORT_GROUP)
+    totals = UINT * DIGITS
+    moved = {
+        "CountDigits": UINT * visible + histograms,
+        "ScanDigits": 2 * histograms + totals,
+        "ScatterDigits": 4 * UINT * visible + histograms + totals,
+    }
+    return {name: Work(PASSES * once, 0) for name, once in moved.items()}
+
+
+def _decode(tree: Tree) -> dict[str, Work]:
+    """Network, mesh, subbands and synthesis."""
+    branches = (tree["geometry"], tree["appearance"])
+    taps, levels = len(tree["wavelet"]["rec_lo"]), int(tree["wavelet"]["levels"])
+    nothing = Work(0, 0)
+    layers = [layer for part in (tree["coarse"], *branches) for layer in part["mlp"]]
+    full, low = nothing, nothing
+    for branch in branches:
+        channels, size, _ = _shape(branch["ll_mean"])
+        dynamic = len(branch["details"])
+        full = sum((inverse_dwt(channels, size << i, taps) for i in range(dynamic)), full)
+        low = sum((inverse_dwt_low_pass(channels, size << i, taps) for i in range(dynamic, levels)), low)
+    return {
+        "MlpMatmul": sum(map(mlp_matmul, layers), nothing),
+        "MlpMatmulTransposed": mlp_matmul_transposed(tree["coarse"]),
+        "BlendLl": sum(map(blend_ll, branches), nothing),
+        "BlendDetail": sum((blend_detail(band) for branch in branches for band in branch["details"]), nothing),
+        "InverseDwt": full,
+        "InverseDwtLowPass": low,
+        "AddStatic": sum(map(add_static, branches), nothing),
+    }
+
+
+def _shape(tensor: Tree) -> tuple[int, ...]:
+    return tuple(int(n) for n in tensor["shape"])
+
+
+def _stored(*tensors: Tree) -> int:
+    """Bytes of tensors as they are stored, the scales of i8 rows included."""
+    return sum(t["data"].nbytes + (t["scale"].nbytes if "scale" in t else 0) for t in tensors)
+
+
+def _groups(count: int, size: int) -> int:
+    return -(-count // size)

@@ -1,0 +1,119 @@
+"""mua-bench: work counted by hand, the avatar it makes, and what it prints and writes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset import write
+from mua.asset.count import flops
+from mua.asset.flatbuffer import Tree
+from mua.asset.read import load
+from mua.bench import work
+from mua.bench.random_avatar import random_avatar
+from mua.bench.work import Work, frame_work
+from mua.student.settings import preset
+
+PAPER_TEXELS = 300_000  # paper, Animatable Coarse Geometry
+NETWORK = {
+    "MlpMatmul": "coefficient MLPs",
+    "MlpMatmulTransposed": "PCA mesh",
+    "BlendLl": "LL blend",
+    "BlendDetail": "detail blend",
+    "AddStatic": "static offset",
+}
+
+
+def tensor(*shape: int, dtype: str = "<f2", scales: int = 0) -> Tree:
+    """A stored tensor without content."""
+    held = {"shape": np.array(shape), "data": np.zeros(np.prod(shape) * np.dtype(dtype).itemsize, np.uint8)}
+    return {**held, "scale": np.zeros(scales, np.float32)} if scales else held
+
+
+@pytest.fixture(scope="module")
+def synthetic_tree(tmp_path_factory: pytest.TempPathFactory) -> Tree:
+    path = tmp_path_factory.mktemp("bench") / "a.muaavatar"
+    write(path, synthetic_avatar())
+    return load(path)
+
+
+def test_layer_moves_its_weights_once() -> None:
+    half = {"weight": tensor(5, 7), "bias": tensor(5, dtype="<f4")}
+    assert work.mlp_matmul(half) == Work(bytes=2 * 35 + 4 * 5 + 4 * 7 + 4 * 5, flops=70)
+
+
+def test_scales_of_i8_rows_are_moved_too() -> None:
+    byte = {"weight": tensor(5, 7, dtype="i1", scales=5), "bias": tensor(5, dtype="<f4")}
+    assert work.mlp_matmul(byte).bytes == 35 + 4 * 5 + 4 * 5 + 4 * 7 + 4 * 5
+
+
+def test_pca_mesh_reads_its_basis_once() -> None:
+    coarse = {"basis": tensor(4, 10, 3), "mean": tensor(10, 3, dtype="<f4")}
+    assert work.mlp_matmul_transposed(coarse) == Work(bytes=2 * 120 + 4 * 30 + 4 * 4 + 4 * 30, flops=240)
+
+
+def test_blends_read_bases_and_coefficients_and_write_bands() -> None:
+    branch = {"ll_mean": tensor(11, 3, 3, dtype="<f4"), "ll_basis": tensor(11, 5, 3, 3)}
+    assert work.blend_ll(branch) == Work(bytes=4 * 99 + 2 * 495 + 4 * 55 + 4 * 99, flops=2 * 495)
+    band = {"mean": tensor(3, 11, 3, 3), "h": tensor(3, 11, 5, 3), "w": tensor(3, 11, 5, 3)}
+    moved = 2 * 297 + 2 * 2 * 495 + 4 * 55 + 4 * 297
+    assert work.blend_detail(band) == Work(bytes=moved, flops=2 * (495 + 495 * 3))
+
+
+def test_synthesis_of_one_channel_from_two_by_two() -> None:
+    # a sample meets half of the 4 taps in each of two inputs: 2 x 8 samples after one axis, 16 after both
+    assert work.inverse_dwt(1, 2, 4) == Work(bytes=4 * (16 + 16 + 8), flops=2 * (2 * 8 * 4 + 16 * 4))
+    assert work.inverse_dwt_low_pass(1, 2, 4) == Work(bytes=4 * (4 + 16 + 4), flops=2 * (8 * 2 + 16 * 2))
+
+
+def test_posing_and_projection_read_and_write_each_record_once() -> None:
+    assert work.blend_vertices(3, 10).bytes == 32 * 3 + (64 + 32) * 10
+    assert work.skin_splats(100, 10, 15).bytes == (32 + 12) * 10 + 12 * 15 + (4 + 8 + 92 + 64) * 100
+    assert work.splat_project(300, 200, 2).bytes == 64 * 300 + (8 + 4) * 300 + 4 * 2 + 200 * 2 * 24
+    assert work.scan_counts(300).bytes == 2 * 4 * 2 + 32
+    assert work.splat_compact(300, 200).bytes == 4 * 300 + 4 * 2 + 8 * 200
+
+
+def test_both_eyes_cost_one_projection_more_each() -> None:
+    one, two = work.splat_project(300, 200, 1), work.splat_project(300, 200, 2)
+    assert two.flops - one.flops == 300 * work.PROJECT_EYE
+    assert two.bytes - one.bytes == 200 * 24
+
+
+def test_sort_moves_keys_and_indices_twice() -> None:
+    histograms = 4 * 256 * 2  # of 4,000 keys in two groups
+    moved = work.splat_sort(4000)
+    assert moved["CountDigits"].bytes == 2 * (4 * 4000 + histograms)
+    assert moved["ScanDigits"].bytes == 2 * (2 * histograms + 4 * 256)
+    assert moved["ScatterDigits"].bytes == 2 * (16 * 4000 + histograms + 4 * 256)
+
+
+def test_nothing_visible_is_nothing_to_sort() -> None:
+    assert {name: w.bytes for name, w in work.splat_sort(0).items()} == {
+        "CountDigits": 0,
+        "ScanDigits": 2 * 4 * 256,
+        "ScatterDigits": 2 * 4 * 256,
+    }
+
+
+def test_network_part_costs_what_the_asset_counts(synthetic_tree: Tree) -> None:
+    spent, counted = frame_work(synthetic_tree, visible=0, eyes=1), flops(synthetic_avatar())
+    assert {name: spent[name].flops for name in NETWORK} == {n: counted[p] for n, p in NETWORK.items()}
+    assert spent["InverseDwt"].flops + spent["InverseDwtLowPass"].flops == counted["inverse DWT"]
+
+
+def test_random_avatar_has_the_papers_shapes() -> None:
+    avatar = random_avatar(preset("paper"))
+    assert avatar.geometry.ll_basis.shape == (11, 192, 48, 48)
+    assert avatar.appearance.ranks == (128, 128, 96)
+    assert avatar.geometry.details[1].h.shape == (3, 11, 96, 96)
+    assert avatar.coarse.basis.shape == (128, 5508, 3)
+    assert abs(len(avatar.rig.texels.texels) - PAPER_TEXELS) < 1000
+    assert avatar.rig.texels.claimed_twice == 0
+
+
+def test_random_avatar_is_a_sound_file_and_the_same_twice(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write(tmp_path / name, random_avatar(preset("tiny")))
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
