@@ -43,7 +43,7 @@ float3 splatColor(float3 centre, float4 rotation, float3 sh[4], float3 camera)
 // half a pixel on, for the integral over the pixel.
 float2 splatHalfLengths(float2 deviations, float opacity)
 {
-    float reach = sqrt(2 * log(max(opacity / LEAST_OPACITY, 1)));
+    float reach = sqrt(max(2 * log(opacity / LEAST_OPACITY), 0));
     return deviations * reach + 0.5;
 }
 
