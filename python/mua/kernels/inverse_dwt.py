@@ -25,12 +25,12 @@ def inverse_dwt(
 
 
 def add_static(
-    texture: Array,  # [C, H, W]
+    fine: Array,  # [C, H, W]
     texels: Array,  # [N] row * W + column
-    static: Array,  # [C, N]
+    static_offset: Array,  # [C, N]
 ) -> Array:
     """The texture at the valid texels, [C, N], with the static offset of the finest levels."""
-    return np.asarray(texture.reshape(len(texture), -1)[:, texels] + static)
+    return np.asarray(fine.reshape(len(fine), -1)[:, texels] + static_offset)
 
 
 def _upsample(
