@@ -1,0 +1,135 @@
+"""A list of dispatches that is submitted as one, as Unity's CommandBuffer."""
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import wgpu
+from wgpu.backends.wgpu_native import lib
+
+from mua.errors import InputError
+from mua.gpu.buffer import Buffer
+from mua.gpu.failure import naming
+from mua.gpu.kernel import Kernel
+from mua.gpu.uniforms import Uniforms
+
+MOST_TIMED = 2048  # dispatches: a query set holds 4096 timestamps (WebGPU, section 20.1)
+DISPATCH_ARGUMENTS = 12  # bytes: three group counts
+
+
+@dataclass(frozen=True)
+class _Dispatch:
+    kernel: Kernel
+    group: wgpu.GPUBindGroup
+    constants: bytes | None
+    groups: tuple[int, int, int]
+    indirect: tuple[Buffer, int] | None  # arguments and offset in bytes, in place of `groups`
+
+
+class Commands:
+    """Dispatches in order; each sees what those before it wrote."""
+
+    def __init__(self, device: wgpu.GPUDevice, uniforms: Uniforms, *, timed: bool) -> None:
+        self._device, self._uniforms, self._timed = device, uniforms, timed
+        self._dispatches: list[_Dispatch] = []
+        self._timestamps: wgpu.GPUBuffer | None = None
+
+    def dispatch(
+        self, kernel: Kernel, groups: tuple[int, int, int], buffers: Mapping[str, Buffer], **constants: Any
+    ) -> None:
+        """Append a dispatch of so many groups; nothing runs before `submit`, and no groups run nothing."""
+        kernel.check_groups(groups)
+        self._append(kernel, groups, None, buffers, constants)
+
+    def dispatch_indirect(
+        self, kernel: Kernel, arguments: Buffer, offset: int, buffers: Mapping[str, Buffer], **constants: Any
+    ) -> None:
+        """Append a dispatch whose three group counts the device reads from `arguments` at `offset` bytes."""
+        if offset % 4 or offset < 0 or offset + DISPATCH_ARGUMENTS > arguments.size:
+            raise InputError(
+                f"kernel {kernel.name}: arguments at byte {offset} of {arguments.name}, "
+                f"expected a multiple of 4 that leaves {DISPATCH_ARGUMENTS} of its {arguments.size} bytes"
+            )
+        self._append(kernel, (0, 0, 0), (arguments, offset), buffers, constants)
+
+    def submit(self) -> None:
+        """Run all dispatches on the device, without waiting for them; may be called again to run them again."""
+        dispatches = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
+        placed = iter(self._uniforms.place([d.constants for d in dispatches if d.constants is not None]))
+        offsets = [None if d.constants is None else next(placed) for d in dispatches]
+        with naming("dispatches"):
+            encoder = self._device.create_command_encoder()
+            if self._timed:
+                self._encode_timed(encoder, dispatches, offsets)
+            else:
+                self._encode(encoder, dispatches, offsets)
+            self._device.queue.submit([encoder.finish()])
+
+    def milliseconds(self) -> dict[str, float]:
+        """Time that the device spent in each kernel in the last submit, summed by entry name; waits for it."""
+        if not self._timed:
+            raise InputError("dispatches: not timed; ask for commands(timed=True)")
+        spent: dict[str, float] = defaultdict(float)
+        if self._timestamps is None:
+            return spent
+        with naming("timestamps"):
+            ticks = np.frombuffer(self._device.queue.read_buffer(self._timestamps), np.uint64).reshape(-1, 2)
+        period = lib.wgpuQueueGetTimestampPeriod(self._device.queue._internal)  # nanoseconds of one tick
+        ran = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
+        for dispatch, (begin, end) in zip(ran, ticks.tolist(), strict=True):
+            spent[dispatch.kernel.name] += max(end - begin, 0) * period * 1e-6
+        return dict(spent)
+
+    def _append(
+        self,
+        kernel: Kernel,
+        groups: tuple[int, int, int],
+        indirect: tuple[Buffer, int] | None,
+        buffers: Mapping[str, Buffer],
+        constants: Mapping[str, Any],
+    ) -> None:
+        kernel.check(buffers, constants)
+        packed = kernel.bindings.pack(constants)
+        self._dispatches.append(_Dispatch(kernel, kernel.bindings.group(buffers), packed, groups, indirect))
+
+    def _encode(self, encoder: wgpu.GPUCommandEncoder, dispatches: list[_Dispatch], offsets: list[int | None]) -> None:
+        compute = encoder.begin_compute_pass()
+        for dispatch, offset in zip(dispatches, offsets, strict=True):
+            _record(compute, dispatch, offset)
+        compute.end()
+
+    def _encode_timed(
+        self, encoder: wgpu.GPUCommandEncoder, dispatches: list[_Dispatch], offsets: list[int | None]
+    ) -> None:
+        """One pass for each dispatch: timestamps are taken only where passes begin and end."""
+        self._timestamps = None
+        if not dispatches:
+            return
+        if len(dispatches) > MOST_TIMED:
+            raise InputError(f"dispatches: {len(dispatches)} are too many to time, expected at most {MOST_TIMED}")
+        count = 2 * len(dispatches)
+        queries = self._device.create_query_set(type="timestamp", count=count)
+        for index, (dispatch, offset) in enumerate(zip(dispatches, offsets, strict=True)):
+            writes = {
+                "query_set": queries,
+                "beginning_of_pass_write_index": 2 * index,
+                "end_of_pass_write_index": 2 * index + 1,
+            }
+            compute = encoder.begin_compute_pass(timestamp_writes=writes)
+            _record(compute, dispatch, offset)
+            compute.end()
+        usage = wgpu.BufferUsage.QUERY_RESOLVE | wgpu.BufferUsage.COPY_SRC
+        self._timestamps = self._device.create_buffer(size=8 * count, usage=usage)
+        encoder.resolve_query_set(queries, 0, count, self._timestamps, 0)
+
+
+def _record(compute: wgpu.GPUComputePassEncoder, dispatch: _Dispatch, offset: int | None) -> None:
+    compute.set_pipeline(dispatch.kernel.pipeline)
+    compute.set_bind_group(0, dispatch.group, [] if offset is None else [offset])
+    if dispatch.indirect:
+        arguments, start = dispatch.indirect
+        compute.dispatch_workgroups_indirect(arguments.raw, start)
+    else:
+        compute.dispatch_workgroups(*dispatch.groups)

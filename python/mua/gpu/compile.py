@@ -1,0 +1,84 @@
+"""HLSL to SPIR-V by a compiler of this machine; compiled code is kept on disk by the content that it came from."""
+
+import hashlib
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from mua import files
+from mua.errors import InputError
+from mua.gpu import compilers, sources
+
+STAGES = ("comp", "vert", "frag")
+INSTALL = {
+    "glslang": "glslangValidator: Debian package glslang-tools, on Windows and macOS the Vulkan SDK",
+}
+
+
+def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glslang") -> bytes:
+    """The SPIR-V of one entry point of a shader, from the cache if nothing that it depends on changed.
+
+    Raises InputError if the compiler is absent, the file declares no such kernel, or the code does not compile.
+    """
+    chosen = find_compiler(compiler)
+    texts = sources.with_includes(path)
+    defines: tuple[str, ...] = ()
+    if stage == "comp":
+        declared = sources.kernels(texts.get(path, ""))
+        if entry not in declared:
+            raise InputError(f"{path}: has no kernel {entry}; it has {', '.join(declared) or 'none'}")
+        defines = declared[entry]
+    key = _key(chosen, texts, (entry, stage, *defines))
+    cached = cache_directory() / f"{key}.spv"
+    if cached.is_file():
+        return cached.read_bytes()
+    code = _compiled(chosen, path, entry, stage, defines)
+    files.write_bytes(cached, code)
+    return code
+
+
+def find_compiler(name: str) -> compilers.Compiler:
+    for compiler in compilers.find():
+        if compiler.name == name:
+            return compiler
+    install = f"; it comes with {INSTALL[name]}" if name in INSTALL else ""
+    raise InputError(f"the shader compiler {name} is not on this machine{install}")
+
+
+def cache_directory() -> Path:
+    """Where compiled shaders are kept: below the user's cache directory."""
+    if named := os.environ.get("XDG_CACHE_HOME"):
+        base = Path(named)
+    elif sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    else:
+        base = Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
+    return base / "mua" / "shaders"
+
+
+def _key(compiler: compilers.Compiler, texts: dict[Path, str], options: tuple[str, ...]) -> str:
+    command = compiler.command(Path("file"), "entry", options[1], Path("output"))[1:]
+    digest = hashlib.sha256()
+    for part in (compiler.name, compiler.version, *command, *options, *texts.values()):
+        digest.update(len(part).to_bytes(8, "little") + part.encode())
+    return digest.hexdigest()
+
+
+def _compiled(compiler: compilers.Compiler, path: Path, entry: str, stage: str, defines: tuple[str, ...]) -> bytes:
+    with tempfile.TemporaryDirectory() as scratch:
+        output = Path(scratch) / "code.spv"
+        command = compiler.command(path, entry, stage, output)
+        command += [f"-I{sources.directory()}", *(f"-D{define}" for define in defines)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode or not output.is_file():
+            raise InputError(f"{path}: {entry} does not compile: {_first_error(done.stdout + done.stderr)}")
+        return output.read_bytes()
+
+
+def _first_error(printed: str) -> str:
+    lines = [line.strip() for line in printed.splitlines() if line.strip()]
+    return next(
+        (line for line in lines if "error" in line.lower()), lines[-1] if lines else "the compiler said nothing"
+    )

@@ -1,0 +1,50 @@
+"""Packs named constants into the bytes of a shader's constant buffer."""
+
+import struct
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from mua.errors import InputError
+from mua.gpu.reflect import Constant
+
+FORMATS = {"uint": "<I", "int": "<i", "float": "<f"}
+DTYPES = {"uint": "<u4", "int": "<i4", "float": "<f4"}
+KINDS = {"uint": "biu", "int": "biu", "float": "biuf"}  # of numpy values that each type of constant takes
+
+
+def block_size(constants: tuple[Constant, ...]) -> int:
+    """Bytes of a constant buffer: a multiple of 16, as the device asks for."""
+    return -(-max(constant.offset + constant.size for constant in constants) // 16) * 16
+
+
+def pack(label: str, constants: Mapping[str, Constant], size: int, values: Mapping[str, Any]) -> bytes:
+    """The constant buffer with those of `values` that it has; a wrong type or shape is told with `label`."""
+    block = bytearray(size)
+    for name, value in values.items():
+        constant = constants.get(name)
+        if constant is None:
+            continue
+        if constant.shape:
+            _put_array(label, constant, block, value)
+            continue
+        try:
+            struct.pack_into(FORMATS[constant.scalar], block, constant.offset, value)
+        except (struct.error, OverflowError, TypeError) as error:
+            raise InputError(f"{label}: constant {name} is {value!r}, expected one {constant.scalar}") from error
+    return bytes(block)
+
+
+def _put_array(label: str, constant: Constant, block: bytearray, value: Any) -> None:
+    array = np.asarray(value)
+    dtype = np.dtype(DTYPES[constant.scalar])
+    expected = f"expected {constant.scalar} {list(constant.shape)}"
+    if array.shape != constant.shape or array.dtype.kind not in KINDS[constant.scalar]:
+        raise InputError(f"{label}: constant {constant.name} is {array.dtype} {list(array.shape)}, {expected}")
+    if dtype.kind in "iu" and array.size and not np.can_cast(array.dtype, dtype):
+        limits = np.iinfo(dtype)
+        if array.min() < limits.min or array.max() > limits.max:
+            raise InputError(f"{label}: constant {constant.name} is {array.tolist()}, {expected}")
+    memory = np.ndarray(constant.shape, dtype, block, constant.offset, constant.strides)
+    memory[...] = array

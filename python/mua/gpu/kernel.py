@@ -1,0 +1,51 @@
+"""A compute kernel, ready to be dispatched."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import wgpu
+
+from mua.errors import InputError
+from mua.gpu.bindings import Bindings, check_names
+from mua.gpu.buffer import Buffer
+from mua.gpu.failure import naming
+from mua.gpu.reflect import BufferSlot, Constant, reflect
+from mua.gpu.uniforms import Uniforms
+
+MOST_GROUPS = 65535  # along one axis, on every device
+
+
+class Kernel:
+    """An entry point of a compute shader with its names, types and sizes."""
+
+    def __init__(self, device: wgpu.GPUDevice, uniforms: Uniforms, *, name: str, code: bytes) -> None:
+        interface = reflect(code)
+        self.name = name
+        self.threads = interface.threads
+        with naming(f"kernel {name}"):
+            self.bindings = Bindings(
+                device, uniforms, label=f"kernel {name}", interface=interface, stage=wgpu.ShaderStage.COMPUTE
+            )
+            layout = device.create_pipeline_layout(bind_group_layouts=[self.bindings.layout])
+            module = device.create_shader_module(label=name, code=code)
+            self.pipeline = device.create_compute_pipeline(
+                label=name, layout=layout, compute={"module": module, "entry_point": name}
+            )
+
+    @property
+    def buffers(self) -> tuple[BufferSlot, ...]:
+        """What it binds, in order, with read-only or not, kind of scalar and bytes of an element."""
+        return self.bindings.buffers
+
+    @property
+    def constants(self) -> Mapping[str, Constant]:
+        """What its constant buffer holds, by name."""
+        return self.bindings.constants
+
+    def check(self, buffers: Mapping[str, Buffer], constants: Mapping[str, Any]) -> None:
+        """InputError that names the kernel and the buffer or constant if one is missing or unknown."""
+        check_names(self.bindings.label, (self.bindings,), buffers, constants)
+
+    def check_groups(self, groups: tuple[int, int, int]) -> None:
+        if len(groups) != 3 or min(groups) < 0 or max(groups) > MOST_GROUPS:
+            raise InputError(f"kernel {self.name}: groups are {groups}, expected three from 0 to {MOST_GROUPS}")

@@ -1,0 +1,48 @@
+"""One kernel, one dispatch, arrays in and arrays out."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.gpu.device import Device
+
+KINDS = {"uint": "iufb", "int": "i", "float": "f"}  # of numpy values by a buffer's scalar; uint holds any bytes
+
+
+def run(
+    device: Device,
+    file: str | Path,
+    entry: str,
+    groups: tuple[int, int, int],
+    buffers: Mapping[str, Array],
+    **constants: Any,
+) -> dict[str, Array]:
+    """Upload arrays, dispatch once, and return the buffers that the kernel may write, in their type and shape.
+
+    Raises InputError where a name, type or size does not fit the kernel.
+    """
+    kernel = device.kernel(file, entry)
+    for slot in kernel.buffers:
+        given = buffers.get(slot.name)
+        if given is None:
+            continue
+        whole = slot.scalar == "uint" or np.asarray(given).dtype.itemsize == 4
+        if np.asarray(given).dtype.kind not in KINDS[slot.scalar] or not whole:
+            raise InputError(
+                f"kernel {entry}: buffer {slot.name} is {np.asarray(given).dtype}, expected 4-byte {slot.scalar} values"
+            )
+    uploaded = {name: device.buffer(np.asarray(array), name=name) for name, array in buffers.items()}
+    commands = device.commands()
+    commands.dispatch(kernel, groups, uploaded, **constants)
+    commands.submit()
+    found = {}
+    for slot in kernel.buffers:
+        if not slot.read_only:
+            given = np.asarray(buffers[slot.name])
+            read = uploaded[slot.name].read(np.uint8)[: given.nbytes]
+            found[slot.name] = read.view(given.dtype).reshape(given.shape)
+    return found
