@@ -1,11 +1,21 @@
-"""Subbands against the paper's sums, written out term by term."""
+"""The reference against the paper's sums, written out term by term; the shader against the reference."""
 
 import numpy as np
 import pytest
+from stored import STORAGES, groups, store
 
+from mua.arrays import Array
+from mua.asset.tensors import Storage
+from mua.gpu import Device, run
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 
 SIZES = [(1, 1, 1), (2, 3, 5), (11, 7, 6), (3, 1, 13), (2, 0, 4)]  # channels, rank, side
+SHADER_SIZES = [*SIZES, (0, 3, 4), (1, 17, 31), (2, 33, 16)]
+PAPER_LL = [(11, 192, 48), (12, 128, 48)]
+PAPER_DETAILS = [(11, 128, 48), (12, 96, 96)]
+TEXELS_PER_GROUP, TILE = 64, 16
+ALPHA_OFFSET = 7
+UNTOUCHED = np.float32(-7)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -44,3 +54,77 @@ def test_detail_is_the_mean_and_a_weighted_sum_of_outer_products(
     rounding_bound = (rank + 3) * np.finfo(dtype).eps * magnitude
     assert blended.dtype == dtype
     assert np.all(np.abs(blended - expected) <= rounding_bound)
+
+
+def buffered(alpha: Array) -> Array:
+    """The coefficients as they follow others in the output of the MLP."""
+    return np.concatenate([np.full(ALPHA_OFFSET, np.nan), alpha.ravel(), np.full(3, np.nan)]).astype(np.float32)
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize(("channels", "rank", "side"), SHADER_SIZES + PAPER_LL)
+def test_ll_shader_equals_the_reference(device: Device, channels: int, rank: int, side: int, storage: Storage) -> None:
+    rng = np.random.default_rng(side)
+    mean = store(rng.normal(size=(channels, side, side)), "f32")
+    basis = store(rng.normal(size=(channels, rank, side, side)), storage, rows=channels * rank)
+    alpha = rng.normal(size=(channels, rank)).astype(np.float32)
+    blended = run(
+        device,
+        "blend_subbands.compute",
+        "BlendLl",
+        groups((side * side, TEXELS_PER_GROUP), (channels, 1)),
+        {
+            "mean": mean.words,
+            "basis": basis.words,
+            "alpha": buffered(alpha),
+            "blended": np.full((channels + 1, side, side), UNTOUCHED),
+        },
+        mean_layout=mean.layout,
+        basis_layout=basis.layout,
+        channels=channels,
+        rank=rank,
+        size=side,
+        alpha_offset=ALPHA_OFFSET,
+    )["blended"]
+    expected = blend_ll(mean.values, basis.values, alpha.astype(float))
+    magnitude = blend_ll(np.abs(mean.values), np.abs(basis.values), np.abs(alpha).astype(float))
+    rounding_bound = (rank + 2) * np.finfo(np.float32).eps * magnitude
+    assert np.all(np.abs(blended[:channels] - expected) <= rounding_bound)
+    assert np.all(blended[channels] == UNTOUCHED)
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize(("channels", "rank", "side"), SHADER_SIZES + PAPER_DETAILS)
+def test_detail_shader_equals_the_reference(
+    device: Device, channels: int, rank: int, side: int, storage: Storage
+) -> None:
+    rng = np.random.default_rng(side)
+    mean = store(rng.normal(size=(3, channels, side, side)), storage, rows=3 * channels)
+    h, w = (store(f, storage, rows=3 * channels * rank) for f in rng.normal(size=(2, 3, channels, rank, side)))
+    alpha = rng.normal(size=(channels, rank)).astype(np.float32)
+    blended = run(
+        device,
+        "blend_subbands.compute",
+        "BlendDetail",
+        groups((side, TILE), (side, TILE), (3 * channels, 1)),
+        {
+            "mean": mean.words,
+            "h": h.words,
+            "w": w.words,
+            "alpha": buffered(alpha),
+            "blended": np.full((3 * channels + 1, side, side), UNTOUCHED),
+        },
+        mean_layout=mean.layout,
+        h_layout=h.layout,
+        w_layout=w.layout,
+        channels=channels,
+        rank=rank,
+        size=side,
+        alpha_offset=ALPHA_OFFSET,
+    )["blended"]
+    found, beyond = blended[:-1].reshape(mean.values.shape), blended[-1]
+    expected = blend_detail(mean.values, h.values, w.values, alpha.astype(float))
+    magnitude = blend_detail(*(np.abs(t.values) for t in (mean, h, w)), np.abs(alpha).astype(float))
+    rounding_bound = (rank + 3) * np.finfo(np.float32).eps * magnitude
+    assert np.all(np.abs(found - expected) <= rounding_bound)
+    assert np.all(beyond == UNTOUCHED)

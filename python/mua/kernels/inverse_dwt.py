@@ -30,7 +30,8 @@ def add_static(
     static_offset: Array,  # [C, N]
 ) -> Array:
     """The texture at the valid texels, [C, N], with the static offset of the finest levels."""
-    return np.asarray(fine.reshape(len(fine), -1)[:, texels] + static_offset)
+    rows, columns = np.divmod(texels, fine.shape[2])
+    return np.asarray(fine[:, rows, columns] + static_offset)
 
 
 def _upsample(
