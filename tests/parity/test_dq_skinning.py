@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from packed_splats import LARGEST_HALF, unpacked
 from pxr import Gf, UsdSkel, Vt
 from scipy.spatial.transform import Rotation
 from scipy.special import expit
@@ -21,17 +22,6 @@ COUNTS = [0, 1, 7, 101]
 JOINTS = 5
 REACH = 2.0  # metres; no point or translation in these tests lies farther out
 BLEND_OPERATIONS = 64  # roundings on the way of one coordinate: 8 terms of 3, a norm, two products, two sums
-
-PACKED = np.dtype(
-    [
-        ("centre", "<f4", 3),
-        ("covariance", "<f2", 6),
-        ("turn", "<f2", 4),
-        ("sh", "<f2", 12),
-        ("opacity", "<f4"),
-        ("", "<u4"),
-    ]
-)
 
 
 def position_bound(dtype: type) -> float:
@@ -175,9 +165,16 @@ def test_packed_splat_holds_floats_and_half_floats_in_64_bytes(count: int) -> No
     packed = pack_splats(centres, covariance, opacities, texel_dq, sh)
     assert packed.dtype == np.uint32
     assert packed.shape == (count, 16)
-    fields = packed.astype("<u4").view(PACKED)[:, 0] if count else np.zeros(0, PACKED)
+    fields = unpacked(packed)
     np.testing.assert_array_equal(fields["centre"], centres.astype(np.float32))
     np.testing.assert_array_equal(fields["covariance"], (covariance * METRES2_TO_MM2).astype(np.float16))
     np.testing.assert_array_equal(fields["turn"], texel_dq[:, :4].astype(np.float16))
     np.testing.assert_array_equal(fields["sh"], sh.astype(np.float16))
     np.testing.assert_array_equal(fields["opacity"], opacities.astype(np.float32))
+
+
+def test_what_half_floats_cannot_hold_is_held_at_the_largest() -> None:
+    covariance, sh = np.array([[0.25, -0.25, 0, 1, 0, 1]]), np.full((1, 12), 1e9)
+    fields = unpacked(pack_splats(np.zeros((1, 3)), covariance, np.ones(1), np.zeros((1, 8)), sh))
+    np.testing.assert_array_equal(fields["covariance"][0], LARGEST_HALF * np.array([1, -1, 0, 1, 0, 1]))
+    np.testing.assert_array_equal(fields["sh"], np.full((1, 12), LARGEST_HALF))

@@ -136,6 +136,7 @@ def _norm(
 def _halves(
     values: Array,  # [N, 2 m]
 ) -> Array:
-    """Pairs of half floats as words [N, m], the first in the low half."""
-    bits = np.ascontiguousarray(values, dtype=np.float16).view(np.uint16).astype(np.uint32)
+    """Pairs of half floats as words [N, m], the first in the low half; beyond the largest, values are held there."""
+    largest = np.finfo(np.float16).max
+    bits = np.ascontiguousarray(np.clip(values, -largest, largest), dtype=np.float16).view(np.uint16).astype(np.uint32)
     return np.asarray(bits[:, 0::2] | bits[:, 1::2] << 16)
