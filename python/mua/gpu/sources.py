@@ -35,7 +35,7 @@ def read(path: Path) -> str:
 
 
 def with_includes(path: Path) -> dict[Path, str]:
-    """The text of a shader and of every file that it includes, at any depth; absent ones are for the compiler to name."""
+    """The text of a shader and of all that it includes, at any depth; what is absent the compiler will name."""
     found: dict[Path, str] = {}
     waiting = [path]
     while waiting:
