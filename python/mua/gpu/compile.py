@@ -11,11 +11,6 @@ from mua import files
 from mua.errors import InputError
 from mua.gpu import compilers, sources
 
-STAGES = ("comp", "vert", "frag")
-INSTALL = {
-    "glslang": "glslangValidator: Debian package glslang-tools, on Windows and macOS the Vulkan SDK",
-}
-
 
 def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glslang") -> bytes:
     """The SPIR-V of one entry point of a shader, from the cache if nothing that it depends on changed.
@@ -40,11 +35,11 @@ def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glsla
 
 
 def find_compiler(name: str) -> compilers.Compiler:
-    for compiler in compilers.find():
-        if compiler.name == name:
-            return compiler
-    install = f"; it comes with {INSTALL[name]}" if name in INSTALL else ""
-    raise InputError(f"the shader compiler {name} is not on this machine{install}")
+    """The compiler with this name; InputError that says what brings it if it is not on this machine."""
+    found = compilers.find(name)
+    if found is None:
+        raise InputError(f"the shader compiler {name} is not on this machine; it comes with {compilers.INSTALL[name]}")
+    return found
 
 
 def cache_directory() -> Path:
@@ -61,7 +56,7 @@ def cache_directory() -> Path:
 def _key(compiler: compilers.Compiler, texts: dict[Path, str], options: tuple[str, ...]) -> str:
     command = compiler.command(Path("file"), "entry", options[1], Path("output"))[1:]
     digest = hashlib.sha256()
-    for part in (compiler.name, compiler.version, *command, *options, *texts.values()):
+    for part in (compiler.name, compiler.version, compiler.prelude, *command, *options, *texts.values()):
         digest.update(len(part).to_bytes(8, "little") + part.encode())
     return digest.hexdigest()
 
@@ -69,12 +64,23 @@ def _key(compiler: compilers.Compiler, texts: dict[Path, str], options: tuple[st
 def _compiled(compiler: compilers.Compiler, path: Path, entry: str, stage: str, defines: tuple[str, ...]) -> bytes:
     with tempfile.TemporaryDirectory() as scratch:
         output = Path(scratch) / "code.spv"
-        command = compiler.command(path, entry, stage, output)
-        command += [f"-I{sources.directory()}", *(f"-D{define}" for define in defines)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        done = run_compiler(compiler, path, entry, stage, output, defines)
         if done.returncode or not output.is_file():
             raise InputError(f"{path}: {entry} does not compile: {_first_error(done.stdout + done.stderr)}")
         return output.read_bytes()
+
+
+def run_compiler(
+    compiler: compilers.Compiler, path: Path, entry: str, stage: str, output: Path, defines: tuple[str, ...]
+) -> subprocess.CompletedProcess[str]:
+    """Compile one entry point of a file into `output`, beside which a prelude may be written."""
+    if compiler.prelude:
+        include = f'#include "{path.resolve().as_posix()}"\n'
+        path = output.with_suffix(".hlsl")
+        path.write_text(compiler.prelude + include)
+    command = compiler.command(path.resolve(), entry, stage, output)
+    command += [f"-I{sources.directory().resolve()}", *(f"-D{define}" for define in defines)]
+    return subprocess.run(command, cwd=path.parent, capture_output=True, text=True, check=False)
 
 
 def _first_error(printed: str) -> str:

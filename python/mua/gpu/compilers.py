@@ -1,44 +1,133 @@
-"""The HLSL compilers that the runner can use, found on this machine."""
+"""The HLSL compilers of this machine: those whose SPIR-V the runner takes, and FXC, which Unity compiles with."""
 
+import importlib.util
+import os
 import re
+import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 FRAGMENT_GROUP = 1  # descriptor set of what a fragment entry reads; all other stages read from set 0
+SLANG_STAGES = {"comp": "compute", "vert": "vertex", "frag": "fragment"}
+PROFILES = {"comp": "cs", "vert": "vs", "frag": "ps"}
+UNKNOWN_PRAGMA = "15601"  # slangc's warning about `#pragma kernel`
+INSTALL = {
+    "glslang": "glslangValidator: Debian package glslang-tools, on Windows and macOS the Vulkan SDK",
+    "slang": "slangc: PyPI package slangtorch, or the Vulkan SDK",
+    "dxc": "dxc: the Vulkan SDK, a command in $MUA_DXC, or the PyPI package compushady",
+    "fxc": "fxc: the Windows SDK, or a command in $MUA_FXC",
+}
+
+# slangc turns the two intrinsics into 16-bit integers, which wgpu refuses. These are what the other compilers emit.
+SLANG_PRELUDE = """\
+float halfToFloat(uint bits) { return unpackHalf2x16ToFloat(bits).x; }
+uint floatToHalf(float value) { return packHalf2x16(float2(value, 0)); }
+#define f16tof32 halfToFloat
+#define f32tof16 floatToHalf
+"""
 
 
 @dataclass(frozen=True)
 class Compiler:
-    """One HLSL compiler; `command` is called with (file, entry, stage, output) and lacks -I and -D, which are alike."""
+    """One HLSL compiler.
+
+    `command` is called with (file, entry, stage, output), runs in the file's directory, and lacks -I and -D, which are
+    alike. A `prelude` is to stand before the file's own text.
+    """
 
     name: str
-    executable: str
     version: str
     command: Callable[[Path, str, str, Path], list[str]]
+    prelude: str = ""
 
 
-def glslang(executable: str) -> Compiler:
+@cache
+def find(name: str) -> Compiler | None:
+    """The compiler of SPIR-V with this name, None if it is not on this machine; KeyError if there is none like it."""
+    return FINDERS[name]()
+
+
+def find_fxc() -> Compiler | None:
+    """FXC, which makes no SPIR-V: $MUA_FXC or `fxc` on the PATH."""
+    program = _program("MUA_FXC", "fxc")
+    if program is None:
+        return None
+
+    def command(path: Path, entry: str, stage: str, output: Path) -> list[str]:
+        # by name alone: to FXC a path that begins with a slash is an option
+        return [*program, "-nologo", "-T", f"{PROFILES[stage]}_5_0", "-E", entry, "-Fo", str(output), path.name]
+
+    return Compiler("fxc", "", command)
+
+
+def _glslang() -> Compiler | None:
+    program = shutil.which("glslangValidator") or shutil.which("glslang")
+    if program is None:
+        return None
+
     def command(path: Path, entry: str, stage: str, output: Path) -> list[str]:
         # --amb numbers the bindings; each stage starts from 0, so the fragment's go to a set of their own
         group = ["--resource-set-binding", "frag", str(FRAGMENT_GROUP)] if stage == "frag" else []
         options = ["-D", "-V", "--target-env", "vulkan1.1", "-S", stage, "--amb", *group]
-        return [executable, *options, "-e", entry, "--source-entrypoint", entry, "-o", str(output), str(path)]
+        return [program, *options, "-e", entry, "--source-entrypoint", entry, "-o", str(output), str(path)]
 
-    return Compiler("glslang", executable, _version(executable), command)
-
-
-@cache
-def find() -> tuple[Compiler, ...]:
-    """The compilers on this machine's PATH."""
-    executable = shutil.which("glslangValidator") or shutil.which("glslang")
-    return (glslang(executable),) if executable else ()
+    return Compiler("glslang", _version([program, "--version"]), command)
 
 
-def _version(executable: str) -> str:
-    printed = subprocess.run([executable, "--version"], capture_output=True, text=True, check=False).stdout
+def _slang() -> Compiler | None:
+    program = shutil.which("slangc") or shutil.which("slangc", path=_wheel("slangtorch", "bin"))
+    if program is None:
+        return None
+
+    def command(path: Path, entry: str, stage: str, output: Path) -> list[str]:
+        # without -O0 it rewrites loops into a form that wgpu refuses
+        options = ["-target", "spirv", "-O0", "-fvk-use-entrypoint-name", "-warnings-disable", UNKNOWN_PRAGMA]
+        names = ["-stage", SLANG_STAGES[stage], "-entry", entry, "-o", str(output)]
+        return [program, "-lang", "hlsl", str(path), *options, *names]
+
+    return Compiler("slang", _version([program, "-v"]), command, SLANG_PRELUDE)
+
+
+def _dxc() -> Compiler | None:
+    """$MUA_DXC or `dxc` on the PATH, else the library that comes with compushady."""
+    program = _program("MUA_DXC", "dxc")
+    if program is None and _wheel("compushady", "backends"):
+        program = [sys.executable, "-m", "mua.gpu.dxcompiler"]
+    if program is None:
+        return None
+
+    def command(path: Path, entry: str, stage: str, output: Path) -> list[str]:
+        options = ["-spirv", "-fspv-target-env=vulkan1.1", "-Wall", "-T", f"{PROFILES[stage]}_6_0"]
+        return [*program, *options, "-E", entry, "-Fo", str(output), str(path)]
+
+    return Compiler("dxc", _version([*program, "--version"]), command)
+
+
+FINDERS: dict[str, Callable[[], Compiler | None]] = {"glslang": _glslang, "slang": _slang, "dxc": _dxc}
+
+
+def _program(variable: str, name: str) -> list[str] | None:
+    """The command in an environment variable, else the program on the PATH."""
+    if named := os.environ.get(variable):
+        return shlex.split(named, posix=os.name == "posix")
+    found = shutil.which(name)
+    return [found] if found else None
+
+
+def _wheel(package: str, folder: str) -> str | None:
+    """A folder of an installed package, found without importing it."""
+    found = importlib.util.find_spec(package)
+    path = Path(found.origin).parent / folder if found and found.origin else None
+    return str(path) if path and path.is_dir() else None
+
+
+def _version(command: list[str]) -> str:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    printed = done.stdout + done.stderr
     found = re.search(r"\d+:?[\d.]+\d", printed)
     return found.group() if found else printed.strip()

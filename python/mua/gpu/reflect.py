@@ -191,6 +191,8 @@ def _strides(module: _Module, of: int, decorations: dict[int, int]) -> tuple[int
     opcode, operands = module.types[of]
     if opcode == OP_ARRAY:
         return (module.decorations[of][ARRAY_STRIDE], *_strides(module, operands[0], decorations))
+    if opcode == OP_STRUCT:  # slangc's wrapping of an array
+        return _strides(module, operands[0], module.member_decorations[of, 0])
     if opcode == OP_MATRIX:
         stride = decorations[MATRIX_STRIDE]
         return (4, stride) if ROW_MAJOR in decorations else (stride, 4)
