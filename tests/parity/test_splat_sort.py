@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from sorted_keys import sort_keys
 
 from mua.arrays import Array
 from mua.gpu import Device
 from mua.kernels.splat_sort import splat_sort
-from sorted_keys import sort_keys
 
 COUNTS = [0, 1, 2, 255, 256, 257, 1021, 70001]
 BLOCK_COUNTS = [2047, 2048, 2049, 4096, 30011]  # around and beyond the 2048 keys of one group
