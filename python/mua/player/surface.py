@@ -14,10 +14,10 @@ from mua.rig.character import Mesh
 from mua.rig.charts import find_charts, signed_areas
 from mua.rig.texel_map import TexelMap
 
-STRETCH = 4.0  # times its texel's footprint that an edge of the grid may span; a longer one crosses a slit in a chart
+STRETCH = 2.5  # times its texel's footprint that an edge of the grid may span; a longer one crosses a slit in a chart
 SEAM_STEP = 0.5  # texels between the samples along a seam, so that no texel beside it is stepped over
-REACH = 2.0  # texels from a seam to the nearest of its chart; a chart without one there lends the nearest in space
-LARGEST_HOLE = 12  # edges round a hole that is closed; the surface's own openings are longer
+REACH = 4.0  # texels from a seam to the nearest of its chart; where there is none so near, the nearest in space is taken
+SMALL_HOLE = 12  # edges round a hole that is closed wherever it is; the template's own openings are longer
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,13 @@ def build_surface(mesh: Mesh, texels: TexelMap) -> Surface:
     """Triangulate the valid texels of a template whose vertices are at rest."""
     count = len(texels.texels)
     if not count:
-        return _with_rings(np.empty((0, 3), np.int64), 0)
+        return rings(np.empty((0, 3), np.int64), 0)
     places = np.einsum("nk,nki->ni", texels.barycentrics, mesh.vertices[mesh.faces[texels.triangles]])
     charts = find_charts(_nodes(mesh), mesh.uv[mesh.uv_faces])
     inner = _grid(mesh, texels, places=places, charts=charts)
     seams = _seams(mesh, texels, places=places, charts=charts)
     triangles = _distinct(np.concatenate([inner, seams]))
-    return _with_rings(np.concatenate([triangles, _patches(triangles)]), count)
+    return rings(np.concatenate([triangles, _patches(triangles, places, mesh)]), count)
 
 
 def _nodes(mesh: Mesh) -> Array:
@@ -111,10 +111,11 @@ def _seams(
     face, corner = left
     rest = mesh.vertices[mesh.faces[face[:, None], corner]][edge]
     rest = rest[:, 0] * (1 - t) + rest[:, 1] * t
-    rows = [
-        _nearest(texels, charts, places=places, chart=charts[f][edge], at=e[edge, 0] * (1 - t) + e[edge, 1] * t, rest=rest)
-        for (f, _), e in zip((left, right), ends, strict=True)
-    ]
+    density = float(np.sqrt(2) / np.median(_footprints(mesh, texels)))
+    rows = []
+    for (f, _), e in zip((left, right), ends, strict=True):
+        at = e[edge, 0] * (1 - t) + e[edge, 1] * t
+        rows.append(_nearest(texels, charts, places=places, density=density, chart=charts[f][edge], at=at, rest=rest))
     (a, b), on = rows, within[1:] > 0  # `on` marks the steps inside one edge
     a0, a1, b0, b1 = a[:-1][on], a[1:][on], b[:-1][on], b[1:][on]
     return np.concatenate([np.stack([b0, b1, a1], axis=1), np.stack([b0, a1, a0], axis=1)])
@@ -141,15 +142,19 @@ def _nearest(
     charts: Array,  # [F]
     *,
     places: Array,  # [N, 3] rest positions, metres
+    density: float,  # texels for each metre of the surface
     chart: Array,  # [P]
     at: Array,  # [P, 2] texels
     rest: Array,  # [P, 3] metres
 ) -> Array:
-    """The nearest texel [P] of a chart to points of its border."""
+    """The texel [P] of a chart nearest to points of its border, in texture and in space together.
+
+    In space alone it could lie across the seam, in the texture alone on another limb that an artist laid beside it.
+    """
     row, column = np.divmod(texels.texels, texels.size)
     apart = 4 * texels.size  # farther than any two points of one chart
-    tree = cKDTree(np.stack([column + 0.5, row + 0.5, apart * charts[texels.triangles]], axis=1))
-    distance, nearest = tree.query(np.column_stack([at, apart * chart]))
+    known = np.column_stack([column + 0.5, row + 0.5, density * places, apart * charts[texels.triangles]])
+    distance, nearest = cKDTree(known).query(np.column_stack([at, density * rest, apart * chart]))
     bare = distance > REACH
     if bare.any():
         nearest[bare] = cKDTree(places).query(rest[bare])[1]
@@ -165,14 +170,23 @@ def _distinct(triangles: Array) -> Array:
     return np.unique(turned, axis=0)
 
 
-def _patches(triangles: Array) -> Array:
-    """Triangles [T, 3] that close the small holes, each a fan about its first corner."""
-    fans = [
-        np.stack([np.full(len(loop) - 2, loop[0]), loop[1:-1], loop[2:]], axis=1)
-        for loop in _openings(triangles)
-        if 3 <= len(loop) <= LARGEST_HOLE
-    ]
-    return np.concatenate([np.empty((0, 3), np.int64), *fans])
+def _patches(
+    triangles: Array,  # [T, 3]
+    places: Array,  # [N, 3] rest positions, metres
+    mesh: Mesh,
+) -> Array:
+    """Triangles [T, 3] that close the holes, each a fan about its first corner.
+
+    A loop is a hole if it is short, or if it lies farther from every opening of the template than it is wide.
+    """
+    rims = [cKDTree(mesh.vertices[loop]) for loop in _openings(mesh.faces.astype(np.int64))]
+    fans = [np.empty((0, 3), np.int64)]
+    for loop in _openings(triangles):
+        width = np.ptp(places[loop], axis=0).max()
+        apart = all(rim.query(places[loop])[0].min() > width for rim in rims)
+        if len(loop) >= 3 and (len(loop) <= SMALL_HOLE or apart):
+            fans.append(np.stack([np.full(len(loop) - 2, loop[0]), loop[1:-1], loop[2:]], axis=1))
+    return np.concatenate(fans)
 
 
 def _openings(triangles: Array) -> list[Array]:
@@ -200,8 +214,8 @@ def _openings(triangles: Array) -> list[Array]:
     return loops
 
 
-def _with_rings(triangles: Array, count: int) -> Surface:
-    """The surface of `count` texels, with the triangles sorted about their corners."""
+def rings(triangles: Array, count: int) -> Surface:
+    """The surface of `count` corners: the triangles as they are, and sorted about each corner."""
     ring = np.concatenate([np.roll(triangles, -k, axis=1) for k in range(3)])
     order = np.argsort(ring[:, 0], kind="stable")
     starts = np.searchsorted(ring[order, 0], np.arange(count + 1))
