@@ -1,0 +1,101 @@
+"""Draws sorted splats into a texture, and reads pictures of them back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import wgpu
+
+from mua.arrays import Array
+from mua.camera import Camera
+from mua.gpu import Buffer, Device
+from mua.gpu.failure import naming
+
+SHADER = Path(__file__).parent / "shaders" / "splat.hlsl"
+IMAGE_FORMAT = "rgba16float"
+DEVICE_DEPTH = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, 0, 1]])  # clip z of -w..w to 0..w
+
+
+@dataclass(frozen=True)
+class SortedSplats:
+    """What splat_project and splat_sort leave for the draw."""
+
+    count: int  # N, of the avatar
+    splats: Buffer  # [N, 16] words (mua.kernels.dq_skinning.pack_splats)
+    ellipses: Buffer  # [E, N, 6]
+    colors: Buffer  # [N, 4] half floats
+    order: Buffer  # [M] the visible splats, back to front
+    arguments: Buffer  # [8]; the draw's first
+
+
+class SplatRenderer:
+    """The pipeline that draws splats into targets of one format."""
+
+    def __init__(self, device: Device, color_format: str, *, depth_format: str | None = None) -> None:
+        """With a depth format, what the pass drew before hides the splats whose centre lies behind it."""
+        self._pipeline = device.pipeline(
+            SHADER,
+            "SplatVert",
+            "SplatFrag",
+            color_format=color_format,
+            depth_format=depth_format,
+            blend=True,
+            depth_compare="always" if depth_format is None else "less-equal",
+        )
+
+    def draw(self, render_pass: wgpu.GPURenderPassEncoder, splats: SortedSplats, cameras: Sequence[Camera]) -> None:
+        """Append the draw of one or two eyes, side by side from the left; all share one size of screen."""
+        buffers = {name: getattr(splats, name) for name in ("order", "ellipses", "colors", "splats")}
+        for eye, camera in enumerate(cameras):
+            set_eye(render_pass, eye, camera)
+            self._pipeline.bind(
+                render_pass,
+                buffers,
+                view_projection=view_projection(camera),
+                screen=np.array(camera.screen, dtype=np.float32),
+                eye=eye,
+                splat_count=splats.count,
+            )
+            render_pass.draw_indirect(splats.arguments.raw, 0)
+
+
+def view_projection(camera: Camera) -> Array:
+    """World to clip [4, 4] with the depth range of the device."""
+    return np.asarray(DEVICE_DEPTH @ camera.projection @ camera.view)
+
+
+def set_eye(render_pass: wgpu.GPURenderPassEncoder, eye: int, camera: Camera) -> None:
+    """Confine what follows to the part of the target that this eye has."""
+    width, height = camera.screen
+    render_pass.set_viewport(eye * width, 0, width, height, 0, 1)
+    render_pass.set_scissor_rect(eye * width, 0, width, height)
+
+
+def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, cameras: Sequence[Camera]) -> Array:
+    """Premultiplied sRGB and alpha [H, E W, 4] float32 of the eyes side by side; the renderer's format is IMAGE_FORMAT.
+
+    Errors: InputError where the device cannot hold so large a picture.
+    """
+    width, height = cameras[0].screen
+    size = (len(cameras) * width, height, 1)
+    with naming(f"picture of {size[0]} x {size[1]} pixels"):
+        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+        target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=usage)
+        encoder = device.wgpu.create_command_encoder()
+        cleared = {"view": target.create_view(), "load_op": "clear", "store_op": "store", "clear_value": (0, 0, 0, 0)}
+        render_pass = encoder.begin_render_pass(color_attachments=[cleared])
+        renderer.draw(render_pass, splats, cameras)
+        render_pass.end()
+        device.wgpu.queue.submit([encoder.finish()])
+        return read_image(device, target)
+
+
+def read_image(
+    device: Device,
+    texture: wgpu.GPUTexture,  # of IMAGE_FORMAT
+) -> Array:
+    """The texture's pixels [H, W, 4] float32; waits for what is drawn."""
+    width, height, _ = texture.size
+    pixels = device.wgpu.queue.read_texture({"texture": texture}, {"bytes_per_row": 8 * width}, texture.size)
+    return np.frombuffer(pixels, np.float16).reshape(height, width, 4).astype(np.float32)
