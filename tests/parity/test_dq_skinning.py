@@ -1,14 +1,17 @@
 """Skinning against OpenUSD's, activations against scipy, the packed splat against numpy's own half floats."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
-from packed_splats import LARGEST_HALF, unpacked
+from packed_splats import LARGEST_HALF, assert_halves, unpacked
 from pxr import Gf, UsdSkel, Vt
 from scipy.spatial.transform import Rotation
 from scipy.special import expit
 
 from mua import rotation
 from mua.arrays import Array
+from mua.gpu import Device, run
 from mua.kernels.dq_skinning import (
     METRES2_TO_MM2,
     blend_texels,
@@ -26,6 +29,27 @@ BLEND_OPERATIONS = 64  # roundings on the way of one coordinate: 8 terms of 3, a
 
 def position_bound(dtype: type) -> float:
     return float(BLEND_OPERATIONS * np.finfo(dtype).eps * REACH)
+
+
+FILE = "dq_skinning.compute"
+GROUP = 64  # threads
+GPU_COUNTS = [0, 1, GROUP - 1, GROUP, GROUP + 1, 4099, 300_007]
+FACES = np.array([[0, 1, 2], [2, 3, 4], [5, 3, 1]], np.int32)
+
+# Bounds of float32 on a GPU, whose arithmetic is as Vulkan asks: sums and products half a unit in the last place (an
+# ulp, eps of the largest term), division 2.5 ulp, square roots 4.5, exp 3 + 2 |x|.
+ULP = float(np.finfo(np.float32).eps)
+# A blend: 8 products and sums, twice over (the norm too), the norm's own 4 products, 4 sums and root, a division; the
+# rotations lie within a quarter turn, so that the sum's norm is at least cos(pi / 4). Dual parts are at most 0.9.
+BLEND_BOUND = (2 * 8 + 4 + 4.5 + 2.5) / np.cos(np.pi / 4) * ULP
+# A centre: the rotation is quadratic in the blended quaternion, the translation bilinear, over at most 0.9 + 1.8 m;
+# the products and sums of the point (6), the turn (12) and the translation (8) are half an ulp each of no more.
+CENTRE_BOUND = 2.7 * (4 * BLEND_BOUND + 13 * ULP)
+# A logistic: the error of exp, at most 3 ulp of 1 at x = 0, counts in numerator and denominator; a sum, a division.
+OPACITY_BOUND = (2 * 3 + 0.5 + 2.5) * ULP
+# A covariance, relative to the largest variance: exp(-12..0), squared; the rotation's matrix (9 products and sums) is
+# quadratic in the product (4 ulp) of the blend and the texel's own quaternion (9 ulp), and counts twice.
+COVARIANCE_BOUND = 2 * (3 + 2 * 12 + 1) * ULP + 2 * 4 * (BLEND_BOUND + 13 * ULP) + 2 * 9 * ULP
 
 
 def random_joints(rng: np.random.Generator, count: int = JOINTS) -> Array:
@@ -178,3 +202,124 @@ def test_what_half_floats_cannot_hold_is_held_at_the_largest() -> None:
     fields = unpacked(pack_splats(np.zeros((1, 3)), covariance, np.ones(1), np.zeros((1, 8)), sh))
     np.testing.assert_array_equal(fields["covariance"][0], LARGEST_HALF * np.array([1, -1, 0, 1, 0, 1]))
     np.testing.assert_array_equal(fields["sh"], np.full((1, 12), LARGEST_HALF))
+
+
+@dataclass(frozen=True)
+class Texels:
+    """Texels over FACES, as float32 buffers hold them."""
+
+    triangles: Array  # [N]
+    barycentrics: Array  # [N, 3]
+    texture: Array  # [N, 23] raw channels
+
+
+def random_texels(rng: np.random.Generator, count: int) -> Texels:
+    """Log scales from -12 to 0, opacity logits to +-100, a texel in eight without a rotation, some on an edge."""
+    first = rng.dirichlet([1, 1, 1], count).reshape(count, 3).astype(np.float32)[:, :2]
+    first[::5] = 0.5
+    third = np.maximum(np.float32(1) - first[:, :1] - first[:, 1:], 0)
+    texture = rng.normal(size=(count, 23))
+    texture[:, 0:3] *= 0.05
+    texture[::8, 3:7] = 0
+    texture[:, 7:10] = rng.uniform(-12, 0, (count, 3))
+    texture[:, 10] = rng.uniform(-100, 100, count)
+    triangles = rng.integers(0, len(FACES), count)
+    return Texels(triangles, np.concatenate([first, third], axis=1), texture.astype(np.float32))
+
+
+def blend_on(device: Device, joints: Array, indices: Array, weights: Array) -> Array:
+    """[V, 8] from BlendVertices."""
+    vertices = len(indices)
+    buffers = {
+        "joints": joints.astype(np.float32),
+        "indices": indices.astype(np.uint32),
+        "weights": weights,
+        "vertex_dq": np.full((vertices, 8), np.nan, np.float32),
+    }
+    groups = (-(-vertices // GROUP), 1, 1)
+    return run(device, FILE, "BlendVertices", groups, buffers, vertex_count=vertices)["vertex_dq"]
+
+
+def skin_on(device: Device, vertex_dq: Array, mesh: Array, faces: Array, texels: Texels) -> Array:
+    """Fields of PACKED [N] from SkinSplats."""
+    count = len(texels.triangles)
+    buffers = {
+        "vertex_dq": vertex_dq,
+        "mesh": mesh,
+        "faces": faces.astype(np.uint32),
+        "triangles": texels.triangles.astype(np.uint32),
+        "barycentrics": texels.barycentrics[:, :2],
+        "texel_channels": texels.texture.T,
+        "splats": np.full((count, 16), 0xFFFFFFFF, np.uint32),
+    }
+    groups = (-(-count // GROUP), 1, 1)
+    return unpacked(run(device, FILE, "SkinSplats", groups, buffers, texel_count=count)["splats"])
+
+
+@pytest.mark.parametrize("count", GPU_COUNTS)
+def test_hlsl_blends_vertices_as_the_reference(device: Device, count: int) -> None:
+    rng = np.random.default_rng(count)
+    joints = (random_joints(rng) * rng.choice([-1.0, 1.0], (JOINTS, 1))).astype(np.float32)
+    indices, weights = random_influences(rng, count)
+    found = blend_on(device, joints, indices, weights)
+    expected = blend_vertices(joints.astype(float), indices, weights)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=BLEND_BOUND)
+
+
+@pytest.mark.parametrize("count", GPU_COUNTS)
+def test_hlsl_skins_splats_as_the_reference(device: Device, count: int) -> None:
+    rng = np.random.default_rng(count)
+    vertex_dq = (random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))).astype(np.float32)
+    mesh = rng.uniform(-0.5, 0.5, (6, 3)).astype(np.float32)
+    texels = random_texels(rng, count)
+    found = skin_on(device, vertex_dq, mesh, FACES, texels)
+
+    texture = texels.texture.astype(float)
+    texel_dq = blend_texels(vertex_dq.astype(float), FACES, texels.triangles, texels.barycentrics)
+    centres, rotations, scales, opacities = skin_splats(
+        texel_dq, mesh, FACES, texels.triangles, texels.barycentrics, texture
+    )
+    np.testing.assert_allclose(found["centre"], centres, rtol=0, atol=CENTRE_BOUND)
+    np.testing.assert_allclose(found["opacity"], opacities, rtol=0, atol=OPACITY_BOUND)
+    assert_halves(found["turn"], texel_dq[:, :4], BLEND_BOUND)
+    assert_halves(found["sh"], texture[:, 11:], 0)
+    largest = METRES2_TO_MM2 * np.square(scales.max(axis=1, keepdims=True))
+    assert_halves(found["covariance"], METRES2_TO_MM2 * covariances(rotations, scales), COVARIANCE_BOUND * largest)
+
+
+def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device) -> None:
+    half_turn = np.array([[1, 0, 0, 0], [-0.6, 0.8, 0, 0], [-0.6, 0, 0.8, 0]], np.float32)
+    vertex_dq = np.concatenate([half_turn, np.zeros((3, 4), np.float32)], axis=1)
+    barycentrics = np.array([[0.5, 0.5, 0], [0, 0.5, 0.5], [0.25, 0.25, 0.5], [0.375, 0.25, 0.375]], np.float32)
+    texels = Texels(np.zeros(4, int), barycentrics, np.zeros((4, 23), np.float32))
+    found = skin_on(device, vertex_dq, np.zeros((3, 3), np.float32), FACES[:1], texels)
+    expected = blend_texels(vertex_dq.astype(float), FACES[:1], texels.triangles, barycentrics)
+    assert_halves(found["turn"], expected[:, :4], BLEND_BOUND)
+
+
+def test_hlsl_keeps_rotations_that_cancel_finite(device: Device) -> None:
+    joints = np.zeros((2, 8), np.float32)
+    joints[:, 4:] = 0.5
+    indices, weights = np.zeros((6, 8), np.int32), np.full((6, 8), 0.125, np.float32)
+    vertex_dq = blend_on(device, joints, indices, weights)
+    assert np.isfinite(vertex_dq).all()
+    vertex_dq[:, 4:] = 0.5
+    found = skin_on(device, vertex_dq, np.ones((6, 3), np.float32), FACES, random_texels(np.random.default_rng(5), 65))
+    assert all(np.isfinite(found[name]).all() for name in ("centre", "covariance", "turn", "sh", "opacity"))
+
+
+def test_hlsl_leaves_the_splats_after_the_last_alone(device: Device) -> None:
+    rng = np.random.default_rng(6)
+    vertex_dq, texels = random_joints(rng, 6).astype(np.float32), random_texels(rng, GROUP + 1)
+    untouched = np.full((2 * GROUP, 16), 0xFFFFFFFF, np.uint32)
+    buffers = {
+        "vertex_dq": vertex_dq,
+        "mesh": np.zeros((6, 3), np.float32),
+        "faces": FACES.astype(np.uint32),
+        "triangles": texels.triangles.astype(np.uint32),
+        "barycentrics": texels.barycentrics[:, :2],
+        "texel_channels": texels.texture.T,
+        "splats": untouched,
+    }
+    splats = run(device, FILE, "SkinSplats", (2, 1, 1), buffers, texel_count=GROUP + 1)["splats"]
+    np.testing.assert_array_equal(splats[GROUP + 1 :], untouched[GROUP + 1 :])

@@ -1,13 +1,23 @@
 """Projection against 4x4 matrices and a numerically differentiated Jacobian; culling and keys by behaviour."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
+from packed_splats import assert_halves, covariance_of, unpacked
+from splat_rounding import ULP, Bounds, exact_keys, eye_bounds
 
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera, orbit
-from mua.kernels.dq_skinning import covariances
-from mua.kernels.splat_project import LAST_KEY, LEAST_OPACITY, half_extents, splat_project
+from mua.gpu import Device, run
+from mua.kernels.dq_skinning import covariances, pack_splats
+from mua.kernels.splat_draw import splat_colors
+from mua.kernels.splat_project import LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, splat_project
+
+FILE = "splat_project.compute"
+GROUP = 256  # threads
+GPU_COUNTS = [0, 1, GROUP - 1, GROUP, GROUP + 1, 4099, 300_007]
 
 SCREEN = (97, 61)
 BOX = np.array([[-1.0, -1, -1], [1, 1, 1]])
@@ -170,3 +180,227 @@ def test_the_box_holds_all_that_shows() -> None:
     marginal = np.sqrt(np.diagonal(screen_covariance(ellipses[0]), axis1=1, axis2=2))
     visible = marginal * np.sqrt(2 * np.log(opacities / LEAST_OPACITY))[:, None]
     assert np.all(extent >= visible)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Packed splats before one or two eyes."""
+
+    words: Array  # [N, 16] uint32
+    cameras: tuple[Camera, ...]
+    bounds: Array  # [2, 3]
+
+    @property
+    def constants(self) -> dict[str, int | float | Array]:
+        eyes = [self.cameras[0], self.cameras[-1]]
+        middle = np.mean([c.position for c in self.cameras], axis=0)
+        return {
+            "view": np.stack([c.view for c in eyes]),
+            "projection": np.stack([c.projection for c in eyes]),
+            "camera": np.append(middle, 0),
+            "bounds_low": np.append(self.bounds[0], 0),
+            "bounds_high": np.append(self.bounds[1], 0),
+            "screen": np.array(self.cameras[0].screen),
+            "near": NEAR,
+            "eyes": len(self.cameras),
+            "splat_count": len(self.words),
+            "instances": 1,
+        }
+
+    def splats(self) -> tuple[Array, Array, Array]:
+        """Centres, covariances and opacities in float64, as the GPU unpacks them."""
+        fields = unpacked(self.words)
+        return fields["centre"].astype(float), covariance_of(fields), fields["opacity"].astype(float)
+
+
+@dataclass(frozen=True)
+class Projected:
+    """What the three kernels leave for the sort and the draw."""
+
+    ellipses: Array  # [E, N, 6]
+    colors: Array  # [N, 4] float16
+    visible: Array  # [M]
+    keys: Array  # [M]
+    arguments: Array  # [8]
+
+
+def packed_splats(count: int, reach: float = 1.0) -> Array:
+    rng = np.random.default_rng(count)
+    centres, covariance, _ = random_splats(count)
+    opacities = rng.uniform(0, 1, count) ** 3  # some below LEAST_OPACITY
+    turns = np.concatenate([rotation.normalize(rng.normal(size=(count, 4))), np.zeros((count, 4))], axis=1)
+    sh = rng.normal(size=(count, 12))
+    return pack_splats(reach * centres, 0.1 * covariance, opacities, turns, sh)
+
+
+def project_on(device: Device, scene: Scene) -> Projected:
+    count, eyes = len(scene.words), len(scene.cameras)
+    groups = -(-count // GROUP)
+    buffers = {
+        "splats": scene.words,
+        "ellipses": np.zeros((eyes, count, 6), np.float32),
+        "colors": np.zeros((count, 4), np.float16),
+        "flags": np.full(count, 0xFFFFFFFF, np.uint32),
+        "group_counts": np.full(groups, 0xFFFFFFFF, np.uint32),
+    }
+    found = run(device, FILE, "SplatProject", (groups, 1, 1), buffers, **scene.constants)
+    arguments, group_counts = scan_on(device, found["group_counts"], count)
+    visible, keys = compact_on(device, found["flags"], group_counts)
+    total = arguments[7]
+    return Projected(found["ellipses"], found["colors"], visible[:total], keys[:total], arguments)
+
+
+def scan_on(device: Device, group_counts: Array, count: int) -> tuple[Array, Array]:
+    """Arguments [8] and the scanned counts from ScanCounts."""
+    buffers = {"group_counts": group_counts, "arguments": np.full(8, 0xFFFFFFFF, np.uint32)}
+    found = run(device, FILE, "ScanCounts", (1, 1, 1), buffers, splat_count=count, instances=2)
+    return found["arguments"], found["group_counts"]
+
+
+def compact_on(device: Device, flags: Array, group_counts: Array) -> tuple[Array, Array]:
+    """Visible splats and keys [N] from SplatCompact; behind the last, 0xFFFFFFFF."""
+    buffers = {
+        "flags": flags,
+        "group_counts": group_counts,
+        "visible": np.full(len(flags), 0xFFFFFFFF, np.uint32),
+        "keys": np.full(len(flags), 0xFFFFFFFF, np.uint32),
+    }
+    found = run(device, FILE, "SplatCompact", (len(group_counts), 1, 1), buffers, splat_count=len(flags))
+    return found["visible"], found["keys"]
+
+
+def assert_as_the_reference(scene: Scene, found: Projected) -> None:
+    """Visibility, ellipses, keys and colours, each within what float32 may take from it."""
+    centres, covariance, opacities = scene.splats()
+    bounds = [eye_bounds(centres, covariance, opacities, c) for c in scene.cameras]
+    margin = np.max([b.margin for b in bounds], axis=0)
+    seen = np.zeros(len(centres), bool)
+    seen[found.visible] = True
+    assert np.all(np.diff(found.visible.astype(int)) > 0)
+    assert seen[margin > 1].all()
+    assert not seen[margin < -1].any()
+
+    for camera, bound, ellipses in zip(scene.cameras, bounds, found.ellipses[:, found.visible], strict=True):
+        assert_ellipses(scene, camera, bound, found.visible, ellipses)
+    views = np.stack([c.view for c in scene.cameras])
+    exact, key_bound = exact_keys(centres[found.visible], views, scene.bounds)
+    assert key_bound < 0.5  # so that keys differ by one at most, and that only beside a half
+    assert np.all(np.abs(found.keys - exact) <= 0.5 + key_bound)
+    assert_colors(scene, found)
+
+
+def assert_ellipses(scene: Scene, camera: Camera, bound: Bounds, visible: Array, ellipses: Array) -> None:
+    exact = eye_ellipses(*scene.splats()[:2], camera.view, camera.projection, camera.screen, NEAR)[visible]
+    drawn = ellipses[:, 4] > 0
+    margin = bound.margin[visible]
+    assert drawn[margin > 1].all()
+    assert not drawn[margin < -1].any()
+    assert np.all(ellipses[~drawn, 4:] == 0)
+    assert np.all(np.abs(ellipses[drawn, :2] - exact[drawn, :2]) <= bound.middle[visible][drawn])
+    error = screen_covariance(ellipses[drawn].astype(float)) - screen_covariance(exact[drawn])
+    # The axes and their lengths are rounded on top: 8 ulp of the unit vector, 5 of each deviation, each twice.
+    spectral = 2 * (8 + 5) * ULP * exact[drawn, 4] ** 2
+    assert np.all(np.linalg.norm(error, axis=(1, 2)) <= bound.variance[visible][drawn] + spectral)
+    assert np.all(ellipses[:, 2] >= 0)
+    assert np.all(ellipses[:, 4] >= ellipses[:, 5])
+
+
+def assert_colors(scene: Scene, found: Projected) -> None:
+    fields = unpacked(scene.words)[found.visible]
+    centres, sh = fields["centre"].astype(float), fields["sh"].astype(float)
+    camera = np.mean([c.position for c in scene.cameras], axis=0)
+    exact = splat_colors(centres, fields["turn"].astype(float), sh, camera)
+    distance = np.linalg.norm(centres - camera, axis=1)
+    # A direction: its difference, 8 ulp of a division by a norm; 12 products and sums of the turn, 8 of the colour.
+    direction = ULP * ((np.abs(centres).max(axis=1, initial=0) + np.abs(camera).max()) / distance + 8)
+    bound = np.abs(sh).sum(axis=1) * (direction + 20 * ULP) + ULP
+    assert_halves(found.colors[found.visible, :3], exact, bound[:, None])
+    assert_halves(found.colors[found.visible, 3], fields["opacity"].astype(float), 0)
+
+
+def stereo(apart: float = 0.2) -> tuple[Camera, Camera]:
+    """Two eyes beside each other, whose projections are skewed towards each other."""
+    middle, eyes = camera(), []
+    for side in (-1, 1):
+        view, projection = middle.view.copy(), middle.projection.copy()
+        view[0, 3] -= side * apart / 2
+        projection[0, 2] = -0.3 * side
+        eyes.append(Camera(view, projection, SCREEN))
+    return eyes[0], eyes[1]
+
+
+@pytest.mark.parametrize("eyes", [1, 2])
+@pytest.mark.parametrize("count", GPU_COUNTS)
+def test_hlsl_projects_as_the_reference(device: Device, count: int, eyes: int) -> None:
+    scene = Scene(packed_splats(count, reach=1.6), stereo()[:eyes], 1.6 * BOX)
+    found = project_on(device, scene)
+    assert_as_the_reference(scene, found)
+    if count > GROUP:
+        assert 0 < len(found.visible) < count
+
+
+ROLL = np.array([[0.0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+SHIFT = np.eye(4) + 2.0 * np.eye(4, k=3)
+CAMERAS = {
+    "inside the body": Camera(np.eye(4), camera().projection, SCREEN),
+    "looking past its side": Camera(SHIFT @ camera().view, camera().projection, SCREEN),
+    "one pixel": orbit(BOX, screen=(1, 1)),
+    "rolled by a right angle": Camera(ROLL @ camera().view, camera().projection, SCREEN),
+}
+
+
+@pytest.mark.parametrize("place", CAMERAS)
+def test_hlsl_projects_from_wherever_the_camera_is(device: Device, place: str) -> None:
+    scene = Scene(packed_splats(4099), (CAMERAS[place],), BOX)
+    found = project_on(device, scene)
+    assert_as_the_reference(scene, found)
+    assert 0 < len(found.visible) < 4099
+
+
+def test_hlsl_sees_nothing_behind_the_camera(device: Device) -> None:
+    away = camera().view.copy()
+    away[[0, 2]] *= -1
+    found = project_on(device, Scene(packed_splats(503), (Camera(away, camera().projection, SCREEN),), BOX))
+    np.testing.assert_array_equal(found.arguments, [0, 2, 0, 0, 0, 1, 1, 0])
+
+
+def test_hlsl_sees_all_that_lies_before_the_camera(device: Device) -> None:
+    words = pack_splats(*random_splats(503), np.ones((503, 8)), np.zeros((503, 12)))
+    found = project_on(device, Scene(words, stereo(), BOX))
+    np.testing.assert_array_equal(found.visible, np.arange(503))
+
+
+@pytest.mark.parametrize("difference", [1.0, -1.0, 0.0])
+@pytest.mark.parametrize("b", [0.0, 1e-9, -1e-9, 1.0])
+def test_hlsl_turns_the_axis_of_any_covariance(device: Device, difference: float, b: float) -> None:
+    """Upright, level, slanting and round ellipses, through a camera that keeps x and y apart."""
+    covariance = np.array([[2 + difference, b, 0, 2 - difference, 0, 0]]) * 1e-4
+    words = pack_splats(np.array([[0, 0, -2.0]]), covariance, np.ones(1), np.ones((1, 8)), np.zeros((1, 12)))
+    scene = Scene(words, (Camera(np.eye(4), np.diag([1.0, 97 / 61, -1, 0]), SCREEN),), 3 * BOX)
+    assert_as_the_reference(scene, project_on(device, scene))
+
+
+@pytest.mark.parametrize("count", [*GPU_COUNTS, 1_000_003])
+def test_hlsl_scans_counts_and_writes_the_arguments(device: Device, count: int) -> None:
+    groups = -(-count // GROUP)
+    group_counts = np.random.default_rng(count).integers(0, GROUP + 1, groups, dtype=np.uint32)
+    arguments, scanned = scan_on(device, group_counts, count)
+    total = int(group_counts.sum())
+    np.testing.assert_array_equal(scanned, np.cumsum(group_counts) - group_counts)
+    np.testing.assert_array_equal(arguments, [6 * total, 2, 0, 0, -(-total // 2048), 1, 1, total])
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("count", GPU_COUNTS)
+def test_hlsl_compacts_in_order(device: Device, count: int, share: float) -> None:
+    rng = np.random.default_rng(count)
+    flags = (rng.random(count) < share) * (0x10000 + rng.integers(0, 0x10000, count))
+    padded = np.append(flags, np.zeros(-count % GROUP, int)).reshape(-1, GROUP)
+    group_counts = np.count_nonzero(padded, axis=1)
+    before = (np.cumsum(group_counts) - group_counts).astype(np.uint32)
+    visible, keys = compact_on(device, flags.astype(np.uint32), before)
+    expected = np.flatnonzero(flags)
+    np.testing.assert_array_equal(visible[: len(expected)], expected)
+    np.testing.assert_array_equal(keys[: len(expected)], flags[expected] & 0xFFFF)
+    assert np.all(visible[len(expected) :] == 0xFFFFFFFF)
+    assert np.all(keys[len(expected) :] == 0xFFFFFFFF)

@@ -34,7 +34,7 @@ def splat_project(
     """
     dtype = centres.dtype
     view, projection, bounds = view.astype(dtype), projection.astype(dtype), bounds.astype(dtype)
-    eyes = [_ellipses(centres, covariance, v, p, screen, near) for v, p in zip(view, projection, strict=True)]
+    eyes = [eye_ellipses(centres, covariance, v, p, screen, near) for v, p in zip(view, projection, strict=True)]
     ellipses = np.stack(eyes)
     extent = half_extents(ellipses, opacities)
     middle = ellipses[..., 0:2]
@@ -68,7 +68,7 @@ def half_extents(
     return np.stack([cosine * along + sine * across, sine * along + cosine * across], axis=-1)
 
 
-def _ellipses(
+def eye_ellipses(
     centres: Array,  # [N, 3]
     covariance: Array,  # [N, 6]
     view: Array,  # [4, 4]

@@ -18,6 +18,7 @@ PACKED = np.dtype(
 
 LARGEST_HALF = float(np.finfo(np.float16).max)
 LEAST_NORMAL_HALF = float(np.finfo(np.float16).tiny)
+MANTISSA_BITS = np.finfo(np.float16).nmant
 
 
 def unpacked(
@@ -39,7 +40,8 @@ def assert_halves(
 ) -> None:
     """Within the bound and one half float: GPUs round to the nearest or towards zero, and may flush subnormals."""
     held = np.clip(exact, -LARGEST_HALF, LARGEST_HALF)
-    largest = np.minimum(np.abs(held) + bound, LARGEST_HALF).astype(np.float16)
-    step = np.where(largest < LEAST_NORMAL_HALF, LEAST_NORMAL_HALF, np.spacing(largest).astype(float))
+    largest = np.minimum(np.abs(held) + bound, LARGEST_HALF)
+    ulp = np.exp2(np.floor(np.log2(np.maximum(largest, LEAST_NORMAL_HALF))) - MANTISSA_BITS)
+    step = np.where(largest < LEAST_NORMAL_HALF, LEAST_NORMAL_HALF, ulp)
     excess = np.abs(found.astype(float) - held) - bound - step
-    assert np.all(excess <= 0), f"{excess.max():.3g} beyond the bound"
+    assert np.all(excess <= 0), f"{excess.max(initial=0):.3g} beyond the bound"

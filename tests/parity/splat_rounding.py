@@ -1,0 +1,86 @@
+"""How far splat_project may lie from float64 on a GPU: bounds for each splat, from the arithmetic that Vulkan asks for.
+
+Sums and products are rounded to half a unit in the last place (an ulp), divisions to 2.5, square roots to 4.5.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.camera import NEAR, Camera
+from mua.kernels.splat_project import GUARD, LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, half_lengths
+
+ULP = float(np.finfo(np.float32).eps)
+LOG_ERROR = 2.0**-21  # of log near 1; elsewhere 3 ulp
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds of one eye's rounding."""
+
+    middle: Array  # [N, 2] column and row, pixels
+    variance: Array  # [N] of the screen covariance (Frobenius norm), px^2
+    margin: Array  # [N] by which a splat is in view, as a multiple of what rounding may take; negative where it is not
+
+
+def eye_bounds(centres: Array, covariance: Array, opacities: Array, camera: Camera) -> Bounds:
+    """Bounds for splats [N] (splat_project's arguments in float64) in one eye."""
+    half, focal = np.array(camera.screen) / 2, np.diagonal(camera.projection)[:2]
+    skew = np.abs(camera.projection[:2, 2])
+    place = centres @ camera.view[:3, :3].T + camera.view[:3, 3]
+    place_error = 3 * ULP * (np.abs(centres) @ np.abs(camera.view[:3, :3]).T + np.abs(camera.view[:3, 3]))
+    depth = np.maximum(-place[:, 2:], NEAR)
+    slope = np.abs(place[:, :2]) / depth
+    relative = place_error.max(axis=1, keepdims=True) / depth
+    middle = half * (focal * relative * (1 + slope) + 6 * ULP * (focal * slope + skew + 1))
+
+    held = np.minimum(slope, (GUARD + 2 * skew) / focal)
+    jacobian2 = np.sum((half * focal / depth) ** 2 * (1 + held**2), axis=1)
+    sigma = np.linalg.norm(covariance[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]], axis=1)
+    # A row of the Jacobian: the magnification, and the slope that is at most 1.5 times as sensitive; it counts twice.
+    variance = jacobian2 * sigma * (2 * 2.5 * (relative[:, 0] + 6 * ULP) + 6 * ULP)
+
+    ellipses = eye_ellipses(centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
+    reach_error = _extent_error(ellipses, opacities, variance)
+    extent = half_extents(ellipses, opacities)
+    beside = np.minimum(ellipses[:, :2] + extent, np.array(camera.screen) - ellipses[:, :2] + extent)
+    beside /= middle + reach_error[:, None]
+    before = (-place[:, 2] - NEAR) / (place_error[:, 2] + ULP * NEAR)
+    solid = (opacities - LEAST_OPACITY) / (ULP * LEAST_OPACITY)
+    return Bounds(middle, variance, np.minimum.reduce([*beside.T, before, solid]))
+
+
+def _extent_error(ellipses: Array, opacities: Array, variance: Array) -> Array:
+    """Bound [N] of the rounding of half_extents, pixels."""
+    deviations = np.maximum(ellipses[:, 4:6], np.sqrt(variance)[:, None])
+    deviation_error = variance[:, None] / np.maximum(deviations, 1e-30) + 5 * ULP * deviations
+    spread = (ellipses[:, 4] ** 2 - ellipses[:, 5] ** 2) / 2
+    turn_error = np.minimum(variance / np.maximum(spread, 1e-30), np.pi / 2) + 8 * ULP
+    log = np.log(np.maximum(opacities / LEAST_OPACITY, 1))
+    square_error = 2 * (LOG_ERROR + 3 * ULP * (1 + log))
+    reach = np.sqrt(2 * log)
+    reach_error = square_error / np.maximum(reach, np.sqrt(square_error)) + 5 * ULP * reach
+    lengths = half_lengths(ellipses, opacities).sum(axis=1)
+    return (
+        deviation_error.sum(axis=1) * reach
+        + deviations.sum(axis=1) * reach_error
+        + lengths * turn_error
+        + 4 * ULP * lengths
+    )
+
+
+def exact_keys(centres: Array, views: Array, bounds: Array) -> tuple[Array, float]:
+    """Keys [N] before they are rounded to whole ones, and the bound of their rounding.
+
+    Depths are those of the eyes' mean; the box's are found at its corners.
+    """
+    mean = -views[:, 2].mean(axis=0)
+    corners = np.stack(np.meshgrid(*bounds.T)).reshape(3, -1).T
+    reach = corners @ mean[:3] + mean[3]
+    farthest, nearest = reach.max(), max(reach.min(), NEAR)
+    depths = centres @ mean[:3] + mean[3]
+    span = max(farthest - nearest, 1e-30)
+    keys = np.clip((farthest - depths) / span, 0, 1) * LAST_KEY
+    largest = max(np.abs(centres).max(initial=0), np.abs(bounds).max()) * np.abs(mean[:3]).sum() + abs(mean[3])
+    return keys, LAST_KEY * (3 * 4 * ULP * largest / span + 4 * ULP)
