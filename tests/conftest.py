@@ -1,10 +1,16 @@
 """Fixtures shared by all tests."""
 
+import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+
+if TYPE_CHECKING:
+    from mua.gpu import Device
 
 SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 
@@ -32,3 +38,13 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("recordings") / "undisturbed"
     write(directory)
     return directory
+
+
+@pytest.fixture(scope="session")
+def device() -> Iterator["Device"]:
+    """What shaders run on: $MUA_DEVICE as for `open_device`, else the best there is."""
+    from mua.gpu import open_device  # here, because few tests need wgpu
+
+    opened = open_device(os.environ.get("MUA_DEVICE"))
+    yield opened
+    opened.close()

@@ -61,6 +61,7 @@ class Bindings:
         return entries
 
     def _made(self, bound: list[Buffer]) -> wgpu.GPUBindGroup:
+        self._check_aliases(bound)
         entries = []
         for slot, buffer in zip(self.buffers, bound, strict=True):
             if buffer.size % slot.stride:
@@ -74,6 +75,16 @@ class Bindings:
             entries.append({"binding": self._binding, "resource": constant_memory})
         with naming(self.label):
             return self._device.create_bind_group(layout=self.layout, entries=entries)
+
+    def _check_aliases(self, bound: list[Buffer]) -> None:
+        """No dispatch may write what it also binds under another name: the result would depend on the device."""
+        for index, (slot, buffer) in enumerate(zip(self.buffers, bound, strict=True)):
+            for other, same in zip(self.buffers[:index], bound[:index], strict=True):
+                if same is buffer and not (slot.read_only and other.read_only):
+                    raise InputError(
+                        f"{self.label}: buffers {other.name} and {slot.name} are both {buffer.name}, "
+                        "expected two where one is written"
+                    )
 
 
 def check_names(

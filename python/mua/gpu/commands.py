@@ -47,6 +47,10 @@ class Commands:
         self, kernel: Kernel, arguments: Buffer, offset: int, buffers: Mapping[str, Buffer], **constants: Any
     ) -> None:
         """Append a dispatch whose three group counts the device reads from `arguments` at `offset` bytes."""
+        if not arguments.indirect:
+            raise InputError(
+                f"kernel {kernel.name}: arguments in {arguments.name}, expected a buffer made with indirect"
+            )
         if offset % 4 or offset < 0 or offset + DISPATCH_ARGUMENTS > arguments.size:
             raise InputError(
                 f"kernel {kernel.name}: arguments at byte {offset} of {arguments.name}, "

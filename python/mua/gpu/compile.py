@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 from mua import files
@@ -30,7 +31,8 @@ def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glsla
     if cached.is_file():
         return cached.read_bytes()
     code = _compiled(chosen, path, entry, stage, defines)
-    files.write_bytes(cached, code)
+    with suppress(OSError):  # a home that cannot be written to costs time, not the picture
+        files.write_bytes(cached, code)
     return code
 
 
