@@ -1,0 +1,127 @@
+"""An avatar's tensors on the device, in the type in which the file stores them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.asset.flatbuffer import FormatError, Tree
+from mua.asset.read import decode_tree, load
+from mua.errors import InputError
+from mua.gpu import Buffer, Device
+from mua.gpu.stored import Layout, upload_words
+
+
+@dataclass(frozen=True)
+class StoredBuffer:
+    """A tensor as the kernels' `stored()` reads it."""
+
+    words: Buffer
+    layout: Layout
+
+
+@dataclass(frozen=True)
+class LayerBuffers:
+    """One fully connected layer, or the PCA mesh as one."""
+
+    weight: StoredBuffer
+    bias: StoredBuffer
+    inputs: int
+    outputs: int
+
+
+@dataclass(frozen=True)
+class BandBuffers:
+    """The three detail subbands of one level."""
+
+    mean: StoredBuffer
+    h: StoredBuffer
+    w: StoredBuffer
+    rank: int
+    size: int  # texels along a side
+
+
+@dataclass(frozen=True)
+class BranchBuffers:
+    """Geometry or appearance; sizes are those of mua.asset.avatar.Branch."""
+
+    mlp: tuple[LayerBuffers, ...]
+    ll_mean: StoredBuffer
+    ll_basis: StoredBuffer
+    details: tuple[BandBuffers, ...]  # coarse first
+    static_offset: StoredBuffer
+    channels: int
+    rank: int  # of LL
+
+
+class AvatarBuffers:
+    """Everything of a file that does not change from frame to frame; `avatar` is the same file on the CPU."""
+
+    def __init__(self, device: Device, path: Path) -> None:
+        """Upload the file at `path`.
+
+        Errors: InputError naming the file where it is broken, or where a tensor is more than the device can bind.
+        """
+        tree = load(path)
+        try:
+            self.avatar: Avatar = decode_tree(tree)
+        except FormatError as error:
+            raise error.inside(str(path)) from error
+        self._device, self._path = device, path
+        rig, texels = self.avatar.rig, self.avatar.rig.texels
+        self.coarse_mlp = self._mlp(tree["coarse"]["mlp"], "coarse.mlp")
+        self.mesh = self._mesh(tree["coarse"])
+        self.geometry = self._branch(tree, "geometry")
+        self.appearance = self._branch(tree, "appearance")
+        self.rec_lo = self._upload(self.avatar.wavelet.rec_lo.astype(np.float32), "wavelet.rec_lo")
+        self.rec_hi = self._upload(self.avatar.wavelet.rec_hi.astype(np.float32), "wavelet.rec_hi")
+        self.skin_indices = self._upload(rig.skin_indices.astype(np.uint32), "template.skin_indices")
+        self.skin_weights = self._upload(rig.skin_weights.astype(np.float32), "template.skin_weights")
+        self.faces = self._upload(rig.mesh.faces.astype(np.uint32), "template.faces")
+        self.texels = self._upload(texels.texels.astype(np.uint32), "texels.texels")
+        self.triangles = self._upload(texels.triangles.astype(np.uint32), "texels.triangles")
+        self.barycentrics = self._upload(texels.barycentrics[:, :2].astype(np.float32), "texels.barycentrics")
+
+    def _mlp(self, layers: list[Tree], path: str) -> tuple[LayerBuffers, ...]:
+        return tuple(self._layer(layer, f"{path}[{i}]") for i, layer in enumerate(layers))
+
+    def _layer(self, layer: Tree, path: str) -> LayerBuffers:
+        outputs, inputs = (int(n) for n in layer["weight"]["shape"])
+        weight = self._stored(layer["weight"], f"{path}.weight")
+        return LayerBuffers(weight, self._stored(layer["bias"], f"{path}.bias"), inputs, outputs)
+
+    def _mesh(self, coarse: Tree) -> LayerBuffers:
+        """Canonical vertices as a layer whose weight lies transposed: the basis [K, 3 V], the mean [3 V]."""
+        basis = self._stored(coarse["basis"], "coarse.basis")
+        rank, vertices, _ = (int(n) for n in coarse["basis"]["shape"])
+        return LayerBuffers(basis, self._stored(coarse["mean"], "coarse.mean"), rank, 3 * vertices)
+
+    def _branch(self, tree: Tree, name: str) -> BranchBuffers:
+        branch = tree[name]
+        expanded = getattr(self.avatar, name)
+        return BranchBuffers(
+            mlp=self._mlp(branch["mlp"], f"{name}.mlp"),
+            ll_mean=self._stored(branch["ll_mean"], f"{name}.ll_mean"),
+            ll_basis=self._stored(branch["ll_basis"], f"{name}.ll_basis"),
+            details=tuple(self._band(band, f"{name}.details[{i}]") for i, band in enumerate(branch["details"])),
+            static_offset=self._stored(branch["static_offset"], f"{name}.static_offset"),
+            channels=expanded.channels,
+            rank=expanded.ranks[0],
+        )
+
+    def _band(self, band: Tree, path: str) -> BandBuffers:
+        mean, h, w = (self._stored(band[key], f"{path}.{key}") for key in ("mean", "h", "w"))
+        rank, size = (int(n) for n in band["h"]["shape"][2:])
+        return BandBuffers(mean, h, w, rank, size)
+
+    def _stored(self, tensor: Tree, field: str) -> StoredBuffer:
+        words, layout = upload_words(tensor)
+        return StoredBuffer(self._upload(words, field), layout)
+
+    def _upload(self, content: Array, field: str) -> Buffer:
+        try:
+            return self._device.buffer(content, name=field)
+        except InputError as error:
+            raise InputError(f"{self._path}: {error}") from error
