@@ -1,22 +1,19 @@
 """Projection against 4x4 matrices and a numerically differentiated Jacobian; culling and keys by behaviour."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
-from packed_splats import assert_halves, covariance_of, unpacked
+from packed_splats import assert_halves, unpacked
+from projected import GROUP, UNWRITTEN, Projected, Scene, compact_on, project_on, scan_on
 from splat_rounding import ULP, Bounds, exact_keys, eye_bounds
 
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera, orbit
-from mua.gpu import Device, run
+from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances, pack_splats
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, splat_project
 
-FILE = "splat_project.compute"
-GROUP = 256  # threads
 GPU_COUNTS = [0, 1, GROUP - 1, GROUP, GROUP + 1, 4099, 300_007]
 
 SCREEN = (97, 61)
@@ -182,48 +179,6 @@ def test_the_box_holds_all_that_shows() -> None:
     assert np.all(extent >= visible)
 
 
-@dataclass(frozen=True)
-class Scene:
-    """Packed splats before one or two eyes."""
-
-    words: Array  # [N, 16] uint32
-    cameras: tuple[Camera, ...]
-    bounds: Array  # [2, 3]
-
-    @property
-    def constants(self) -> dict[str, int | float | Array]:
-        eyes = [self.cameras[0], self.cameras[-1]]
-        middle = np.mean([c.position for c in self.cameras], axis=0)
-        return {
-            "view": np.stack([c.view for c in eyes]),
-            "projection": np.stack([c.projection for c in eyes]),
-            "camera": np.append(middle, 0),
-            "bounds_low": np.append(self.bounds[0], 0),
-            "bounds_high": np.append(self.bounds[1], 0),
-            "screen": np.array(self.cameras[0].screen),
-            "near": NEAR,
-            "eyes": len(self.cameras),
-            "splat_count": len(self.words),
-            "instances": 1,
-        }
-
-    def splats(self) -> tuple[Array, Array, Array]:
-        """Centres, covariances and opacities in float64, as the GPU unpacks them."""
-        fields = unpacked(self.words)
-        return fields["centre"].astype(float), covariance_of(fields), fields["opacity"].astype(float)
-
-
-@dataclass(frozen=True)
-class Projected:
-    """What the three kernels leave for the sort and the draw."""
-
-    ellipses: Array  # [E, N, 6]
-    colors: Array  # [N, 4] float16
-    visible: Array  # [M]
-    keys: Array  # [M]
-    arguments: Array  # [8]
-
-
 def packed_splats(count: int, reach: float = 1.0) -> Array:
     rng = np.random.default_rng(count)
     centres, covariance, _ = random_splats(count)
@@ -231,42 +186,6 @@ def packed_splats(count: int, reach: float = 1.0) -> Array:
     turns = np.concatenate([rotation.normalize(rng.normal(size=(count, 4))), np.zeros((count, 4))], axis=1)
     sh = rng.normal(size=(count, 12))
     return pack_splats(reach * centres, 0.1 * covariance, opacities, turns, sh)
-
-
-def project_on(device: Device, scene: Scene) -> Projected:
-    count, eyes = len(scene.words), len(scene.cameras)
-    groups = -(-count // GROUP)
-    buffers = {
-        "splats": scene.words,
-        "ellipses": np.zeros((eyes, count, 6), np.float32),
-        "colors": np.zeros((count, 4), np.float16),
-        "flags": np.full(count, 0xFFFFFFFF, np.uint32),
-        "group_counts": np.full(groups, 0xFFFFFFFF, np.uint32),
-    }
-    found = run(device, FILE, "SplatProject", (groups, 1, 1), buffers, **scene.constants)
-    arguments, group_counts = scan_on(device, found["group_counts"], count)
-    visible, keys = compact_on(device, found["flags"], group_counts)
-    total = arguments[7]
-    return Projected(found["ellipses"], found["colors"], visible[:total], keys[:total], arguments)
-
-
-def scan_on(device: Device, group_counts: Array, count: int) -> tuple[Array, Array]:
-    """Arguments [8] and the scanned counts from ScanCounts."""
-    buffers = {"group_counts": group_counts, "arguments": np.full(8, 0xFFFFFFFF, np.uint32)}
-    found = run(device, FILE, "ScanCounts", (1, 1, 1), buffers, splat_count=count, instances=2)
-    return found["arguments"], found["group_counts"]
-
-
-def compact_on(device: Device, flags: Array, group_counts: Array) -> tuple[Array, Array]:
-    """Visible splats and keys [N] from SplatCompact; behind the last, 0xFFFFFFFF."""
-    buffers = {
-        "flags": flags,
-        "group_counts": group_counts,
-        "visible": np.full(len(flags), 0xFFFFFFFF, np.uint32),
-        "keys": np.full(len(flags), 0xFFFFFFFF, np.uint32),
-    }
-    found = run(device, FILE, "SplatCompact", (len(group_counts), 1, 1), buffers, splat_count=len(flags))
-    return found["visible"], found["keys"]
 
 
 def assert_as_the_reference(scene: Scene, found: Projected) -> None:
@@ -319,11 +238,12 @@ def assert_colors(scene: Scene, found: Projected) -> None:
 
 
 def stereo(apart: float = 0.2) -> tuple[Camera, Camera]:
-    """Two eyes beside each other, whose projections are skewed towards each other."""
-    middle, eyes = camera(), []
+    """Two eyes beside each other, canted, whose projections are skewed."""
+    eyes = []
     for side in (-1, 1):
+        middle = orbit(BOX, screen=SCREEN, azimuth=0.7 + 0.1 * side, elevation=0.4)
         view, projection = middle.view.copy(), middle.projection.copy()
-        view[0, 3] -= side * apart / 2
+        view[:3, 3] -= [side * apart / 2, 0, side * apart / 4]
         projection[0, 2] = -0.3 * side
         eyes.append(Camera(view, projection, SCREEN))
     return eyes[0], eyes[1]
@@ -355,6 +275,21 @@ def test_hlsl_projects_from_wherever_the_camera_is(device: Device, place: str) -
     found = project_on(device, scene)
     assert_as_the_reference(scene, found)
     assert 0 < len(found.visible) < 4099
+
+
+def test_hlsl_culls_before_the_near_plane_in_each_eye(device: Device) -> None:
+    depths = np.array([-1, 0, 0.5, 0.99, 1.01, 2]) * NEAR
+    centres = np.stack([np.zeros(6), np.zeros(6), -depths], axis=1)
+    words = pack_splats(centres, SMALL.repeat(6, axis=0), np.ones(6), np.ones((6, 8)), np.zeros((6, 12)))
+    back = np.eye(4)
+    back[2, 3] = -0.5
+    eyes = tuple(Camera(view, camera().projection, SCREEN) for view in (back, np.eye(4)))
+    for seen_by, visible in ((eyes[1:], [4, 5]), (eyes, range(6))):
+        scene = Scene(words, seen_by, BOX)
+        found = project_on(device, scene)
+        np.testing.assert_array_equal(found.visible, visible)
+        assert_as_the_reference(scene, found)
+        assert np.isfinite(found.ellipses).all()
 
 
 def test_hlsl_sees_nothing_behind_the_camera(device: Device) -> None:
@@ -402,5 +337,5 @@ def test_hlsl_compacts_in_order(device: Device, count: int, share: float) -> Non
     expected = np.flatnonzero(flags)
     np.testing.assert_array_equal(visible[: len(expected)], expected)
     np.testing.assert_array_equal(keys[: len(expected)], flags[expected] & 0xFFFF)
-    assert np.all(visible[len(expected) :] == 0xFFFFFFFF)
-    assert np.all(keys[len(expected) :] == 0xFFFFFFFF)
+    assert np.all(visible[len(expected) :] == UNWRITTEN)
+    assert np.all(keys[len(expected) :] == UNWRITTEN)
