@@ -7,7 +7,7 @@ import pytest
 import wgpu
 
 from mua.errors import InputError
-from mua.gpu import Adapter, adapters, open_device
+from mua.gpu import Adapter, Device, adapters, open_device
 
 LISTED = [
     ("Slow CPU", "Vulkan", "CPU"),
@@ -72,6 +72,6 @@ def test_a_lost_device_is_told() -> None:
             use()
 
 
-def test_an_absent_shader_is_named(device: object) -> None:
+def test_an_absent_shader_is_named(device: Device) -> None:
     with pytest.raises(InputError, match=r"nonesuch\.compute: there is no such shader"):
-        open_device().kernel("nonesuch.compute", "K")
+        device.kernel("nonesuch.compute", "K")
