@@ -10,10 +10,10 @@ from mua.gpu import Device, run
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 
 SIZES = [(1, 1, 1), (2, 3, 5), (11, 7, 6), (3, 1, 13), (2, 0, 4)]  # channels, rank, side
-SHADER_SIZES = [*SIZES, (0, 3, 4), (1, 17, 31), (2, 33, 16)]
+SHADER_SIZES = [*SIZES, (0, 3, 4), (1, 17, 31), (2, 33, 24)]
 PAPER_LL = [(11, 192, 48), (12, 128, 48)]
 PAPER_DETAILS = [(11, 128, 48), (12, 96, 96)]
-TEXELS_PER_GROUP, TILE = 64, 16
+TEXELS_PER_GROUP, TILE = 64, 24
 ALPHA_OFFSET = 7
 UNTOUCHED = np.float32(-7)
 

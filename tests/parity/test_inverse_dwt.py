@@ -83,7 +83,7 @@ def shader_level(device: Device, ll: Array, details: Array | None, lo: Array, hi
         device,
         "inverse_dwt.compute",
         "InverseDwtLowPass" if details is None else "InverseDwt",
-        groups((2 * side, TILE), (2 * side, TILE), (channels, 1)),
+        groups((side, TILE), (side, TILE), (channels, 1)),
         inputs | {"fine": np.full((channels + 1, 2 * side, 2 * side), UNTOUCHED)},
         size=side,
         taps=len(lo),
@@ -146,7 +146,7 @@ def test_static_shader_equals_the_reference(
         device,
         "inverse_dwt.compute",
         "AddStatic",
-        groups((count, TEXELS_PER_GROUP), (channels, 1)),
+        groups((count, TEXELS_PER_GROUP)),
         {
             "fine": fine,
             "texels": texels,
