@@ -86,9 +86,16 @@ def test_buffers_refuse_what_does_not_fit(device: Device) -> None:
             refused()
 
 
-def test_out_of_memory_is_one_sentence() -> None:
+@pytest.mark.parametrize(
+    "error",
+    [
+        wgpu.GPUOutOfMemoryError("vkAllocateMemory"),
+        wgpu.GPUValidationError("In wgpuDeviceCreateBuffer, label = 'texels'\n  Not enough memory left."),
+    ],
+)
+def test_out_of_memory_is_one_sentence(error: wgpu.GPUError) -> None:
     def refuse(**_: Any) -> None:
-        raise wgpu.GPUOutOfMemoryError("Not enough memory left.")
+        raise error
 
     limits = {"max-buffer-size": 1 << 40, "max-storage-buffer-binding-size": 1 << 40}
     full = cast(wgpu.GPUDevice, SimpleNamespace(limits=limits, queue=None, create_buffer=refuse))

@@ -13,9 +13,13 @@ def naming(subject: str) -> Iterator[None]:
     """Raise InputError that names `subject` where the device refuses, runs out of memory or is lost."""
     try:
         yield
-    except wgpu.GPUOutOfMemoryError as error:
-        raise InputError(f"{subject}: the device is out of memory") from error
     except (wgpu.GPUError, RuntimeError) as error:
-        said = " ".join(str(error).split())
-        reason = "the device was lost" if "lost" in said.lower() else f"the device refused: {said}"
-        raise InputError(f"{subject}: {reason}") from error
+        raise InputError(f"{subject}: {_reason(error)}") from error
+
+
+def _reason(error: Exception) -> str:
+    """wgpu gives lost devices and exhausted memory as validation errors too: its words tell them apart."""
+    said = " ".join(str(error).split())
+    if isinstance(error, wgpu.GPUOutOfMemoryError) or "not enough memory" in said.lower():
+        return "the device is out of memory"
+    return "the device was lost" if "lost" in said.lower() else f"the device refused: {said}"
