@@ -5,17 +5,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import wgpu
-from wgpu.backends.wgpu_native import lib
 
 from mua.errors import InputError
 from mua.gpu.buffer import Buffer
 from mua.gpu.failure import naming
 from mua.gpu.kernel import Kernel
+from mua.gpu.timestamps import Timestamps
 from mua.gpu.uniforms import Uniforms
 
-MOST_TIMED = 2048  # dispatches: a query set holds 4096 timestamps (WebGPU, section 20.1)
 DISPATCH_ARGUMENTS = 12  # bytes: three group counts
 
 
@@ -34,7 +32,7 @@ class Commands:
     def __init__(self, device: wgpu.GPUDevice, uniforms: Uniforms, *, timed: bool) -> None:
         self._device, self._uniforms, self._timed = device, uniforms, timed
         self._dispatches: list[_Dispatch] = []
-        self._timestamps: wgpu.GPUBuffer | None = None
+        self._timestamps: Timestamps | None = None
 
     def dispatch(
         self, kernel: Kernel, groups: tuple[int, int, int], buffers: Mapping[str, Buffer], **constants: Any
@@ -78,12 +76,9 @@ class Commands:
         spent: dict[str, float] = defaultdict(float)
         if self._timestamps is None:
             return spent
-        with naming("timestamps"):
-            ticks = np.frombuffer(self._device.queue.read_buffer(self._timestamps), np.uint64).reshape(-1, 2)
-        period = lib.wgpuQueueGetTimestampPeriod(self._device.queue._internal)  # nanoseconds of one tick
         ran = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
-        for dispatch, (begin, end) in zip(ran, ticks.tolist(), strict=True):
-            spent[dispatch.kernel.name] += max(end - begin, 0) * period * 1e-6
+        for dispatch, (begin, end) in zip(ran, self._timestamps.milliseconds().tolist(), strict=True):
+            spent[dispatch.kernel.name] += max(end - begin, 0)
         return dict(spent)
 
     def _append(
@@ -111,22 +106,12 @@ class Commands:
         self._timestamps = None
         if not dispatches:
             return
-        if len(dispatches) > MOST_TIMED:
-            raise InputError(f"dispatches: {len(dispatches)} are too many to time, expected at most {MOST_TIMED}")
-        count = 2 * len(dispatches)
-        queries = self._device.create_query_set(type="timestamp", count=count)
+        self._timestamps = Timestamps(self._device, len(dispatches))
         for index, (dispatch, offset) in enumerate(zip(dispatches, offsets, strict=True)):
-            writes = {
-                "query_set": queries,
-                "beginning_of_pass_write_index": 2 * index,
-                "end_of_pass_write_index": 2 * index + 1,
-            }
-            compute = encoder.begin_compute_pass(timestamp_writes=writes)
+            compute = encoder.begin_compute_pass(timestamp_writes=self._timestamps.of_pass(index))
             _record(compute, dispatch, offset)
             compute.end()
-        usage = wgpu.BufferUsage.QUERY_RESOLVE | wgpu.BufferUsage.COPY_SRC
-        self._timestamps = self._device.create_buffer(size=8 * count, usage=usage)
-        encoder.resolve_query_set(queries, 0, count, self._timestamps, 0)
+        self._timestamps.resolve(encoder)
 
 
 def _record(compute: wgpu.GPUComputePassEncoder, dispatch: _Dispatch, offset: int | None) -> None:
