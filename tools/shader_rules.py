@@ -1,0 +1,137 @@
+"""The rules for kernels of ComputeShaders/README.md, as faults found in the text of the shaders.
+
+They keep to what Unity's default compiler and the smallest devices take, whatever the compilers at hand accept.
+"""
+
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from shader_source import COMMENT, Shader
+
+MOST_BUFFERS = 8  # storage buffers that one stage may bind on every device
+MOST_GROUPSHARED = 16 * 1024  # bytes
+LEAST_THREADS, MOST_THREADS = 64, 256
+ELEMENTS = ("uint", "uint2", "uint4", "float", "float2", "float4")
+CONSTANTS = "Constants"
+
+FORBIDDEN = (
+    (r"\b(?:Wave[A-Z]\w*|Quad(?:Read|Any|All)\w*)", "a wave or quad intrinsic"),
+    (r"\btemplate\b", "a template"),
+    (r"\b(?:half[1-4]?(?:x[1-4])?|min1[026]\w+|float16_t\w*|u?int16_t\w*)\b", "a 16-bit type"),
+    (r"\b(?:double[1-4]?|u?int64_t\w*)\b", "a 64-bit type"),
+    (r"\b(?:enum|using|namespace)\b", "a word that FXC does not know"),
+    (r"#\s*pragma\s+use_dxc\b", "use_dxc"),
+)
+SNAKE_CASE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+CAMEL_CASE = re.compile(r"[a-z][A-Za-z0-9]*")
+PASCAL_CASE = re.compile(r"[A-Z][A-Za-z0-9]*")
+BARRIER = re.compile(r"\b(?:Group|Device|All)MemoryBarrier\w*")
+
+
+def kernel_faults(shader: Shader) -> list[str]:
+    """What breaks the rules in a .compute file, one sentence each."""
+    return [*file_faults(shader.path), *_declaration_faults(shader), *_unused(shader), *_entry_faults(shader)]
+
+
+def file_faults(path: Path) -> list[str]:
+    """Words in one file, of any kind, that not every compiler takes."""
+    text = COMMENT.sub("", path.read_text())
+    return [f"{path.name}: {found[0]} is {what}" for pattern, what in FORBIDDEN if (found := re.search(pattern, text))]
+
+
+def package_faults(kernels: list[Shader], draws: list[tuple[Shader, list[str]]], root: Path) -> list[str]:
+    """What breaks the rules between files: a name of two types, a function that nothing calls, no reference, no test.
+
+    `draws` are the shaders that draw, with their entry points.
+    """
+    faults = []
+    elements: dict[str, tuple[str, str]] = {}
+    for shader in kernels:
+        for buffer in shader.buffers.values():
+            element, first = elements.setdefault(buffer.name, (buffer.element, shader.path.name))
+            if element != buffer.element:
+                faults.append(f"{shader.path.name}: {buffer.name} is {buffer.element}, but {element} in {first}")
+        faults += _companions(shader, root)
+    entries = [(shader, shader.kernels) for shader in kernels] + draws
+    declared = {name for shader, _ in entries for name in shader.functions}
+    called = {function.name for shader, names in entries for entry in names for function in shader.reached(entry)}
+    return faults + [f"{name}: a function that nothing calls" for name in sorted(declared - called)]
+
+
+def _companions(shader: Shader, root: Path) -> Iterator[str]:
+    """One stem for each kernel: its reference and its test, which names every entry point."""
+    stem = shader.path.stem
+    if not (root / "python" / "mua" / "kernels" / f"{stem}.py").is_file():
+        yield f"{shader.path.name}: there is no reference python/mua/kernels/{stem}.py"
+    test = root / "tests" / "parity" / f"test_{stem}.py"
+    text = test.read_text() if test.is_file() else ""
+    for entry in shader.kernels:
+        if f'"{entry}"' not in text:
+            yield f"{shader.path.name}: tests/parity/test_{stem}.py does not run {entry}"
+
+
+def _declaration_faults(shader: Shader) -> Iterator[str]:
+    name = shader.path.name
+    for other in shader.others:
+        yield f"{name}: {other} is no structured buffer"
+    for buffer in shader.buffers.values():
+        if buffer.element not in ELEMENTS:
+            yield f"{name}: {buffer.name} has elements {buffer.element}, expected one of {', '.join(ELEMENTS)}"
+    for block in shader.blocks:
+        if block != CONSTANTS:
+            yield f"{name}: cbuffer {block}, expected one cbuffer {CONSTANTS}"
+    for bound in [*shader.buffers, *(member for members in shader.blocks.values() for member in members)]:
+        if not SNAKE_CASE.fullmatch(bound):
+            yield f"{name}: {bound} is bound from outside, expected snake_case"
+    for function in shader.functions:
+        style = PASCAL_CASE if function in shader.kernels else CAMEL_CASE
+        if not style.fullmatch(function):
+            yield f"{name}: {function}, expected {'PascalCase' if style is PASCAL_CASE else 'camelCase'}"
+
+
+def _unused(shader: Shader) -> Iterator[str]:
+    """Declarations of the file itself that none of its kernels reaches."""
+    words = {word for entry in shader.kernels for function in shader.reached(entry) for word in function.words}
+    members = [member for block in shader.blocks.values() for member in block]
+    for name in [*shader.buffers, *members, *shader.groupshared]:
+        if name not in words:
+            yield f"{shader.path.name}: no kernel uses {name}"
+
+
+def _entry_faults(shader: Shader) -> Iterator[str]:
+    for name, function in shader.functions.items():
+        if "numthreads" in function.head and name not in shader.kernels:
+            yield f"{shader.path.name}: {name} has numthreads but no #pragma kernel"
+    for entry in shader.kernels:
+        where = f"{shader.path.name}: {entry}"
+        if entry not in shader.functions:
+            yield f"{where} is not defined"
+            continue
+        buffers = [buffer.name for buffer in shader.used(entry)]
+        if len(buffers) > MOST_BUFFERS:
+            yield f"{where} binds {len(buffers)} buffers, expected at most {MOST_BUFFERS}: {', '.join(buffers)}"
+        shared = shader.groupshared_bytes(entry)
+        if shared > MOST_GROUPSHARED:
+            yield f"{where} has {shared} bytes groupshared, expected at most {MOST_GROUPSHARED}"
+        threads = math.prod(shader.threads(entry))
+        if not LEAST_THREADS <= threads <= MOST_THREADS:
+            yield f"{where} has {threads} threads in a group, expected {LEAST_THREADS} to {MOST_THREADS}"
+        yield from _returns_before_barriers(shader, entry)
+
+
+def _returns_before_barriers(shader: Shader, entry: str) -> Iterator[str]:
+    """A `return` ahead of a barrier, or of a call that holds one, in any function that the entry point reaches."""
+    reached = shader.reached(entry)
+    waits = {function.name for function in reached if _waits(shader, function.name)}
+    for function in reached:
+        barriers = [found.start() for found in re.finditer(r"\w+", function.body) if found[0] in waits]
+        barriers += [found.start() for found in BARRIER.finditer(function.body)]
+        last = max(barriers, default=0)
+        if re.search(r"\breturn\b", function.body[:last]):
+            yield f"{shader.path.name}: {entry}: {function.name} returns before a barrier"
+
+
+def _waits(shader: Shader, name: str) -> bool:
+    return any(BARRIER.search(function.body) for function in shader.reached(name))
