@@ -57,19 +57,7 @@ float3 surfaceVertex(uint vertex, StructuredBuffer<float4> vertexDq, StructuredB
     return dualTransform(vertexDq[2 * vertex], vertexDq[2 * vertex + 1], canonical);
 }
 
-// Sum of the normals of the triangles about a vertex of the coarse mesh, times twice their areas.
-float3 surfaceVertexNormal(uint vertex, StructuredBuffer<float4> vertexDq, StructuredBuffer<float> mesh,
-                           StructuredBuffer<uint> ringStarts, StructuredBuffer<uint2> ring)
-{
-    float3 place = surfaceVertex(vertex, vertexDq, mesh);
-    float3 normal = 0;
-    uint end = ringStarts[vertex + 1];
-    [loop]
-    for (uint i = ringStarts[vertex]; i < end; ++i)
-        normal += cross(surfaceVertex(ring[i].x, vertexDq, mesh) - place, surfaceVertex(ring[i].y, vertexDq, mesh) - place);
-    return normal;
-}
-
+// A vertex of a lit surface; its normal may have any length.
 SurfaceVaryings surfaceVaryings(float3 place, float3 normal, float3 camera, float4x4 viewProjection)
 {
     float3 toCamera = camera - place;
@@ -88,6 +76,14 @@ float3 surfaceShade(SurfaceVaryings varyings, float3 color)
 {
     float facing = dot(normalize(varyings.normal), normalize(varyings.toCamera));
     return color * (AMBIENT + (1 - AMBIENT) * abs(facing)) * (facing < 0 ? INSIDE : 1);
+}
+
+// The same light on a flat facet, whose two sides are alike.
+float3 facetShade(float3 toCamera, float3 color)
+{
+    float3 normal = cross(ddx(toCamera), ddy(toCamera));
+    float facing = dot(normal, toCamera) / max(length(normal) * length(toCamera), SMALLEST_LENGTH);
+    return color * (AMBIENT + (1 - AMBIENT) * abs(facing));
 }
 
 // Where the light carries a point to the ground.

@@ -1,7 +1,8 @@
-"""What a viewer shows beside the splats: detailed geometry, template, skeleton and cast shadow (paper, section System)."""
+"""What is shown beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,10 @@ from mua.asset.avatar import Avatar
 from mua.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
-from mua.player.surface import build_surface, rings
+from mua.motion.clip import Clip
+from mua.player.draw import view_projection
+from mua.player.surface import build_surface
+from mua.rig.rig import Rig
 
 SHADERS = Path(__file__).parent / "shaders"
 GEOMETRY_COLOR = (0.80, 0.78, 0.75)  # sRGB
@@ -38,56 +42,48 @@ class PosedBuffers:
     mesh: Buffer  # float [3 V] canonical
 
 
+_Indices = tuple[wgpu.GPUBuffer, int]  # triangles' corners, and how many of these
+
+
 class Overlays:
     """Draws around the splats of one avatar."""
 
     def __init__(self, device: Device, avatar: Avatar, posed: PosedBuffers, *, color: str, depth: str) -> None:
         """`color` and `depth` are the formats of the target."""
         self._device, self._avatar, self._posed = device, avatar, posed
-        self._make_geometry()
         self._make_skeleton()
-        opaque: dict[str, Any] = {"depth_write": True, "depth_compare": "less-equal", "blend": False}
-        self._surface = _pipeline(device, "surface", "Surface", color, depth, **opaque)
-        self._template = _pipeline(device, "template", "Template", color, depth, **opaque)
-        self._shadow = _pipeline(device, "shadow", "Shadow", "r8unorm", None, blend=False)
-        ground: dict[str, Any] = {"depth_compare": "less-equal", "topology": "triangle-strip", "blend": True}
-        self._ground = _pipeline(device, "shadow", "Ground", color, depth, **ground)
-        self._stroke = _pipeline(device, "skeleton", "Stroke", color, depth, blend=True)
-
-    def _make_geometry(self) -> None:
-        rig = self._avatar.rig
-        surface = build_surface(rig.mesh, rig.texels)
-        template = rings(rig.mesh.faces.astype(np.int64), len(rig.mesh.vertices))
-        self._surface_rings = self._upload_rings(surface.ring_starts, surface.ring, "surface")
-        self._template_rings = self._upload_rings(template.ring_starts, template.ring, "template")
-        self._surface_indices = self._index_buffer(surface.triangles)
-        self._template_indices = self._index_buffer(template.triangles)
-        self._mask = self._device.buffer(MASK_SIZE * MASK_SIZE, name="mask")
+        self._template = _indices(device, avatar.rig.mesh.faces)
+        self._mask = device.buffer(MASK_SIZE * MASK_SIZE, name="mask")
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-        self._mask_texture = self._device.wgpu.create_texture(
-            size=(MASK_SIZE, MASK_SIZE, 1), format="r8unorm", usage=usage
-        )
+        size = (MASK_SIZE, MASK_SIZE, 1)
+        self._mask_texture = device.wgpu.create_texture(size=size, format="r8unorm", usage=usage)
+        self.pose(*astuple(avatar.rig.skeleton.bind_pose), ground=0.0)
+        opaque: dict[str, Any] = {"depth_write": True, "depth_compare": "less-equal", "blend": False}
+        self._draw_surface = _pipeline(device, "surface", "Surface", color, depth, **opaque)
+        self._draw_template = _pipeline(device, "template", "Template", color, depth, **opaque)
+        self._draw_shadow = _pipeline(device, "shadow", "Shadow", "r8unorm", None, blend=False)
+        ground: dict[str, Any] = {"depth_compare": "less-equal", "topology": "triangle-strip", "blend": True}
+        self._draw_ground = _pipeline(device, "shadow", "Ground", color, depth, **ground)
+        self._draw_stroke = _pipeline(device, "skeleton", "Stroke", color, depth, blend=True)
+
+    @cached_property
+    def _surface(self) -> tuple[dict[str, Buffer], _Indices]:
+        """Made when it is first shown: a second of work."""
+        surface = build_surface(self._avatar.rig.mesh, self._avatar.rig.texels)
+        rings = {name: self._device.buffer(getattr(surface, name), name=name) for name in ("ring_starts", "ring")}
+        return rings, _indices(self._device, surface.triangles)
 
     def _make_skeleton(self) -> None:
         skeleton = self._avatar.rig.skeleton
         joints = np.arange(len(skeleton.names), dtype=np.uint32)
         bones = np.flatnonzero(skeleton.parents >= 0)
-        strokes = {"bones": np.stack([bones, skeleton.parents[bones]], axis=1), "dots": np.stack([joints, joints], axis=1)}
+        strokes = {
+            "bones": np.stack([bones, skeleton.parents[bones]], axis=1),
+            "dots": np.stack([joints, joints], axis=1),
+        }
         self._strokes = {name: self._device.buffer(s.astype(np.uint32), name=name) for name, s in strokes.items()}
         self._stroke_counts = {name: len(s) for name, s in strokes.items()}
         self._joints = self._device.buffer(16 * len(joints), name="joints")
-
-    def _upload_rings(self, starts: Array, ring: Array, name: str) -> dict[str, Buffer]:
-        return {
-            "ring_starts": self._device.buffer(starts, name=f"{name} ring starts"),
-            "ring": self._device.buffer(ring, name=f"{name} ring"),
-        }
-
-    def _index_buffer(self, triangles: Array) -> tuple[wgpu.GPUBuffer, int]:
-        """Indices on the device and how many there are; never an empty buffer, which cannot be bound."""
-        data = triangles.astype(np.uint32).tobytes() or bytes(4)
-        raw = self._device.wgpu.create_buffer_with_data(data=data, usage=wgpu.BufferUsage.INDEX)
-        return raw, triangles.size
 
     def pose(
         self,
@@ -112,8 +108,8 @@ class Overlays:
         }
         render_pass = encoder.begin_render_pass(color_attachments=[attachment])
         buffers = {"vertex_dq": self._posed.vertex_dq, "mesh": self._posed.mesh}
-        self._shadow.bind(render_pass, buffers, light=np.array([*LIGHT, DARKNESS]), area=self._area)
-        _draw_indexed(render_pass, self._template_indices)
+        self._draw_shadow.bind(render_pass, buffers, light=np.array([*LIGHT, DARKNESS]), area=self._area)
+        _draw_indexed(render_pass, self._template)
         render_pass.end()
         encoder.copy_texture_to_buffer(
             {"texture": self._mask_texture},
@@ -124,20 +120,20 @@ class Overlays:
     def draw_ground(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
         """Darken the ground by the mask."""
         constants = {"light": np.array([*LIGHT, DARKNESS]), "area": self._area, "size": MASK_SIZE}
-        self._ground.bind(render_pass, {"mask": self._mask}, view_projection=view_projection(camera), **constants)
+        self._draw_ground.bind(render_pass, {"mask": self._mask}, view_projection=view_projection(camera), **constants)
         render_pass.draw(4)
 
     def draw_geometry(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
         """Draw the texel grid as a lit mesh."""
-        buffers = {"splats": self._posed.splats, **self._surface_rings}
-        self._surface.bind(render_pass, buffers, **_lit(camera, GEOMETRY_COLOR))
-        _draw_indexed(render_pass, self._surface_indices)
+        rings, indices = self._surface
+        self._draw_surface.bind(render_pass, {"splats": self._posed.splats, **rings}, **_lit(camera, GEOMETRY_COLOR))
+        _draw_indexed(render_pass, indices)
 
     def draw_template(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
-        """Draw the posed coarse mesh, lit."""
-        buffers = {"vertex_dq": self._posed.vertex_dq, "mesh": self._posed.mesh, **self._template_rings}
-        self._template.bind(render_pass, buffers, **_lit(camera, TEMPLATE_COLOR))
-        _draw_indexed(render_pass, self._template_indices)
+        """Draw the posed coarse mesh, each triangle flat."""
+        buffers = {"vertex_dq": self._posed.vertex_dq, "mesh": self._posed.mesh}
+        self._draw_template.bind(render_pass, buffers, **_lit(camera, TEMPLATE_COLOR))
+        _draw_indexed(render_pass, self._template)
 
     def draw_skeleton(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
         """Draw bones and joints over all that is there."""
@@ -150,8 +146,25 @@ class Overlays:
         ):
             buffers = {"joints": self._joints, "strokes": self._strokes[name]}
             constants = {"color": np.array([*color, 1]), "screen": screen, "width": width}
-            self._stroke.bind(render_pass, buffers, view_projection=matrix, **constants)
+            self._draw_stroke.bind(render_pass, buffers, view_projection=matrix, **constants)
             render_pass.draw(6 * self._stroke_counts[name])
+
+
+def ground_height(
+    rig: Rig,
+    clip: Clip | None,
+) -> float:
+    """Where the feet of a clip stand, metres: its lowest joint, less what the rest pose has below its own lowest.
+
+    Without a clip, the lowest point at rest.
+    """
+    lowest = float(rig.mesh.vertices[:, 1].min(initial=0))
+    if clip is None:
+        return lowest
+    skeleton = rig.skeleton
+    _, rest = skeleton.world(*astuple(skeleton.bind_pose))
+    _, moving = skeleton.world(clip.rotations, clip.translation)
+    return lowest + float(moving[..., 1].min() - rest[:, 1].min())
 
 
 def shadow_area(
@@ -167,13 +180,6 @@ def shadow_area(
     return np.array([*((low + high - side) / 2), side, ground])
 
 
-def view_projection(camera: Camera) -> Array:
-    """World to clip [4, 4] with depth in 0..w as the device wants it; the camera's own is in -w..w."""
-    depth = np.eye(4)
-    depth[2, 2:] = 0.5
-    return depth @ camera.projection @ camera.view
-
-
 def _pipeline(device: Device, file: str, stem: str, color: str, depth: str | None, **state: Any) -> Pipeline:
     path = SHADERS / f"{file}.hlsl"
     return device.pipeline(path, f"{stem}Vert", f"{stem}Frag", color_format=color, depth_format=depth, **state)
@@ -184,7 +190,12 @@ def _lit(camera: Camera, color: tuple[float, float, float]) -> Mapping[str, Any]
     return {"view_projection": view_projection(camera), "camera": place, "color": np.array([*color, 1])}
 
 
-def _draw_indexed(render_pass: wgpu.GPURenderPassEncoder, indices: tuple[wgpu.GPUBuffer, int]) -> None:
+def _indices(device: Device, triangles: Array) -> _Indices:
+    data = triangles.astype(np.uint32).tobytes() or bytes(4)  # an empty buffer cannot be bound
+    return device.wgpu.create_buffer_with_data(data=data, usage=wgpu.BufferUsage.INDEX), triangles.size
+
+
+def _draw_indexed(render_pass: wgpu.GPURenderPassEncoder, indices: _Indices) -> None:
     raw, count = indices
     render_pass.set_index_buffer(raw, "uint32")
     render_pass.draw_indexed(count)

@@ -16,7 +16,9 @@ from mua.rig.texel_map import TexelMap
 
 STRETCH = 2.5  # times its texel's footprint that an edge of the grid may span; a longer one crosses a slit in a chart
 SEAM_STEP = 0.5  # texels between the samples along a seam, so that no texel beside it is stepped over
-REACH = 4.0  # texels from a seam to the nearest of its chart; where there is none so near, the nearest in space is taken
+REACH = (
+    4.0  # texels from a seam to the nearest of its chart; where there is none so near, the nearest in space is taken
+)
 SMALL_HOLE = 12  # edges round a hole that is closed wherever it is; the template's own openings are longer
 
 
@@ -38,7 +40,7 @@ def build_surface(mesh: Mesh, texels: TexelMap) -> Surface:
     charts = find_charts(_nodes(mesh), mesh.uv[mesh.uv_faces])
     inner = _grid(mesh, texels, places=places, charts=charts)
     seams = _seams(mesh, texels, places=places, charts=charts)
-    triangles = _distinct(np.concatenate([inner, seams]))
+    triangles = np.concatenate([inner, _fitting(seams, inner, places)])
     return rings(np.concatenate([triangles, _patches(triangles, places, mesh)]), count)
 
 
@@ -74,7 +76,9 @@ def _grid(
     triangles = triangles[(triangles >= 0).all(axis=1)]
     chart = charts[texels.triangles[triangles]]
     longest = _edge_lengths(places, triangles)
-    whole = (chart == chart[:, :1]).all(axis=1) & (longest <= STRETCH * _footprints(mesh, texels)[triangles].max(axis=1))
+    whole = (chart == chart[:, :1]).all(axis=1) & (
+        longest <= STRETCH * _footprints(mesh, texels)[triangles].max(axis=1)
+    )
     turned = np.bincount(charts, signed_areas(mesh.uv[mesh.uv_faces])) < 0  # a mirrored chart
     triangles, chart = triangles[whole], chart[whole, 0]
     return np.where(turned[chart, None], triangles[:, ::-1], triangles)
@@ -83,7 +87,9 @@ def _grid(
 def _footprints(mesh: Mesh, texels: TexelMap) -> Array:
     """Greatest length [N] on the surface, metres, of one step along a texel's diagonal."""
     uv = mesh.uv[mesh.uv_faces] * texels.size
-    across = np.linalg.pinv(uv[:, 1:] - uv[:, :1]) @ (mesh.vertices[mesh.faces[:, 1:]] - mesh.vertices[mesh.faces[:, :1]])
+    across = np.linalg.pinv(uv[:, 1:] - uv[:, :1]) @ (
+        mesh.vertices[mesh.faces[:, 1:]] - mesh.vertices[mesh.faces[:, :1]]
+    )
     return np.sqrt(2) * np.linalg.norm(across, ord=2, axis=(1, 2))[texels.triangles]
 
 
@@ -161,13 +167,26 @@ def _nearest(
     return np.asarray(nearest)
 
 
-def _distinct(triangles: Array) -> Array:
-    """The triangles of three different corners, each once."""
+def _fitting(
+    triangles: Array,  # [S, 3]
+    grid: Array,  # [T, 3]
+    places: Array,  # [N, 3] rest positions, metres
+) -> Array:
+    """Those of three different corners that share no edge, in the same direction, with the grid or a smaller one.
+
+    What is left out would fold over the surface; without it every open edge lies on a loop.
+    """
     a, b, c = triangles.T
     triangles = triangles[(a != b) & (b != c) & (c != a)]
-    first = np.argmin(triangles, axis=1)[:, None]
-    turned = np.take_along_axis(triangles, (first + np.arange(3)) % 3, axis=1)
-    return np.unique(turned, axis=0)
+    triangles = triangles[np.argsort(_edge_lengths(places, triangles), kind="stable")]
+    taken = set(zip(grid.ravel().tolist(), np.roll(grid, -1, axis=1).ravel().tolist(), strict=True))
+    fitting = []
+    for a, b, c in triangles.tolist():
+        edges = {(a, b), (b, c), (c, a)}
+        if taken.isdisjoint(edges):
+            taken |= edges
+            fitting.append((a, b, c))
+    return np.array(fitting, np.int64).reshape(-1, 3)
 
 
 def _patches(
@@ -190,7 +209,7 @@ def _patches(
 
 
 def _openings(triangles: Array) -> list[Array]:
-    """Corners of every simple loop of edges that one triangle has and no other; a triangle on it turns with the rest."""
+    """Corners of every simple loop of edges that belong to one triangle, in the order of a triangle that fills it."""
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     count = triangles.max(initial=0) + 1
     name, back = start * count + end, end * count + start

@@ -1,11 +1,9 @@
-// The desktop player's template: the posed coarse mesh, lit.
+// The desktop player's template: the posed coarse mesh, each triangle lit as the flat facet that it is.
 
 #include "surface_draw.hlsl"
 
 StructuredBuffer<float4> vertex_dq; // [V, 2] real and dual part, bind pose to world
 StructuredBuffer<float> mesh; // [V, 3] canonical, metres
-StructuredBuffer<uint> ring_starts; // [V + 1] into ring
-StructuredBuffer<uint2> ring; // the other corners of the triangles about each vertex
 
 cbuffer Constants
 {
@@ -16,11 +14,10 @@ cbuffer Constants
 
 SurfaceVaryings TemplateVert(uint vertex : SV_VertexID)
 {
-    float3 normal = surfaceVertexNormal(vertex, vertex_dq, mesh, ring_starts, ring);
-    return surfaceVaryings(surfaceVertex(vertex, vertex_dq, mesh), normal, camera.xyz, view_projection);
+    return surfaceVaryings(surfaceVertex(vertex, vertex_dq, mesh), 0, camera.xyz, view_projection);
 }
 
 float4 TemplateFrag(SurfaceVaryings varyings) : SV_Target
 {
-    return float4(surfaceShade(varyings, color.rgb), 1);
+    return float4(facetShade(varyings.toCamera, color.rgb), 1);
 }

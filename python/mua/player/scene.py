@@ -1,0 +1,134 @@
+"""What one picture shows: background, shadow, geometry or template, splats and skeleton, in this order."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import wgpu
+
+from mua.arrays import Array
+from mua.camera import Camera
+from mua.errors import InputError
+from mua.gpu import Device
+from mua.gpu.failure import naming
+from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye
+from mua.player.frame import AvatarFrame
+from mua.player.overlays import Overlays, PosedBuffers
+
+DEPTH_FORMAT = "depth32float"
+CLEAR = (0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Toggles:
+    """What is shown (paper, section System)."""
+
+    splats: bool = True
+    geometry: bool = False  # the texel grid as a lit mesh
+    template: bool = False
+    skeleton: bool = False
+    shadow: bool = False
+
+
+def parse_toggles(text: str) -> Toggles:
+    """The toggles that a list such as `splats,shadow` names.
+
+    Errors: InputError for a word that is none of them.
+    """
+    names = [field.name for field in fields(Toggles)]
+    shown = [word.strip() for word in text.split(",")]
+    unknown = [word for word in shown if word not in names]
+    if unknown:
+        raise InputError(f"--show is {text!r}; expected some of {', '.join(names)}, separated by commas")
+    return replace(Toggles(), **{name: name in shown for name in names})
+
+
+class Scene:
+    """Draws one avatar's decoded and sorted frame into targets of one format."""
+
+    def __init__(
+        self,
+        device: Device,
+        frame: AvatarFrame,
+        *,
+        color_format: str = IMAGE_FORMAT,
+        background: tuple[float, float, float, float] = CLEAR,  # premultiplied sRGB and alpha
+    ) -> None:
+        self._device, self._background = device, background
+        self._splats = frame.sorted
+        self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
+        posed = PosedBuffers(frame.splats, frame.vertex_dq, frame.mesh)
+        self._overlays = Overlays(device, frame.avatar.avatar, posed, color=color_format, depth=DEPTH_FORMAT)
+        self._depth: wgpu.GPUTexture | None = None
+
+    def pose(
+        self,
+        rotations: Array,  # [J, 4] local joint rotations
+        translation: Array,  # [3] local translation of the root joint, metres
+        *,
+        ground: float,  # height on which the shadow falls, metres
+    ) -> None:
+        """Move skeleton and shadow to the pose that the frame decodes."""
+        self._overlays.pose(rotations, translation, ground=ground)
+
+    def draw(self, target: wgpu.GPUTexture, cameras: Sequence[Camera], toggles: Toggles) -> None:
+        """Submit the picture of one or two eyes, side by side from the left; the target is as wide as all of them."""
+        encoder = self._device.wgpu.create_command_encoder()
+        if toggles.shadow:
+            self._overlays.draw_mask(encoder)
+        color = {
+            "view": target.create_view(),
+            "load_op": "clear",
+            "store_op": "store",
+            "clear_value": self._background,
+        }
+        depth = {
+            "view": self._depth_of(target).create_view(),
+            "depth_clear_value": 1.0,
+            "depth_load_op": "clear",
+            "depth_store_op": "discard",
+        }
+        render_pass = encoder.begin_render_pass(color_attachments=[color], depth_stencil_attachment=depth)
+        self._draw_all(render_pass, cameras, toggles)
+        render_pass.end()
+        self._device.wgpu.queue.submit([encoder.finish()])
+
+    def _draw_all(self, render_pass: wgpu.GPURenderPassEncoder, cameras: Sequence[Camera], toggles: Toggles) -> None:
+        """Opaque surfaces and the ground before the splats that blend over them, the skeleton over all."""
+        overlays = self._overlays
+        draws = [
+            (toggles.geometry, overlays.draw_geometry),
+            (toggles.template, overlays.draw_template),
+            (toggles.shadow, overlays.draw_ground),
+        ]
+        for eye, camera in enumerate(cameras):
+            set_eye(render_pass, eye, camera)
+            for shown, draw in draws:
+                if shown:
+                    draw(render_pass, camera)
+        if toggles.splats:
+            self._renderer.draw(render_pass, self._splats, cameras)
+        for eye, camera in enumerate(cameras):
+            set_eye(render_pass, eye, camera)
+            if toggles.skeleton:
+                overlays.draw_skeleton(render_pass, camera)
+
+    def _depth_of(self, target: wgpu.GPUTexture) -> wgpu.GPUTexture:
+        """Depth for a target, kept until one of another size comes."""
+        if self._depth is None or self._depth.size != target.size:
+            usage = wgpu.TextureUsage.RENDER_ATTACHMENT
+            self._depth = self._device.wgpu.create_texture(size=target.size, format=DEPTH_FORMAT, usage=usage)
+        return self._depth
+
+
+def draw_picture(device: Device, scene: Scene, cameras: Sequence[Camera], toggles: Toggles) -> Array:
+    """Premultiplied sRGB and alpha [H, E W, 4] float32 of one or two eyes side by side, from a scene of IMAGE_FORMAT.
+
+    Errors: InputError where the device cannot hold so large a picture.
+    """
+    width, height = cameras[0].screen
+    size = (len(cameras) * width, height, 1)
+    with naming(f"picture of {size[0]} x {size[1]} pixels"):
+        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+        target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=usage)
+        scene.draw(target, cameras, toggles)
+        return read_image(device, target)
