@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.camera import FILL, Camera, orbit
+from mua.camera import FILL, Camera, orbit, stereo
 
 BOX = np.array([[-0.3, 0.1, -0.2], [0.5, 1.9, 0.4]])
 ROUNDING = 64 * np.finfo(float).eps
@@ -44,3 +44,12 @@ def test_up_is_up_and_the_characters_left_is_on_the_right_of_its_front_view() ->
 
 def test_a_single_point_can_be_framed() -> None:
     assert np.isfinite(orbit(np.zeros((2, 3)), screen=(64, 64)).view).all()
+
+
+def test_eyes_stand_their_distance_apart_across_the_view_about_the_camera() -> None:
+    camera = orbit(BOX, screen=(64, 64), azimuth=0.7, elevation=0.3)
+    left, right = stereo(camera, 0.063)
+    across = right.position - left.position
+    np.testing.assert_allclose(across, 0.063 * camera.view[0, :3], atol=ROUNDING)
+    np.testing.assert_allclose((left.position + right.position) / 2, camera.position, atol=ROUNDING)
+    np.testing.assert_array_equal(left.view[:3, :3], camera.view[:3, :3])

@@ -1,6 +1,6 @@
 """Boxes around posed avatars, from the skinned template: no texel needs to be decoded for them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -15,27 +15,28 @@ MARGIN = 0.1  # metres that cloth may leave the skinned template
 
 def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
     """Lowest and highest corner [2, 3] float32 of all frames of all clips about the root joint's position, metres."""
+    boxes = [frame_boxes(rig, clip) - root_positions(rig, clip)[:, None] for clip in clips]
+    return union(np.concatenate(boxes)).astype(np.float32)
+
+
+def frame_boxes(rig: Rig, clip: Clip) -> Array:
+    """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
     boxes = []
-    for clip in clips:
-        _, placed = rig.skeleton.world(clip.rotations, clip.translation)
-        roots = placed[:, rig.skeleton.root]
-        boxes += [box - root for box, root in zip(_boxes(rig, clip), roots, strict=True)]
-    return _padded(boxes).astype(np.float32)
-
-
-def world_bounds(rig: Rig, clip: Clip) -> Array:
-    """Lowest and highest corner [2, 3] of all frames of a clip in the world, metres."""
-    return _padded(list(_boxes(rig, clip)))
-
-
-def _boxes(rig: Rig, clip: Clip) -> Iterator[Array]:
-    """The box [2, 3] of every frame's skinned template."""
     for joints in rig.skeleton.skinning(clip.rotations, clip.translation):
         dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
         posed = rotation.dual_transform(dual, rig.mesh.vertices)
-        yield np.stack([posed.min(axis=0), posed.max(axis=0)])
+        boxes.append([posed.min(axis=0) - MARGIN, posed.max(axis=0) + MARGIN])
+    return np.array(boxes)
 
 
-def _padded(boxes: list[Array]) -> Array:
-    stacked = np.stack(boxes)
-    return np.stack([stacked[:, 0].min(axis=0) - MARGIN, stacked[:, 1].max(axis=0) + MARGIN])
+def root_positions(rig: Rig, clip: Clip) -> Array:
+    """World positions [F, 3] of the root joint, metres."""
+    _, placed = rig.skeleton.world(clip.rotations, clip.translation)
+    return np.asarray(placed[:, rig.skeleton.root])
+
+
+def union(
+    boxes: Array,  # [B, 2, 3]
+) -> Array:
+    """The box [2, 3] around all boxes."""
+    return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])

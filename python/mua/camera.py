@@ -3,7 +3,7 @@
 Eye space is right-handed, Y up, looking along -Z (as in glTF); matrices act on column vectors.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,6 +60,17 @@ def orbit(
     view[:3, :3] = turn
     view[:3, 3] = [0, 0, -distance] - turn @ middle
     return Camera(view, projection, screen)
+
+
+def stereo(
+    camera: Camera,
+    distance: float,  # between the eyes, metres
+) -> tuple[Camera, Camera]:
+    """A left and a right eye beside each other that look the same way, their middle at the camera."""
+    left, right = camera.view.copy(), camera.view.copy()
+    left[0, 3] += distance / 2
+    right[0, 3] -= distance / 2
+    return replace(camera, view=left), replace(camera, view=right)
 
 
 def _yaw(angle: float) -> Array:

@@ -1,50 +1,97 @@
-"""mua-view: one frame of an avatar as an image, by the CPU reference."""
+"""mua-view: an avatar in a window, or as a picture or a video."""
 
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import typer
-from PIL import Image, ImageColor
+from PIL import Image
+from rich.console import Console
+from rich.progress import track
 
+from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
-from mua.camera import orbit
+from mua.camera import Camera
+from mua.cli.choices import VIDEO, parse_color, parse_frames, parse_screen, require_format
 from mua.cli.failure import refusing
-from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.files import replacing
+from mua.gpu import adapters, open_device
 from mua.motion.clip import Clip
-from mua.motion.resample import resample
-from mua.render import frame_bounds, render, to_bytes
+from mua.motion.joint_names import read_mapping
+from mua.player.buffers import AvatarBuffers
+from mua.player.motion import named_clip, player_clips
+from mua.player.offscreen import Offscreen, over, reference_picture, write_video
+from mua.player.shot import Shot, film
 
-LARGEST = 8192  # pixels along a side
+Painter: TypeAlias = Callable[[Clip, int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
+
+
+def _list_devices(wanted: bool) -> None:
+    """Print every graphics device and stop, before FILE is asked for."""
+    if wanted:
+        for index, adapter in enumerate(adapters()):
+            print(f"{index}: {adapter}, {adapter.kind}")
+        raise typer.Exit
 
 
 def view(
     file: Annotated[Path, typer.Argument(help="A .muaavatar file.")],
     clip: Annotated[str | None, typer.Option(help="Name of a clip in the file; the first if left out.")] = None,
-    frame: Annotated[int, typer.Option(help="Frame of the clip at the avatar's rate, from 0.")] = 0,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Image to write; its suffix names the format.")] = Path(
-        "view.png"
-    ),
-    size: Annotated[str, typer.Option(help="WIDTHxHEIGHT in pixels, or one number for a square.")] = "640x960",
+    frame: Annotated[int | None, typer.Option(help="Frame of a picture at the avatar's rate, from 0.")] = None,
+    frames: Annotated[str | None, typer.Option(help="Frames of a video, FIRST:END; all if left out.")] = None,
+    motion: Annotated[Path | None, typer.Option(help="Motion file in place of the avatar's own clips.")] = None,
+    mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: avatar's joint to joint of the motion.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Picture (.png ...) or video (.mp4) to write, no window.")
+    ] = None,
+    size: Annotated[str, typer.Option(help="WIDTHxHEIGHT of an eye in pixels, or one number.")] = "640x960",
     azimuth: Annotated[float, typer.Option(help="Degrees round it to its left; 0 is the front of its bind pose.")] = 0,
     elevation: Annotated[float, typer.Option(help="Degrees from which the camera looks down.")] = 0,
+    orbit: Annotated[float, typer.Option(help="Degrees per second by which a video's camera goes round.")] = 0,
+    follow: Annotated[bool, typer.Option(help="The camera goes along with the figure.")] = False,
+    stereo: Annotated[bool, typer.Option(help="Left and right eye side by side.")] = False,
+    ipd: Annotated[float, typer.Option(help="Metres between the eyes.")] = 0.063,
     background: Annotated[str, typer.Option(help="Colour name or #rrggbb.")] = "white",
+    device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
+    list_devices: Annotated[
+        bool, typer.Option("--list-devices", is_eager=True, callback=_list_devices, help="Number and name them.")
+    ] = False,
+    reference: Annotated[bool, typer.Option(help="Compute on the CPU in numpy; needs no device.")] = False,
 ) -> None:
-    """Render one frame of FILE."""
-    screen, color = _screen(size), _color(background)
-    _require_format(output)
-    avatar = read(file)
-    chosen = resample(_find(avatar, file, clip), avatar.encoding.rate)
-    if not 0 <= frame < len(chosen):
-        raise InputError(f"--frame is {frame}; clip {chosen.name!r} has frames 0 to {len(chosen) - 1}")
-    posed = decode_clip_frame(avatar, chosen, frame=frame)
-    camera = orbit(frame_bounds(posed), screen=screen, azimuth=np.radians(azimuth), elevation=np.radians(elevation))
-    image = render(posed, camera, background=color)
-    with replacing(output) as temporary:
-        Image.fromarray(to_bytes(image)).save(temporary)
+    """Show FILE in a window, or with -o write a picture or a video of it."""
+    if output is None:
+        raise InputError("no window yet; -o writes a picture")
+    require_format(output)
+    video = output.suffix.lower() == VIDEO
+    if (frame if video else frames) is not None:
+        raise InputError(f"-o is {output}; a video takes --frames FIRST:END, a picture --frame")
+    screen, color = parse_screen(size, even=video), parse_color(background)
+    shot = Shot(
+        screen,
+        azimuth=np.radians(azimuth),
+        elevation=np.radians(elevation),
+        turning=np.radians(orbit),
+        follow=follow,
+        eyes=ipd if stereo else None,
+    )
+    with _opened(file, device, reference=reference) as (avatar, paint):
+        chosen = _chosen(avatar, file, clip, motion=motion, mapping=mapping)
+        shown = parse_frames(frames or ":", clip=chosen.name, count=len(chosen)) if video else _one(frame or 0, chosen)
+        cameras = film(shot, avatar.rig, _part(chosen, shown))
+        pictures = (over(paint(chosen, i, c), color) for i, c in zip(shown, cameras, strict=True))
+        if video:
+            width = (2 if stereo else 1) * screen[0]
+            shown_bar = track(pictures, description=output.name, total=len(shown), console=Console(stderr=True))
+            write_video(output, shown_bar, size=(width, screen[1]), rate=chosen.rate)
+        else:
+            with replacing(output) as temporary:
+                Image.fromarray(next(pictures)).save(temporary)
 
 
 def run() -> None:
@@ -52,34 +99,34 @@ def run() -> None:
     refusing(view)
 
 
-def _find(avatar: Avatar, file: Path, name: str | None) -> Clip:
-    """The clip of that name, or the first."""
-    names = [clip.name for clip in avatar.clips]
-    if not names:
-        raise InputError(f"{file} holds no clips; mua-view needs one to pose the avatar")
-    if name is not None and name not in names:
-        raise InputError(f"--clip is {name!r}; {file} holds {', '.join(names)}")
-    return avatar.clips[0 if name is None else names.index(name)]
+@contextmanager
+def _opened(file: Path, device: str | None, *, reference: bool) -> Iterator[tuple[Avatar, Painter]]:
+    """The avatar, and what paints it, for as long as the device is open."""
+    if reference:
+        avatar = read(file)
+        yield avatar, partial(reference_picture, avatar)
+        return
+    with closing(open_device(device)) as opened:
+        buffers = AvatarBuffers(opened, file)
+        yield buffers.avatar, Offscreen(opened, buffers).picture
 
 
-def _screen(size: str) -> tuple[int, int]:
-    """Width and height from `640x960` or `640`."""
-    parts = size.split("x")
-    if len(parts) > 2 or not all(p.isdecimal() and 0 < int(p) <= LARGEST for p in parts):
-        raise InputError(f"--size is {size!r}; expected WIDTHxHEIGHT or one number, each from 1 to {LARGEST}")
-    return int(parts[0]), int(parts[-1])
+def _chosen(avatar: Avatar, file: Path, name: str | None, *, motion: Path | None, mapping: Path | None) -> Clip:
+    """The clip to show; what retargeting has to tell goes to standard error."""
+    names = None if mapping is None else read_mapping(mapping)
+    clips, notes = player_clips(avatar, file, motion=motion, mapping=names)
+    for note in notes:
+        Console(stderr=True).print(note, highlight=False)
+    return named_clip(clips, name, source=motion or file)
 
 
-def _color(text: str) -> tuple[float, float, float]:
-    """sRGB in 0..1 from a colour name or #rrggbb."""
-    try:
-        red, green, blue = ImageColor.getrgb(text)[:3]
-    except ValueError as error:
-        raise InputError(f"--background is {text!r}; expected a colour name or #rrggbb") from error
-    return red / 255, green / 255, blue / 255
+def _one(frame: int, clip: Clip) -> range:
+    """The frame of a picture."""
+    if not 0 <= frame < len(clip):
+        raise InputError(f"--frame is {frame}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
+    return range(frame, frame + 1)
 
 
-def _require_format(output: Path) -> None:
-    """Refuse a suffix that no image format has, before any work is done."""
-    if output.suffix.lower() not in Image.registered_extensions():
-        raise InputError(f"-o is {output}; expected a suffix of an image format, such as .png")
+def _part(clip: Clip, frames: range) -> Clip:
+    kept = slice(frames.start, frames.stop)
+    return replace(clip, rotations=clip.rotations[kept], translation=clip.translation[kept])

@@ -13,15 +13,16 @@ from mua.errors import InputError
 from mua.gpu import Buffer, Commands, Device
 from mua.motion.descriptor import describe_window
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, LayerBuffers
+from mua.player.draw import SortedSplats
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 
 EYES = 2  # at most
 FLOAT = 4  # bytes
-LAYER_ROWS, MESH_COLUMNS = 8, 256  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
-LL_TEXELS = 256  # of a group of BlendLl
-DETAIL_BLOCK, DETAIL_BLOCKS = 4, 64  # texels along a block's side, and blocks of a group of BlendDetail
+LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
+LL_TEXELS = 64  # of a group of BlendLl
+DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt and InverseDwtLowPass doubles
-STATIC_TEXELS = 64  # of a group of AddStatic
+STATIC_TEXELS = 256  # of a group of AddStatic
 SKINNED = 64  # vertices or texels of a group of BlendVertices and SkinSplats
 PROJECTED = 256  # splats of a group of SplatProject and SplatCompact
 SORTED = 2048  # keys of a group of the sort
@@ -90,7 +91,9 @@ class AvatarFrame:
         self.orders = tuple(buffer(4 * splats, name=f"order {i}") for i in range(2))
         self.digit_counts = buffer(4 * DIGITS * _groups(splats, SORTED), name="digit_counts")
         self.digit_totals = buffer(4 * DIGITS, name="digit_totals")
-        self.order = self.orders[0]  # [M] the visible splats back to front, once sorted
+        self.sorted = SortedSplats(  # two passes of the sort end where they began
+            splats, self.splats, self.ellipses, self.colors, self.orders[0], self.arguments
+        )
 
     def decode(
         self,
@@ -109,7 +112,7 @@ class AvatarFrame:
         self._pose(commands)
 
     def sort(self, commands: Commands, cameras: Sequence[Camera]) -> None:
-        """Append the dispatches from posed splats to `order`, the splats that one or two eyes see, back to front.
+        """Append the dispatches from posed splats to `sorted`, the splats that one or two eyes see, back to front.
 
         Errors: InputError unless there are one or two cameras of one screen.
         """
@@ -206,10 +209,10 @@ class AvatarFrame:
     def _blend_band(
         self, commands: Commands, branch: BranchBuffers, band: BandBuffers, alpha: Buffer, alpha_offset: int, size: int
     ) -> None:
-        blocks = 3 * branch.channels * _groups(size, DETAIL_BLOCK) ** 2
+        tiles = _groups(size, DETAIL_TILE)
         commands.dispatch(
             self._blend_detail,
-            (_groups(blocks, DETAIL_BLOCKS), 1, 1),
+            (tiles, tiles, 3 * branch.channels),
             {"mean": band.mean.words, "h": band.h.words, "w": band.w.words, "alpha": alpha, "blended": self.details},
             mean_layout=band.mean.layout,
             h_layout=band.h.layout,

@@ -1,0 +1,43 @@
+"""What an avatar is shown doing: a clip of its file, or motion from another file."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from mua.asset.avatar import Avatar
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.motion.load import load_motion, unique_names
+from mua.motion.resample import resample
+
+
+def player_clips(
+    avatar: Avatar,
+    file: Path,  # of the avatar, for the sentence
+    *,
+    motion: Path | None,
+    mapping: Mapping[str, str] | None,
+) -> tuple[list[Clip], tuple[str, ...]]:
+    """All clips of `motion`, or of the avatar's own file, at the avatar's rate; and notes worth telling the user.
+
+    Errors: InputError where there is none, or where no joint of `motion` matches.
+    """
+    rate = avatar.encoding.rate
+    if motion is not None:
+        clips, notes = load_motion(motion, avatar.rig.skeleton, mapping=mapping, rate=rate)
+        return unique_names(clips), notes
+    if not avatar.clips:
+        raise InputError(f"{file} holds no clips; mua-view needs one to pose the avatar")
+    return [resample(clip, rate) for clip in avatar.clips], ()
+
+
+def named_clip(
+    clips: Sequence[Clip],
+    name: str | None,
+    *,
+    source: Path,  # of the clips, for the sentence
+) -> Clip:
+    """The clip of that name, or the first."""
+    names = [clip.name for clip in clips]
+    if name is not None and name not in names:
+        raise InputError(f"--clip is {name!r}; {source} holds {', '.join(names)}")
+    return clips[0 if name is None else names.index(name)]

@@ -1,0 +1,91 @@
+"""Pictures and videos without a window."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import imageio_ffmpeg
+import numpy as np
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.camera import Camera
+from mua.decode import decode_clip_frame
+from mua.errors import InputError
+from mua.files import replacing
+from mua.gpu import Device
+from mua.motion.clip import Clip
+from mua.player.buffers import AvatarBuffers
+from mua.player.draw import IMAGE_FORMAT, SplatRenderer, draw_image
+from mua.player.frame import AvatarFrame
+from mua.render import render_premultiplied, to_bytes
+
+BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
+ENCODING = (
+    *("-crf", "18"),  # visually lossless
+    *("-vf", f"scale=out_color_matrix={BT709}:out_range=tv", "-colorspace", BT709),
+    *("-color_primaries", BT709, "-color_trc", BT709),
+    *("-movflags", "+faststart"),  # a browser may start before it has the whole
+)
+
+
+class Offscreen:
+    """Draws frames of one avatar on a device."""
+
+    def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
+        """Errors: InputError where the device has too little memory."""
+        self._device = device
+        self._frame = AvatarFrame(device, avatar)
+        self._renderer = SplatRenderer(device, IMAGE_FORMAT)
+
+    def picture(
+        self,
+        clip: Clip,  # at the rate of the avatar's encoding
+        index: int,
+        cameras: Sequence[Camera],  # of one eye or two
+    ) -> Array:
+        """Premultiplied sRGB and alpha [H, E W, 4] of one frame of a clip, eyes side by side."""
+        window = self._frame.avatar.avatar.encoding.frames(index)
+        commands = self._device.commands()
+        self._frame.decode(commands, clip.rotations[window], clip.translation[window])
+        self._frame.sort(commands, cameras)
+        commands.submit()
+        return draw_image(self._device, self._renderer, self._frame.sorted, cameras)
+
+
+def reference_picture(avatar: Avatar, clip: Clip, index: int, cameras: Sequence[Camera]) -> Array:
+    """The same picture by the CPU reference; each eye sees its own colours."""
+    frame = decode_clip_frame(avatar, clip, frame=index)
+    return np.hstack([render_premultiplied(frame, camera) for camera in cameras])
+
+
+def over(
+    image: Array,  # [H, W, 4] premultiplied sRGB and alpha
+    background: tuple[float, float, float],  # sRGB, 0..1
+) -> Array:
+    """The image over a plain background, [H, W, 3] uint8."""
+    return to_bytes(image[..., :3] + (1 - image[..., 3:]) * np.array(background))
+
+
+def write_video(
+    path: Path,
+    pictures: Iterable[Array],  # [H, W, 3] uint8
+    *,
+    size: tuple[int, int],  # width, height, pixels, both even
+    rate: float,  # pictures per second
+) -> None:
+    """Write an MP4 (H.264), all of it or none.
+
+    Errors: InputError where the encoder fails, with what it said.
+    """
+    with replacing(path) as temporary:
+        writer = imageio_ffmpeg.write_frames(
+            temporary, size, fps=rate, codec="libx264", quality=None, macro_block_size=2, output_params=list(ENCODING)
+        )
+        try:
+            writer.send(None)
+            for picture in pictures:
+                writer.send(np.ascontiguousarray(picture))
+        except OSError as error:
+            raise InputError(f"{path}: the encoder stopped: {str(error).splitlines()[0]}") from error
+        finally:
+            writer.close()
