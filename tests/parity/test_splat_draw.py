@@ -1,14 +1,28 @@
-"""The pixel integral against quadrature, blending against a loop, colours against scipy's spherical harmonics."""
+"""The pixel integral against quadrature, blending against a loop, colours against scipy's spherical harmonics.
+
+The shaders against the reference: one splat to the rounding of a half float, whole frames by their PSNR.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import wgpu
+from drawn_splats import draw_frame, random_frame, reference_frame, sort_frame, stereo
 from scipy.special import ndtr, sph_harm_y
+from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
 from mua.arrays import Array
+from mua.camera import NEAR, Camera, orbit
+from mua.decode import Frame, decode_clip_frame
+from mua.gpu import Device
 from mua.kernels import splat_draw as kernel
 from mua.kernels.splat_draw import MOST_ALPHA, pixel_integral, splat_colors, splat_draw
 from mua.kernels.splat_project import half_lengths
+from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image, read_image
+from mua.render import frame_bounds, render_premultiplied
 
 # How far the logistic S(x) and its slope lie from the normal distribution and its density, at most, over all x.
 CUMULATIVE_BOUND = 4e-4
@@ -176,3 +190,189 @@ def test_colours_are_not_negative_nor_nan_at_the_camera_itself() -> None:
     camera = np.array([1.0, 2, 3])
     colors = splat_colors(camera[None], np.eye(1, 8), np.full((1, 12), -9.0), camera)
     np.testing.assert_array_equal(colors, 0)
+
+
+LEAST_PSNR = 50.0  # dB, of the drawn image against the reference, for each eye
+PICTURE = (512, 512)
+RASTER_GRID = 1 / 256  # pixels; what Direct3D 11 demands, and desktop devices have
+BOX = 0.4 * np.array([[-1.0, -1, -1], [1, 1, 1]])  # metres; `camera` sees about 460 pixels to a metre of it
+EYES = [1, 2]
+FIELDS = ["centres", "rotations", "scales", "opacities", "sh", "texel_dq"]
+
+
+def cameras(bounds: Array, eyes: int, screen: tuple[int, int] = PICTURE) -> tuple[Camera, ...]:
+    camera = orbit(bounds, screen=screen, azimuth=0.7, elevation=0.4)
+    return (camera,) if eyes == 1 else stereo(camera)
+
+
+def scene(eyes: int) -> tuple[Frame, tuple[Camera, ...]]:
+    """Thin and round splats of 0.05 to 100 pixels, some beside the screen and some behind the camera."""
+    seen_by = cameras(BOX, eyes)
+    small = random_frame(4000, BOX, deviations=(1e-4, 0.05))
+    large = random_frame(40, BOX, deviations=(0.05, 0.22), seed=1)
+    frame = replace(small, **{name: np.concatenate([getattr(small, name), getattr(large, name)]) for name in FIELDS})
+    frame.centres[::9] = 2 * seen_by[0].position - frame.centres[::9]
+    return frame, seen_by
+
+
+def psnr(found: Array, expected: Array) -> list[float]:
+    """Of each eye [E, H, W, 4], premultiplied colour and alpha alike, dB."""
+    squared = np.mean(np.square(found - expected), axis=(1, 2, 3))
+    return [float(-10 * np.log10(max(error, np.finfo(float).tiny))) for error in squared]
+
+
+@pytest.mark.parametrize("eyes", EYES)
+def test_shader_draws_random_splats_as_the_reference(device: Device, eyes: int) -> None:
+    frame, seen_by = scene(eyes)
+    expected = reference_frame(frame, seen_by)
+    assert expected[..., 3].mean() > 0.3
+    assert min(psnr(draw_frame(device, frame, seen_by), expected)) >= LEAST_PSNR
+
+
+@pytest.mark.parametrize("eyes", EYES)
+def test_shader_draws_an_avatar_as_the_reference(device: Device, eyes: int) -> None:
+    avatar = synthetic_avatar()
+    frame = decode_clip_frame(avatar, avatar.clips[0], frame=3, dtype=np.float64)
+    seen_by = cameras(frame_bounds(frame), eyes)
+    expected = reference_frame(frame, seen_by)
+    assert expected[..., 3].mean() > 0.1
+    assert min(psnr(draw_frame(device, frame, seen_by), expected)) >= LEAST_PSNR
+
+
+def test_shader_draws_what_render_does(device: Device) -> None:
+    frame, seen_by = scene(1)
+    assert min(psnr(draw_frame(device, frame, seen_by), render_premultiplied(frame, seen_by[0])[None])) >= LEAST_PSNR
+
+
+def test_front_to_back_is_another_image(device: Device) -> None:
+    frame, seen_by = scene(1)
+    splats = sort_frame(device, frame, seen_by)
+    drawn = splats.arguments.read()[7]
+    reversed_order = device.buffer(splats.order.read()[:drawn][::-1], name="order")
+    wrong = replace(splats, order=reversed_order)
+    found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), wrong, seen_by)[None]
+    assert max(psnr(found, reference_frame(frame, seen_by))) < LEAST_PSNR
+
+
+def test_eyes_differ(device: Device) -> None:
+    left, right = draw_frame(device, *scene(2))
+    assert max(psnr(left[None], right[None])) < LEAST_PSNR
+
+
+def on_device(
+    device: Device, ellipses: Array, colors: Array, opacities: Array, order: Array, *, depth: Array | None = None
+) -> SortedSplats:
+    """Splats as the shaders would leave them, for one eye; their centres, if any, by eye-space depth [N] in metres."""
+    count = len(ellipses)
+    words = np.zeros((count, 16), np.float32)
+    words[:, 2] = -1 if depth is None else -depth
+    halves = np.concatenate([colors, opacities[:, None]], axis=1).astype(np.float16)
+    arguments = np.array([6 * len(order), 1, 0, 0, 0, 1, 1, len(order)], np.uint32)
+    return SortedSplats(
+        count=count,
+        splats=device.buffer(words, name="splats"),
+        ellipses=device.buffer(ellipses.astype(np.float32), name="ellipses"),
+        colors=device.buffer(halves, name="colors"),
+        order=device.buffer(order.astype(np.uint32), name="order"),
+        arguments=device.buffer(arguments, name="arguments", indirect=True),
+    )
+
+
+def facing(screen: tuple[int, int]) -> tuple[Camera]:
+    """A camera at the origin that looks along -Z."""
+    return (replace(orbit(BOX, screen=screen), view=np.eye(4)),)
+
+
+def integration_bound(exact: Array, opacity: float, major: float, minor: float) -> Array:
+    """Error [H, W, 4] of one drawn splat whose premultiplied colours are at most 1.5 times its alpha.
+
+    Corners of quads fall on a grid of pixels, which moves the offsets interpolated between them by half a step. The
+    masses of both axes take that on by the density's slope or by twice the density, and round as S(x) does, whose
+    8 operations on x come through by x S'(x) < 0.25. Half floats round to the nearest or towards zero.
+    """
+    sigma = np.array([major, minor])
+    shift = np.sqrt(0.5) * RASTER_GRID
+    mass = np.minimum(1, 0.41 / sigma)
+    off = shift * np.minimum(0.82 / sigma, 0.25 / sigma**2) + 16 * np.finfo(np.float32).eps
+    alpha = opacity * 2 * np.pi * major * minor * (mass[0] * off[1] + mass[1] * off[0] + off[0] * off[1])
+    half = np.finfo(np.float16)
+    return np.asarray(1.5 * alpha + half.eps * exact + half.tiny)
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+@pytest.mark.parametrize("deviations", [(0.01, 0.01), (0.6, 0.05), (2.5, 0.3), (9.0, 4.0), (120.0, 90.0), (300.0, 0.5)])
+def test_shader_integrates_a_splat_as_the_reference(
+    device: Device, screen: tuple[int, int], deviations: tuple[float, float]
+) -> None:
+    rng = np.random.default_rng(screen[0])
+    angle, middle = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.8, 2) * screen
+    ellipses = np.array([[*middle, np.cos(angle), np.sin(angle), *deviations]])
+    colors, opacities = np.array([[0.25, 0.75, 1.5]]), np.array([0.875])  # half floats hold them exactly
+    splats = on_device(device, ellipses, colors, opacities, np.zeros(1))
+    found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing(screen))
+    exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
+    row, column = np.mgrid[: screen[1], : screen[0]] + 0.5 - middle[::-1, None, None]
+    along, across = np.cos(angle) * column + np.sin(angle) * row, np.cos(angle) * row - np.sin(angle) * column
+    from_edge = np.abs(np.abs([along, across]) - half_lengths(ellipses, opacities)[0][:, None, None]).min(axis=0)
+    certain = from_edge > RASTER_GRID  # nearer, a pixel may count as in or as out
+    assert np.all((np.abs(found - exact) <= integration_bound(exact, 0.875, *deviations))[certain])
+
+
+def test_shader_draws_nothing_of_what_this_eye_does_not_see(device: Device) -> None:
+    ellipses, colors, opacities, order = random_scene(7, (13, 5))
+    ellipses[:, 4:6] = 0
+    splats = on_device(device, ellipses, colors, opacities, order)
+    assert not draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing((13, 5))).any()
+
+
+@pytest.mark.parametrize("eyes", EYES)
+@pytest.mark.parametrize("count", [0, 1, 2])
+@pytest.mark.parametrize("screen", [(1, 1), (3, 7)])
+def test_shader_draws_few_splats_on_few_pixels(device: Device, count: int, screen: tuple[int, int], eyes: int) -> None:
+    frame = random_frame(count, BOX, deviations=(0.02, 0.2))
+    seen_by = cameras(BOX, eyes, screen)
+    found, expected = draw_frame(device, frame, seen_by), reference_frame(frame, seen_by)
+    assert found.shape == expected.shape
+    assert min(psnr(found, expected)) >= LEAST_PSNR
+
+
+@pytest.mark.parametrize("axis", [0, 2], ids=["beside", "behind"])
+def test_no_visible_splat_gives_an_empty_picture(device: Device, axis: int) -> None:
+    frame, seen_by = random_frame(31, BOX, deviations=(0.01, 0.02)), cameras(BOX, 2)
+    away = replace(frame, centres=frame.centres + 10 * seen_by[0].view[axis, :3])
+    assert not draw_frame(device, away, seen_by).any()
+
+
+def test_what_stands_before_a_splat_hides_it(device: Device) -> None:
+    screen = (16, 16)
+    ellipses = np.tile([8.0, 8, 1, 0, 4, 4], (2, 1))
+    splats = on_device(device, ellipses, np.eye(2, 3), np.ones(2), np.array([1, 0]), depth=np.array([1.0, 3.0]))
+    renderer = SplatRenderer(device, IMAGE_FORMAT, depth_format="depth32float")
+    found = draw_over_depth(device, renderer, splats, facing(screen), 1 - NEAR / 2.0)  # a wall 2 m away
+    assert found[8, 8, 0] > 0.5
+    assert not found[..., 1].any()
+
+
+def draw_over_depth(
+    device: Device, renderer: SplatRenderer, splats: SortedSplats, seen_by: Sequence[Camera], depth: float
+) -> Array:
+    """As draw_image, in a pass whose depth is cleared to one value."""
+    size = (*seen_by[0].screen, 1)
+    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+    target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=usage)
+    wall = device.wgpu.create_texture(size=size, format="depth32float", usage=wgpu.TextureUsage.RENDER_ATTACHMENT)
+    encoder = device.wgpu.create_command_encoder()
+    stored = {"load_op": "clear", "store_op": "store"}
+    render_pass = encoder.begin_render_pass(
+        color_attachments=[{"view": target.create_view(), "clear_value": (0, 0, 0, 0), **stored}],
+        depth_stencil_attachment={
+            "view": wall.create_view(),
+            "depth_clear_value": depth,
+            "depth_load_op": "clear",
+            "depth_store_op": "store",
+        },
+    )
+    renderer.draw(render_pass, splats, seen_by)
+    render_pass.end()
+    device.wgpu.queue.submit([encoder.finish()])
+    return read_image(device, target)
