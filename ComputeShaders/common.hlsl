@@ -4,10 +4,9 @@
 #ifndef MUA_COMMON_HLSL
 #define MUA_COMMON_HLSL
 
-// Element types of stored tensors, as in schemas/muaavatar.fbs.
+// Element types of stored tensors, as in schemas/muaavatar.fbs; the third is I8.
 static const uint STORED_F32 = 0;
 static const uint STORED_F16 = 1;
-static const uint STORED_I8 = 2;
 
 // The half float in the low half of a word (lane 0) or in its high half (lane 1).
 float halfAt(uint word, uint lane)
@@ -21,7 +20,8 @@ int byteAt(uint word, uint lane)
     return int(word << (24 - 8 * lane)) >> 24;
 }
 
-// Element `index` of a stored tensor. tensorLayout = (element type, elements for each scale, index of the first scale's word).
+// Element `index` of a stored tensor.
+// tensorLayout = (element type, elements for each scale, index of the first scale's word).
 float stored(StructuredBuffer<uint> words, uint3 tensorLayout, uint index)
 {
     float value = 0;

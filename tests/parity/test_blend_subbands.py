@@ -65,7 +65,7 @@ def buffered(alpha: Array) -> Array:
 @pytest.mark.parametrize(("channels", "rank", "side"), SHADER_SIZES + PAPER_LL)
 def test_ll_shader_equals_the_reference(device: Device, channels: int, rank: int, side: int, storage: Storage) -> None:
     rng = np.random.default_rng(side)
-    mean = store(rng.normal(size=(channels, side, side)), "f32")
+    mean = store(rng.normal(size=(channels, side, side)), storage, rows=channels)
     basis = store(rng.normal(size=(channels, rank, side, side)), storage, rows=channels * rank)
     alpha = rng.normal(size=(channels, rank)).astype(np.float32)
     blended = run(

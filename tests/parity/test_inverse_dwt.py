@@ -94,7 +94,10 @@ def shader_level(device: Device, ll: Array, details: Array | None, lo: Array, hi
 
 
 def check_level(device: Device, bands: Array, lo: Array, hi: Array) -> None:
-    """Both variants against the reference in double precision, on the taps that the shader has."""
+    """Both variants against the reference in double precision, on the taps that the shader has.
+
+    Each of the two axes rounds a sum of L products, L + 1 times on the way of one term.
+    """
     lo, hi = lo.astype(np.float32), hi.astype(np.float32)
     gain = (np.abs(lo.astype(float)).sum() + np.abs(hi.astype(float)).sum()) ** 2
     sums_bound = 2 * (len(lo) + 1) * np.finfo(np.float32).eps * gain * np.abs(bands).max(initial=0)
