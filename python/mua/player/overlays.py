@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import wgpu
 
+from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
+from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.player.draw import view_projection
 from mua.player.surface import build_surface
@@ -25,11 +27,13 @@ TEMPLATE_COLOR = (0.62, 0.72, 0.84)
 BONE_COLOR = (0.98, 0.62, 0.12)
 JOINT_COLOR = (1.0, 0.97, 0.90)
 OUTLINE_COLOR = (0.12, 0.10, 0.08)
-BONE_WIDTH, JOINT_WIDTH, OUTLINE = 3.0, 7.0, 2.0  # pixels; an outline shows on any background
+BONE_WIDTH, JOINT_WIDTH, OUTLINE = 2.5, 5.0, 1.5  # pixels; an outline shows on any background
 
 LIGHT = (-0.35, -1.0, -0.45)  # from above, the character's left and front: the shadow falls behind it
 DARKNESS = 0.45  # of the ground in full shadow
-MASK_SIZE = 512  # samples along the shadow's square
+MASK_SIZE = 256  # samples along the shadow's square
+GROUND_FRAMES = 32  # of a clip, in which the lowest point is sought
+BELOW_GROUND = 0.1  # of these that may reach below it: captured feet stray, and others leap or climb
 MARGIN = 0.1  # metres round the shadow, so that its soft edge is not cut off
 
 
@@ -150,21 +154,17 @@ class Overlays:
             render_pass.draw(6 * self._stroke_counts[name])
 
 
-def ground_height(
-    rig: Rig,
-    clip: Clip | None,
-) -> float:
-    """Where the feet of a clip stand, metres: its lowest joint, less what the rest pose has below its own lowest.
-
-    Without a clip, the lowest point at rest.
-    """
-    lowest = float(rig.mesh.vertices[:, 1].min(initial=0))
-    if clip is None:
-        return lowest
-    skeleton = rig.skeleton
-    _, rest = skeleton.world(*astuple(skeleton.bind_pose))
-    _, moving = skeleton.world(clip.rotations, clip.translation)
-    return lowest + float(moving[..., 1].min() - rest[:, 1].min())
+def ground_height(rig: Rig, clip: Clip | None) -> float:
+    """Where the character stands, metres: its lowest point over a clip, but for a few frames, else at rest."""
+    skeleton, mesh = rig.skeleton, rig.mesh
+    if clip is None or not len(mesh.vertices):
+        return float(mesh.vertices[:, 1].min(initial=0))
+    frames = np.unique(np.linspace(0, len(clip) - 1, GROUND_FRAMES).astype(int))
+    lowest = []
+    for joints in skeleton.skinning(clip.rotations[frames], clip.translation[frames]):
+        vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
+        lowest.append(rotation.dual_transform(vertex_dq, mesh.vertices)[:, 1].min())
+    return float(np.quantile(lowest, BELOW_GROUND))
 
 
 def shadow_area(
