@@ -197,6 +197,16 @@ def test_timed_dispatches_give_times_by_kernel(device: Device, shader: Path) -> 
         device.commands().milliseconds()
 
 
+def test_more_dispatches_than_there_are_timestamps_are_refused(device: Device, shader: Path) -> None:
+    if not device.timestamps:
+        pytest.skip("needs a device with timestamps")
+    kernel, quads, commands = device.kernel(shader, "Twice"), ones(device), device.commands(timed=True)
+    for _ in range(2049):
+        commands.dispatch(kernel, (1, 1, 1), {"quads": quads}, count=0)
+    with pytest.raises(InputError, match="timestamps: 2049 passes, expected 1 to 2048"):
+        commands.submit()
+
+
 def test_an_edited_shader_is_picked_up(device: Device, shader: Path, tmp_path: Path) -> None:
     path = tmp_path / "edited.compute"
     path.write_text(SHADER)
