@@ -15,7 +15,7 @@ SIZES = [(0, 5), (1, 1), (1, 0), (7, 13), (130, 257)]
 PAPER_LAYERS = [(384, 384), (4576, 384), (128, 384)]
 PAPER_MESH = (3 * 5514, 128)
 ROWS_PER_GROUP, COLUMNS_PER_GROUP = 8, 64
-BEYOND = 5  # elements after y that the shader must leave alone
+BEYOND = 5  # elements after y that the shader must leave alone, and after x that it must not read
 
 
 def layer(outputs: int, inputs: int, dtype: type) -> tuple[Array, Array, Array]:
@@ -51,14 +51,20 @@ def test_relu_stops_negative_outputs_only() -> None:
 def shader_layer(
     device: Device, weight: Stored, bias: Stored, x: Array, *, relu: bool = False, transposed: bool = False
 ) -> Array:
-    """y by the shader, after checking that it wrote nothing else."""
+    """y by the shader, after checking that it touched nothing else."""
     outputs = len(bias.values)
+    following = np.full(BEYOND, np.nan, np.float32)
     y = run(
         device,
         "mlp_matmul.compute",
         "MlpMatmulTransposed" if transposed else "MlpMatmul",
         groups((outputs, COLUMNS_PER_GROUP if transposed else ROWS_PER_GROUP)),
-        {"weight": weight.words, "bias": bias.words, "x": x, "y": np.full(outputs + BEYOND, -7, np.float32)},
+        {
+            "weight": weight.words,
+            "bias": bias.words,
+            "x": np.concatenate([x, following]),
+            "y": np.full(outputs + BEYOND, -7, np.float32),
+        },
         weight_layout=weight.layout,
         bias_layout=bias.layout,
         inputs=len(x),
