@@ -5,7 +5,7 @@
 //   mass(offset, deviation) = S((offset + 0.5) / deviation) - S((offset - 0.5) / deviation)
 //   color = max(0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3), 0)     (x, y, z) from camera to splat, turned back by its texel
 //
-// Six vertices a splat, two triangles; splat = order[vertex / 6], back to front. Blend One, OneMinusSrcAlpha.
+// Six vertices a splat, two triangles, in the order of the sort: back to front. Blend One, OneMinusSrcAlpha.
 // Buffers are arguments, so that each includer declares only what it binds. Reference: python/mua/kernels/splat_draw.py.
 
 #ifndef MUA_SPLAT_DRAW_HLSL

@@ -39,7 +39,8 @@ def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], 
     """Splats in and around the bounds, from the least to the largest of `deviations` in metres, half of them faint."""
     rng = np.random.default_rng(seed)
     middle, half = bounds.mean(axis=0), np.ptp(bounds, axis=0) / 2
-    size = np.exp(rng.uniform(*np.log(deviations), (count, 1)))
+    least, largest = np.log(deviations)
+    size = np.exp(rng.uniform(least, largest, (count, 1)))
     turns = rotation.normalize(rng.normal(size=(count, 4)))
     return Frame(
         canonical=np.zeros((0, 3)),

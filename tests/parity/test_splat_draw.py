@@ -5,6 +5,7 @@ The shaders against the reference: one splat to the rounding of a half float, wh
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -200,6 +201,13 @@ EYES = [1, 2]
 FIELDS = ["centres", "rotations", "scales", "opacities", "sh", "texel_dq"]
 
 
+@cache
+def reference_scene(eyes: int) -> tuple[Frame, tuple[Camera, ...], Array]:
+    """The scene and the reference's picture of it [E, H, W, 4]."""
+    frame, seen_by = scene(eyes)
+    return frame, seen_by, reference_frame(frame, seen_by)
+
+
 def cameras(bounds: Array, eyes: int, screen: tuple[int, int] = PICTURE) -> tuple[Camera, ...]:
     camera = orbit(bounds, screen=screen, azimuth=0.7, elevation=0.4)
     return (camera,) if eyes == 1 else stereo(camera)
@@ -223,8 +231,7 @@ def psnr(found: Array, expected: Array) -> list[float]:
 
 @pytest.mark.parametrize("eyes", EYES)
 def test_shader_draws_random_splats_as_the_reference(device: Device, eyes: int) -> None:
-    frame, seen_by = scene(eyes)
-    expected = reference_frame(frame, seen_by)
+    frame, seen_by, expected = reference_scene(eyes)
     assert expected[..., 3].mean() > 0.3
     assert min(psnr(draw_frame(device, frame, seen_by), expected)) >= LEAST_PSNR
 
@@ -240,18 +247,20 @@ def test_shader_draws_an_avatar_as_the_reference(device: Device, eyes: int) -> N
 
 
 def test_shader_draws_what_render_does(device: Device) -> None:
-    frame, seen_by = scene(1)
+    avatar = synthetic_avatar()
+    frame = decode_clip_frame(avatar, avatar.clips[0], frame=3, dtype=np.float64)
+    seen_by = cameras(frame_bounds(frame), 1, (97, 61))
     assert min(psnr(draw_frame(device, frame, seen_by), render_premultiplied(frame, seen_by[0])[None])) >= LEAST_PSNR
 
 
 def test_front_to_back_is_another_image(device: Device) -> None:
-    frame, seen_by = scene(1)
+    frame, seen_by, expected = reference_scene(1)
     splats = sort_frame(device, frame, seen_by)
     drawn = splats.arguments.read()[7]
     reversed_order = device.buffer(splats.order.read()[:drawn][::-1], name="order")
     wrong = replace(splats, order=reversed_order)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), wrong, seen_by)[None]
-    assert max(psnr(found, reference_frame(frame, seen_by))) < LEAST_PSNR
+    assert max(psnr(found, expected)) < LEAST_PSNR
 
 
 def test_eyes_differ(device: Device) -> None:
@@ -316,6 +325,13 @@ def test_shader_integrates_a_splat_as_the_reference(
     from_edge = np.abs(np.abs([along, across]) - half_lengths(ellipses, opacities)[0][:, None, None]).min(axis=0)
     certain = from_edge > RASTER_GRID  # nearer, a pixel may count as in or as out
     assert np.all((np.abs(found - exact) <= integration_bound(exact, 0.875, *deviations))[certain])
+
+
+def test_shader_leaves_no_splat_quite_opaque(device: Device) -> None:
+    ellipses = np.array([[8.0, 8, 1, 0, 40, 40]])
+    splats = on_device(device, ellipses, np.ones((1, 3)), np.ones(1), np.zeros(1))
+    found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing((16, 16)))
+    np.testing.assert_allclose(found.max(axis=(0, 1)), MOST_ALPHA, rtol=np.finfo(np.float16).eps)
 
 
 def test_shader_draws_nothing_of_what_this_eye_does_not_see(device: Device) -> None:
