@@ -61,12 +61,13 @@ def package_faults(kernels: list[Shader], draws: list[tuple[Shader, list[str]]],
 
 
 def _companions(shader: Shader, root: Path) -> Iterator[str]:
-    """One stem for each kernel: its reference and its test, which names every entry point."""
+    """One stem for each kernel: its reference, and its test, which with what it imports names every entry point."""
     stem = shader.path.stem
     if not (root / "python" / "mua" / "kernels" / f"{stem}.py").is_file():
         yield f"{shader.path.name}: there is no reference python/mua/kernels/{stem}.py"
     test = root / "tests" / "parity" / f"test_{stem}.py"
     text = test.read_text() if test.is_file() else ""
+    text += "".join(path.read_text() for path in test.parent.glob("*.py") if f"from {path.stem} import" in text)
     for entry in shader.kernels:
         if f'"{entry}"' not in text:
             yield f"{shader.path.name}: tests/parity/test_{stem}.py does not run {entry}"
