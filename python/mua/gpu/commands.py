@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import wgpu
 
 from mua.errors import InputError
@@ -77,8 +78,8 @@ class Commands:
         if self._timestamps is None:
             return spent
         ran = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
-        for dispatch, (begin, end) in zip(ran, self._timestamps.milliseconds().tolist(), strict=True):
-            spent[dispatch.kernel.name] += max(end - begin, 0)
+        for dispatch, taken in zip(ran, np.diff(self._timestamps.milliseconds()).tolist(), strict=True):
+            spent[dispatch.kernel.name] += max(taken, 0)
         return dict(spent)
 
     def _append(
@@ -106,8 +107,9 @@ class Commands:
         self._timestamps = None
         if not dispatches:
             return
-        self._timestamps = Timestamps(self._device, len(dispatches))
-        for index, (dispatch, offset) in enumerate(zip(dispatches, offsets, strict=True)):
+        self._timestamps = Timestamps(self._device, 1 + len(dispatches))
+        encoder.begin_compute_pass(timestamp_writes=self._timestamps.of_pass(0)).end()
+        for index, (dispatch, offset) in enumerate(zip(dispatches, offsets, strict=True), start=1):
             compute = encoder.begin_compute_pass(timestamp_writes=self._timestamps.of_pass(index))
             _record(compute, dispatch, offset)
             compute.end()
