@@ -1,7 +1,7 @@
 """What is shown beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
 
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import wgpu
 
-from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.bounds import MARGIN as BOX_MARGIN
+from mua.bounds import frame_boxes
 from mua.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
-from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.player.draw import view_projection
 from mua.player.surface import build_surface
@@ -156,15 +156,11 @@ class Overlays:
 
 def ground_height(rig: Rig, clip: Clip | None) -> float:
     """Where the character stands, metres: its lowest point over a clip, but for a few frames, else at rest."""
-    skeleton, mesh = rig.skeleton, rig.mesh
-    if clip is None or not len(mesh.vertices):
-        return float(mesh.vertices[:, 1].min(initial=0))
+    if clip is None:
+        return float(rig.mesh.vertices[:, 1].min(initial=0))
     frames = np.unique(np.linspace(0, len(clip) - 1, GROUND_FRAMES).astype(int))
-    lowest = []
-    for joints in skeleton.skinning(clip.rotations[frames], clip.translation[frames]):
-        vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
-        lowest.append(rotation.dual_transform(vertex_dq, mesh.vertices)[:, 1].min())
-    return float(np.quantile(lowest, BELOW_GROUND))
+    some = replace(clip, rotations=clip.rotations[frames], translation=clip.translation[frames])
+    return float(np.quantile(frame_boxes(rig, some)[:, 0, 1], BELOW_GROUND)) + BOX_MARGIN
 
 
 def shadow_area(

@@ -1,0 +1,141 @@
+"""The controls of the window: what to show, how it plays, how long each kernel takes."""
+
+from collections.abc import Callable
+from dataclasses import fields
+
+from imgui_bundle import imgui
+
+from mua.player.scene import Toggles
+from mua.player.session import Session
+
+WIDTH = 300  # logical pixels
+SLOWEST, FASTEST = 0.1, 2.0  # of the clip's own speed
+WARNING = imgui.ImVec4(1.0, 0.55, 0.4, 1.0)
+SHOWN = {
+    "splats": "Splats",
+    "geometry": "Detailed geometry",
+    "template": "Template mesh",
+    "skeleton": "Skeleton",
+    "shadow": "Shadow",
+}
+MOUSE = (("drag", "orbit"), ("right drag", "pan"), ("wheel", "zoom"))
+
+
+def _toggle(name: str) -> Callable[[Session], None]:
+    return lambda session: session.toggle(name)
+
+
+def _flip(name: str) -> Callable[[Session], None]:
+    return lambda session: setattr(session, name, not getattr(session, name))
+
+
+def _reframe(session: Session) -> None:
+    session.view = None
+
+
+def _next_file(session: Session) -> None:
+    session.choose_file(session.files[(session.files.index(session.file) + 1) % len(session.files)])
+
+
+def _next_clip(session: Session) -> None:
+    names = [clip.name for clip in session.clips]
+    session.choose_clip(session.clips[(names.index(session.clip.name) + 1) % len(names)])
+
+
+# Key as rendercanvas names it: what the panel calls it and does, and the action.
+KEYS: dict[str, tuple[str, str, Callable[[Session], None]]] = {
+    " ": ("space", "play or pause", _flip("playing")),
+    "ArrowLeft": ("left", "one frame back", lambda session: session.step(-1)),
+    "ArrowRight": ("right", "one frame on", lambda session: session.step(1)),
+    **{str(i + 1): (str(i + 1), SHOWN[f.name], _toggle(f.name)) for i, f in enumerate(fields(Toggles))},
+    "a": ("a", "next avatar", _next_file),
+    "c": ("c", "next clip", _next_clip),
+    "s": ("s", "stereo", _flip("stereo")),
+    "f": ("f", "follow", _flip("follow")),
+    "r": ("r", "reset the view", _reframe),
+    "t": ("t", "time the kernels", _flip("timed")),
+}
+
+
+def draw_panel(session: Session, *, rate: float) -> None:
+    """Lay out all controls; `rate` is in pictures per second."""
+    imgui.set_next_window_pos((0, 0), imgui.Cond_.first_use_ever)
+    imgui.set_next_window_size((WIDTH, 0), imgui.Cond_.always)
+    imgui.begin("mua-view", None, imgui.WindowFlags_.no_resize)
+    imgui.push_item_width(-70)
+    _sources(session)
+    _transport(session)
+    _shown(session)
+    _times(session, rate)
+    _keys()
+    imgui.pop_item_width()
+    imgui.end()
+
+
+def _sources(session: Session) -> None:
+    files, names = session.files, [clip.name for clip in session.clips]
+    changed, chosen = imgui.combo("avatar", files.index(session.file), [file.stem for file in files])
+    if changed:
+        session.choose_file(files[chosen])
+    changed, chosen = imgui.combo("clip", names.index(session.clip.name), names)
+    if changed:
+        session.choose_clip(session.clips[chosen])
+    imgui.text_disabled(f"{session.splats:,} splats")
+    for sentence in filter(None, (session.failure, *session.notes)):
+        imgui.push_style_color(imgui.Col_.text, WARNING)
+        imgui.text_wrapped(sentence)
+        imgui.pop_style_color()
+
+
+def _transport(session: Session) -> None:
+    imgui.separator()
+    if imgui.button("pause" if session.playing else "play", (60, 0)):
+        session.playing = not session.playing
+    for label, frames in (("<", -1), (">", 1)):
+        imgui.same_line()
+        if imgui.button(label):
+            session.step(frames)
+    last = len(session.clip) - 1
+    changed, index = imgui.slider_int("frame", session.index, 0, last)
+    if changed:
+        session.step(min(max(index, 0), last) - session.index)
+    _, session.speed = imgui.slider_float("speed", session.speed, SLOWEST, FASTEST, "%.2f x")
+
+
+def _shown(session: Session) -> None:
+    imgui.separator()
+    for name, label in SHOWN.items():
+        changed, _ = imgui.checkbox(label, getattr(session.toggles, name))
+        if changed:
+            session.toggle(name)
+    imgui.separator()
+    _, session.stereo = imgui.checkbox("Stereo, side by side", session.stereo)
+    _, session.follow = imgui.checkbox("Follow the figure", session.follow)
+    if imgui.button("reset the view"):
+        session.view = None
+
+
+def _times(session: Session, rate: float) -> None:
+    imgui.separator()
+    imgui.text(f"{rate:.1f} pictures per second")
+    _, session.timed = imgui.checkbox("Time the kernels", session.timed)
+    if not session.timed:
+        return
+    if not session.can_time:
+        imgui.text_disabled("this device has no timestamps")
+        return
+    flags = imgui.TableFlags_.row_bg
+    if imgui.begin_table("times", 2, flags):
+        total = sum(session.milliseconds.values())
+        for name, spent in [*session.milliseconds.items(), ("all kernels", total)]:
+            imgui.table_next_column()
+            imgui.text(name)
+            imgui.table_next_column()
+            imgui.text(f"{spent:8.3f} ms")
+        imgui.end_table()
+
+
+def _keys() -> None:
+    if imgui.collapsing_header("Mouse and keys"):
+        for key, does in (*MOUSE, *((key, does) for key, does, _ in KEYS.values())):
+            imgui.text(f"{key:10} {does}")

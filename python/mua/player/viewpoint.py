@@ -1,0 +1,54 @@
+"""A camera that a mouse moves: round a target, nearer and farther, and aside."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.camera import FOV, NEAR, Camera, orbit
+
+STEEPEST = float(np.radians(89))  # of the elevation, so that up stays up
+NEAREST, FARTHEST = 2 * NEAR, 100.0  # metres from the target
+ZOOM_STEP = 1.15  # of the distance, for one notch of the wheel
+TURN = float(np.radians(0.4))  # for one pixel of a drag
+
+
+@dataclass(frozen=True)
+class Viewpoint:
+    """Where the camera is about its target."""
+
+    target: Array  # [3] world, metres
+    distance: float  # metres
+    azimuth: float = 0.0  # radians, as mua.camera.orbit
+    elevation: float = 0.0
+
+    def turned(self, right: float, down: float) -> "Viewpoint":
+        """After a drag of so many pixels: the figure follows the mouse."""
+        elevation = np.clip(self.elevation + TURN * down, -STEEPEST, STEEPEST)
+        return replace(self, azimuth=self.azimuth - TURN * right, elevation=float(elevation))
+
+    def zoomed(self, notches: float) -> "Viewpoint":
+        """Nearer by so many notches of the wheel, farther where negative."""
+        return replace(self, distance=float(np.clip(self.distance * ZOOM_STEP**-notches, NEAREST, FARTHEST)))
+
+    def panned(self, right: float, down: float, *, height: int) -> "Viewpoint":
+        """After a drag of so many pixels in a picture of `height`: what is at the target stays under the mouse."""
+        metres = 2 * np.tan(FOV / 2) * self.distance / height
+        across, up, _ = self.camera((height, height)).view[:3, :3]
+        return replace(self, target=self.target + metres * (down * up - right * across))
+
+    def camera(self, screen: tuple[int, int]) -> Camera:
+        """The view on a screen of so many pixels."""
+        at = orbit(np.stack([self.target] * 2), screen=screen, azimuth=self.azimuth, elevation=self.elevation)
+        view = at.view.copy()
+        view[:3, 3] = [0, 0, -self.distance] - view[:3, :3] @ self.target
+        return replace(at, view=view)
+
+
+def framing(
+    bounds: Array,  # [2, 3] metres
+    screen: tuple[int, int],
+) -> Viewpoint:
+    """From the front, at the distance from which all of a box is in the picture."""
+    target = np.mean(bounds, axis=0)
+    return Viewpoint(target, float(np.linalg.norm(orbit(bounds, screen=screen).position - target)))
