@@ -24,13 +24,15 @@ int byteAt(uint word, uint lane)
 // tensorLayout = (element type, elements for each scale, index of the first scale's word).
 float stored(StructuredBuffer<uint> words, uint3 tensorLayout, uint index)
 {
+    uint word = words[index >> tensorLayout.x]; // of 1, 2 or 4 elements: 2 to the power of the element type
+    uint lane = index & ((1u << tensorLayout.x) - 1);
     float value = 0;
     if (tensorLayout.x == STORED_F32)
-        value = asfloat(words[index]);
+        value = asfloat(word);
     else if (tensorLayout.x == STORED_F16)
-        value = halfAt(words[index / 2], index % 2);
+        value = halfAt(word, lane);
     else
-        value = byteAt(words[index / 4], index % 4) * asfloat(words[tensorLayout.z + index / tensorLayout.y]);
+        value = byteAt(word, lane) * asfloat(words[tensorLayout.z + index / tensorLayout.y]);
     return value;
 }
 
