@@ -59,11 +59,11 @@ def random_joints(rng: np.random.Generator, count: int = JOINTS) -> Array:
     return rotation.dual_from_rigid(turns, rng.uniform(-1, 1, (count, 3)))
 
 
-def random_influences(rng: np.random.Generator, points: int) -> tuple[Array, Array]:
-    """Indices and weights [points, 8], largest first, the last three empty."""
+def random_influences(rng: np.random.Generator, points: int, joints: int = JOINTS) -> tuple[Array, Array]:
+    """Indices and weights [points, 8], largest first, those beyond the number of joints empty."""
     indices, weights = np.zeros((points, 8), np.int32), np.zeros((points, 8), np.float32)
-    weights[:, :JOINTS] = -np.sort(-rng.dirichlet(np.ones(JOINTS), points), axis=1)
-    indices[:, :JOINTS] = np.argsort(rng.random((points, JOINTS)), axis=1)
+    weights[:, :joints] = -np.sort(-rng.dirichlet(np.ones(joints), points), axis=1)
+    indices[:, :joints] = np.argsort(rng.random((points, joints)), axis=1)
     return indices, weights
 
 
@@ -256,11 +256,12 @@ def skin_on(device: Device, vertex_dq: Array, mesh: Array, faces: Array, texels:
     return unpacked(run(device, FILE, "SkinSplats", groups, buffers, texel_count=count)["splats"])
 
 
+@pytest.mark.parametrize("influences", [1, JOINTS, 8])
 @pytest.mark.parametrize("count", GPU_COUNTS)
-def test_hlsl_blends_vertices_as_the_reference(device: Device, count: int) -> None:
+def test_hlsl_blends_vertices_as_the_reference(device: Device, count: int, influences: int) -> None:
     rng = np.random.default_rng(count)
-    joints = (random_joints(rng) * rng.choice([-1.0, 1.0], (JOINTS, 1))).astype(np.float32)
-    indices, weights = random_influences(rng, count)
+    joints = (random_joints(rng, 8) * rng.choice([-1.0, 1.0], (8, 1))).astype(np.float32)
+    indices, weights = random_influences(rng, count, influences)
     found = blend_on(device, joints, indices, weights)
     expected = blend_vertices(joints.astype(float), indices, weights)
     np.testing.assert_allclose(found, expected, rtol=0, atol=BLEND_BOUND)
