@@ -11,6 +11,7 @@ from mua.arrays import Array
 
 NEAR = 0.02  # metres
 FOV = float(np.radians(30))  # vertical; a portrait lens
+EYE_DISTANCE = 0.063  # metres, of an adult
 FILL = 0.92  # of the image's half size, that the framed box reaches
 
 

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,8 +25,7 @@ from mua.player.shot import Shot, film
 WARM_UP = 3  # frames before the first that counts
 COPIED = 128 << 20  # bytes of the copy; more than any cache holds
 COPIES = 5
-VISIBLE_WORD = 7  # of the arguments that splat_project writes
-DRAW = "SplatDraw"  # vertices and fragments of all eyes
+VISIBLE_WORD = 7  # of the arguments that splat_project writes: how many splats some eye sees
 
 
 @dataclass(frozen=True)
@@ -50,8 +49,9 @@ class Measured:
     eyes: int
     frames: int
     copy_bandwidth: float  # bytes a second, read and written
-    timings: dict[str, Timing]  # by kernel, in frame order, the drawing last
-    work: dict[str, Work]  # by kernel, without the drawing
+    kernels: dict[str, Timing]  # in frame order
+    work: dict[str, Work]  # of the same kernels
+    draw: Timing  # vertices and fragments of all eyes
 
 
 def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int], eyes: float | None) -> Measured:
@@ -64,10 +64,14 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
     buffers = AvatarBuffers(device, path)
     if not buffers.avatar.clips:
         raise InputError(f"{path} holds no clips; mua-bench needs one to pose the avatar")
-    clip = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
+    clip, played = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate), WARM_UP + frames
+    clip = replace(clip, rotations=clip.rotations[:played], translation=clip.translation[:played])
     shots = film(Shot(screen, eyes=eyes), buffers.avatar.rig, clip)
     bandwidth = copy_bandwidth(device)
-    spent, visible = _play(device, buffers, clip, shots, frames)
+    frame = AvatarFrame(device, buffers)
+    spent, visible = _compute_frames(device, frame, clip, shots, frames)
+    drawn = _draw_frames(device, frame, clip, shots, frames)  # after all computing, see there
+    work = frame_work(load(path), visible=visible, eyes=len(shots[0]))
     return Measured(
         device=str(device.adapter),
         avatar=buffers.avatar.name,
@@ -77,8 +81,9 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
         eyes=len(shots[0]),
         frames=frames,
         copy_bandwidth=bandwidth,
-        timings={name: _timing(times) for name, times in spent.items()},
-        work=frame_work(load(path), visible=visible, eyes=len(shots[0])),
+        kernels={name: _timing(spent[name]) for name in work},
+        work=work,
+        draw=_timing(drawn),
     )
 
 
@@ -96,31 +101,35 @@ def copy_bandwidth(device: Device) -> float:
     return float(2 * size / (1e-3 * np.median(_timed(device, COPIES, record))))
 
 
-def _play(
-    device: Device, buffers: AvatarBuffers, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
+def _compute_frames(
+    device: Device, frame: AvatarFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
 ) -> tuple[dict[str, list[float]], int]:
-    """Milliseconds of every counted frame by kernel, and the median of the visible splats.
-
-    All frames are computed before the first is drawn: once a picture was drawn, Mesa's lavapipe puts timestamps off to
-    the next barrier, and a kernel's time would count for the next one.
-    """
-    frame = AvatarFrame(device, buffers)
-    renderer = SplatRenderer(device, IMAGE_FORMAT)
+    """Milliseconds of every counted frame by kernel, and the median of the visible splats."""
     spent: dict[str, list[float]] = defaultdict(list)
     visible = []
-    for index in range(-WARM_UP, frames):
-        commands = _compute(device, frame, clip, shots, index + WARM_UP)
-        times = commands.milliseconds()
-        if index >= 0:
+    for index in range(WARM_UP + frames):
+        times = _compute(device, frame, clip, shots, index).milliseconds()
+        if index >= WARM_UP:
             visible.append(frame.arguments.read()[VISIBLE_WORD])
             for name, milliseconds in times.items():
                 spent[name].append(milliseconds)
-    for index in range(-WARM_UP, frames):
-        _compute(device, frame, clip, shots, index + WARM_UP)
-        taken = _draw(device, renderer, frame.sorted, shots[(index + WARM_UP) % len(clip)])
-        if index >= 0:
-            spent[DRAW].append(taken)
     return spent, int(np.median(visible))
+
+
+def _draw_frames(
+    device: Device, frame: AvatarFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
+) -> list[float]:
+    """Milliseconds of drawing every counted frame.
+
+    Once a picture was drawn, Mesa's lavapipe puts timestamps off to the next barrier: a kernel's time would then count
+    for the kernel after it.
+    """
+    renderer = SplatRenderer(device, IMAGE_FORMAT)
+    taken = []
+    for index in range(WARM_UP + frames):
+        _compute(device, frame, clip, shots, index)
+        taken.append(_draw(device, renderer, frame.sorted, shots[index % len(clip)]))
+    return taken[WARM_UP:]
 
 
 def _compute(device: Device, frame: AvatarFrame, clip: Clip, shots: list[tuple[Camera, ...]], index: int) -> Commands:

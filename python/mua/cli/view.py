@@ -16,7 +16,7 @@ from rich.progress import track
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
-from mua.camera import Camera
+from mua.camera import EYE_DISTANCE, Camera
 from mua.cli.choices import VIDEO, parse_color, parse_frames, parse_screen, require_format
 from mua.cli.failure import refusing
 from mua.errors import InputError
@@ -56,7 +56,7 @@ def view(
     orbit: Annotated[float, typer.Option(help="Degrees per second by which a video's camera goes round.")] = 0,
     follow: Annotated[bool, typer.Option(help="The camera goes along with the figure.")] = False,
     stereo: Annotated[bool, typer.Option(help="Left and right eye side by side.")] = False,
-    ipd: Annotated[float, typer.Option(help="Metres between the eyes.")] = 0.063,
+    ipd: Annotated[float, typer.Option(help="Metres between the eyes.")] = EYE_DISTANCE,
     background: Annotated[str, typer.Option(help="Colour name or #rrggbb.")] = "white",
     device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
     list_devices: Annotated[

@@ -8,7 +8,7 @@ import numpy as np
 import wgpu
 
 from mua.arrays import Array
-from mua.camera import Camera, stereo
+from mua.camera import EYE_DISTANCE, Camera, stereo
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.motion.clip import Clip
@@ -20,7 +20,6 @@ from mua.player.scene import Scene, Toggles
 from mua.player.viewpoint import Viewpoint, framing
 
 BACKGROUND = (0.93, 0.94, 0.95, 1.0)  # sRGB
-EYE_DISTANCE = 0.063  # metres, of an adult
 SMOOTHING = 0.1  # share of the newest frame in the times on screen
 HORIZONTAL = np.array([1.0, 0, 1])  # a camera that follows keeps its height
 

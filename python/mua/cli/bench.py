@@ -1,0 +1,86 @@
+"""mua-bench: what a frame of an avatar costs on a graphics device, kernel by kernel."""
+
+import json
+import tempfile
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from mua import files
+from mua.asset.write import write
+from mua.bench.measure import Measured, Timing, measure
+from mua.bench.random_avatar import random_avatar
+from mua.bench.report import as_json, rate, total_milliseconds, total_work
+from mua.bench.work import Work
+from mua.camera import EYE_DISTANCE
+from mua.cli.choices import parse_screen
+from mua.cli.failure import refusing
+from mua.errors import InputError
+from mua.gpu import open_device
+from mua.student.settings import PRESETS, preset
+
+COLUMNS = ("kernel", "ms", "10-90 % of frames", "MB", "GB/s", "of the copy", "MFLOPs", "GFLOPs/s")
+
+
+def bench(
+    file: Annotated[Path | None, typer.Argument(help="A .muaavatar file.")] = None,
+    setting: Annotated[
+        str | None, typer.Option(help=f"In place of FILE, random numbers in the shapes of {', '.join(PRESETS)}.")
+    ] = None,
+    device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
+    frames: Annotated[int, typer.Option(min=1, help="Frames to measure.")] = 20,
+    size: Annotated[str, typer.Option(help="WIDTHxHEIGHT of an eye in pixels, or one number.")] = "1024",
+    stereo: Annotated[bool, typer.Option(help="Two eyes.")] = False,
+    output: Annotated[Path | None, typer.Option("--json", help="File to write the figures to.")] = None,
+) -> None:
+    """Measure a frame of FILE on a device: time, bytes and operations by kernel, beside the speed of a copy."""
+    if (file is None) == (setting is None):
+        raise InputError("mua-bench measures a FILE or a --setting, expected one of the two")
+    screen, eyes = parse_screen(size), EYE_DISTANCE if stereo else None
+    with closing(open_device(device)) as opened, tempfile.TemporaryDirectory() as scratch:
+        path = file or Path(scratch) / "random.muaavatar"
+        if setting is not None:
+            write(path, random_avatar(preset(setting)))
+        measured = measure(opened, path, frames=frames, screen=screen, eyes=eyes)
+    if output is not None:
+        files.write_bytes(output, json.dumps(as_json(measured), indent=2).encode() + b"\n")
+    Console().print(_table(measured))
+
+
+def run() -> None:
+    """Entry point of the command."""
+    refusing(bench)
+
+
+def _table(measured: Measured) -> Table:
+    width, height = measured.screen
+    title = f"{measured.avatar} on {measured.device}, median of {measured.frames} frames"
+    caption = (
+        f"{measured.visible:,} of {measured.splats:,} splats visible, {measured.eyes} x {width} x {height} pixels; "
+        f"a large copy reads and writes {measured.copy_bandwidth / 1e9:.1f} GB/s"
+    )
+    table = Table(*COLUMNS, title=title, caption=caption)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, timing in measured.kernels.items():
+        table.add_row(name, *_figures(timing.median, _spread(timing), measured.work[name], measured.copy_bandwidth))
+    table.add_section()
+    whole = _figures(total_milliseconds(measured), "", total_work(measured), measured.copy_bandwidth)
+    table.add_row("pose to sorted splats", *whole)
+    table.add_row("drawing", f"{measured.draw.median:.3f}", _spread(measured.draw))
+    return table
+
+
+def _figures(milliseconds: float, spread: str, work: Work, copy_bandwidth: float) -> tuple[str, ...]:
+    moved = rate(work.bytes, milliseconds)
+    operations = (f"{work.flops / 1e6:.2f}", f"{rate(work.flops, milliseconds) / 1e9:.1f}") if work.flops else ()
+    moving = (f"{work.bytes / 1e6:.2f}", f"{moved / 1e9:.1f}", f"{moved / copy_bandwidth:.1%}")
+    return f"{milliseconds:.3f}", spread, *moving, *operations
+
+
+def _spread(timing: Timing) -> str:
+    return f"{timing.low:.3f} - {timing.high:.3f}"
