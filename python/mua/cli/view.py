@@ -27,9 +27,10 @@ from mua.motion.joint_names import read_mapping
 from mua.player.buffers import AvatarBuffers
 from mua.player.motion import named_clip, player_clips
 from mua.player.offscreen import Offscreen, over, reference_picture, write_video
+from mua.player.scene import Toggles, parse_toggles
 from mua.player.shot import Shot, film
 
-Painter: TypeAlias = Callable[[Clip, int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
+Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
 
 
 def _list_devices(wanted: bool) -> None:
@@ -62,6 +63,9 @@ def view(
     list_devices: Annotated[
         bool, typer.Option("--list-devices", is_eager=True, callback=_list_devices, help="Number and name them.")
     ] = False,
+    show: Annotated[
+        str, typer.Option(help="Some of splats,geometry,template,skeleton,shadow, separated by commas.")
+    ] = "splats",
     reference: Annotated[bool, typer.Option(help="Compute on the CPU in numpy; needs no device.")] = False,
 ) -> None:
     """Show FILE in a window, or with -o write a picture or a video of it."""
@@ -80,11 +84,15 @@ def view(
         follow=follow,
         eyes=ipd if stereo else None,
     )
-    with _opened(file, device, reference=reference) as (avatar, paint):
+    toggles = parse_toggles(show)
+    if reference and toggles != Toggles():
+        raise InputError(f"--show is {show!r}; --reference draws splats alone")
+    with _opened(file, device, toggles, reference=reference) as (avatar, painter):
         chosen = _chosen(avatar, file, clip, motion=motion, mapping=mapping)
         shown = parse_frames(frames or ":", clip=chosen.name, count=len(chosen)) if video else _one(frame or 0, chosen)
         cameras = film(shot, avatar.rig, _part(chosen, shown))
-        pictures = (over(paint(chosen, i, c), color) for i, c in zip(shown, cameras, strict=True))
+        paint = painter(chosen)
+        pictures = (over(paint(i, c), color) for i, c in zip(shown, cameras, strict=True))
         if video:
             width = (2 if stereo else 1) * screen[0]
             shown_bar = track(pictures, description=output.name, total=len(shown), console=Console(stderr=True))
@@ -100,15 +108,17 @@ def run() -> None:
 
 
 @contextmanager
-def _opened(file: Path, device: str | None, *, reference: bool) -> Iterator[tuple[Avatar, Painter]]:
-    """The avatar, and what paints it, for as long as the device is open."""
+def _opened(
+    file: Path, device: str | None, toggles: Toggles, *, reference: bool
+) -> Iterator[tuple[Avatar, Callable[[Clip], Painter]]]:
+    """The avatar, and what paints frames of a clip of it, for as long as the device is open."""
     if reference:
         avatar = read(file)
-        yield avatar, partial(reference_picture, avatar)
+        yield avatar, lambda clip: partial(reference_picture, avatar, clip)
         return
     with closing(open_device(device)) as opened:
         buffers = AvatarBuffers(opened, file)
-        yield buffers.avatar, Offscreen(opened, buffers).picture
+        yield buffers.avatar, lambda clip: Offscreen(opened, buffers, clip, toggles).picture
 
 
 def _chosen(avatar: Avatar, file: Path, name: str | None, *, motion: Path | None, mapping: Path | None) -> Clip:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import wgpu
@@ -14,6 +15,8 @@ from mua.gpu.failure import naming
 
 SHADER = Path(__file__).parent / "shaders" / "splat.hlsl"
 IMAGE_FORMAT = "rgba16float"
+EXACT_FORMAT = "rgba32float"
+CHANNEL_TYPES: dict[str, np.dtype[Any]] = {IMAGE_FORMAT: np.dtype(np.float16), EXACT_FORMAT: np.dtype(np.float32)}
 DEVICE_DEPTH = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, 0, 1]])  # clip z of -w..w to 0..w
 
 
@@ -34,6 +37,7 @@ class SplatRenderer:
 
     def __init__(self, device: Device, color_format: str, *, depth_format: str | None = None) -> None:
         """With a depth format, what the pass drew before hides the splats whose centre lies behind it."""
+        self.color_format = color_format
         self._pipeline = device.pipeline(
             SHADER,
             "SplatVert",
@@ -72,16 +76,21 @@ def set_eye(render_pass: wgpu.GPURenderPassEncoder, eye: int, camera: Camera) ->
     render_pass.set_scissor_rect(eye * width, 0, width, height)
 
 
-def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, cameras: Sequence[Camera]) -> Array:
-    """Premultiplied sRGB and alpha [H, E W, 4] float32 of the eyes side by side; the renderer's format is IMAGE_FORMAT.
+def image_format(device: Device) -> str:
+    """The format in which many faint splats add up best: half floats lose a part of each that devices may truncate."""
+    return EXACT_FORMAT if "float32-blendable" in device.wgpu.features else IMAGE_FORMAT
 
-    Errors: InputError where the device cannot hold so large a picture.
+
+def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, cameras: Sequence[Camera]) -> Array:
+    """Premultiplied sRGB and alpha [H, E W, 4] float32 of the eyes side by side.
+
+    The renderer's format is one of CHANNEL_TYPES. Errors: InputError where the device cannot hold so large a picture.
     """
     width, height = cameras[0].screen
     size = (len(cameras) * width, height, 1)
     with naming(f"picture of {size[0]} x {size[1]} pixels"):
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-        target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=usage)
+        target = device.wgpu.create_texture(size=size, format=renderer.color_format, usage=usage)
         encoder = device.wgpu.create_command_encoder()
         cleared = {"view": target.create_view(), "load_op": "clear", "store_op": "store", "clear_value": (0, 0, 0, 0)}
         render_pass = encoder.begin_render_pass(color_attachments=[cleared])
@@ -93,9 +102,11 @@ def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, ca
 
 def read_image(
     device: Device,
-    texture: wgpu.GPUTexture,  # of IMAGE_FORMAT
+    texture: wgpu.GPUTexture,  # of a format of CHANNEL_TYPES
 ) -> Array:
     """The texture's pixels [H, W, 4] float32; waits for what is drawn."""
     width, height, _ = texture.size
-    pixels = device.wgpu.queue.read_texture({"texture": texture}, {"bytes_per_row": 8 * width}, texture.size)
-    return np.frombuffer(pixels, np.float16).reshape(height, width, 4).astype(np.float32)
+    channel = CHANNEL_TYPES[texture.format]
+    row = 4 * channel.itemsize * width
+    pixels = device.wgpu.queue.read_texture({"texture": texture}, {"bytes_per_row": row}, texture.size)
+    return np.frombuffer(pixels, channel).reshape(height, width, 4).astype(np.float32)

@@ -15,8 +15,10 @@ from mua.files import replacing
 from mua.gpu import Device
 from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
-from mua.player.draw import IMAGE_FORMAT, SplatRenderer, draw_image
+from mua.player.draw import image_format
 from mua.player.frame import AvatarFrame
+from mua.player.overlays import ground_height
+from mua.player.scene import Scene, Toggles, draw_picture
 from mua.render import render_premultiplied, to_bytes
 
 BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
@@ -29,31 +31,38 @@ ENCODING = (
 
 
 class Offscreen:
-    """Draws frames of one avatar on a device."""
+    """Draws frames of one clip of an avatar on a device."""
 
-    def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
-        """Errors: InputError where the device has too little memory."""
-        self._device = device
+    def __init__(self, device: Device, avatar: AvatarBuffers, clip: Clip, toggles: Toggles) -> None:
+        """`clip` is at the rate of the avatar's encoding. Errors: InputError where the device has too little memory."""
+        self._device, self._clip, self._toggles = device, clip, toggles
         self._frame = AvatarFrame(device, avatar)
-        self._renderer = SplatRenderer(device, IMAGE_FORMAT)
+        self._scene = Scene(device, self._frame, color_format=image_format(device))
+        self._ground = ground_height(avatar.avatar.rig, clip)
 
     def picture(
         self,
-        clip: Clip,  # at the rate of the avatar's encoding
-        index: int,
+        index: int,  # frame of the clip
         cameras: Sequence[Camera],  # of one eye or two
     ) -> Array:
-        """Premultiplied sRGB and alpha [H, E W, 4] of one frame of a clip, eyes side by side."""
+        """Premultiplied sRGB and alpha [H, E W, 4] of one frame, eyes side by side."""
         window = self._frame.avatar.avatar.encoding.frames(index)
+        rotations, translation = self._clip.rotations[window], self._clip.translation[window]
         commands = self._device.commands()
-        self._frame.decode(commands, clip.rotations[window], clip.translation[window])
+        self._frame.decode(commands, rotations, translation)
         self._frame.sort(commands, cameras)
         commands.submit()
-        return draw_image(self._device, self._renderer, self._frame.sorted, cameras)
+        self._scene.pose(rotations[0], translation[0], ground=self._ground)
+        return draw_picture(self._device, self._scene, cameras, self._toggles)
 
 
-def reference_picture(avatar: Avatar, clip: Clip, index: int, cameras: Sequence[Camera]) -> Array:
-    """The same picture by the CPU reference; each eye sees its own colours."""
+def reference_picture(
+    avatar: Avatar,
+    clip: Clip,  # at the rate of the avatar's encoding
+    index: int,
+    cameras: Sequence[Camera],
+) -> Array:
+    """The splats of the same picture by the CPU reference; each eye sees its own colours."""
     frame = decode_clip_frame(avatar, clip, frame=index)
     return np.hstack([render_premultiplied(frame, camera) for camera in cameras])
 

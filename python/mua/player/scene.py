@@ -54,6 +54,7 @@ class Scene:
         background: tuple[float, float, float, float] = CLEAR,  # premultiplied sRGB and alpha
     ) -> None:
         self._device, self._background = device, background
+        self.color_format = color_format
         self._splats = frame.sorted
         self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
         posed = PosedBuffers(frame.splats, frame.vertex_dq, frame.mesh)
@@ -121,7 +122,7 @@ class Scene:
 
 
 def draw_picture(device: Device, scene: Scene, cameras: Sequence[Camera], toggles: Toggles) -> Array:
-    """Premultiplied sRGB and alpha [H, E W, 4] float32 of one or two eyes side by side, from a scene of IMAGE_FORMAT.
+    """Premultiplied sRGB and alpha [H, E W, 4] float32 of one or two eyes side by side.
 
     Errors: InputError where the device cannot hold so large a picture.
     """
@@ -129,6 +130,6 @@ def draw_picture(device: Device, scene: Scene, cameras: Sequence[Camera], toggle
     size = (len(cameras) * width, height, 1)
     with naming(f"picture of {size[0]} x {size[1]} pixels"):
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
-        target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=usage)
+        target = device.wgpu.create_texture(size=size, format=scene.color_format, usage=usage)
         scene.draw(target, cameras, toggles)
         return read_image(device, target)

@@ -1,0 +1,120 @@
+"""A whole frame on a device against decode() in float64 on the same stored values: pose to sorted splats.
+
+As a command, `python tests/parity/frame_errors.py FILE ...` prints the errors of files.
+"""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from packed_splats import unpacked
+from splat_rounding import exact_keys
+
+from mua.arrays import Array
+from mua.bounds import frame_boxes, root_positions, union
+from mua.camera import Camera, orbit, stereo
+from mua.decode import Frame, decode_clip_frame
+from mua.gpu import Device, open_device
+from mua.kernels.splat_draw import splat_colors
+from mua.kernels.splat_project import LAST_KEY
+from mua.motion.clip import Clip
+from mua.motion.resample import resample
+from mua.player.buffers import AvatarBuffers
+from mua.player.frame import AvatarFrame
+from mua.rig.rig import Rig
+
+EYE_DISTANCE = 0.063  # metres
+VISIBLE_WORD = 7  # of `arguments`
+
+
+@dataclass(frozen=True)
+class FrameErrors:
+    """Largest errors over splats; the last four are of the splats that some eye sees."""
+
+    position: float  # metres
+    color: float  # of one channel, sRGB 0..1
+    opacity: float
+    key: float  # of 65535, beyond half a key: what rounding leaves to the order
+    key_bound: float  # what the error of positions and the rounding of depths may leave
+
+
+class PosedFrame:
+    """One frame of a clip, decoded and sorted on a device, and the reference."""
+
+    def __init__(self, device: Device, frame: AvatarFrame, clip: Clip, index: int, *, eyes: int, screen: int) -> None:
+        avatar = frame.avatar.avatar
+        window = avatar.encoding.frames(index)
+        self.frame, self.exact = frame, decode_clip_frame(avatar, clip, frame=index, dtype=np.float64)
+        self.cameras = cameras_of(avatar.rig, clip, eyes=eyes, screen=screen)
+        self.bounds = avatar.bounds + root_positions(avatar.rig, clip)[index]
+        commands = device.commands()
+        frame.decode(commands, clip.rotations[window], clip.translation[window])
+        frame.sort(commands, self.cameras)
+        commands.submit()
+        self.visible = int(frame.arguments.read()[VISIBLE_WORD])
+        self.order = frame.sorted.order.read()[: self.visible]  # [M]
+        self.keys = frame.keys[0].read()[: self.visible]  # [M] as sorted
+
+    def errors(self) -> FrameErrors:
+        splats = unpacked(self.frame.splats.read())
+        found = self.frame.colors.read(np.float16).reshape(-1, 4)[self.order].astype(float)
+        position = np.abs(splats["centre"] - self.exact.centres)
+        exact, rounding = exact_keys(
+            self.exact.centres[self.order], np.stack([camera.view for camera in self.cameras]), self.bounds
+        )
+        span = np.ptp(exact_depths(self.bounds, self.cameras))
+        moved = LAST_KEY * np.linalg.norm(position, axis=1).max(initial=0) / span
+        return FrameErrors(
+            position=float(position.max(initial=0)),
+            color=float(np.abs(found[:, :3] - exact_colors(self.exact, self.cameras)[self.order]).max(initial=0)),
+            opacity=float(np.abs(found[:, 3] - self.exact.opacities[self.order]).max(initial=0)),
+            key=float(np.abs(self.keys - exact).max(initial=0)) - 0.5,
+            key_bound=float(rounding + moved),
+        )
+
+
+def cameras_of(rig: Rig, clip: Clip, *, eyes: int, screen: int) -> Sequence[Camera]:
+    """One eye or two that see all of the clip."""
+    camera = orbit(union(frame_boxes(rig, clip)), screen=(screen, screen), azimuth=0.4, elevation=0.2)
+    return (camera,) if eyes == 1 else stereo(camera, EYE_DISTANCE)
+
+
+def exact_colors(frame: Frame, cameras: Sequence[Camera]) -> Array:
+    """Colours [N, 3] towards the mean of the eyes."""
+    middle = np.mean([camera.position for camera in cameras], axis=0)
+    return splat_colors(frame.centres, frame.texel_dq, frame.sh, middle)
+
+
+def exact_depths(bounds: Array, cameras: Sequence[Camera]) -> Array:
+    """Depths [8] of the corners of the box, metres, in the eyes' mean."""
+    mean = -np.mean([camera.view[2] for camera in cameras], axis=0)
+    corners = np.stack(np.meshgrid(*bounds.T)).reshape(3, -1).T
+    return np.asarray(corners @ mean[:3] + mean[3])
+
+
+def main(files: Sequence[str]) -> None:
+    """Print the largest errors over five frames of a file's first clip, for one eye and for two."""
+    device = open_device()
+    print(f"on {device.adapter}")
+    for file in files:
+        frame = AvatarFrame(device, AvatarBuffers(device, Path(file)))
+        avatar = frame.avatar.avatar
+        clip = resample(avatar.clips[0], avatar.encoding.rate)
+        frames = np.linspace(0, len(clip) - 1, 5).astype(int)
+        errors = [
+            PosedFrame(device, frame, clip, index, eyes=eyes, screen=512).errors()
+            for index in frames
+            for eyes in (1, 2)
+        ]
+        worst = {name: max(getattr(e, name) for e in errors) for name in ("position", "color", "opacity", "key")}
+        print(
+            f"{file}: {frame.splat_count} splats, position {1e3 * worst['position']:.5f} mm, "
+            f"colour {worst['color']:.6f} (1/{1 / worst['color']:.0f}), opacity {worst['opacity']:.6f}, "
+            f"depth key {worst['key']:.2f} of 65535"
+        )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
