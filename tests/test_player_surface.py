@@ -97,7 +97,7 @@ def test_leaves_limbs_apart_that_touch_in_the_texture() -> None:
 
 def test_lists_every_triangle_about_each_of_its_corners() -> None:
     _, surface = solid(cube(), 31)
-    owner = np.repeat(np.arange(len(surface.ring_starts) - 1), np.diff(surface.ring_starts.astype(np.int64)))
+    owner = np.repeat(np.arange(len(surface.ring_starts) - 1), surface.ring_starts[1:] - surface.ring_starts[:-1])
     about = np.column_stack([owner, surface.ring])
     turned = np.concatenate([np.roll(surface.triangles, -k, axis=1) for k in range(3)])
     np.testing.assert_array_equal(np.unique(about, axis=0), np.unique(turned, axis=0))

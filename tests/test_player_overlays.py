@@ -1,0 +1,237 @@
+"""Overlays are drawn where the numpy reference says that surface, joints and shadow are."""
+
+from dataclasses import astuple, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.asset.write import write
+from mua.camera import Camera, orbit, stereo
+from mua.decode import Frame, decode_clip_frame
+from mua.errors import InputError
+from mua.gpu import Device
+from mua.kernels.dq_skinning import blend_vertices
+from mua.motion.clip import Clip
+from mua.player.buffers import AvatarBuffers
+from mua.player.draw import view_projection
+from mua.player.frame import AvatarFrame
+from mua.player.overlays import DARKNESS, GEOMETRY_COLOR, JOINT_COLOR, LIGHT, TEMPLATE_COLOR, ground_height, shadow_area
+from mua.player.scene import Scene, Toggles, draw_picture, parse_toggles
+from mua.rig.skeleton import Pose
+
+SCREEN = (97, 131)  # pixels
+HALF = 2.0**-11  # relative rounding of a half float: the picture's format
+INDEX = 3  # frame of the clip
+AMBIENT, INSIDE = 0.28, 0.45  # of surface_draw.hlsl
+
+
+class Stage:
+    """The synthetic avatar at one frame of its clip, on the device and by the reference."""
+
+    def __init__(self, device: Device, path: Path) -> None:
+        self.device, self.avatar = device, synthetic_avatar()
+        write(path, self.avatar, storage="f32")
+        self.gpu = AvatarFrame(device, AvatarBuffers(device, path))
+        self.scene = Scene(device, self.gpu)
+        self.clip = self.avatar.clips[0]
+        self.window = self.avatar.encoding.frames(INDEX)
+        self.ground = ground_height(self.avatar.rig, self.clip)
+        self.frame: Frame = decode_clip_frame(self.avatar, self.clip, frame=INDEX, dtype=np.float64)
+
+    def picture(self, cameras: tuple[Camera, ...], show: str) -> Array:
+        commands = self.device.commands()
+        self.gpu.decode(commands, self.clip.rotations[self.window], self.clip.translation[self.window])
+        self.gpu.sort(commands, cameras)
+        commands.submit()
+        self.scene.pose(self.clip.rotations[INDEX], self.clip.translation[INDEX], ground=self.ground)
+        return draw_picture(self.device, self.scene, cameras, parse_toggles(show))
+
+
+@pytest.fixture(scope="module")
+def stage(device: Device, tmp_path_factory: pytest.TempPathFactory) -> Stage:
+    return Stage(device, tmp_path_factory.mktemp("overlays") / "synthetic.muaavatar")
+
+
+def camera_at(points: Array, *, azimuth: float = 0.0, elevation: float = 0.0) -> Camera:
+    return orbit(
+        np.stack([points.min(axis=0), points.max(axis=0)]), screen=SCREEN, azimuth=azimuth, elevation=elevation
+    )
+
+
+def pixels(camera: Camera, points: Array) -> Array:
+    """Column and row [P, 2] of points in the world."""
+    clip = np.column_stack([points, np.ones(len(points))]) @ view_projection(camera).T
+    return (clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN
+
+
+def drawn_box(image: Array) -> Array:
+    """First column and row, and one past the last, of what is drawn."""
+    rows, columns = np.nonzero(image[..., 3])
+    return np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1])
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 1.6, 3.1, 4.7])
+@pytest.mark.parametrize("show", ["geometry", "template"])
+def test_covers_the_outline_of_the_reference(stage: Stage, show: str, azimuth: float) -> None:
+    points = stage.frame.centres if show == "geometry" else stage.frame.mesh
+    camera = camera_at(points, azimuth=azimuth)
+    at = pixels(camera, points)
+    expected = np.concatenate([at.min(axis=0), at.max(axis=0)])
+    # a pixel is drawn where its centre is covered, so a sharp tip may lose one more on the way
+    assert np.abs(drawn_box(stage.picture((camera,), show)) - expected).max() < 2
+
+
+def test_lights_the_template_by_its_facets(stage: Stage) -> None:
+    camera = camera_at(stage.frame.mesh)
+    image = stage.picture((camera,), "template")
+    corners = stage.frame.mesh[stage.avatar.rig.mesh.faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    middle = corners.mean(axis=1)
+    to_camera = camera.position - middle
+    facing = np.einsum("fi,fi->f", rotation.normalize(normal), rotation.normalize(to_camera))
+    nearest = np.argmax(facing)
+    column, row = pixels(camera, middle)[nearest].astype(int)
+    expected = np.array(TEMPLATE_COLOR) * (AMBIENT + (1 - AMBIENT) * facing[nearest])
+    # the pixel's centre lies within a pixel of the facet's middle; differences of f32 positions make its normal
+    np.testing.assert_allclose(image[row, column, :3], expected, atol=0.01)
+
+
+def test_shows_the_outside_of_the_surface_bright_and_the_inside_dark(stage: Stage) -> None:
+    camera = camera_at(stage.frame.centres)
+    image = stage.picture((camera,), "geometry")[..., :3] / GEOMETRY_COLOR
+    assert image.max() > 0.9  # what faces the camera
+    down = camera_at(stage.frame.centres, elevation=1.5)  # into the open tube
+    assert stage.picture((down,), "geometry")[..., :3].max(axis=(0, 1))[0] > 0
+    solid = stage.picture((camera,), "geometry")
+    bright = solid[solid[..., 3] > 0][:, 0] / GEOMETRY_COLOR[0]
+    assert np.mean(bright < AMBIENT - HALF) < 0.05  # slivers of the far wall at the rims; a flipped wall would be most
+
+
+def test_draws_every_joint_over_all_else(stage: Stage) -> None:
+    camera = camera_at(stage.frame.centres)
+    image = stage.picture((camera,), "splats,geometry,template,skeleton")
+    _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translation[INDEX])
+    for column, row in pixels(camera, joints).astype(int):
+        np.testing.assert_allclose(image[row, column, :3], JOINT_COLOR, atol=HALF)
+
+
+def test_casts_one_shadow_however_many_walls_overlap(stage: Stage) -> None:
+    light, ground = np.array(LIGHT), stage.ground
+    mesh = stage.frame.mesh
+    fallen = mesh - light * ((mesh[:, 1:2] - ground) / light[1])
+    camera = camera_at(fallen, elevation=1.5)
+    image = stage.picture((camera,), "shadow")
+    assert image[..., :3].max() == 0
+    assert image[..., 3].max() <= DARKNESS * (1 + HALF)
+    inside = pixels(camera, fallen[stage.avatar.rig.mesh.faces].mean(axis=1)).astype(int)
+    darkness = image[inside[:, 1], inside[:, 0], 3]
+    assert np.mean(darkness > 0.9 * DARKNESS) > 0.5  # but for facets at the soft edge
+    outline = drawn_box(image)
+    at = pixels(camera, fallen)
+    softness = 2 * shadow_area(stage.avatar.bounds, ground)[2] / 256  # two samples of the mask, metres
+    pixel = np.ptp(pixels(camera, np.array([[0, ground, 0], [1, ground, 0]])), axis=0)[0]
+    reach = softness * pixel + 2
+    assert np.abs(outline - np.concatenate([at.min(axis=0), at.max(axis=0)])).max() < reach
+
+
+def test_hides_splats_behind_the_surface(stage: Stage) -> None:
+    camera = camera_at(stage.frame.centres)
+    both = stage.picture((camera,), "splats,geometry")
+    alone = stage.picture((camera,), "splats")
+    surface = stage.picture((camera,), "geometry")
+    covered = surface[..., 3] == 1
+    np.testing.assert_allclose(both[covered][:, 3], 1, atol=2 * HALF)
+    assert np.abs(both - alone)[covered].max() > 0.01  # the surface shines through between splats
+    assert np.abs(both - surface)[covered].max() > 0.01  # splats on the near wall still cover it
+
+
+def test_gives_each_eye_its_own_picture(stage: Stage) -> None:
+    show = "geometry,template,skeleton,shadow"
+    camera = camera_at(stage.frame.centres, elevation=0.3)
+    eyes = stereo(camera, 0.063)
+    pair = stage.picture(eyes, show)
+    alone = np.hstack([stage.picture((eye,), show) for eye in eyes])
+    differs = (np.abs(pair - alone) > 2 * HALF).any(axis=2)
+    # a pixel's centre within a device's subpixel of an edge may fall to either side once the viewport moves
+    assert differs.mean() < 1 / 256
+
+
+def test_shows_nothing_where_nothing_is_chosen(stage: Stage) -> None:
+    camera = camera_at(stage.frame.centres)
+    assert stage.picture((camera,), "splats")[..., 3].max() > 0
+    assert draw_picture(stage.device, stage.scene, (camera,), Toggles(splats=False)).max() == 0
+
+
+@pytest.mark.parametrize("show", ["geometry", "template", "skeleton", "shadow", "splats,geometry,skeleton,shadow"])
+def test_draws_from_inside_the_body_and_on_one_pixel(stage: Stage, show: str) -> None:
+    middle = stage.frame.centres.mean(axis=0)
+    inside = orbit(np.stack([middle, middle]), screen=SCREEN)
+    assert np.isfinite(stage.picture((inside,), show)).all()
+    pixel = orbit(np.stack([stage.frame.centres.min(axis=0), stage.frame.centres.max(axis=0)]), screen=(1, 1))
+    assert stage.picture((pixel,), show).shape == (1, 1, 4)
+
+
+def test_names_what_can_be_shown() -> None:
+    assert parse_toggles("geometry, shadow") == Toggles(splats=False, geometry=True, shadow=True)
+    with pytest.raises(InputError, match="--show is 'splat'; expected some of splats, geometry, template"):
+        parse_toggles("splat")
+
+
+def test_finds_the_shadow_of_every_corner_inside_the_square() -> None:
+    bounds = np.array([[-0.4, 0.0, -0.3], [0.5, 1.8, 0.2]])
+    low_x, low_z, side, ground = shadow_area(bounds, 0.1)
+    corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
+    fallen = corners - np.array(LIGHT) * ((corners[:, 1:2] - ground) / LIGHT[1])
+    assert ((fallen[:, [0, 2]] > [low_x, low_z]) & (fallen[:, [0, 2]] < [low_x + side, low_z + side])).all()
+
+
+def still(avatar: Avatar, heights: Array) -> Clip:
+    """The rest pose, its root moved up by each height."""
+    pose: Pose = avatar.rig.skeleton.bind_pose
+    lift = np.outer(heights, [0, 1.0, 0])
+    return Clip("still", 24.0, np.tile(pose.rotations, (len(heights), 1, 1)), pose.translation + lift)
+
+
+def test_stands_the_ground_under_most_frames() -> None:
+    avatar = synthetic_avatar()
+    rig = avatar.rig
+    joints = rig.skeleton.skinning(*astuple(rig.skeleton.bind_pose))
+    rest = rotation.dual_transform(blend_vertices(joints, rig.skin_indices, rig.skin_weights), rig.mesh.vertices)
+    lowest = rest[:, 1].min()
+    assert ground_height(rig, None) == pytest.approx(rig.mesh.vertices[:, 1].min())
+    leaping = np.where(np.arange(31) % 3 == 0, 0.2, 0.7)
+    leaping[7] = -0.5  # one frame strays below
+    assert ground_height(rig, still(avatar, leaping)) == pytest.approx(lowest + 0.2, abs=1e-6)
+
+
+def test_draws_an_avatar_without_texels(device: Device, tmp_path: Path) -> None:
+    avatar = synthetic_avatar()
+    texels = replace(
+        avatar.rig.texels,
+        texels=avatar.rig.texels.texels[:0],
+        triangles=avatar.rig.texels.triangles[:0],
+        barycentrics=avatar.rig.texels.barycentrics[:0],
+    )
+    empty = replace(
+        avatar,
+        rig=replace(avatar.rig, texels=texels),
+        geometry=replace(avatar.geometry, static=avatar.geometry.static[:, :0]),
+        appearance=replace(avatar.appearance, static=avatar.appearance.static[:, :0]),
+    )
+    write(tmp_path / "empty.muaavatar", empty)
+    scene = Scene(device, AvatarFrame(device, AvatarBuffers(device, tmp_path / "empty.muaavatar")))
+    camera = camera_at(avatar.rig.mesh.vertices)
+    picture = draw_picture(device, scene, (camera,), Toggles(splats=False, geometry=True))
+    assert picture.max() == 0
+    assert picture.shape == (SCREEN[1], SCREEN[0], 4)
+
+
+def test_draws_into_targets_of_changing_size(stage: Stage) -> None:
+    for screen in [(5, 7), (64, 3), (5, 7)]:
+        camera = replace(camera_at(stage.frame.centres), screen=screen)
+        assert stage.picture((camera,), "geometry,shadow").shape == (screen[1], screen[0], 4)
