@@ -5,35 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bvh_files import BVH
 
 from mua import rotation
 from mua.errors import InputError
 from mua.motion.load import load_motion, same_joints
 from mua.motion.read import read_motion
 from mua.rig.skeleton import Skeleton
-
-BVH = """HIERARCHY
-ROOT hips
-{
-  OFFSET 0 90 0
-  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
-  JOINT spine
-  {
-    OFFSET 0 20 0
-    CHANNELS 3 Zrotation Xrotation Yrotation
-    End Site
-    {
-      OFFSET 0 20 0
-    }
-  }
-}
-MOTION
-Frames: 3
-Frame Time: 0.1
-0 90 0 0 0 0 0 0 0
-0 90 5 0 0 0 10 0 0
-0 90 9 0 0 0 20 0 0
-"""
 
 
 @pytest.fixture

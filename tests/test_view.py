@@ -1,18 +1,26 @@
-"""mua-view writes the frame that it is asked for and refuses what it cannot show in a sentence."""
+"""mua-view writes the picture or video that it is asked for and refuses what it cannot show in a sentence."""
 
 import dataclasses
+import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
+import imageio_ffmpeg
 import numpy as np
 import pytest
+from bvh_files import BVH
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
 from mua.cli.view import view
 from mua.errors import InputError
+from mua.gpu import adapters
+
+SHADES = 2  # of 255, by which float32 may differ where many splats meet, and one for rounding to 8 bits
+CODED_SHADES = 3  # of 255, by which a plain colour may come back from 8-bit YCbCr: rounded thrice
 
 
 @pytest.fixture(scope="module")
@@ -22,13 +30,28 @@ def avatar_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+def command(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """mua-view in a process of its own, without a display."""
+    line = [sys.executable, "-c", "from mua.cli.view import run; run()", *map(str, arguments)]
+    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    return subprocess.run(line, capture_output=True, text=True, check=False, env=kept | environment)
+
+
+def video(path: Path, *, side: int) -> np.ndarray:
+    """Pictures [F, H, W, 3] of a video of square pictures."""
+    line = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    return np.frombuffer(subprocess.run(line, capture_output=True, check=True).stdout, np.uint8).reshape(
+        -1, side, side, 3
+    )
+
+
 def pixels(path: Path) -> np.ndarray:
     with Image.open(path) as image:
         return np.asarray(image)
 
 
 def test_writes_an_image_of_the_size_and_background_asked_for(avatar_file: Path, tmp_path: Path) -> None:
-    view(avatar_file, output=tmp_path / "v.png", size="40x61", background="#204060")
+    view([avatar_file], output=tmp_path / "v.png", size="40x61", background="#204060")
     image = pixels(tmp_path / "v.png")
     assert image.shape == (61, 40, 3)
     np.testing.assert_array_equal(image[0, 0], [0x20, 0x40, 0x60])
@@ -38,7 +61,7 @@ def test_writes_an_image_of_the_size_and_background_asked_for(avatar_file: Path,
 def test_frames_and_angles_differ(avatar_file: Path, tmp_path: Path) -> None:
     choices = [{}, {"frame": 5}, {"azimuth": 90.0}, {"elevation": 60.0}]
     for i, choice in enumerate(choices):
-        view(avatar_file, output=tmp_path / f"{i}.png", size="32", clip="wave", **choice)
+        view([avatar_file], output=tmp_path / f"{i}.png", size="32", clip="wave", **choice)
     images = {pixels(tmp_path / f"{i}.png").tobytes() for i in range(len(choices))}
     assert len(images) == len(choices)
 
@@ -60,27 +83,141 @@ def test_refuses_with_a_sentence_and_writes_nothing(
     avatar_file: Path, tmp_path: Path, choice: dict[str, str | int], sentence: str
 ) -> None:
     with pytest.raises(InputError, match=sentence):
-        view(avatar_file, output=tmp_path / "v.png", **choice)
+        view([avatar_file], output=tmp_path / "v.png", **choice)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_refuses_a_suffix_that_is_no_image(avatar_file: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"-o is .*v\.txt"):
-        view(avatar_file, output=tmp_path / "v.txt")
+        view([avatar_file], output=tmp_path / "v.txt")
 
 
 def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
     path = tmp_path / "still.muaavatar"
     write(path, dataclasses.replace(synthetic_avatar(), clips=()))
     with pytest.raises(InputError, match="holds no clips"):
-        view(path, output=tmp_path / "v.png")
+        view([path], output=tmp_path / "v.png")
 
 
 def test_command_exits_with_status_one_and_keeps_an_earlier_image(avatar_file: Path, tmp_path: Path) -> None:
     output = tmp_path / "v.png"
     output.write_bytes(b"earlier")
-    command = [sys.executable, "-c", "from mua.cli.view import run; run()", str(avatar_file), "-o", str(output)]
-    refused = subprocess.run([*command, "--clip", "jump"], capture_output=True, text=True, check=False)
+    refused = command(avatar_file, "-o", output, "--clip", "jump")
     assert (refused.returncode, refused.stdout) == (1, "")
     assert refused.stderr.startswith("error: --clip is 'jump'")
     assert output.read_bytes() == b"earlier"
+
+
+def test_the_device_and_the_cpu_reference_write_the_same_picture(avatar_file: Path, tmp_path: Path) -> None:
+    for name, reference in (("device", False), ("reference", True)):
+        view([avatar_file], output=tmp_path / f"{name}.png", size="64x80", frame=3, reference=reference)
+    found, expected = (pixels(tmp_path / f"{name}.png").astype(int) for name in ("device", "reference"))
+    assert np.abs(found - expected).max() <= SHADES
+
+
+def test_stereo_puts_two_different_eyes_side_by_side(avatar_file: Path, tmp_path: Path) -> None:
+    view([avatar_file], output=tmp_path / "v.png", size="40x60", stereo=True)
+    image = pixels(tmp_path / "v.png")
+    assert image.shape == (60, 80, 3)
+    left, right = image[:, :40], image[:, 40:]
+    columns = [np.nonzero((eye != 255).any(axis=(0, 2)))[0].mean() for eye in (left, right)]
+    assert columns[0] > columns[1]  # what is near stands farther right in the left eye
+
+
+def test_eyes_without_distance_see_the_same(avatar_file: Path, tmp_path: Path) -> None:
+    view([avatar_file], output=tmp_path / "v.png", size="32", stereo=True, ipd=0.0)
+    image = pixels(tmp_path / "v.png")
+    np.testing.assert_array_equal(image[:, :32], image[:, 32:])
+
+
+def test_writes_a_video_of_the_frames_asked_for(avatar_file: Path, tmp_path: Path) -> None:
+    view([avatar_file], output=tmp_path / "v.mp4", size="64", frames="2:6", background="#204060")
+    pictures = video(tmp_path / "v.mp4", side=64).astype(int)
+    assert len(pictures) == 4
+    assert np.abs(pictures[:, 0, 0] - [0x20, 0x40, 0x60]).max() <= CODED_SHADES
+    assert [path.name for path in tmp_path.iterdir()] == ["v.mp4"]
+
+
+def test_a_video_without_frames_named_holds_the_whole_clip(avatar_file: Path, tmp_path: Path) -> None:
+    view([avatar_file], output=tmp_path / "v.mp4", size="16")
+    assert len(video(tmp_path / "v.mp4", side=16)) == 7
+
+
+def test_the_camera_orbits_and_follows(avatar_file: Path, tmp_path: Path) -> None:
+    choices = [{}, {"orbit": 90.0}, {"follow": True}]
+    for i, choice in enumerate(choices):
+        view([avatar_file], output=tmp_path / f"{i}.mp4", size="32", **choice)
+    assert len({video(tmp_path / f"{i}.mp4", side=32)[-1].tobytes() for i in range(len(choices))}) == len(choices)
+
+
+def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Path) -> None:
+    motion = tmp_path / "wave.bvh"
+    motion.write_text(BVH)
+    mapping = tmp_path / "joints.json"
+    mapping.write_text(json.dumps({"root": "hips", "middle": "spine"}))
+    for frame in (0, 2):
+        chosen = {"motion": motion, "mapping": mapping, "frame": frame}
+        view([avatar_file], output=tmp_path / f"{frame}.png", size="32", **chosen)
+    assert (pixels(tmp_path / "0.png") != pixels(tmp_path / "2.png")).any()
+    with pytest.raises(InputError, match=r"wave\.bvh"):
+        view([avatar_file], output=tmp_path / "v.png", motion=motion)
+
+
+@pytest.mark.parametrize(
+    ("name", "choice", "sentence"),
+    [
+        ("v.mp4", {"size": "33x32"}, "--size is '33x32'; a video needs an even width and height"),
+        ("v.mp4", {"frames": "3"}, "--frames is '3'; expected FIRST:END"),
+        ("v.mp4", {"frames": "a:b"}, "--frames is 'a:b'"),
+        ("v.mp4", {"frames": "3:3"}, "--frames is '3:3'; clip 'wave' has frames 0 to 6"),
+        ("v.mp4", {"frames": "0:8"}, "--frames is '0:8'; clip 'wave' has frames 0 to 6"),
+        ("v.mp4", {"frame": 3}, "a video takes --frames FIRST:END, a picture --frame"),
+        ("v.png", {"frames": "0:3"}, "a video takes --frames FIRST:END, a picture --frame"),
+        ("v.png", {"device": "no such device"}, "device no such device: no graphics device"),
+        ("v.png", {"show": "splats,hat"}, "--show is 'splats,hat'"),
+        ("v.png", {"show": "skeleton", "reference": True}, "--reference draws splats alone"),
+    ],
+)
+def test_refuses_what_neither_a_picture_nor_a_video_takes(
+    avatar_file: Path, tmp_path: Path, name: str, choice: dict[str, str], sentence: str
+) -> None:
+    with pytest.raises(InputError, match=sentence):
+        view([avatar_file], output=tmp_path / name, **choice)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_refuses_several_files_for_one_picture(avatar_file: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="expected one FILE to picture, found 2"):
+        view([avatar_file] * 2, output=tmp_path / "v.png")
+
+
+def test_names_the_file_that_is_broken(tmp_path: Path) -> None:
+    path = tmp_path / "broken.muaavatar"
+    path.write_bytes(b"not an avatar at all")
+    with pytest.raises(InputError, match=r"broken\.muaavatar"):
+        view([path], output=tmp_path / "v.png")
+
+
+def test_shows_what_is_toggled(avatar_file: Path, tmp_path: Path) -> None:
+    for show in ("splats", "template", "geometry", "skeleton", "splats,shadow"):
+        view([avatar_file], output=tmp_path / f"{show}.png", size="48", show=show)
+    assert len({pixels(path).tobytes() for path in tmp_path.glob("*.png")}) == 5
+
+
+def test_without_a_display_says_so_and_offers_a_picture(avatar_file: Path) -> None:
+    refused = command(avatar_file)
+    assert refused.returncode == 1
+    assert refused.stderr.count("\n") == 1
+    assert "display" in refused.stderr
+    assert "-o" in refused.stderr
+
+
+def test_lists_devices_without_a_file() -> None:
+    listed = command("--list-devices")
+    assert listed.returncode == 0
+    assert [line.split(":")[0] for line in listed.stdout.splitlines()] == [str(i) for i in range(len(adapters()))]
+
+
+def test_needs_no_torch() -> None:
+    code = "import sys, mua.cli.view, mua.player.window; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

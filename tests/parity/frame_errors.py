@@ -14,7 +14,7 @@ from splat_rounding import exact_keys
 
 from mua.arrays import Array
 from mua.bounds import frame_boxes, root_positions, union
-from mua.camera import Camera, orbit, stereo
+from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import Frame, decode_clip_frame
 from mua.gpu import Device, open_device
 from mua.kernels.splat_draw import splat_colors
@@ -25,7 +25,6 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.frame import AvatarFrame
 from mua.rig.rig import Rig
 
-EYE_DISTANCE = 0.063  # metres
 VISIBLE_WORD = 7  # of `arguments`
 
 

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frame_errors import EYE_DISTANCE, PosedFrame
+from frame_errors import PosedFrame
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
 from mua.asset import write
 from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
-from mua.camera import Camera, orbit, stereo
+from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.gpu import Device

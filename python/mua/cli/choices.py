@@ -5,6 +5,7 @@ from pathlib import Path
 from PIL import Image, ImageColor
 
 from mua.errors import InputError
+from mua.motion.clip import Clip
 
 LARGEST = 8192  # pixels along a side
 VIDEO = ".mp4"
@@ -30,19 +31,32 @@ def parse_color(text: str) -> tuple[float, float, float]:
     return red / 255, green / 255, blue / 255
 
 
-def parse_frames(text: str, *, clip: str, count: int) -> range:
-    """The frames of `A:B`, A and not B; either may be left out."""
+def parse_frame(frame: int | None, clip: Clip) -> range:
+    """The one frame of a picture, the first if none is given."""
+    index = 0 if frame is None else frame
+    if not 0 <= index < len(clip):
+        raise InputError(f"--frame is {index}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
+    return range(index, index + 1)
+
+
+def parse_frames(text: str | None, clip: Clip) -> range:
+    """The frames of `FIRST:END`, FIRST and not END; either may be left out."""
+    if text is None:
+        return range(len(clip))
     first, colon, end = text.partition(":")
     if not colon or not all(part == "" or part.isdecimal() for part in (first, end)):
         raise InputError(f"--frames is {text!r}; expected FIRST:END, such as 0:30 for the first thirty")
-    frames = range(int(first or 0), int(end or count))
-    if not frames or frames.stop > count:
-        raise InputError(f"--frames is {text!r}; clip {clip!r} has frames 0 to {count - 1}")
+    frames = range(int(first or 0), int(end or len(clip)))
+    if not frames or frames.stop > len(clip):
+        raise InputError(f"--frames is {text!r}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
     return frames
+
+
+def is_video(output: Path) -> bool:
+    return output.suffix.lower() == VIDEO
 
 
 def require_format(output: Path) -> None:
     """Refuse a suffix that neither an image format nor a video has, before any work is done."""
-    suffix = output.suffix.lower()
-    if suffix != VIDEO and suffix not in Image.registered_extensions():
+    if not is_video(output) and output.suffix.lower() not in Image.registered_extensions():
         raise InputError(f"-o is {output}; expected a suffix of an image format, such as .png, or {VIDEO}")

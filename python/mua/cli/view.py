@@ -1,6 +1,6 @@
 """mua-view: an avatar in a window, or as a picture or a video."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import partial
@@ -17,7 +17,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.camera import EYE_DISTANCE, Camera
-from mua.cli.choices import VIDEO, parse_color, parse_frames, parse_screen, require_format
+from mua.cli.choices import is_video, parse_color, parse_frame, parse_frames, parse_screen, require_format
 from mua.cli.failure import refusing
 from mua.errors import InputError
 from mua.files import replacing
@@ -42,7 +42,7 @@ def _list_devices(wanted: bool) -> None:
 
 
 def view(
-    file: Annotated[Path, typer.Argument(help="A .muaavatar file.")],
+    files: Annotated[list[Path], typer.Argument(help="A .muaavatar file; several to switch between in the window.")],
     clip: Annotated[str | None, typer.Option(help="Name of a clip in the file; the first if left out.")] = None,
     frame: Annotated[int | None, typer.Option(help="Frame of a picture at the avatar's rate, from 0.")] = None,
     frames: Annotated[str | None, typer.Option(help="Frames of a video, FIRST:END; all if left out.")] = None,
@@ -55,8 +55,8 @@ def view(
     azimuth: Annotated[float, typer.Option(help="Degrees round it to its left; 0 is the front of its bind pose.")] = 0,
     elevation: Annotated[float, typer.Option(help="Degrees from which the camera looks down.")] = 0,
     orbit: Annotated[float, typer.Option(help="Degrees per second by which a video's camera goes round.")] = 0,
-    follow: Annotated[bool, typer.Option(help="The camera goes along with the figure.")] = False,
-    stereo: Annotated[bool, typer.Option(help="Left and right eye side by side.")] = False,
+    follow: Annotated[bool, typer.Option("--follow", help="The camera goes along with the figure.")] = False,
+    stereo: Annotated[bool, typer.Option("--stereo", help="Left and right eye side by side.")] = False,
     ipd: Annotated[float, typer.Option(help="Metres between the eyes.")] = EYE_DISTANCE,
     background: Annotated[str, typer.Option(help="Colour name or #rrggbb.")] = "white",
     device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
@@ -66,40 +66,40 @@ def view(
     show: Annotated[
         str, typer.Option(help="Some of splats,geometry,template,skeleton,shadow, separated by commas.")
     ] = "splats",
-    reference: Annotated[bool, typer.Option(help="Compute on the CPU in numpy; needs no device.")] = False,
+    reference: Annotated[
+        bool, typer.Option("--reference", help="Compute on the CPU in numpy; needs no device.")
+    ] = False,
 ) -> None:
-    """Show FILE in a window, or with -o write a picture or a video of it."""
+    """Show FILES in a window, or with -o write a picture or a video of one."""
+    joints = None if mapping is None else read_mapping(mapping)
     if output is None:
-        raise InputError("no window yet; -o writes a picture")
+        from mua.player.window import show as show_window  # here, because pictures need no window system
+
+        show_window(files, open_device(device), clip=clip, motion=motion, mapping=joints)
+        return
+    if len(files) > 1:
+        raise InputError(f"-o is {output}; expected one FILE to picture, found {len(files)}")
     require_format(output)
-    video = output.suffix.lower() == VIDEO
+    video = is_video(output)
     if (frame if video else frames) is not None:
         raise InputError(f"-o is {output}; a video takes --frames FIRST:END, a picture --frame")
-    screen, color = parse_screen(size, even=video), parse_color(background)
     shot = Shot(
-        screen,
+        parse_screen(size, even=video),
         azimuth=np.radians(azimuth),
         elevation=np.radians(elevation),
         turning=np.radians(orbit),
         follow=follow,
         eyes=ipd if stereo else None,
     )
-    toggles = parse_toggles(show)
+    color, toggles = parse_color(background), parse_toggles(show)
     if reference and toggles != Toggles():
         raise InputError(f"--show is {show!r}; --reference draws splats alone")
-    with _opened(file, device, toggles, reference=reference) as (avatar, painter):
-        chosen = _chosen(avatar, file, clip, motion=motion, mapping=mapping)
-        shown = parse_frames(frames or ":", clip=chosen.name, count=len(chosen)) if video else _one(frame or 0, chosen)
-        cameras = film(shot, avatar.rig, _part(chosen, shown))
-        paint = painter(chosen)
-        pictures = (over(paint(i, c), color) for i, c in zip(shown, cameras, strict=True))
-        if video:
-            width = (2 if stereo else 1) * screen[0]
-            shown_bar = track(pictures, description=output.name, total=len(shown), console=Console(stderr=True))
-            write_video(output, shown_bar, size=(width, screen[1]), rate=chosen.rate)
-        else:
-            with replacing(output) as temporary:
-                Image.fromarray(next(pictures)).save(temporary)
+    with _opened(files[0], device, toggles, reference=reference) as (avatar, painter):
+        chosen = _chosen(avatar, files[0], clip, motion=motion, mapping=joints)
+        shown = parse_frames(frames, chosen) if video else parse_frame(frame, chosen)
+        paint, cameras = painter(chosen), film(shot, avatar.rig, _part(chosen, shown))
+        pictures = [partial(paint, index, eyes) for index, eyes in zip(shown, cameras, strict=True)]
+        _save(output, (over(picture(), color) for picture in pictures), count=len(pictures), rate=chosen.rate)
 
 
 def run() -> None:
@@ -121,22 +121,26 @@ def _opened(
         yield buffers.avatar, lambda clip: Offscreen(opened, buffers, clip, toggles).picture
 
 
-def _chosen(avatar: Avatar, file: Path, name: str | None, *, motion: Path | None, mapping: Path | None) -> Clip:
+def _chosen(
+    avatar: Avatar, file: Path, name: str | None, *, motion: Path | None, mapping: Mapping[str, str] | None
+) -> Clip:
     """The clip to show; what retargeting has to tell goes to standard error."""
-    names = None if mapping is None else read_mapping(mapping)
-    clips, notes = player_clips(avatar, file, motion=motion, mapping=names)
+    clips, notes = player_clips(avatar, file, motion=motion, mapping=mapping)
     for note in notes:
-        Console(stderr=True).print(note, highlight=False)
+        typer.echo(note, err=True)
     return named_clip(clips, name, source=motion or file)
-
-
-def _one(frame: int, clip: Clip) -> range:
-    """The frame of a picture."""
-    if not 0 <= frame < len(clip):
-        raise InputError(f"--frame is {frame}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
-    return range(frame, frame + 1)
 
 
 def _part(clip: Clip, frames: range) -> Clip:
     kept = slice(frames.start, frames.stop)
     return replace(clip, rotations=clip.rotations[kept], translation=clip.translation[kept])
+
+
+def _save(output: Path, pictures: Iterator[Array], *, count: int, rate: float) -> None:
+    """Write a picture, or a video with a progress bar."""
+    if is_video(output):
+        bar = track(pictures, description=output.name, total=count, console=Console(stderr=True))
+        write_video(output, iter(bar), rate=rate)
+    else:
+        with replacing(output) as temporary:
+            Image.fromarray(next(pictures)).save(temporary)

@@ -1,6 +1,7 @@
 """Pictures and videos without a window."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 import imageio_ffmpeg
@@ -77,23 +78,29 @@ def over(
 
 def write_video(
     path: Path,
-    pictures: Iterable[Array],  # [H, W, 3] uint8
+    pictures: Iterator[Array],  # [H, W, 3] uint8, at least one; H and W even
     *,
-    size: tuple[int, int],  # width, height, pixels, both even
     rate: float,  # pictures per second
 ) -> None:
     """Write an MP4 (H.264), all of it or none.
 
-    Errors: InputError where the encoder fails, with what it said.
+    Errors: InputError where the encoder stops, with what it said.
     """
+    first = next(pictures)
     with replacing(path) as temporary:
         writer = imageio_ffmpeg.write_frames(
-            temporary, size, fps=rate, codec="libx264", quality=None, macro_block_size=2, output_params=list(ENCODING)
+            temporary,
+            first.shape[1::-1],
+            fps=rate,
+            codec="libx264",
+            quality=None,
+            macro_block_size=2,
+            output_params=list(ENCODING),
         )
         try:
             writer.send(None)
-            for picture in pictures:
-                writer.send(np.ascontiguousarray(picture))
+            for picture in chain([first], pictures):
+                writer.send(picture)
         except OSError as error:
             raise InputError(f"{path}: the encoder stopped: {str(error).splitlines()[0]}") from error
         finally:
