@@ -1,0 +1,326 @@
+"""The interactive player answers mouse, keys and panel; its window opens on a display and says so where there is none.
+
+Most tests drive the window's own code on rendercanvas' off-screen canvas, whose pictures can be read back; one opens a
+window on a virtual display and looks at the screen.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import ImageGrab
+from rendercanvas.offscreen import RenderCanvas
+from synthetic_avatar import synthetic_avatar
+
+from mua.arrays import Array
+from mua.asset.write import write
+from mua.camera import orbit
+from mua.errors import InputError
+from mua.gpu import Device
+from mua.motion.clip import Clip
+from mua.player.panel import KEYS, WIDTH
+from mua.player.scene import Toggles
+from mua.player.session import BACKGROUND, Session, Source
+from mua.player.viewer import Viewer
+from mua.player.viewpoint import FARTHEST, NEAREST, Viewpoint, framing
+from mua.player.window import show
+
+SIZE = (640, 360)
+COLOR = tuple(round(255 * c) for c in BACKGROUND[:3])
+DEADLINE = 120.0  # seconds for a window to open on a busy machine; it takes a few
+EMPTY = (slice(300, 350), slice(WIDTH + 20, WIDTH + 60))  # rows and columns beside panel and figure
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
+    """Two avatars, the second with one clip more, and a broken one."""
+    directory = tmp_path_factory.mktemp("window")
+    avatar = synthetic_avatar(1)
+    clip = avatar.clips[0]
+    longer = Clip("twice", clip.rate, np.tile(clip.rotations, (2, 1, 1)), np.tile(clip.translation, (2, 1)))
+    write(directory / "first.muaavatar", synthetic_avatar(0))
+    write(directory / "second.muaavatar", replace(avatar, clips=(clip, longer)))
+    (directory / "broken.muaavatar").write_bytes(b"not an avatar")
+    return tuple(directory / f"{name}.muaavatar" for name in ("first", "second", "broken"))
+
+
+@pytest.fixture
+def window(device: Device, files: tuple[Path, ...]) -> Iterator["Driven"]:
+    driven = Driven(device, files)
+    yield driven
+    driven.canvas.close()
+
+
+class Driven:
+    """A window on a canvas without a display, at rest."""
+
+    def __init__(self, device: Device, files: tuple[Path, ...]) -> None:
+        self.canvas = RenderCanvas(size=SIZE)
+        self.viewer = Viewer(self.canvas, device, Source(files))
+        self.session: Session = self.viewer.session
+        self.session.playing = False
+        self.picture()  # frames the view
+
+    def send(self, *events: Mapping[str, object]) -> None:
+        for event in events:
+            self.canvas.submit_event(dict(event))
+        self.canvas._process_events()
+
+    def press(self, key: str) -> None:
+        self.send(*[{"event_type": f"key_{way}", "key": key, "modifiers": ()} for way in ("down", "up")])
+
+    def drag(
+        self, start: tuple[int, int], end: tuple[int, int], *, button: int, modifiers: tuple[str, ...] = ()
+    ) -> None:
+        common = {"button": button, "buttons": (button,), "modifiers": modifiers, "touches": {}, "ntouches": 0}
+        for kind, (x, y) in (
+            ("pointer_move", start),
+            ("pointer_down", start),
+            ("pointer_move", end),
+            ("pointer_up", end),
+        ):
+            buttons = () if kind == "pointer_move" and (x, y) == start else common["buttons"]
+            self.send({**common, "event_type": kind, "x": x, "y": y, "buttons": buttons})
+            self.picture()  # the panel learns where the mouse is when it is drawn
+
+    def picture(self) -> Array:
+        return np.asarray(self.canvas.draw())[..., :3].copy()
+
+    def click(self, x: int, y: int) -> None:
+        self.drag((x, y), (x, y), button=1)
+
+
+def test_draws_panel_and_figure_over_the_background(window: Driven) -> None:
+    image = window.picture()
+    assert image.shape == (SIZE[1], SIZE[0], 3)
+    np.testing.assert_array_equal(np.unique(image[EMPTY].reshape(-1, 3), axis=0), [COLOR])
+    assert (image[:40, :WIDTH] != COLOR).any(axis=2).mean() > 0.9
+    assert (image[:, WIDTH:] != COLOR).any(axis=2).sum() > 100
+
+
+def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:
+    middle = (470, 180)
+    seen = [window.picture()]
+    before = window.session.view
+    assert before is not None
+    window.drag(middle, (530, 160), button=1)
+    turned = window.session.view
+    assert turned is not None
+    assert turned.azimuth < before.azimuth  # the figure follows the mouse
+    assert turned.elevation < before.elevation
+    seen.append(window.picture())
+    window.drag(middle, (500, 180), button=2)
+    panned = window.session.view
+    assert panned is not None
+    assert panned.azimuth == turned.azimuth
+    assert np.linalg.norm(panned.target - turned.target) > 0
+    seen.append(window.picture())
+    window.send({"event_type": "wheel", "dx": 0, "dy": -200, "x": 470, "y": 180, "buttons": (), "modifiers": ()})
+    assert window.session.view is not None
+    assert window.session.view.distance < panned.distance
+    seen.append(window.picture())
+    window.drag(middle, (480, 190), button=1, modifiers=("Shift",))
+    assert window.session.view.azimuth == turned.azimuth
+    for one, other in pairwise(seen):
+        assert (one[:, WIDTH:] != other[:, WIDTH:]).any()
+
+
+def test_keeps_the_view_while_the_mouse_is_on_the_panel(window: Driven) -> None:
+    before = window.session.view
+    window.drag((100, 8), (100, 8), button=1)
+    window.send({"event_type": "wheel", "dx": 0, "dy": 300, "x": 100, "y": 60, "buttons": (), "modifiers": ()})
+    assert window.session.view is before
+
+
+def test_every_key_does_what_the_panel_says(window: Driven) -> None:
+    session = window.session
+    window.press(" ")
+    assert session.playing
+    window.press("ArrowRight")
+    assert not session.playing
+    index = session.index
+    window.press("ArrowLeft")
+    assert session.index == (index - 1) % len(session.clip)
+    for key, name in zip("12345", ("splats", "geometry", "template", "skeleton", "shadow"), strict=True):
+        before = getattr(session.toggles, name)
+        window.press(key)
+        assert getattr(session.toggles, name) is not before
+    for key, name in (("s", "stereo"), ("f", "follow"), ("t", "timed")):
+        before = getattr(session, name)
+        window.press(key)
+        assert getattr(session, name) is not before
+        window.picture()
+    window.press("r")
+    assert session.view is None
+    window.press("a")
+    assert session.file == session.files[1]
+    window.press("c")
+    assert session.clip.name == "twice"
+    assert set(KEYS) == {" ", "ArrowLeft", "ArrowRight", *"12345", *"acfrst"}
+
+
+def test_shows_and_hides_by_the_boxes_of_the_panel(window: Driven) -> None:
+    changed: set[str] = set()
+    for y in range(140, 300, 5):  # wherever the boxes lie: down the column in which they stand
+        before = window.session.toggles
+        window.click(16, y)
+        after = window.session.toggles
+        changed |= {
+            field.name for field in fields(Toggles) if getattr(before, field.name) != getattr(after, field.name)
+        }
+    assert changed == {field.name for field in fields(Toggles)}
+
+
+def test_changes_the_picture_with_every_toggle(window: Driven) -> None:
+    window.session.toggles = Toggles(splats=False)
+    empty = window.picture()[:, WIDTH + 20 :]
+    for name in ("splats", "geometry", "template", "skeleton", "shadow"):
+        window.session.toggles = replace(Toggles(splats=False), **{name: True})
+        assert (window.picture()[:, WIDTH + 20 :] != empty).any(), name
+
+
+def test_stops_drawing_at_rest_and_draws_on_while_playing(window: Driven) -> None:
+    asked: list[bool] = []
+    window.canvas.request_draw = lambda *_: asked.append(True)
+    for _ in range(5):
+        window.picture()
+    asked.clear()
+    window.picture()
+    assert not asked
+    window.session.playing = True
+    window.picture()
+    assert asked
+
+
+def test_times_the_kernels_that_ran(window: Driven) -> None:
+    window.session.timed = True
+    window.session.step(1)
+    window.picture()
+    if window.session.can_time:
+        assert {"MlpMatmul", "SkinSplats", "ScatterDigits"} <= set(window.session.milliseconds)
+        assert min(window.session.milliseconds.values()) >= 0
+    else:
+        assert not window.session.milliseconds
+
+
+def test_keeps_the_avatar_where_the_next_is_broken(window: Driven) -> None:
+    session = window.session
+    session.choose_file(session.files[2])
+    assert session.file == session.files[0]
+    assert "broken.muaavatar" in session.failure
+    window.picture()
+    session.choose_file(session.files[1])
+    assert session.file == session.files[1]
+    assert session.failure == ""
+    assert session.clip.name == "wave"  # that of the same name
+
+
+def test_plays_round_and_scrubs(window: Driven) -> None:
+    session = window.session
+    count, rate = len(session.clip), session.clip.rate
+    session.playing, session.speed, session.time = True, 1.0, 0.0
+    session.advance((count - 0.5) / rate)
+    assert session.index == count - 1
+    session.advance(1 / rate)
+    assert session.index == 0
+    session.step(-1)
+    assert (session.index, session.playing) == (count - 1, False)
+    session.advance(10.0)
+    assert session.index == count - 1
+
+
+def test_draws_two_eyes_beside_each_other(window: Driven) -> None:
+    window.session.toggles = Toggles()
+    window.session.stereo = True
+    window.picture()
+    image = window.picture()
+    for half in (image[:, : SIZE[0] // 2], image[:, SIZE[0] // 2 :]):
+        assert (half != COLOR).any()
+
+
+def test_refuses_a_clip_that_is_not_there(device: Device, files: tuple[Path, ...]) -> None:
+    with pytest.raises(InputError, match="--clip is 'run'"):
+        Session(device, Source(files), clip="run", color_format="rgba8unorm")
+
+
+def test_keeps_what_is_panned_under_the_mouse() -> None:
+    screen = (400, 300)
+    view = Viewpoint(np.array([0.1, 1.0, -0.2]), 3.0, azimuth=0.7, elevation=0.3)
+    moved = view.panned(25, -40, height=screen[1]).camera(screen)
+    x, y, _, w = moved.projection @ moved.view @ np.append(view.target, 1)
+    at = (np.array([x, -y]) / w + 1) / 2 * screen
+    np.testing.assert_allclose(at, [200 + 25, 150 - 40])
+
+
+def test_holds_distance_and_elevation() -> None:
+    view = Viewpoint(np.zeros(3), 3.0)
+    assert view.zoomed(1000).distance == NEAREST
+    assert view.zoomed(-1000).distance == FARTHEST
+    assert view.turned(0, 1e6).elevation < np.pi / 2
+    bounds = np.array([[-0.5, 0, -0.3], [0.5, 1.8, 0.3]])
+    framed, screen = framing(bounds, (300, 500)), (300, 500)
+    np.testing.assert_allclose(framed.camera(screen).view, orbit(bounds, screen=screen).view, atol=1e-12)
+
+
+def test_loads_no_window_system_before_there_is_a_display() -> None:
+    code = "import sys, mua.player.window; sys.exit(bool({'imgui_bundle', 'glfw'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_says_that_there_is_no_display(
+    device: Device, files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    with pytest.raises(InputError, match="a window needs a display and there is none; -o writes a picture"):
+        show(files, device)
+
+
+@pytest.fixture
+def display() -> Iterator[str]:
+    """A virtual display that nobody else uses."""
+    if shutil.which("Xvfb") is None:
+        pytest.skip("needs Xvfb (Debian's xvfb, which tools/setup.sh installs)")
+    reader, writer = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1400x950x24", "-nolisten", "tcp"],
+        pass_fds=[writer],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writer)
+    with os.fdopen(reader) as answer:
+        name = f":{answer.readline().strip()}"
+    yield name
+    server.terminate()
+    server.wait()
+
+
+def test_opens_a_window_on_a_display(display: str, files: tuple[Path, ...]) -> None:
+    code = "import sys; from pathlib import Path; from mua.gpu import open_device; from mua.player.window import show\n"
+    code += f"import os; show([Path({str(files[0])!r})], open_device(os.environ.get('MUA_DEVICE')))"
+    environment = {**os.environ, "DISPLAY": display}
+    environment.pop("WAYLAND_DISPLAY", None)
+    child = subprocess.Popen([sys.executable, "-c", code], env=environment)
+    try:
+        deadline = time.monotonic() + DEADLINE
+        while True:
+            assert child.poll() is None, "the window closed by itself"
+            screen = np.asarray(ImageGrab.grab(xdisplay=display))[..., :3]
+            if (screen == COLOR).all(axis=2).mean() > 0.3:
+                break
+            assert time.monotonic() < deadline, "no window within the deadline"
+            time.sleep(0.2)
+    finally:
+        child.terminate()
+        child.wait()
+    panel = screen[:150, :WIDTH]
+    assert (panel != COLOR).any(axis=2).mean() > 0.9
