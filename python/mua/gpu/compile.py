@@ -58,7 +58,8 @@ def cache_directory() -> Path:
 def _key(compiler: compilers.Compiler, texts: dict[Path, str], options: tuple[str, ...]) -> str:
     command = compiler.command(Path("file"), "entry", options[1], Path("output"))[1:]
     digest = hashlib.sha256()
-    for part in (compiler.name, compiler.version, compiler.prelude, *command, *options, *texts.values()):
+    made = compiler.name, compiler.version, compiler.prelude, compiler.finish.__name__
+    for part in (*made, *command, *options, *texts.values()):
         digest.update(len(part).to_bytes(8, "little") + part.encode())
     return digest.hexdigest()
 
@@ -69,7 +70,7 @@ def _compiled(compiler: compilers.Compiler, path: Path, entry: str, stage: str, 
         done = run_compiler(compiler, path, entry, stage, output, defines)
         if done.returncode or not output.is_file():
             raise InputError(f"{path}: {entry} does not compile: {_first_error(done.stdout + done.stderr)}")
-        return output.read_bytes()
+        return compiler.finish(output.read_bytes())
 
 
 def run_compiler(

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from mua.gpu import slang
+
 FRAGMENT_GROUP = 1  # descriptor set of what a fragment entry reads; all other stages read from set 0
 SLANG_STAGES = {"comp": "compute", "vert": "vertex", "frag": "fragment"}
 PROFILES = {"comp": "cs", "vert": "vs", "frag": "ps"}
@@ -23,27 +25,20 @@ INSTALL = {
     "fxc": "fxc: the Windows SDK, or a command in $MUA_FXC",
 }
 
-# slangc turns the two intrinsics into 16-bit integers, which wgpu refuses. These are what the other compilers emit.
-SLANG_PRELUDE = """\
-float halfToFloat(uint bits) { return unpackHalf2x16ToFloat(bits).x; }
-uint floatToHalf(float value) { return packHalf2x16(float2(value, 0)); }
-#define f16tof32 halfToFloat
-#define f32tof16 floatToHalf
-"""
-
 
 @dataclass(frozen=True)
 class Compiler:
     """One HLSL compiler.
 
     `command` is called with (file, entry, stage, output), runs in the file's directory, and lacks -I and -D, which are
-    alike. A `prelude` is to stand before the file's own text.
+    alike. A `prelude` is to stand before the file's own text; `finish` is for the SPIR-V that comes out.
     """
 
     name: str
     version: str
     command: Callable[[Path, str, str, Path], list[str]]
     prelude: str = ""
+    finish: Callable[[bytes], bytes] = bytes
 
 
 @cache
@@ -85,12 +80,12 @@ def _slang() -> Compiler | None:
         return None
 
     def command(path: Path, entry: str, stage: str, output: Path) -> list[str]:
-        # without -O0 it rewrites loops into a form that wgpu refuses
+        # anything but -O0 asks for spirv-opt, which the wheel lacks
         options = ["-target", "spirv", "-O0", "-fvk-use-entrypoint-name", "-warnings-disable", UNKNOWN_PRAGMA]
         names = ["-stage", SLANG_STAGES[stage], "-entry", entry, "-o", str(output)]
         return [program, "-lang", "hlsl", str(path), *options, *names]
 
-    return Compiler("slang", _version([program, "-v"]), command, SLANG_PRELUDE)
+    return Compiler("slang", _version([program, "-v"]), command, slang.PRELUDE, slang.without_lone_switches)
 
 
 def _dxc() -> Compiler | None:
