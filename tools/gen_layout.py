@@ -1,7 +1,8 @@
-"""Generate python/mua/asset/layout.py from schemas/muaavatar.fbs; --check says whether it is up to date.
+"""Generate the layouts of both readers from schemas/muaavatar.fbs; --check says whether they are up to date.
 
-The generated module is data: which fields each table has, in slot order. python/mua/asset/flatbuffer.py reads and
-writes by it. Only the grammar that the schema uses is understood; anything else stops with its line.
+They are data: which fields each table has, in slot order. python/mua/asset/flatbuffer.py reads and writes by layout.py,
+unity-package's Parser.cs reads by Layouts.cs. Only the grammar that the schema uses is understood; anything else stops
+with its line.
 """
 
 import argparse
@@ -12,6 +13,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = ROOT / "schemas" / "muaavatar.fbs"
 LAYOUT = ROOT / "python" / "mua" / "asset" / "layout.py"
+LAYOUTS = ROOT / "unity-package" / "Runtime" / "Format" / "Layouts.cs"
+KINDS = {"bool": "Flag", "ubyte": "U8", "ushort": "U16", "uint": "U32", "float": "F32", "double": "F64", "string": "Text"}
 
 ENUM = re.compile(r"enum (\w+) : ubyte \{ ([\w, ]+) \}")
 FIELD = re.compile(r"(\w+): (\[?\w+\]?)( \([\w:, ]+\))?;")
@@ -83,14 +86,52 @@ def generate() -> str:
     return HEADER + "\n".join([*lines, "}", ""])
 
 
+CSHARP_HEADER = """// Generated from schemas/muaavatar.fbs by tools/gen_layout.py; do not edit.
+
+namespace Mua.Format
+{
+    internal static class Layouts
+    {
+"""
+
+
+def generate_csharp() -> str:
+    """The same data for the C# reader; a table stands after those that it points to."""
+    identifier, enums, tables, root = parse(SCHEMA.read_text())
+    lines = [f'public const string Identifier = "{identifier}";', ""]
+    for name, values in enums.items():
+        lines += [f'public static readonly string[] {name} = {{ "{quoted(values)}" }};']
+    for name, fields in tables.items():
+        lines += ["", f"public static readonly Layout {name} = new Layout("]
+        lines += [f"    {field_csharp(field, enums)}," for field in fields]
+        lines[-1] = lines[-1][:-1] + ");"
+    lines += ["", f"public static readonly Layout Root = {root};"]
+    body = "".join(f"        {line}\n" if line else "\n" for line in lines)
+    return f"{CSHARP_HEADER}{body}    }}\n}}\n"
+
+
+def field_csharp(source: str, enums: dict[str, list[str]]) -> str:
+    """A Field as C# source, from its Python source."""
+    name, kind, *options = source.removeprefix("Field(").removesuffix(")").replace('"', "").split(", ")
+    if kind in enums:
+        options.append(f"names={kind}")
+    elif kind not in KINDS:
+        options.append(f"table={kind}")
+    kind = "Enum" if kind in enums else KINDS.get(kind, "Table")
+    named = [option.replace("=", ": ").replace("True", "true") for option in options]
+    arguments = ", ".join([f'"{name}"', f"Kind.{kind}", *named])
+    return f"new Field({arguments})"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="exit 1 where the committed file differs")
-    if parser.parse_args().check:
-        if LAYOUT.read_text() != generate():
-            sys.exit(f"{LAYOUT.relative_to(ROOT)} is out of date: run tools/gen_layout.py")
-        return
-    LAYOUT.write_text(generate())
+    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
+    check = parser.parse_args().check
+    for path, text in ((LAYOUT, generate()), (LAYOUTS, generate_csharp())):
+        if not check:
+            path.write_text(text)
+        elif path.read_text() != text:
+            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_layout.py")
 
 
 if __name__ == "__main__":

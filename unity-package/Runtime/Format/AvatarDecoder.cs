@@ -1,0 +1,262 @@
+using System;
+using System.Runtime.InteropServices;
+
+namespace Mua.Format
+{
+    /// <summary>
+    /// Builds an AvatarFile from its parsed tree and checks every shape, range and value, in the order of
+    /// python/mua/asset/read.py: the same bad file gives the same code and field in both readers.
+    /// </summary>
+    internal sealed class AvatarDecoder
+    {
+        private const long Any = Tensors.Any;
+        private const int MaxWindow = 16;
+        private const int MaxLevels = 8;
+        private const int MaxTaps = 40;
+        private const int GeometryChannels = 11;
+        private const int AppearanceChannels = 12;
+        private const int Bands = 3;
+        private const int MaxShift = 32; // a longer side than any tensor's
+
+        private static readonly byte[] PngSignature = { 0x89, (byte)'P', (byte)'N', (byte)'G', 0x0D, 0x0A, 0x1A, 0x0A };
+
+        private readonly byte[] content;
+        private readonly Tensors tensors;
+
+        public AvatarDecoder(byte[] content)
+        {
+            this.content = content;
+            tensors = new Tensors(content);
+        }
+
+        public AvatarFile Decode(Table tree)
+        {
+            var rig = new RigDecoder(tensors);
+            var avatar = new AvatarFile { Content = content };
+            avatar.Name = tree.Text("name");
+            avatar.Producer = tree.Text("producer");
+            avatar.Notes = tree.Text("notes");
+            avatar.Skeleton = rig.Skeleton(tree.Child("skeleton"));
+            avatar.Encoding = Encoding(tree.Child("encoding"), avatar.Skeleton);
+            avatar.Wavelet = Wavelet(tree.Child("wavelet"));
+            int width = avatar.Encoding.Width, levels = avatar.Wavelet.Levels;
+            avatar.Coarse = Coarse(tree.Child("coarse"), width);
+            int vertices = avatar.Coarse.Mean.Shape[0];
+            avatar.Template = rig.Template(tree.Child("template"), vertices, avatar.Skeleton.JointCount);
+            avatar.Texels = rig.Texels(tree.Child("texels"), avatar.Template.Faces.Shape[0]);
+            int size = avatar.Texels.Size, count = avatar.Texels.Count, side = size >> levels;
+            avatar.Geometry = Branch(tree.Child("geometry"), "geometry", GeometryChannels, count, width, side);
+            avatar.Appearance = Branch(tree.Child("appearance"), "appearance", AppearanceChannels, count, width, side);
+            if (size % (1 << levels) != 0)
+            {
+                throw Refusal.Of("texels.size", "{0} does not halve {1} times", size, levels);
+            }
+            if (Math.Max(avatar.Geometry.Details.Length, avatar.Appearance.Details.Length) > levels)
+            {
+                throw Refusal.Of("geometry.details", "more levels of detail than the wavelet's {0}", levels);
+            }
+            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton.JointCount);
+            avatar.Bounds = Bounds(tree.Child("bounds"));
+            avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
+            return avatar;
+        }
+
+        private PoseEncoding Encoding(Table tree, Skeleton skeleton)
+        {
+            Tensor joints = tensors.Indices(tree.Child("joints"), "encoding.joints", 0, skeleton.JointCount, Any);
+            var encoding = new PoseEncoding { Joints = joints.Integers.ToArray() };
+            for (int i = 0; i < encoding.Joints.Length; i++)
+            {
+                bool ascends = i == 0 || encoding.Joints[i - 1] < encoding.Joints[i];
+                if (!ascends || encoding.Joints[i] == skeleton.Root)
+                {
+                    throw Refusal.Of("encoding.joints", "joints must ascend and leave out the root");
+                }
+            }
+            long window = tree.Number("window");
+            if (window < 1 || window > MaxWindow)
+            {
+                throw Refusal.Of("encoding.window", "{0} frames, expected 1 to {1}", window, MaxWindow);
+            }
+            encoding.Window = (int)window;
+            encoding.Rate = Rate(tree, "encoding.rate");
+            encoding.Heading = tree.Number("heading") != 0;
+            encoding.Scale = Floats(tensors.Reals(tree.Child("scale"), "encoding.scale", encoding.Width));
+            foreach (float scale in encoding.Scale)
+            {
+                if (scale <= 0)
+                {
+                    throw Refusal.Of("encoding.scale", "{0}, expected more than 0", scale);
+                }
+            }
+            encoding.Mean = Floats(tensors.Reals(tree.Child("mean"), "encoding.mean", encoding.Width));
+            return encoding;
+        }
+
+        private static float Rate(Table tree, string path)
+        {
+            float rate = tree.Real("rate");
+            if (!(rate > 0) || float.IsInfinity(rate))
+            {
+                throw Refusal.Of(path, "{0} frames per second, expected more than 0", rate);
+            }
+            return rate;
+        }
+
+        private Wavelet Wavelet(Table tree)
+        {
+            double[] low = Doubles(tree.Block("rec_lo")), high = Doubles(tree.Block("rec_hi"));
+            long levels = tree.Number("levels");
+            if (levels < 1 || levels > MaxLevels)
+            {
+                throw Refusal.Of("wavelet.levels", "{0}, expected 1 to {1}", levels, MaxLevels);
+            }
+            if (low.Length != high.Length || low.Length % 2 != 0 || low.Length < 2 || low.Length > MaxTaps)
+            {
+                throw Refusal.Of(
+                    "wavelet.rec_lo", "{0} and {1} taps, expected an even number of each, 2 to {2}",
+                    low.Length, high.Length, MaxTaps);
+            }
+            for (int i = 0; i < low.Length; i++)
+            {
+                if (!IsFinite(low[i]) || !IsFinite(high[i]))
+                {
+                    throw new AvatarFormatException("finite", "wavelet.rec_lo", "a value is not finite");
+                }
+            }
+            return new Wavelet { Name = tree.Text("name"), Levels = (int)levels, RecLo = low, RecHi = high };
+        }
+
+        private Coarse Coarse(Table tree, int width)
+        {
+            Tensor mean = tensors.Reals(tree.Child("mean"), "coarse.mean", Any, 3);
+            Tensor basis = tensors.Reals(tree.Child("basis"), "coarse.basis", Any, mean.Shape[0], 3);
+            Layer[] mlp = Mlp(tree.Children("mlp"), "coarse.mlp", width, basis.Shape[0]);
+            return new Coarse { Mlp = mlp, Mean = mean, Basis = basis };
+        }
+
+        private Layer[] Mlp(Table[] tree, string path, long width, long outputs)
+        {
+            var layers = new Layer[tree.Length];
+            for (int i = 0; i < layers.Length; i++)
+            {
+                string layer = path + "[" + i + "]";
+                Tensor weight = tensors.Reals(tree[i].Child("weight"), layer + ".weight", Any, width);
+                width = weight.Shape[0];
+                Tensor bias = tensors.Reals(tree[i].Child("bias"), layer + ".bias", width);
+                layers[i] = new Layer { Weight = weight, Bias = bias };
+            }
+            if (layers.Length == 0 || width != outputs)
+            {
+                throw new AvatarFormatException(
+                    "shape", path, layers.Length + " layers with " + width + " outputs, expected " + outputs);
+            }
+            return layers;
+        }
+
+        /// <summary>One branch over `count` texels with an LL of `side`, driven by descriptors of `width`.</summary>
+        private Branch Branch(Table tree, string path, int channels, int count, int width, int side)
+        {
+            Tensor basis = tensors.Reals(tree.Child("ll_basis"), path + ".ll_basis", channels, Any, side, side);
+            Table[] bands = tree.Children("details");
+            var details = new DetailBand[bands.Length];
+            long ranks = basis.Shape[1];
+            for (int i = 0; i < details.Length; i++)
+            {
+                long size = (long)side << Math.Min(i, MaxShift);
+                details[i] = Detail(bands[i], path + ".details[" + i + "]", channels, size);
+                ranks += details[i].Rank;
+            }
+            return new Branch
+            {
+                Mlp = Mlp(tree.Children("mlp"), path + ".mlp", width, channels * ranks),
+                LlMean = tensors.Reals(tree.Child("ll_mean"), path + ".ll_mean", channels, side, side),
+                LlBasis = basis,
+                Details = details,
+                StaticOffset = tensors.Reals(tree.Child("static_offset"), path + ".static_offset", channels, count),
+            };
+        }
+
+        private DetailBand Detail(Table tree, string path, int channels, long size)
+        {
+            Tensor h = tensors.Reals(tree.Child("h"), path + ".h", Bands, channels, Any, size);
+            return new DetailBand
+            {
+                H = h,
+                Mean = tensors.Reals(tree.Child("mean"), path + ".mean", Bands, channels, size, size),
+                W = tensors.Reals(tree.Child("w"), path + ".w", Bands, channels, h.Shape[2], size),
+            };
+        }
+
+        private Clip[] Clips(Table[] tree, int joints)
+        {
+            var clips = new Clip[tree.Length];
+            for (int i = 0; i < clips.Length; i++)
+            {
+                clips[i] = Clip(tree[i], "clips[" + i + "]", joints);
+            }
+            return clips;
+        }
+
+        private Clip Clip(Table tree, string path, int joints)
+        {
+            Tensor rotations = tensors.Reals(tree.Child("rotations"), path + ".rotations", Any, joints, 4);
+            RigDecoder.RequireUnit(rotations, path + ".rotations");
+            if (rotations.Shape[0] == 0)
+            {
+                throw Refusal.Of(path + ".rotations", "a clip needs at least one frame");
+            }
+            Tensor translation = tensors.Reals(
+                tree.Child("translation"), path + ".translation", rotations.Shape[0], 3);
+            return new Clip
+            {
+                Name = tree.Text("name"),
+                Rate = Rate(tree, path + ".rate"),
+                Rotations = rotations,
+                Translation = translation,
+            };
+        }
+
+        private float[] Bounds(Table tree)
+        {
+            float[] bounds = Floats(tensors.Reals(tree, "bounds", 2, 3));
+            for (int axis = 0; axis < 3; axis++)
+            {
+                if (bounds[axis] > bounds[3 + axis])
+                {
+                    throw Refusal.Of(
+                        "bounds", "lowest corner {0} above highest {1} along axis {2}", bounds[axis], bounds[3 + axis],
+                        axis);
+                }
+            }
+            return bounds;
+        }
+
+        private ArraySegment<byte> Thumbnail(Block block)
+        {
+            var bytes = new ReadOnlySpan<byte>(content, block.Offset, block.Count);
+            if (block.Count != 0 && !bytes.StartsWith(PngSignature))
+            {
+                throw Refusal.Of("thumbnail", "the content is no PNG");
+            }
+            return new ArraySegment<byte>(content, block.Offset, block.Count);
+        }
+
+        private double[] Doubles(Block block)
+        {
+            return MemoryMarshal.Cast<byte, double>(new ReadOnlySpan<byte>(content, block.Offset, 8 * block.Count)).ToArray();
+        }
+
+        private static float[] Floats(Tensor tensor)
+        {
+            var values = new float[tensor.Count];
+            tensor.CopyTo(values);
+            return values;
+        }
+
+        private static bool IsFinite(double value)
+        {
+            return !double.IsNaN(value) && !double.IsInfinity(value);
+        }
+    }
+}

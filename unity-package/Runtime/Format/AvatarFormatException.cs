@@ -1,0 +1,21 @@
+using System;
+
+namespace Mua.Format
+{
+    /// <summary>A file that is not a sound `.muaavatar`; code and field are those of every reader (schemas/README.md).</summary>
+    public sealed class AvatarFormatException : Exception
+    {
+        /// <summary>What kind of fault it is: `truncated`, `offset`, `missing`, `shape` and so on.</summary>
+        public string Code { get; }
+
+        /// <summary>Path of the field, such as `geometry.details[0].mean`; empty for the file as a whole.</summary>
+        public string Field { get; }
+
+        internal AvatarFormatException(string code, string field, string sentence)
+            : base(field.Length == 0 ? sentence : field + ": " + sentence)
+        {
+            Code = code;
+            Field = field;
+        }
+    }
+}

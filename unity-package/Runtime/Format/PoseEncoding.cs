@@ -1,0 +1,32 @@
+namespace Mua.Format
+{
+    /// <summary>How a window of poses becomes the descriptor that the MLPs read (schemas/README.md, step 1).</summary>
+    public sealed class PoseEncoding
+    {
+        private const int RootNumbers = 9, JointNumbers = 6;
+
+        /// <summary>[S] joints encoded beside the root, ascending.</summary>
+        public int[] Joints { get; internal set; }
+
+        /// <summary>Frames per second between the frames of a window.</summary>
+        public float Rate { get; internal set; }
+
+        /// <summary>Frames of a window.</summary>
+        public int Window { get; internal set; }
+
+        /// <summary>Whether the yaw of the newest frame is turned back.</summary>
+        public bool Heading { get; internal set; }
+
+        /// <summary>[Width] what is subtracted from a descriptor.</summary>
+        public float[] Mean { get; internal set; }
+
+        /// <summary>[Width] what it is divided by then.</summary>
+        public float[] Scale { get; internal set; }
+
+        /// <summary>Numbers that one frame adds to a descriptor.</summary>
+        public int FrameWidth => RootNumbers + JointNumbers * Joints.Length;
+
+        /// <summary>Length of a descriptor.</summary>
+        public int Width => Window * FrameWidth;
+    }
+}

@@ -1,0 +1,175 @@
+using System;
+
+namespace Mua.Format
+{
+    /// <summary>Skeleton, template and texels of a parsed tree, checked as in python/mua/asset/read.py.</summary>
+    internal sealed class RigDecoder
+    {
+        private const double UnitBound = 2e-3; // a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
+        private const float WeightBound = 1e-4f; // 8 weights rounded to f32, or derived from f16
+        private const double BindBound = 1e-4; // metres and quaternion components: f32 kinematics over a deep chain
+        private const float BarycentricSlack = 4f / (1 << 23); // the third is a rounded difference
+        private const int MaxSize = 4096;
+        private const int MaxInfluences = 8;
+        private const long Any = Tensors.Any;
+
+        private readonly Tensors tensors;
+
+        public RigDecoder(Tensors tensors)
+        {
+            this.tensors = tensors;
+        }
+
+        public Skeleton Skeleton(Table tree)
+        {
+            string[] names = tree.Texts("names");
+            int count = names.Length;
+            int[] parents = tensors
+                .Indices(tree.Child("parents"), "skeleton.parents", -1, count, count).Integers.ToArray();
+            for (int joint = 0; joint < count; joint++)
+            {
+                if (parents[joint] >= joint)
+                {
+                    throw Refusal.Of(
+                        "skeleton.parents", "joint {0} stands before its parent {1}", joint, parents[joint]);
+                }
+            }
+            long root = tree.Number("root");
+            if (root >= count)
+            {
+                throw Refusal.Of("skeleton.root", "{0}, but there are {1} joints", root, count);
+            }
+            Tensor stored = tensors.Reals(tree.Child("bind_rotations"), "skeleton.bind_rotations", count, 4);
+            RequireUnit(stored, "skeleton.bind_rotations");
+            double[] rotations = Doubles(stored);
+            for (int joint = 0; joint < count; joint++)
+            {
+                QuaternionD.Load(rotations, joint).Normalized().Store(rotations, joint);
+            }
+            double[] translations = Doubles(
+                tensors.Reals(tree.Child("bind_translations"), "skeleton.bind_translations", count, 3));
+            var skeleton = new Skeleton(names, parents, rotations, translations, (int)root);
+            RequireInverse(
+                skeleton, tensors.Reals(tree.Child("bind_inverse"), "skeleton.bind_inverse", count, 8));
+            return skeleton;
+        }
+
+        public Template Template(Table tree, int vertices, int joints)
+        {
+            Tensor uv = tensors.Reals(tree.Child("uv"), "template.uv", Any, 2);
+            Tensor faces = tensors.Indices(tree.Child("faces"), "template.faces", 0, vertices, Any, 3);
+            Tensor uvFaces = tensors.Indices(
+                tree.Child("uv_faces"), "template.uv_faces", 0, uv.Shape[0], faces.Shape[0], 3);
+            Tensor weights = tensors.Reals(
+                tree.Child("skin_weights"), "template.skin_weights", vertices, MaxInfluences);
+            RequireWeights(weights);
+            return new Template
+            {
+                Uv = uv,
+                Faces = faces,
+                UvFaces = uvFaces,
+                SkinWeights = weights,
+                SkinIndices = tensors.Indices(
+                    tree.Child("skin_indices"), "template.skin_indices", 0, joints, vertices, MaxInfluences),
+            };
+        }
+
+        public Texels Texels(Table tree, int faces)
+        {
+            long size = tree.Number("size");
+            if (size < 1 || size > MaxSize)
+            {
+                throw Refusal.Of("texels.size", "{0}, expected 1 to {1}", size, MaxSize);
+            }
+            Tensor indices = tensors.Indices(tree.Child("texels"), "texels.texels", 0, size * size, Any);
+            ReadOnlySpan<int> texels = indices.Integers;
+            for (int i = 1; i < texels.Length; i++)
+            {
+                if (texels[i] <= texels[i - 1])
+                {
+                    throw Refusal.Of("texels.texels", "texels must ascend");
+                }
+            }
+            Tensor triangles = tensors.Indices(
+                tree.Child("triangles"), "texels.triangles", 0, faces, texels.Length);
+            Tensor barycentrics = tensors.Reals(tree.Child("barycentrics"), "texels.barycentrics", texels.Length, 2);
+            RequireBarycentrics(barycentrics);
+            return new Texels
+            {
+                Size = (int)size, Indices = indices, Triangles = triangles, Barycentrics = barycentrics,
+            };
+        }
+
+        /// <summary>Refuses quaternions that storage alone cannot have brought off unit length.</summary>
+        public static void RequireUnit(Tensor quaternions, string path)
+        {
+            for (int i = 0; i < quaternions.Count; i += 4)
+            {
+                double length = new QuaternionD(
+                    quaternions.Read(i), quaternions.Read(i + 1), quaternions.Read(i + 2), quaternions.Read(i + 3))
+                    .Length;
+                if (Math.Abs(length - 1) > UnitBound)
+                {
+                    throw Refusal.Of(path, "a quaternion of length {0:g4}, expected 1", length);
+                }
+            }
+        }
+
+        private static void RequireInverse(Skeleton skeleton, Tensor stated)
+        {
+            for (int i = 0; i < stated.Count; i++)
+            {
+                double value = stated.Read(i), expected = skeleton.BindInverse[i];
+                double gap = Math.Min(Math.Abs(value - expected), Math.Abs(value + expected));
+                if (gap > BindBound)
+                {
+                    throw Refusal.Of(
+                        "skeleton.bind_inverse", "differs by {0:e1} from the inverse of the bind pose", gap);
+                }
+            }
+        }
+
+        private static void RequireWeights(Tensor weights)
+        {
+            for (int vertex = 0; vertex < weights.Shape[0]; vertex++)
+            {
+                float sum = 0;
+                bool negative = false;
+                for (int i = 0; i < MaxInfluences; i++)
+                {
+                    float weight = weights.Read(MaxInfluences * vertex + i);
+                    sum += weight;
+                    negative |= weight < 0;
+                }
+                if (negative || Math.Abs(sum - 1) > WeightBound)
+                {
+                    throw Refusal.Of(
+                        "template.skin_weights", "weights of vertex {0} sum to {1:g4} or one is negative", vertex, sum);
+                }
+            }
+        }
+
+        private static void RequireBarycentrics(Tensor barycentrics)
+        {
+            for (int i = 0; i < barycentrics.Count; i += 2)
+            {
+                float first = barycentrics.Read(i), second = barycentrics.Read(i + 1), third = 1 - (first + second);
+                float least = Math.Min(Math.Min(first, second), third);
+                if (least < -BarycentricSlack)
+                {
+                    throw Refusal.Of("texels.barycentrics", "{0:g3}, expected 0 to 1", least);
+                }
+            }
+        }
+
+        private static double[] Doubles(Tensor tensor)
+        {
+            var values = new double[tensor.Count];
+            for (int i = 0; i < values.Length; i++)
+            {
+                values[i] = tensor.Read(i);
+            }
+            return values;
+        }
+    }
+}

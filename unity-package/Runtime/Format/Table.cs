@@ -1,0 +1,60 @@
+namespace Mua.Format
+{
+    /// <summary>A parsed table: one value for each field of its layout, null where an optional one is absent.</summary>
+    internal sealed class Table
+    {
+        private readonly Layout layout;
+        private readonly object[] values;
+        private readonly int[] positions;
+
+        public Table(Layout layout, object[] values, int[] positions)
+        {
+            this.layout = layout;
+            this.values = values;
+            this.positions = positions;
+        }
+
+        public Table Child(string field)
+        {
+            return (Table)values[layout.Slot(field)];
+        }
+
+        public Table[] Children(string field)
+        {
+            return (Table[])values[layout.Slot(field)];
+        }
+
+        public string Text(string field)
+        {
+            return (string)values[layout.Slot(field)];
+        }
+
+        public string[] Texts(string field)
+        {
+            return (string[])values[layout.Slot(field)];
+        }
+
+        /// <summary>Integers, enums and flags; 0 where absent.</summary>
+        public long Number(string field)
+        {
+            return (long)values[layout.Slot(field)];
+        }
+
+        public float Real(string field)
+        {
+            return (float)values[layout.Slot(field)];
+        }
+
+        /// <summary>A vector of scalars; null where absent.</summary>
+        public Block Block(string field)
+        {
+            return (Block)values[layout.Slot(field)];
+        }
+
+        /// <summary>The byte at which a field's scalar or offset stands, 0 where the file leaves it out.</summary>
+        public int Position(string field)
+        {
+            return positions[layout.Slot(field)];
+        }
+    }
+}

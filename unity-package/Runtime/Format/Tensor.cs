@@ -1,0 +1,78 @@
+using System;
+using System.Runtime.InteropServices;
+
+namespace Mua.Format
+{
+    /// <summary>A view of one tensor in the bytes of its file, row-major and in its stored type.</summary>
+    public sealed class Tensor
+    {
+        /// <summary>How the elements are stored.</summary>
+        public ElementType Type { get; }
+
+        /// <summary>One to four sides.</summary>
+        public int[] Shape { get; }
+
+        /// <summary>Number of elements.</summary>
+        public int Count { get; }
+
+        /// <summary>The file that holds the elements.</summary>
+        public byte[] Content { get; }
+
+        /// <summary>First byte of the elements in Content, a multiple of 16.</summary>
+        public int Offset { get; }
+
+        /// <summary>Bytes that the elements fill.</summary>
+        public int ByteLength { get; }
+
+        /// <summary>Of I8, one factor for each of as many equal rows; null for other types.</summary>
+        public float[] Scale { get; }
+
+        internal Tensor(ElementType type, int[] shape, int count, byte[] content, int offset, int length, float[] scale)
+        {
+            Type = type;
+            Shape = shape;
+            Count = count;
+            Content = content;
+            Offset = offset;
+            ByteLength = length;
+            Scale = scale;
+        }
+
+        /// <summary>The stored bytes.</summary>
+        public ReadOnlySpan<byte> Bytes => new ReadOnlySpan<byte>(Content, Offset, ByteLength);
+
+        /// <summary>The integers of a tensor of type I32.</summary>
+        public ReadOnlySpan<int> Integers => MemoryMarshal.Cast<byte, int>(Bytes);
+
+        /// <summary>One element as a float, expanded from f16 or i8.</summary>
+        public float Read(int index)
+        {
+            switch (Type)
+            {
+                case ElementType.F32:
+                    return MemoryMarshal.Cast<byte, float>(Bytes)[index];
+                case ElementType.F16:
+                    return Half.ToSingle(MemoryMarshal.Cast<byte, ushort>(Bytes)[index]);
+                case ElementType.I8:
+                    return (sbyte)Bytes[index] * Scale[index / (Count / Scale.Length)];
+                default:
+                    return Integers[index];
+            }
+        }
+
+        /// <summary>All elements as floats into the first Count of `target`.</summary>
+        public void CopyTo(float[] target)
+        {
+            for (int i = 0; i < Count; i++)
+            {
+                target[i] = Read(i);
+            }
+        }
+
+        /// <summary>The integers of a tensor of type I32 into the first Count of `target`.</summary>
+        public void CopyTo(int[] target)
+        {
+            Integers.CopyTo(target);
+        }
+    }
+}
