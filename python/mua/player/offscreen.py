@@ -1,8 +1,11 @@
 """Pictures and videos without a window."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
+from subprocess import DEVNULL, PIPE, Popen
+from tempfile import TemporaryFile
 
 import imageio_ffmpeg
 import numpy as np
@@ -17,14 +20,14 @@ from mua.gpu import Device
 from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import image_format
-from mua.player.frame import AvatarFrame
 from mua.player.overlays import ground_height
 from mua.player.scene import Scene, Toggles, draw_picture
+from mua.player.splats import SplatFrame
 from mua.render import render_premultiplied, to_bytes
 
 BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
 ENCODING = (
-    *("-crf", "18"),  # visually lossless
+    *("-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"),  # visually lossless
     *("-vf", f"scale=out_color_matrix={BT709}:out_range=tv", "-colorspace", BT709),
     *("-color_primaries", BT709, "-color_trc", BT709),
     *("-movflags", "+faststart"),  # a browser may start before it has the whole
@@ -37,7 +40,8 @@ class Offscreen:
     def __init__(self, device: Device, avatar: AvatarBuffers, clip: Clip, toggles: Toggles) -> None:
         """`clip` is at the rate of the avatar's encoding. Errors: InputError where the device has too little memory."""
         self._device, self._clip, self._toggles = device, clip, toggles
-        self._frame = AvatarFrame(device, avatar)
+        self._frame = SplatFrame(device, [avatar])
+        (self._avatar,) = self._frame.avatars
         self._scene = Scene(device, self._frame, color_format=image_format(device))
         self._ground = ground_height(avatar.avatar.rig, clip)
 
@@ -47,10 +51,10 @@ class Offscreen:
         cameras: Sequence[Camera],  # of one eye or two
     ) -> Array:
         """Premultiplied sRGB and alpha [H, E W, 4] of one frame, eyes side by side."""
-        window = self._frame.avatar.avatar.encoding.frames(index)
+        window = self._avatar.avatar.avatar.encoding.frames(index)
         rotations, translation = self._clip.rotations[window], self._clip.translation[window]
         commands = self._device.commands()
-        self._frame.decode(commands, rotations, translation)
+        self._avatar.decode(commands, rotations, translation)
         self._frame.sort(commands, cameras)
         commands.submit()
         self._scene.pose(rotations[0], translation[0], ground=self._ground)
@@ -87,21 +91,15 @@ def write_video(
     Errors: InputError where the encoder stops, with what it said.
     """
     first = next(pictures)
-    with replacing(path) as temporary:
-        writer = imageio_ffmpeg.write_frames(
-            temporary,
-            first.shape[1::-1],
-            fps=rate,
-            codec="libx264",
-            quality=None,
-            macro_block_size=2,
-            output_params=list(ENCODING),
-        )
-        try:
-            writer.send(None)
+    size = f"{first.shape[1]}x{first.shape[0]}"
+    source = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", str(rate), "-i", "-")
+    with replacing(path) as temporary, TemporaryFile() as said:
+        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *source, *ENCODING, str(temporary)]
+        encoder = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said)
+        with suppress(BrokenPipeError), encoder:  # it may stop, and has then said why
+            assert encoder.stdin is not None  # as asked for
             for picture in chain([first], pictures):
-                writer.send(picture)
-        except OSError as error:
-            raise InputError(f"{path}: the encoder stopped: {str(error).splitlines()[0]}") from error
-        finally:
-            writer.close()
+                encoder.stdin.write(picture.tobytes())
+        if encoder.returncode:
+            said.seek(0)
+            raise InputError(f"{path}: the encoder stopped: {' '.join(said.read().decode().split())}")

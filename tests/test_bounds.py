@@ -1,0 +1,30 @@
+"""Boxes hold what the avatar does."""
+
+import numpy as np
+from synthetic_avatar import synthetic_avatar
+
+from mua.bounds import MARGIN, frame_boxes, playback_bounds, root_positions, union
+from mua.decode import decode_clip_frame
+
+AVATAR = synthetic_avatar()
+RIG, CLIP = AVATAR.rig, AVATAR.clips[0]
+
+
+def test_a_frames_box_is_the_skinned_template_and_a_margin() -> None:
+    for index in (0, 6):
+        skinned = frame_boxes(RIG, CLIP)[index] + [[MARGIN] * 3, [-MARGIN] * 3]
+        mesh = decode_clip_frame(AVATAR, CLIP, frame=index, dtype=np.float64).mesh
+        moved = np.abs(np.stack([mesh.min(axis=0), mesh.max(axis=0)]) - skinned)
+        assert moved.max() < MARGIN  # the student's own shape differs from the template by less
+
+
+def test_playback_bounds_hold_every_frame_about_its_root() -> None:
+    bounds = playback_bounds(RIG, (CLIP, CLIP))
+    about = frame_boxes(RIG, CLIP) - root_positions(RIG, CLIP)[:, None]
+    np.testing.assert_allclose(bounds, union(about), rtol=1e-6)
+    assert bounds.dtype == np.float32
+
+
+def test_a_union_reaches_to_the_outermost_corners() -> None:
+    boxes = np.array([[[0, 0, 0], [1, 1, 1]], [[-1, 0.5, 0], [0, 2, 0.5]]])
+    np.testing.assert_array_equal(union(boxes), [[-1, 0, 0], [1, 2, 1]])

@@ -1,0 +1,43 @@
+"""What an avatar is shown doing: its own clips or another file's, at its own rate."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from bvh_files import BVH
+from synthetic_avatar import synthetic_avatar
+
+from mua.errors import InputError
+from mua.player.motion import named_clip, player_clips
+
+FILE = Path("a.muaavatar")
+
+
+def test_clips_of_the_file_come_at_the_avatars_rate() -> None:
+    avatar = synthetic_avatar()
+    faster = replace(avatar, clips=(replace(avatar.clips[0], rate=48.0),))
+    clips, notes = player_clips(faster, FILE, motion=None, mapping=None)
+    assert [(clip.name, clip.rate, len(clip)) for clip in clips] == [("wave", 24.0, 4)]
+    assert notes == ()
+
+
+def test_another_file_stands_in_for_the_avatars_clips(tmp_path: Path) -> None:
+    directory = tmp_path / "motion"
+    directory.mkdir()
+    for name in ("a", "b"):
+        (directory / f"{name}.bvh").write_text(BVH)
+    mapping = {"root": "hips", "middle": "spine"}
+    clips, notes = player_clips(synthetic_avatar(), FILE, motion=directory, mapping=mapping)
+    assert [clip.rate for clip in clips] == [24.0, 24.0]
+    assert len({clip.name for clip in clips}) == 2
+    assert any("keep their bind rotation" in note for note in notes)
+
+
+def test_refuses_an_avatar_without_clips_and_a_name_that_is_none() -> None:
+    avatar = synthetic_avatar()
+    with pytest.raises(InputError, match=r"a\.muaavatar holds no clips"):
+        player_clips(replace(avatar, clips=()), FILE, motion=None, mapping=None)
+    assert named_clip(avatar.clips, None, source=FILE) is avatar.clips[0]
+    assert named_clip(avatar.clips, "wave", source=FILE) is avatar.clips[0]
+    with pytest.raises(InputError, match=r"--clip is 'jump'; a\.muaavatar holds wave"):
+        named_clip(avatar.clips, "jump", source=FILE)
