@@ -1,5 +1,10 @@
 """mua-bench: work counted by hand, the avatar it makes, and what it prints and writes."""
 
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,10 +37,15 @@ def tensor(*shape: int, dtype: str = "<f2", scales: int = 0) -> Tree:
 
 
 @pytest.fixture(scope="module")
-def synthetic_tree(tmp_path_factory: pytest.TempPathFactory) -> Tree:
+def avatar_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("bench") / "a.muaavatar"
     write(path, synthetic_avatar())
-    return load(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def synthetic_tree(avatar_file: Path) -> Tree:
+    return load(avatar_file)
 
 
 def test_layer_moves_its_weights_once() -> None:
@@ -117,3 +127,54 @@ def test_random_avatar_is_a_sound_file_and_the_same_twice(tmp_path: Path) -> Non
     for name in ("a", "b"):
         write(tmp_path / name, random_avatar(preset("tiny")))
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+
+
+def bench(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from mua.cli.bench import run; run()", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ, "COLUMNS": "160"})
+
+
+def test_prints_every_kernel_and_writes_the_same_figures(avatar_file: Path, tmp_path: Path) -> None:
+    output = tmp_path / "figures.json"
+    ran = bench(str(avatar_file), "--frames", "2", "--size", "64x48", "--stereo", "--json", str(output))
+    assert ran.returncode == 0, ran.stderr
+    figures = json.loads(output.read_text())
+    assert (figures["screen_pixels"], figures["eyes"], figures["frames"]) == ([64, 48], 2, 2)
+    assert 0 < figures["visible_splats"] <= figures["splats"]
+    assert list(figures["kernels"]) == list(frame_work(load(avatar_file), visible=1, eyes=1))
+    for name in (*figures["kernels"], figures["device"], "synthetic"):
+        assert name in ran.stdout
+    skin = figures["kernels"]["SkinSplats"]
+    assert skin["bytes_per_second"] == pytest.approx(1e3 * skin["bytes"] / skin["milliseconds"]["median"])
+    assert skin["fraction_of_copy"] == pytest.approx(skin["bytes_per_second"] / figures["copy_bytes_per_second"])
+    assert all(k["milliseconds"]["low"] <= k["milliseconds"]["high"] for k in figures["kernels"].values())
+
+
+def test_measures_a_setting_without_a_file() -> None:
+    ran = bench("--setting", "tiny", "--frames", "1", "--size", "32")
+    assert ran.returncode == 0, ran.stderr
+    assert "random numbers, 192 texels" in ran.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((), "expected one of the two"),
+        (("a.muaavatar", "--setting", "tiny"), "expected one of the two"),
+        (("--setting", "huge"), "expected one of tiny, preview, paper"),
+        (("absent.muaavatar",), "absent.muaavatar: No such file"),
+        (("--setting", "tiny", "--size", "0"), "--size is '0'"),
+        (("--setting", "tiny", "--device", "no such device"), "device no such device: "),
+    ],
+)
+def test_refuses_in_one_sentence(arguments: tuple[str, ...], said: str) -> None:
+    ran = bench(*arguments)
+    assert ran.returncode == 1
+    assert said in ran.stderr
+    assert ran.stderr.count("\n") == 1
+
+
+def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
+    write(tmp_path / "still.muaavatar", replace(synthetic_avatar(), clips=()))
+    ran = bench(str(tmp_path / "still.muaavatar"), "--frames", "1")
+    assert (ran.returncode, "holds no clips" in ran.stderr) == (1, True)
