@@ -22,6 +22,7 @@ check: setup
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python tools/gen_layout.py --check
+	$(BIN)/python tools/gen_golden.py --check
 	$(BIN)/python tools/gen_kernel_table.py --check
 	$(BIN)/python tools/gen_meta.py --check
 

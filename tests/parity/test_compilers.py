@@ -1,0 +1,48 @@
+"""Two compilers' builds of every entry point, run on the same inputs, agree within what either may be off."""
+
+import numpy as np
+import pytest
+from golden import Golden, read_golden, replay, values_of
+
+from mua.arrays import Array
+from mua.gpu import Device, compilers, sources
+from mua.gpu.compile import spirv
+from mua.gpu.reflect import reflect
+
+ALL = read_golden()
+OTHERS = [name for name in compilers.FINDERS if name != "glslang" and compilers.find(name)]
+
+
+def both(described: dict[str, object], found: tuple[dict[str, Array], dict[str, Array]]) -> tuple[Array, Array]:
+    first, second = (values_of(described, words[str(described["buffer"])]) for words in found)
+    return first, second
+
+
+def test_there_are_two_compilers() -> None:
+    assert compilers.find("glslang")
+    assert "slang" in OTHERS, "the development requirements bring slangc in the package slangtorch"
+
+
+@pytest.mark.parametrize("other", OTHERS)
+@pytest.mark.parametrize("golden", ALL, ids=str)
+def test_builds_agree(device: Device, golden: Golden, other: str) -> None:
+    """Whole numbers are equal; each build may be off by the bound of the case, so two differ by twice that at most."""
+    found = replay(device, golden), replay(device, golden, compiler=other)
+    for described in golden.case["expected"]:
+        first, second = both(described, found)
+        bound = 2 * (described["absolute"] + described["relative"] * np.maximum(np.abs(first), np.abs(second)))
+        assert np.all(np.abs(first - second) <= bound), f"{described['buffer']} by {other}"
+
+
+@pytest.mark.parametrize("other", OTHERS)
+def test_builds_bind_alike(other: str) -> None:
+    for golden in ALL:
+        path, entry = sources.find(golden.kernel), golden.case["entry"]
+        first, second = (reflect(spirv(path, entry, compiler=name)) for name in ("glslang", other))
+        assert first.threads == second.threads
+        assert {(b.name, b.scalar, b.stride) for b in first.buffers} == {
+            (b.name, b.scalar, b.stride) for b in second.buffers
+        }
+        assert [(c.name, c.scalar, c.shape) for c in first.constants] == [
+            (c.name, c.scalar, c.shape) for c in second.constants
+        ]

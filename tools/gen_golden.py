@@ -1,0 +1,112 @@
+"""Write tests/parity/golden from tests/parity/golden_cases.py; --check says whether it is up to date.
+
+The format is on the page tests/parity/golden/README.md.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shader_source
+
+ROOT = Path(__file__).resolve().parents[1]
+KERNELS = ROOT / "ComputeShaders"
+GOLDEN = ROOT / "tests" / "parity" / "golden"
+sys.path += [str(ROOT / "tests" / "parity"), str(ROOT / "tests")]
+
+from golden_cases import Case, Expected, cases  # noqa: E402 its folder is known only now
+
+from mua.arrays import Array  # noqa: E402
+
+
+class Blob:
+    """Bytes in which equal arrays are kept once."""
+
+    def __init__(self) -> None:
+        self.content = b""
+        self._offsets: dict[bytes, int] = {}
+
+    def place(self, array: Array) -> int:
+        """The offset at which an array's bytes begin."""
+        data = np.ascontiguousarray(array).tobytes()
+        if data not in self._offsets:
+            self._offsets[data] = len(self.content)
+            self.content += data
+        return self._offsets[data]
+
+
+def document(stem: str, listed: list[Case]) -> tuple[str, bytes]:
+    """The JSON text and the binary of one kernel's cases."""
+    declared = shader_source.read(KERNELS / f"{stem}.compute", KERNELS).buffers
+    blob = Blob()
+    found = [
+        {
+            "name": case.name,
+            "entry": case.entry,
+            "groups": list(case.groups),
+            "constants": [_constant(name, value) for name, value in case.constants.items()],
+            "buffers": [_buffer(name, declared[name].element, array, blob) for name, array in case.buffers.items()],
+            "expected": [_expected(expected, blob) for expected in case.expected],
+        }
+        for case in listed
+    ]
+    return json.dumps({"kernel": f"{stem}.compute", "cases": found}, indent=1) + "\n", blob.content
+
+
+def generate() -> dict[Path, bytes]:
+    """Path and content of every golden file."""
+    found: dict[Path, bytes] = {}
+    for stem, listed in cases().items():
+        text, content = document(stem, listed)
+        found |= {GOLDEN / f"{stem}.json": text.encode(), GOLDEN / f"{stem}.bin": content}
+    return found
+
+
+def _constant(name: str, value: Any) -> dict[str, Any]:
+    array = np.asarray(value)
+    scalar = "float" if array.dtype.kind == "f" else "uint"
+    return {"name": name, "scalar": scalar, "shape": list(array.shape), "values": array.ravel().tolist()}
+
+
+def _buffer(name: str, element: str, array: Array, blob: Blob) -> dict[str, Any]:
+    width = int(element[-1]) if element[-1].isdigit() else 1
+    words = np.ascontiguousarray(array, array.dtype.newbyteorder("<")).view("<u4")
+    return {"name": name, "element": element, "count": words.size // width, "offset": blob.place(words)}
+
+
+def _expected(expected: Expected, blob: Blob) -> dict[str, Any]:
+    values = np.asarray(expected.values, "<u4" if expected.kind == "uint" else "<f4")
+    return {
+        "buffer": expected.buffer,
+        "kind": expected.kind,
+        "first": expected.first,
+        "length": expected.length,
+        "period": expected.period,
+        "count": values.size,
+        "offset": blob.place(values),
+        "absolute": _rounded_up(expected.absolute),
+        "relative": _rounded_up(expected.relative),
+    }
+
+
+def _rounded_up(bound: float) -> float:
+    """Three digits, so that the text does not depend on a machine's last bit."""
+    return float(f"{1.005 * bound:.2e}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
+    check = parser.parse_args().check
+    for path, content in generate().items():
+        if not check:
+            path.write_bytes(content)
+        elif not path.is_file() or path.read_bytes() != content:
+            sys.exit(f"{path.relative_to(ROOT)} is out of date: run tools/gen_golden.py")
+
+
+if __name__ == "__main__":
+    main()
