@@ -1,0 +1,104 @@
+using System;
+using Mua.Format;
+
+namespace Mua.Motion
+{
+    /// <summary>
+    /// The normalised motion descriptor of a window of poses; the same numbers as python/mua/motion/descriptor.py.
+    /// </summary>
+    public sealed class Descriptor
+    {
+        private const double NoTwist = 1.4901161193847656e-08; // square root of double's machine epsilon
+
+        private readonly Skeleton skeleton;
+        private readonly PoseEncoding encoding;
+        private readonly QuaternionD bindBack;
+
+        public Descriptor(Skeleton skeleton, PoseEncoding encoding)
+        {
+            this.skeleton = skeleton;
+            this.encoding = encoding;
+            RootWorld(skeleton.BindRotations, skeleton.BindTranslation, out QuaternionD bind, out Vector3D _);
+            bindBack = bind.Conjugate;
+        }
+
+        /// <summary>Numbers that Write fills.</summary>
+        public int Width => encoding.Width;
+
+        /// <summary>
+        /// From local rotations [k, J, 4], unit, and local root translations [k, 3], metres, both newest first, to
+        /// `target` [Width], what the first layers read.
+        /// </summary>
+        public void Write(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, Span<float> target)
+        {
+            int joints = 4 * skeleton.JointCount, at = 0;
+            var origin = new Vector3D();
+            QuaternionD back = QuaternionD.Identity;
+            for (int age = 0; age < encoding.Window; age++)
+            {
+                ReadOnlySpan<double> pose = rotations.Slice(joints * age, joints);
+                RootWorld(pose, Vector3D.Load(translations, age), out QuaternionD turned, out Vector3D position);
+                QuaternionD turn = turned * bindBack;
+                if (age == 0)
+                {
+                    origin = position;
+                    back = encoding.Heading ? HeadingOf(turn).Conjugate : back;
+                }
+                Vector3D moved = position - origin;
+                if (encoding.Heading)
+                {
+                    moved = back.Rotate(moved);
+                    turn = back * turn;
+                }
+                Put(moved, target, ref at);
+                PutColumns(turn, target, ref at);
+                foreach (int joint in encoding.Joints)
+                {
+                    PutColumns(QuaternionD.Load(pose, joint), target, ref at);
+                }
+            }
+        }
+
+        /// <summary>The twist about Y; identity where a rotation has none (swing-twist decomposition).</summary>
+        public static QuaternionD HeadingOf(QuaternionD turn)
+        {
+            var twist = new QuaternionD(turn.W, 0, turn.Y, 0);
+            return twist.Length < NoTwist ? QuaternionD.Identity : twist.Normalized();
+        }
+
+        /// <summary>World rotation and position of the root joint alone.</summary>
+        private void RootWorld(
+            ReadOnlySpan<double> rotations, Vector3D translation, out QuaternionD turned, out Vector3D position)
+        {
+            turned = QuaternionD.Load(rotations, skeleton.Root);
+            position = translation;
+            for (int joint = skeleton.Parents[skeleton.Root]; joint >= 0; joint = skeleton.Parents[joint])
+            {
+                QuaternionD above = QuaternionD.Load(rotations, joint);
+                turned = above * turned;
+                position = Vector3D.Load(skeleton.BindTranslations, joint) + above.Rotate(position);
+            }
+        }
+
+        /// <summary>The first two columns of the rotation's matrix (Zhou et al. 2019, https://arxiv.org/abs/1812.07035).</summary>
+        private void PutColumns(QuaternionD q, Span<float> target, ref int at)
+        {
+            double w = q.W, x = q.X, y = q.Y, z = q.Z;
+            Put(new Vector3D(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)), target, ref at);
+            Put(new Vector3D(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)), target, ref at);
+        }
+
+        private void Put(Vector3D v, Span<float> target, ref int at)
+        {
+            Put(v.X, target, ref at);
+            Put(v.Y, target, ref at);
+            Put(v.Z, target, ref at);
+        }
+
+        private void Put(double value, Span<float> target, ref int at)
+        {
+            target[at] = (float)((value - encoding.Mean[at]) / encoding.Scale[at]);
+            at++;
+        }
+    }
+}
