@@ -19,9 +19,9 @@ from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import view_projection
-from mua.player.frame import AvatarFrame
 from mua.player.overlays import DARKNESS, GEOMETRY_COLOR, JOINT_COLOR, LIGHT, TEMPLATE_COLOR, ground_height, shadow_area
 from mua.player.scene import Scene, Toggles, draw_picture, parse_toggles
+from mua.player.splats import SplatFrame
 from mua.rig.skeleton import Pose
 
 SCREEN = (97, 131)  # pixels
@@ -36,7 +36,7 @@ class Stage:
     def __init__(self, device: Device, path: Path) -> None:
         self.device, self.avatar = device, synthetic_avatar()
         write(path, self.avatar, storage="f32")
-        self.gpu = AvatarFrame(device, AvatarBuffers(device, path))
+        self.gpu = SplatFrame(device, [AvatarBuffers(device, path)])
         self.scene = Scene(device, self.gpu)
         self.clip = self.avatar.clips[0]
         self.window = self.avatar.encoding.frames(INDEX)
@@ -45,7 +45,7 @@ class Stage:
 
     def picture(self, cameras: tuple[Camera, ...], show: str) -> Array:
         commands = self.device.commands()
-        self.gpu.decode(commands, self.clip.rotations[self.window], self.clip.translation[self.window])
+        self.gpu.avatars[0].decode(commands, self.clip.rotations[self.window], self.clip.translation[self.window])
         self.gpu.sort(commands, cameras)
         commands.submit()
         self.scene.pose(self.clip.rotations[INDEX], self.clip.translation[INDEX], ground=self.ground)
@@ -224,7 +224,7 @@ def test_draws_an_avatar_without_texels(device: Device, tmp_path: Path) -> None:
         appearance=replace(avatar.appearance, static=avatar.appearance.static[:, :0]),
     )
     write(tmp_path / "empty.muaavatar", empty)
-    scene = Scene(device, AvatarFrame(device, AvatarBuffers(device, tmp_path / "empty.muaavatar")))
+    scene = Scene(device, SplatFrame(device, [AvatarBuffers(device, tmp_path / "empty.muaavatar")]))
     camera = camera_at(avatar.rig.mesh.vertices)
     picture = draw_picture(device, scene, (camera,), Toggles(splats=False, geometry=True))
     assert picture.max() == 0

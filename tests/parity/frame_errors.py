@@ -22,7 +22,7 @@ from mua.kernels.splat_project import LAST_KEY
 from mua.motion.clip import Clip
 from mua.motion.resample import resample
 from mua.player.buffers import AvatarBuffers
-from mua.player.frame import AvatarFrame
+from mua.player.splats import SplatFrame
 from mua.rig.rig import Rig
 
 VISIBLE_WORD = 7  # of `arguments`
@@ -42,14 +42,15 @@ class FrameErrors:
 class PosedFrame:
     """One frame of a clip, decoded and sorted on a device, and the reference."""
 
-    def __init__(self, device: Device, frame: AvatarFrame, clip: Clip, index: int, *, eyes: int, screen: int) -> None:
-        avatar = frame.avatar.avatar
+    def __init__(self, device: Device, frame: SplatFrame, clip: Clip, index: int, *, eyes: int, screen: int) -> None:
+        (gpu,) = frame.avatars
+        avatar = gpu.avatar.avatar
         window = avatar.encoding.frames(index)
         self.frame, self.exact = frame, decode_clip_frame(avatar, clip, frame=index, dtype=np.float64)
         self.cameras = cameras_of(avatar.rig, clip, eyes=eyes, screen=screen)
         self.bounds = avatar.bounds + root_positions(avatar.rig, clip)[index]
         commands = device.commands()
-        frame.decode(commands, clip.rotations[window], clip.translation[window])
+        gpu.decode(commands, clip.rotations[window], clip.translation[window])
         frame.sort(commands, self.cameras)
         commands.submit()
         self.visible = int(frame.arguments.read()[VISIBLE_WORD])
@@ -98,8 +99,8 @@ def main(files: Sequence[str]) -> None:
     device = open_device()
     print(f"on {device.adapter}")
     for file in files:
-        frame = AvatarFrame(device, AvatarBuffers(device, Path(file)))
-        avatar = frame.avatar.avatar
+        frame = SplatFrame(device, [AvatarBuffers(device, Path(file))])
+        avatar = frame.avatars[0].avatar.avatar
         clip = resample(avatar.clips[0], avatar.encoding.rate)
         frames = np.linspace(0, len(clip) - 1, 5).astype(int)
         errors = [

@@ -256,7 +256,7 @@ def skin_on(device: Device, vertex_dq: Array, mesh: Array, faces: Array, texels:
         "splats": np.full((count, 16), 0xFFFFFFFF, np.uint32),
     }
     groups = (-(-count // GROUP), 1, 1)
-    return unpacked(run(device, FILE, "SkinSplats", groups, buffers, texel_count=count)["splats"])
+    return unpacked(run(device, FILE, "SkinSplats", groups, buffers, texel_count=count, first_splat=0)["splats"])
 
 
 @pytest.mark.parametrize("influences", [1, JOINTS, 8])
@@ -312,7 +312,8 @@ def test_hlsl_keeps_rotations_that_cancel_finite(device: Device) -> None:
     assert all(np.isfinite(found[name]).all() for name in ("centre", "covariance", "turn", "sh", "opacity"))
 
 
-def test_hlsl_leaves_the_splats_after_the_last_alone(device: Device) -> None:
+@pytest.mark.parametrize("first", [0, 1, GROUP - 1])
+def test_hlsl_leaves_the_splats_of_others_alone(device: Device, first: int) -> None:
     rng = np.random.default_rng(6)
     vertex_dq, texels = random_joints(rng, 6).astype(np.float32), random_texels(rng, GROUP + 1)
     untouched = np.full((2 * GROUP, 16), 0xFFFFFFFF, np.uint32)
@@ -325,5 +326,7 @@ def test_hlsl_leaves_the_splats_after_the_last_alone(device: Device) -> None:
         "texel_channels": texels.texture.T,
         "splats": untouched,
     }
-    splats = run(device, FILE, "SkinSplats", (2, 1, 1), buffers, texel_count=GROUP + 1)["splats"]
-    np.testing.assert_array_equal(splats[GROUP + 1 :], untouched[GROUP + 1 :])
+    constants = {"texel_count": GROUP + 1, "first_splat": first}
+    splats = run(device, FILE, "SkinSplats", (2, 1, 1), buffers, **constants)["splats"]
+    written = (splats != untouched).any(axis=1)
+    np.testing.assert_array_equal(np.flatnonzero(written), first + np.arange(GROUP + 1))

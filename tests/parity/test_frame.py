@@ -19,9 +19,9 @@ from mua.gpu import Device
 from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
-from mua.player.frame import AvatarFrame
 from mua.player.offscreen import Offscreen, reference_picture
 from mua.player.scene import Toggles
+from mua.player.splats import SplatFrame
 from mua.render import frame_bounds, render_premultiplied
 
 POSITION_BOUND = 5e-5  # metres: a tenth of the finest splat; what float32 leaves is a fiftieth of it
@@ -69,8 +69,8 @@ def saved(avatar: Avatar, directory: Path, *, storage: Storage = "f32") -> Path:
     return path
 
 
-def opened(device: Device, avatar: Avatar, directory: Path, *, storage: Storage = "f32") -> AvatarFrame:
-    return AvatarFrame(device, AvatarBuffers(device, saved(avatar, directory, storage=storage)))
+def opened(device: Device, avatar: Avatar, directory: Path, *, storage: Storage = "f32") -> SplatFrame:
+    return SplatFrame(device, [AvatarBuffers(device, saved(avatar, directory, storage=storage))])
 
 
 def psnr(image: Array, exact: Array) -> float:
@@ -101,11 +101,11 @@ def faint(avatar: Avatar) -> Avatar:
     return replace(avatar, geometry=replace(avatar.geometry, ll_mean=mean))
 
 
-def picture(device: Device, frame: AvatarFrame, cameras: tuple[Camera, ...], *, index: int = 0) -> Array:
-    avatar = frame.avatar.avatar
+def picture(device: Device, frame: SplatFrame, cameras: tuple[Camera, ...], *, index: int = 0) -> Array:
+    avatar = frame.avatars[0].avatar.avatar
     clip, window = avatar.clips[0], avatar.encoding.frames(index)
     commands = device.commands()
-    frame.decode(commands, clip.rotations[window], clip.translation[window])
+    frame.avatars[0].decode(commands, clip.rotations[window], clip.translation[window])
     frame.sort(commands, cameras)
     commands.submit()
     return draw_image(device, SplatRenderer(device, image_format(device)), frame.sorted, cameras)
@@ -118,7 +118,7 @@ def test_frames_agree_with_the_reference_on_the_same_stored_values(
 ) -> None:
     frame = opened(device, synthetic_avatar(), tmp_path, storage=storage)
     for index in (0, 3, 6):
-        posed = PosedFrame(device, frame, frame.avatar.avatar.clips[0], index, eyes=eyes, screen=256)
+        posed = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], index, eyes=eyes, screen=256)
         errors = posed.errors()
         assert errors.position < POSITION_BOUND
         assert errors.color < COLOR_BOUND
@@ -129,7 +129,7 @@ def test_frames_agree_with_the_reference_on_the_same_stored_values(
 @pytest.mark.parametrize("eyes", [1, 2])
 def test_order_is_back_to_front_and_keeps_the_texels_of_equal_keys(device: Device, tmp_path: Path, eyes: int) -> None:
     frame = opened(device, synthetic_avatar(), tmp_path)
-    posed = PosedFrame(device, frame, frame.avatar.avatar.clips[0], 5, eyes=eyes, screen=256)
+    posed = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], 5, eyes=eyes, screen=256)
     assert posed.visible == frame.splat_count  # none is out of view
     np.testing.assert_array_equal(np.sort(posed.order), np.arange(frame.splat_count))
     keys, order = posed.keys.astype(int), posed.order.astype(int)
@@ -141,7 +141,7 @@ def test_order_is_back_to_front_and_keeps_the_texels_of_equal_keys(device: Devic
 def test_a_frame_is_few_dispatches_in_the_order_of_the_kernels(device: Device, tmp_path: Path) -> None:
     avatar = synthetic_avatar()
     frame, clip, listed = opened(device, avatar, tmp_path), avatar.clips[0], Listed()
-    frame.decode(listed, clip.rotations[:3], clip.translation[:3])  # type: ignore[arg-type]
+    frame.avatars[0].decode(listed, clip.rotations[:3], clip.translation[:3])  # type: ignore[arg-type]
     frame.sort(listed, [orbit(avatar.bounds, screen=(8, 8))])  # type: ignore[arg-type]
     assert listed.names == FRAME_ORDER
     assert len(listed.names) < FEWER_THAN
@@ -150,7 +150,7 @@ def test_a_frame_is_few_dispatches_in_the_order_of_the_kernels(device: Device, t
 @pytest.mark.parametrize("wavelet", ["bior1.1", "bior6.8"])
 def test_other_wavelets_agree(device: Device, tmp_path: Path, wavelet: str) -> None:
     frame = opened(device, synthetic_avatar(wavelet=wavelet), tmp_path)
-    errors = PosedFrame(device, frame, frame.avatar.avatar.clips[0], 4, eyes=1, screen=64).errors()
+    errors = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], 4, eyes=1, screen=64).errors()
     assert errors.position < POSITION_BOUND
     assert errors.color < COLOR_BOUND
 
@@ -205,7 +205,7 @@ def test_depth_keys_follow_the_figure_away_from_the_origin(device: Device, tmp_p
     clip = avatar.clips[0]
     far = Clip(clip.name, clip.rate, clip.rotations, clip.translation + np.array([30.0, 0, -40]))
     frame = opened(device, replace(avatar, clips=(far,)), tmp_path)
-    posed = PosedFrame(device, frame, frame.avatar.avatar.clips[0], 3, eyes=1, screen=64)
+    posed = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], 3, eyes=1, screen=64)
     assert len(np.unique(posed.keys)) > frame.splat_count / 2
     assert posed.errors().position < POSITION_BOUND
 
@@ -214,7 +214,7 @@ def test_depth_keys_follow_the_figure_away_from_the_origin(device: Device, tmp_p
 def test_an_avatar_of_few_texels_is_drawn(device: Device, tmp_path: Path, count: int) -> None:
     few = part(synthetic_avatar(), slice(300, 300 + count))
     frame = opened(device, few, tmp_path)
-    posed = decode_clip_frame(frame.avatar.avatar, few.clips[0], frame=0)
+    posed = decode_clip_frame(frame.avatars[0].avatar.avatar, few.clips[0], frame=0)
     camera = orbit(synthetic_avatar().bounds, screen=(96, 64))
     image = picture(device, frame, (camera,))
     assert psnr(image, render_premultiplied(posed, camera)) > LEAST_PSNR
@@ -237,7 +237,7 @@ def test_a_camera_that_looks_away_leaves_the_picture_empty(device: Device, tmp_p
 
 def test_a_camera_inside_the_body_sees_what_the_reference_sees(device: Device, tmp_path: Path) -> None:
     frame = opened(device, synthetic_avatar(), tmp_path)
-    avatar = frame.avatar.avatar
+    avatar = frame.avatars[0].avatar.avatar
     posed = decode_clip_frame(avatar, avatar.clips[0], frame=0, dtype=np.float64)
     camera = orbit(frame_bounds(posed), screen=(64, 64))
     view = camera.view.copy()
@@ -251,7 +251,7 @@ def test_a_camera_inside_the_body_sees_what_the_reference_sees(device: Device, t
 @pytest.mark.parametrize("screen", [(1, 1), (1, 7), (37, 1)])
 def test_the_smallest_pictures_agree(device: Device, tmp_path: Path, screen: tuple[int, int]) -> None:
     frame = opened(device, synthetic_avatar(), tmp_path)
-    avatar = frame.avatar.avatar
+    avatar = frame.avatars[0].avatar.avatar
     camera = orbit(avatar.bounds, screen=screen)
     image = picture(device, frame, (camera,))
     assert image.shape == (screen[1], screen[0], 4)

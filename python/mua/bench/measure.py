@@ -19,8 +19,8 @@ from mua.motion.clip import Clip
 from mua.motion.resample import resample
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer
-from mua.player.frame import AvatarFrame
 from mua.player.shot import Shot, film
+from mua.player.splats import SplatFrame
 
 WARM_UP = 3  # frames before the first that counts
 COPIED = 128 << 20  # bytes of the copy; more than any cache holds
@@ -68,7 +68,7 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
     clip = replace(clip, rotations=clip.rotations[:played], translation=clip.translation[:played])
     shots = film(Shot(screen, eyes=eyes), buffers.avatar.rig, clip)
     bandwidth = copy_bandwidth(device)
-    frame = AvatarFrame(device, buffers)
+    frame = SplatFrame(device, [buffers])
     spent, visible = _compute_frames(device, frame, clip, shots, frames)
     drawn = _draw_frames(device, frame, clip, shots, frames)  # after all computing, see there
     work = frame_work(load(path), visible=visible, eyes=len(shots[0]))
@@ -102,7 +102,7 @@ def copy_bandwidth(device: Device) -> float:
 
 
 def _compute_frames(
-    device: Device, frame: AvatarFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
+    device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
 ) -> tuple[dict[str, list[float]], int]:
     """Milliseconds of every counted frame by kernel, and the median of the visible splats."""
     spent: dict[str, list[float]] = defaultdict(list)
@@ -117,7 +117,7 @@ def _compute_frames(
 
 
 def _draw_frames(
-    device: Device, frame: AvatarFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
+    device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
 ) -> list[float]:
     """Milliseconds of drawing every counted frame.
 
@@ -132,11 +132,12 @@ def _draw_frames(
     return taken[WARM_UP:]
 
 
-def _compute(device: Device, frame: AvatarFrame, clip: Clip, shots: list[tuple[Camera, ...]], index: int) -> Commands:
+def _compute(device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Camera, ...]], index: int) -> Commands:
     """Submit everything up to the sort of a frame; the clip starts over at its end."""
-    window = [i % len(clip) for i in frame.avatar.avatar.encoding.frames(index)]
+    (avatar,) = frame.avatars
+    window = [i % len(clip) for i in avatar.avatar.avatar.encoding.frames(index)]
     commands = device.commands(timed=True)
-    frame.decode(commands, clip.rotations[window], clip.translation[window])
+    avatar.decode(commands, clip.rotations[window], clip.translation[window])
     frame.sort(commands, shots[window[0]])
     commands.submit()
     return commands

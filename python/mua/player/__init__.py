@@ -1,1 +1,1 @@
-"""Plays avatars on a Vulkan device: the same dispatches in the same order as the Unity package's AvatarFrame.cs."""
+"""Plays avatars on a Vulkan device: the same dispatches in the same order as the Unity package's frames."""

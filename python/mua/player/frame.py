@@ -1,22 +1,17 @@
-"""One frame of an avatar: the dispatches from a window of poses to splats sorted for one or two eyes.
+"""One frame of an avatar: the dispatches from a window of poses to posed splats.
 
 Kept a plain list in the order of the kernels, so that unity-package/Runtime/AvatarFrame.cs reads line for line like it.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from mua import rotation
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
-from mua.errors import InputError
 from mua.gpu import Buffer, Commands, Device
 from mua.motion.descriptor import describe_window
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, LayerBuffers
-from mua.player.draw import SortedSplats
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 
-EYES = 2  # at most
 FLOAT = 4  # bytes
 LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
 LL_TEXELS = 64  # of a group of BlendLl
@@ -24,27 +19,27 @@ DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt and InverseDwtLowPass doubles
 STATIC_TEXELS = 256  # of a group of AddStatic
 SKINNED = 64  # vertices or texels of a group of BlendVertices and SkinSplats
-PROJECTED = 256  # splats of a group of SplatProject and SplatCompact
-SORTED = 2048  # keys of a group of the sort
-DIGITS = 256  # values of 8 bits
-DIGIT_SHIFTS = (0, 8)
-SORT_ARGUMENTS = 16  # byte of `arguments` at which the group counts of the sort stand
+IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # where the clip puts it
 
 
 class AvatarFrame:
-    """The buffers between the kernels, sized once and reused by every frame.
+    """The buffers between the kernels, sized once and reused by every frame; the splats are shared with others."""
 
-    A splat's colour is computed once for both eyes, towards the mean of their positions: degree-1 harmonics turn with
-    the direction, and two eyes 63 mm apart see an avatar a metre away in directions 4 degrees apart.
-    """
-
-    def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
+    def __init__(
+        self,
+        device: Device,
+        avatar: AvatarBuffers,
+        splats: Buffer,  # [M, 16] words of all avatars (mua.kernels.dq_skinning.pack_splats)
+        *,
+        first_splat: int,  # of this avatar
+    ) -> None:
         """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
         rig = avatar.avatar.rig
         self.avatar = avatar
+        self.splats, self.first_splat = splats, first_splat
         self.splat_count = len(rig.texels.texels)
         self.vertex_count = len(rig.mesh.vertices)
-        self.root = np.zeros(3)  # world position of the root joint, metres, as of the last decode
+        self.bounds = avatar.avatar.bounds  # [2, 3] world box of the last decode, metres
         self._load_kernels(device)
         self._create_buffers(device)
 
@@ -58,12 +53,6 @@ class AvatarFrame:
         self._add_static = device.kernel("inverse_dwt.compute", "AddStatic")
         self._blend_vertices = device.kernel("dq_skinning.compute", "BlendVertices")
         self._skin_splats = device.kernel("dq_skinning.compute", "SkinSplats")
-        self._splat_project = device.kernel("splat_project.compute", "SplatProject")
-        self._scan_counts = device.kernel("splat_project.compute", "ScanCounts")
-        self._splat_compact = device.kernel("splat_project.compute", "SplatCompact")
-        self._count_digits = device.kernel("splat_sort.compute", "CountDigits")
-        self._scan_digits = device.kernel("splat_sort.compute", "ScanDigits")
-        self._scatter_digits = device.kernel("splat_sort.compute", "ScatterDigits")
 
     def _create_buffers(self, device: Device) -> None:
         avatar, buffer = self.avatar.avatar, device.buffer
@@ -81,55 +70,34 @@ class AvatarFrame:
         self.texel_channels = buffer(FLOAT * CHANNELS * splats, name="texel_channels")  # [23, N]
         self.joints = buffer(FLOAT * 8 * joints, name="joints")  # [J, 8]
         self.vertex_dq = buffer(FLOAT * 8 * vertices, name="vertex_dq")  # [V, 8]
-        self.splats = buffer(64 * splats, name="splats")  # [N, 16] words (mua.kernels.dq_skinning.pack_splats)
-        self.ellipses = buffer(FLOAT * 6 * EYES * splats, name="ellipses")  # [E, N, 6]
-        self.colors = buffer(8 * splats, name="colors")  # [N, 4] halves
-        self.flags = buffer(4 * splats, name="flags")
-        self.group_counts = buffer(4 * _groups(splats, PROJECTED), name="group_counts")
-        self.arguments = buffer(32, name="arguments", indirect=True)
-        self.keys = tuple(buffer(4 * splats, name=f"keys {i}") for i in range(2))
-        self.orders = tuple(buffer(4 * splats, name=f"order {i}") for i in range(2))
-        self.digit_counts = buffer(4 * DIGITS * _groups(splats, SORTED), name="digit_counts")
-        self.digit_totals = buffer(4 * DIGITS, name="digit_totals")
-        self.sorted = SortedSplats(  # two passes of the sort end where they began
-            splats, self.splats, self.ellipses, self.colors, self.orders[0], self.arguments
-        )
 
     def decode(
         self,
         commands: Commands,
         rotations: Array,  # [k, J, 4] local joint rotations, newest first
         translation: Array,  # [k, 3] local translation of the root joint, metres
+        place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
     ) -> None:
         """Append the dispatches from a window of poses to posed splats.
 
         What depends on the pose alone is written to the device at once: submit before the next decode.
         """
-        self._write_pose(rotations, translation)
+        self._write_pose(rotations, translation, place)
         self._coarse(commands)
         self._branch(commands, self.avatar.geometry, first_channel=GEOMETRY.start)
         self._branch(commands, self.avatar.appearance, first_channel=APPEARANCE.start)
         self._pose(commands)
 
-    def sort(self, commands: Commands, cameras: Sequence[Camera]) -> None:
-        """Append the dispatches from posed splats to `sorted`, the splats that one or two eyes see, back to front.
-
-        Errors: InputError unless there are one or two cameras of one screen.
-        """
-        if not 1 <= len(cameras) <= EYES or any(camera.screen != cameras[0].screen for camera in cameras):
-            screens = ", ".join("x".join(map(str, camera.screen)) for camera in cameras)
-            raise InputError(f"cameras have the screens [{screens}]; expected one or {EYES} of one size")
-        self._project(commands, cameras)
-        for i, shift in enumerate(DIGIT_SHIFTS):
-            self._sort_digit(commands, shift, source=i % 2)
-
-    def _write_pose(self, rotations: Array, translation: Array) -> None:
+    def _write_pose(self, rotations: Array, translation: Array, place: Array) -> None:
         avatar = self.avatar.avatar
         skeleton, normalization = avatar.rig.skeleton, avatar.normalization
         descriptor = describe_window(skeleton, avatar.encoding, rotations, translation)
         self.descriptor.write(((descriptor - normalization.mean) / normalization.scale).astype(np.float32))
-        self.joints.write(skeleton.skinning(rotations[0], translation[0]).astype(np.float32))
-        self.root = skeleton.world(rotations[0], translation[0])[1][skeleton.root]
+        joints = rotation.dual_multiply(place, skeleton.skinning(rotations[0], translation[0]))
+        self.joints.write(joints.astype(np.float32))
+        root = skeleton.world(rotations[0], translation[0])[1][skeleton.root]
+        corners = rotation.dual_transform(place, np.stack(np.meshgrid(*(avatar.bounds + root).T), axis=-1))
+        self.bounds = np.stack([corners.min(axis=(0, 1, 2)), corners.max(axis=(0, 1, 2))])
 
     def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...]) -> Buffer:
         """What the MLP makes of the descriptor; good until the next MLP."""
@@ -138,7 +106,7 @@ class AvatarFrame:
             y = self.activations[i % 2]
             commands.dispatch(
                 self._mlp_matmul,
-                (_groups(layer.outputs, LAYER_ROWS), 1, 1),
+                (groups(layer.outputs, LAYER_ROWS), 1, 1),
                 {"weight": layer.weight.words, "bias": layer.bias.words, "x": x, "y": y},
                 weight_layout=layer.weight.layout,
                 bias_layout=layer.bias.layout,
@@ -154,7 +122,7 @@ class AvatarFrame:
         coefficients = self._mlp(commands, self.avatar.coarse_mlp)
         commands.dispatch(
             self._mlp_matmul_transposed,
-            (_groups(basis.outputs, MESH_COLUMNS), 1, 1),
+            (groups(basis.outputs, MESH_COLUMNS), 1, 1),
             {"weight": basis.weight.words, "bias": basis.bias.words, "x": coefficients, "y": self.mesh},
             weight_layout=basis.weight.layout,
             bias_layout=basis.bias.layout,
@@ -179,7 +147,7 @@ class AvatarFrame:
             size *= 2
         commands.dispatch(
             self._add_static,
-            (_groups(self.splat_count, STATIC_TEXELS), 1, 1),
+            (groups(self.splat_count, STATIC_TEXELS), 1, 1),
             {
                 "fine": self.textures[0],
                 "texels": self.avatar.texels,
@@ -196,7 +164,7 @@ class AvatarFrame:
     def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
         commands.dispatch(
             self._blend_ll,
-            (_groups(size * size, LL_TEXELS), branch.channels, 1),
+            (groups(size * size, LL_TEXELS), branch.channels, 1),
             {"mean": branch.ll_mean.words, "basis": branch.ll_basis.words, "alpha": alpha, "blended": blended},
             mean_layout=branch.ll_mean.layout,
             basis_layout=branch.ll_basis.layout,
@@ -209,7 +177,7 @@ class AvatarFrame:
     def _blend_band(
         self, commands: Commands, branch: BranchBuffers, band: BandBuffers, alpha: Buffer, alpha_offset: int, size: int
     ) -> None:
-        tiles = _groups(size, DETAIL_TILE)
+        tiles = groups(size, DETAIL_TILE)
         commands.dispatch(
             self._blend_detail,
             (tiles, tiles, 3 * branch.channels),
@@ -227,18 +195,20 @@ class AvatarFrame:
         self, commands: Commands, branch: BranchBuffers, ll: Buffer, fine: Buffer, size: int, *, detailed: bool
     ) -> None:
         """One level, from planes of `size` to twice that."""
-        tiles = _groups(size, COARSE_TILE)
-        groups, taps = (tiles, tiles, branch.channels), len(self.avatar.avatar.wavelet.rec_lo)
+        tiles = groups(size, COARSE_TILE)
+        taps = len(self.avatar.avatar.wavelet.rec_lo)
         buffers = {"ll": ll, "rec_lo": self.avatar.rec_lo, "fine": fine}
         if detailed:
             buffers |= {"details": self.details, "rec_hi": self.avatar.rec_hi}
         kernel = self._inverse_dwt if detailed else self._inverse_dwt_low_pass
-        commands.dispatch(kernel, groups, buffers, channels=branch.channels, size=size, taps=taps)
+        commands.dispatch(
+            kernel, (tiles, tiles, branch.channels), buffers, channels=branch.channels, size=size, taps=taps
+        )
 
     def _pose(self, commands: Commands) -> None:
         commands.dispatch(
             self._blend_vertices,
-            (_groups(self.vertex_count, SKINNED), 1, 1),
+            (groups(self.vertex_count, SKINNED), 1, 1),
             {
                 "joints": self.joints,
                 "indices": self.avatar.skin_indices,
@@ -249,7 +219,7 @@ class AvatarFrame:
         )
         commands.dispatch(
             self._skin_splats,
-            (_groups(self.splat_count, SKINNED), 1, 1),
+            (groups(self.splat_count, SKINNED), 1, 1),
             {
                 "vertex_dq": self.vertex_dq,
                 "mesh": self.mesh,
@@ -260,68 +230,10 @@ class AvatarFrame:
                 "splats": self.splats,
             },
             texel_count=self.splat_count,
-        )
-
-    def _project(self, commands: Commands, cameras: Sequence[Camera]) -> None:
-        low, high = self.avatar.avatar.bounds + self.root
-        pair = (cameras[0], cameras[-1])
-        groups = (_groups(self.splat_count, PROJECTED), 1, 1)
-        commands.dispatch(
-            self._splat_project,
-            groups,
-            {
-                "splats": self.splats,
-                "ellipses": self.ellipses,
-                "colors": self.colors,
-                "flags": self.flags,
-                "group_counts": self.group_counts,
-            },
-            view=np.stack([camera.view for camera in pair]),
-            projection=np.stack([camera.projection for camera in pair]),
-            camera=np.append(np.mean([camera.position for camera in cameras], axis=0), 1),
-            bounds_low=np.append(low, 1),
-            bounds_high=np.append(high, 1),
-            screen=np.array(cameras[0].screen),
-            near=NEAR,
-            eyes=len(cameras),
-            splat_count=self.splat_count,
-        )
-        commands.dispatch(
-            self._scan_counts,
-            (1, 1, 1),
-            {"group_counts": self.group_counts, "arguments": self.arguments},
-            splat_count=self.splat_count,
-            instances=1,
-        )
-        commands.dispatch(
-            self._splat_compact,
-            groups,
-            {
-                "flags": self.flags,
-                "group_counts": self.group_counts,
-                "visible": self.orders[0],
-                "keys": self.keys[0],
-            },
-            splat_count=self.splat_count,
-        )
-
-    def _sort_digit(self, commands: Commands, shift: int, *, source: int) -> None:
-        """One pass of the sort, from buffers `source` of the two pairs to the others."""
-        keys, arguments = self.keys[source], self.arguments
-        counts = {"digit_counts": self.digit_counts, "arguments": arguments}
-        totals = {**counts, "digit_totals": self.digit_totals}
-        target = {"sorted_keys": self.keys[1 - source], "sorted_values": self.orders[1 - source]}
-        commands.dispatch_indirect(self._count_digits, arguments, SORT_ARGUMENTS, {"keys": keys, **counts}, shift=shift)
-        commands.dispatch(self._scan_digits, (DIGITS, 1, 1), totals)
-        commands.dispatch_indirect(
-            self._scatter_digits,
-            arguments,
-            SORT_ARGUMENTS,
-            {"keys": keys, "values": self.orders[source], **totals, **target},
-            shift=shift,
+            first_splat=self.first_splat,
         )
 
 
-def _groups(count: int, size: int) -> int:
+def groups(count: int, size: int) -> int:
     """Groups of `size` that hold `count`."""
     return -(-count // size)

@@ -11,8 +11,8 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.gpu.failure import naming
 from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye
-from mua.player.frame import AvatarFrame
 from mua.player.overlays import Overlays, PosedBuffers
+from mua.player.splats import SplatFrame
 
 DEPTH_FORMAT = "depth32float"
 CLEAR = (0.0, 0.0, 0.0, 0.0)
@@ -48,7 +48,7 @@ class Scene:
     def __init__(
         self,
         device: Device,
-        frame: AvatarFrame,
+        frame: SplatFrame,  # of this avatar alone
         *,
         color_format: str = IMAGE_FORMAT,
         background: tuple[float, float, float, float] = CLEAR,  # premultiplied sRGB and alpha
@@ -57,8 +57,9 @@ class Scene:
         self.color_format = color_format
         self._splats = frame.sorted
         self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
-        posed = PosedBuffers(frame.splats, frame.vertex_dq, frame.mesh)
-        self._overlays = Overlays(device, frame.avatar.avatar, posed, color=color_format, depth=DEPTH_FORMAT)
+        (avatar,) = frame.avatars
+        posed = PosedBuffers(frame.splats, avatar.vertex_dq, avatar.mesh)
+        self._overlays = Overlays(device, avatar.avatar.avatar, posed, color=color_format, depth=DEPTH_FORMAT)
         self._depth: wgpu.GPUTexture | None = None
 
     def pose(

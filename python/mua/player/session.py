@@ -13,10 +13,10 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
-from mua.player.frame import AvatarFrame
 from mua.player.motion import named_clip, player_clips
 from mua.player.overlays import ground_height
 from mua.player.scene import Scene, Toggles
+from mua.player.splats import SplatFrame
 from mua.player.viewpoint import Viewpoint, framing
 
 BACKGROUND = (0.93, 0.94, 0.95, 1.0)  # sRGB
@@ -40,7 +40,7 @@ class Stage:
         """Errors: InputError where the file is broken or too large, or the motion does not fit."""
         avatar = AvatarBuffers(device, file)
         self.clips, self.notes = player_clips(avatar.avatar, file, motion=source.motion, mapping=source.mapping)
-        self.frame = AvatarFrame(device, avatar)
+        self.frame = SplatFrame(device, [avatar])
         self.scene = Scene(device, self.frame, color_format=color_format, background=BACKGROUND)
         self.rig, self.encoding, self.bounds = avatar.avatar.rig, avatar.avatar.encoding, avatar.avatar.bounds
         self._grounds: dict[str, float] = {}
@@ -147,7 +147,7 @@ class Session:
         rotations, translation = self._clip.rotations[window], self._clip.translation[window]
         shown = (self.file, self._clip.name, self.index)
         if shown != self._drawn:
-            self._stage.frame.decode(commands, rotations, translation)
+            self._stage.frame.avatars[0].decode(commands, rotations, translation)
             self._stage.scene.pose(rotations[0], translation[0], ground=self._stage.ground(self._clip))
         self._stage.frame.sort(commands, cameras)
         commands.submit()

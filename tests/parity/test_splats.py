@@ -1,0 +1,135 @@
+"""Several avatars in one sort, each somewhere else, against the reference in float64 over all their splats together."""
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from packed_splats import unpacked
+from splat_rounding import exact_keys
+from synthetic_avatar import synthetic_avatar
+from test_frame import COLOR_BOUND, LEAST_PSNR, OPACITY_BOUND, POSITION_BOUND, part, psnr
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset import write
+from mua.asset.avatar import Avatar
+from mua.bounds import union
+from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
+from mua.decode import Frame, decode_clip_frame
+from mua.gpu import Device
+from mua.kernels.splat_draw import splat_colors
+from mua.kernels.splat_project import LAST_KEY
+from mua.player.buffers import AvatarBuffers
+from mua.player.draw import SplatRenderer, draw_image, image_format
+from mua.player.splats import SplatFrame
+from mua.render import frame_bounds, render_premultiplied
+
+INDICES = (0, 3, 6)  # of the frame that each avatar shows
+VISIBLE_WORD = 7  # of `arguments`
+
+
+def turned(angle: float, place: Sequence[float]) -> Array:
+    """A rigid dual quaternion [8]: a turn about a slanted axis, then a move, metres."""
+    axis = rotation.normalize(np.array([0.2, 1.0, -0.1]))
+    return rotation.dual_from_rigid(rotation.from_axis_angle(axis, angle), np.array(place))
+
+
+PLACES = (turned(0, (0, 0, 0)), turned(1.2, (0.35, 0.1, -0.2)), turned(-2.5, (-0.4, 0, 0.3)))  # they interpenetrate
+
+
+def moved(frame: Frame, place: Array) -> Frame:
+    """A posed avatar elsewhere."""
+    return replace(
+        frame,
+        mesh=rotation.dual_transform(place, frame.mesh),
+        centres=rotation.dual_transform(place, frame.centres),
+        rotations=rotation.multiply(place[:4], frame.rotations),
+        texel_dq=rotation.dual_multiply(place, frame.texel_dq),
+    )
+
+
+def joined(frames: Sequence[Frame]) -> Frame:
+    return Frame(**{field.name: np.concatenate([getattr(f, field.name) for f in frames]) for field in fields(Frame)})
+
+
+def three() -> list[Avatar]:
+    """Of three sizes, so that none starts at a whole group."""
+    return [synthetic_avatar(1), part(synthetic_avatar(2), slice(0, 301)), part(synthetic_avatar(3), slice(100, 457))]
+
+
+class Crowd:
+    """Avatars at PLACES, decoded and sorted on a device, and their reference."""
+
+    def __init__(self, device: Device, directory: Path, avatars: Sequence[Avatar], *, eyes: int) -> None:
+        for index, avatar in enumerate(avatars):
+            write(directory / f"{index}.muaavatar", avatar, storage="f32")
+        buffers = [AvatarBuffers(device, directory / f"{index}.muaavatar") for index in range(len(avatars))]
+        self.device, self.frame = device, SplatFrame(device, buffers)
+        alone = [
+            moved(decode_clip_frame(avatar.avatar, avatar.avatar.clips[0], frame=index, dtype=np.float64), place)
+            for avatar, index, place in zip(buffers, INDICES, PLACES, strict=True)
+        ]
+        self.exact = joined(alone)
+        camera = orbit(frame_bounds(self.exact), screen=(256, 192), azimuth=0.7, elevation=0.3)
+        self.cameras: tuple[Camera, ...] = (camera,) if eyes == 1 else stereo(camera, EYE_DISTANCE)
+        commands = device.commands()
+        for avatar, index, place in zip(self.frame.avatars, INDICES, PLACES, strict=True):
+            clip, window = avatar.avatar.avatar.clips[0], avatar.avatar.avatar.encoding.frames(index)
+            avatar.decode(commands, clip.rotations[window], clip.translation[window], place)
+        self.frame.sort(commands, self.cameras)
+        commands.submit()
+        count = int(self.frame.arguments.read()[VISIBLE_WORD])
+        self.order, self.keys = self.frame.sorted.order.read()[:count], self.frame.keys[0].read()[:count].astype(int)
+
+
+@pytest.fixture(scope="module", params=[1, 2])
+def crowd(request: pytest.FixtureRequest, device: Device, tmp_path_factory: pytest.TempPathFactory) -> Crowd:
+    return Crowd(device, tmp_path_factory.mktemp("crowd"), three(), eyes=request.param)
+
+
+def test_every_avatars_splats_agree_with_the_reference(crowd: Crowd) -> None:
+    splats = unpacked(crowd.frame.splats.read())
+    middle = np.mean([camera.position for camera in crowd.cameras], axis=0)
+    colors = splat_colors(crowd.exact.centres, crowd.exact.texel_dq, crowd.exact.sh, middle)
+    found = crowd.frame.colors.read(np.float16).reshape(-1, 4).astype(float)
+    assert len(splats) == len(crowd.exact.centres) == sum(avatar.splat_count for avatar in crowd.frame.avatars)
+    assert np.abs(splats["centre"] - crowd.exact.centres).max() < POSITION_BOUND
+    assert np.abs(splats["opacity"] - crowd.exact.opacities).max() < OPACITY_BOUND
+    assert np.abs(found[:, :3] - colors).max() < COLOR_BOUND
+
+
+def test_one_order_goes_through_all_avatars(crowd: Crowd) -> None:
+    """That of the keys over the box around all; splats of equal keys stay in the order of avatars and texels."""
+    bounds = union(np.stack([avatar.bounds for avatar in crowd.frame.avatars]))
+    views = np.stack([camera.view for camera in crowd.cameras])
+    exact, rounding = exact_keys(crowd.exact.centres, views, bounds)
+    depths = np.ptp(np.stack(np.meshgrid(*bounds.T)).reshape(3, -1).T @ views.mean(axis=0)[2, :3])
+    moved_by = LAST_KEY * POSITION_BOUND * np.sqrt(3) / depths
+    np.testing.assert_array_equal(np.sort(crowd.order), np.arange(crowd.frame.splat_count))
+    assert np.abs(crowd.keys - exact[crowd.order]).max() <= 0.5 + rounding + moved_by
+    assert np.all(np.diff(crowd.keys) >= 0)
+    assert np.all(np.diff(crowd.order.astype(int))[np.diff(crowd.keys) == 0] > 0)
+    owner = np.searchsorted([avatar.first_splat for avatar in crowd.frame.avatars], crowd.order, side="right")
+    assert np.count_nonzero(np.diff(owner)) > len(owner) / 10  # they do stand among each other
+
+
+def test_the_box_of_each_avatar_holds_its_splats(crowd: Crowd) -> None:
+    for avatar in crowd.frame.avatars:
+        own = crowd.exact.centres[avatar.first_splat :][: avatar.splat_count]
+        assert np.all(avatar.bounds[0] <= own.min(axis=0))
+        assert np.all(own.max(axis=0) <= avatar.bounds[1])
+
+
+def test_the_picture_agrees_with_the_cpu_rasteriser(crowd: Crowd) -> None:
+    renderer = SplatRenderer(crowd.device, image_format(crowd.device))
+    image = draw_image(crowd.device, renderer, crowd.frame.sorted, crowd.cameras)
+    for found, camera in zip(np.split(image, len(crowd.cameras), axis=1), crowd.cameras, strict=True):
+        assert psnr(found, render_premultiplied(crowd.exact, camera)) > LEAST_PSNR
+
+
+def test_an_avatar_without_texels_stands_among_others(device: Device, tmp_path: Path) -> None:
+    avatars = three()
+    crowd = Crowd(device, tmp_path, [avatars[0], part(avatars[1], slice(0, 0)), avatars[2]], eyes=1)
+    np.testing.assert_array_equal(np.sort(crowd.order), np.arange(len(crowd.exact.centres)))
