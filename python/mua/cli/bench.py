@@ -24,7 +24,7 @@ from mua.errors import InputError
 from mua.gpu import open_device
 from mua.student.settings import PRESETS, preset
 
-COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "of copy", "MFLOP", "GFLOP/s")
+COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
 
 def bench(
@@ -62,7 +62,7 @@ def _table(measured: Measured) -> Table:
     title = f"{measured.avatar} on {measured.device}, median of {measured.frames} frames"
     caption = (
         f"{measured.visible:,} of {measured.splats:,} splats visible, {measured.eyes} x {width} x {height} pixels; "
-        f"a large copy reads and writes {measured.copy_bandwidth / 1e9:.1f} GB/s; spread from 10 to 90 % of the frames"
+        f"a large copy reads and writes {measured.copy_bandwidth / 1e9:.1f} GB/s; spread: 10 to 90 % of the frames"
     )
     table = Table(*COLUMNS, title=title, caption=caption, box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for column in table.columns:
@@ -78,8 +78,8 @@ def _table(measured: Measured) -> Table:
 
 def _figures(milliseconds: float, spread: str, work: Work, copy_bandwidth: float) -> tuple[str, ...]:
     moved = rate(work.bytes, milliseconds)
-    operations = (f"{work.flops / 1e6:.2f}", f"{rate(work.flops, milliseconds) / 1e9:.1f}") if work.flops else ()
-    moving = (f"{work.bytes / 1e6:.2f}", f"{moved / 1e9:.1f}", f"{moved / copy_bandwidth:.1%}")
+    operations = (f"{work.flops / 1e6:.2f}", f"{rate(work.flops, milliseconds) / 1e9:.3g}") if work.flops else ()
+    moving = (f"{work.bytes / 1e6:.2f}", f"{moved / 1e9:.3g}", f"{moved / copy_bandwidth:.1%}")
     return f"{milliseconds:.3f}", spread, *moving, *operations
 
 
