@@ -10,6 +10,7 @@ from pathlib import Path
 
 import shader_rules
 import shader_source
+from rich.box import SIMPLE
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
@@ -23,7 +24,7 @@ KERNELS = ROOT / "ComputeShaders"
 DRAWS = ROOT / "python" / "mua" / "player" / "shaders"
 STAGES = {"Vert": "vert", "Frag": "frag"}
 DRAW_ENTRY = re.compile(r"\w+(Vert|Frag)")
-MESSAGE = re.compile(r"\b(?:warning|error)\b", re.IGNORECASE)
+MESSAGE = re.compile(r"\b(?:warning|error)(?::|\[| X)", re.IGNORECASE)
 UNKNOWN_PRAGMA = re.compile(r"X3568|unknown pragma")  # `#pragma kernel` is Unity's
 
 
@@ -70,7 +71,7 @@ def compile_all(found: list[compilers.Compiler], console: Console) -> dict[tuple
 
 
 def table(results: dict[tuple[str, str, str], list[str]], found: list[compilers.Compiler]) -> Table:
-    shown = Table("file", "entry point", *(f"{compiler.name} {compiler.version}".strip() for compiler in found))
+    shown = Table("file", "entry point", *(f"{compiler.name}\n{compiler.version}" for compiler in found), box=SIMPLE)
     for file, entry in dict.fromkeys((file, entry) for file, entry, _ in results):
         said = [results[file, entry, compiler.name] for compiler in found]
         shown.add_row(file, entry, *("ok" if not lines else f"[red]{len(lines)} messages" for lines in said))

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -11,6 +12,8 @@ from pathlib import Path
 from mua import files
 from mua.errors import InputError
 from mua.gpu import compilers, sources
+
+ERROR = re.compile(r"\berror(?::|\[| X)", re.IGNORECASE)
 
 
 def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glslang") -> bytes:
@@ -88,6 +91,4 @@ def run_compiler(
 
 def _first_error(printed: str) -> str:
     lines = [line.strip() for line in printed.splitlines() if line.strip()]
-    return next(
-        (line for line in lines if "error" in line.lower()), lines[-1] if lines else "the compiler said nothing"
-    )
+    return next(filter(ERROR.search, lines), lines[-1] if lines else "the compiler said nothing")
