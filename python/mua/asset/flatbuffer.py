@@ -109,20 +109,23 @@ def parse(content: bytes) -> Tree:
         raise FormatError("truncated", "", f"the file has {len(content)} bytes, too few for a .muaavatar")
     if content[4:8] != IDENTIFIER:
         raise FormatError("identifier", "", f"the file identifier is {content[4:8]!r}, expected {IDENTIFIER!r}")
-    parser = _Parser(content)
-    version = parser.scalar(ROOT, "version_major")
+    version = _Parser(content).scalar(ROOT, "version_major")
     if version > VERSION[0]:
         raise FormatError(
             "version", "version_major", f"format version {version} is newer than {VERSION[0]}, update mua"
         )
-    return parser.table(ROOT, 0, "")
+    return _Parser(content).table(ROOT, 0, "")
 
 
 class _Parser:
-    """Walks a buffer; every position is checked before it is used."""
+    """Walks a buffer; every position is checked before it is used.
+
+    Tables and vectors may not overlap: else a small file could name one part a million times.
+    """
 
     def __init__(self, content: bytes) -> None:
         self.content = content
+        self.left = len(content)  # bytes that no table or vector has claimed yet
 
     def scalar(self, table: str, name: str) -> int:
         """One scalar of the root table, read before the rest is trusted."""
@@ -152,6 +155,7 @@ class _Parser:
             raise FormatError("offset", path, f"the table's description at byte {vtable} is malformed")
         self._within(vtable, size, path)
         self._within(start, inline, path)
+        self._claim(inline, path)
         positions = {}
         for field, entry in zip(TABLES[table], range(4, size, 2), strict=False):
             offset = self._unpack("<H", vtable + entry, path)
@@ -197,7 +201,13 @@ class _Parser:
         start = self._follow(at, path)
         count = self._unpack("<I", start, path)
         self._within(start + 4, count * width, path)
+        self._claim(4 + count * width, path)
         return start + 4, count
+
+    def _claim(self, size: int, path: str) -> None:
+        self.left -= size
+        if self.left < 0:
+            raise FormatError("offset", path, "parts of the file overlap")
 
     def _follow(self, at: int, path: str) -> int:
         start = at + int(self._unpack("<I", at, path))

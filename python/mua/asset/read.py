@@ -121,7 +121,7 @@ def _skeleton(tree: Tree) -> Skeleton:
     skeleton = Skeleton(
         names=tuple(tree["names"]),
         parents=parents,
-        bind_rotations=_unit(tree["bind_rotations"], "skeleton.bind_rotations", count),
+        bind_rotations=_unit(tree["bind_rotations"], "skeleton.bind_rotations", (count, 4)),
         bind_translations=reals(tree["bind_translations"], "skeleton.bind_translations", (count, 3)),
         root=tree["root"],
     )
@@ -132,9 +132,8 @@ def _skeleton(tree: Tree) -> Skeleton:
     return skeleton
 
 
-def _unit(tensor: Tree, path: str, joints: int) -> Array:
-    """Unit quaternions [..., J, 4], renormalised after storage."""
-    shape: tuple[int | None, ...] = (joints, 4) if len(tensor["shape"]) == 2 else (None, joints, 4)
+def _unit(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
+    """Unit quaternions [..., 4], renormalised after storage."""
     q = reals(tensor, path, shape).astype(np.float64)
     lengths = np.linalg.norm(q, axis=-1)
     if np.abs(lengths - 1).max(initial=0) > UNIT_BOUND:
@@ -260,8 +259,8 @@ def _detail(tree: Tree, path: str, channels: int, size: int) -> DetailBand:
 
 
 def _clip(tree: Tree, path: str, skeleton: Skeleton) -> Clip:
-    rotations = _unit(tree["rotations"], f"{path}.rotations", len(skeleton.names))
-    if rotations.ndim != 3 or not len(rotations):
+    rotations = _unit(tree["rotations"], f"{path}.rotations", (None, len(skeleton.names), 4))
+    if not len(rotations):
         _refuse(f"{path}.rotations", "a clip needs at least one frame")
     translation = reals(tree["translation"], f"{path}.translation", (len(rotations), 3))
     return Clip(

@@ -6,7 +6,7 @@ from typing import Any, Literal
 import numpy as np
 
 from mua.arrays import Array
-from mua.asset.flatbuffer import FormatError, Tree
+from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree
 from mua.errors import InputError
 
 Storage = Literal["f32", "f16", "i8"]
@@ -62,6 +62,8 @@ def stored(tensor: Tree, path: str) -> Array:
     shape = [int(n) for n in tensor["shape"]]
     if not 1 <= len(shape) <= MAX_RANK:
         raise FormatError("shape", f"{path}.shape", f"{len(shape)} dimensions, expected 1 to {MAX_RANK}")
+    if math.prod(max(n, 1) for n in shape) > MAX_BYTES:  # an empty tensor's other sides, too
+        raise FormatError("shape", f"{path}.shape", f"the sides {shape} multiply to more than a file can hold")
     dtype = DTYPES[tensor["type"]]
     if math.prod(shape) * dtype.itemsize != tensor["data"].size:
         raise FormatError("shape", f"{path}.data", f"{tensor['data'].size} bytes do not fill {tensor['type']} {shape}")

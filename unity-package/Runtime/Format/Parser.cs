@@ -17,10 +17,12 @@ namespace Mua.Format
         private static readonly UTF8Encoding Utf8 = new UTF8Encoding(false, true);
 
         private readonly byte[] content;
+        private long left; // bytes that no table or vector has claimed yet
 
         private Parser(byte[] content)
         {
             this.content = content;
+            left = content.Length;
         }
 
         /// <summary>The root table, every offset, length, alignment and text checked.</summary>
@@ -38,9 +40,8 @@ namespace Mua.Format
                     throw Fault("identifier", "", "the file has no identifier " + identifier + ": it is no .muaavatar");
                 }
             }
-            var parser = new Parser(content);
-            parser.RefuseNewer();
-            return parser.ReadTable(Layouts.Root, 0, "");
+            new Parser(content).RefuseNewer();
+            return new Parser(content).ReadTable(Layouts.Root, 0, "");
         }
 
         /// <summary>Looks at the version before anything else is trusted.</summary>
@@ -93,6 +94,7 @@ namespace Mua.Format
             }
             RequireWithin(vtable, size, path);
             RequireWithin(start, inline, path);
+            Claim(inline, path);
             var positions = new int[layout.Fields.Length];
             for (int slot = 0; slot < positions.Length && 4 + 2 * slot < size; slot++)
             {
@@ -190,7 +192,18 @@ namespace Mua.Format
             int start = Follow(at, path);
             long count = ReadWord(start, path);
             RequireWithin(start + 4L, count * width, path);
+            Claim(4 + count * width, path);
             return new Block(start + 4, (int)count);
+        }
+
+        /// <summary>Refuses parts that overlap: else a small file could name one part a million times.</summary>
+        private void Claim(long size, string path)
+        {
+            left -= size;
+            if (left < 0)
+            {
+                throw Fault("offset", path, "parts of the file overlap");
+            }
         }
 
         private int Follow(int at, string path)

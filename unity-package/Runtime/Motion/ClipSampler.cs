@@ -70,8 +70,11 @@ namespace Mua.Motion
                 }
                 rotation.Store(rotations, joint);
             }
-            Vector3D from = Translation(before);
-            (IsPlain ? from : from + t * (Translation(after) - from)).Store(translation, 0);
+            for (int axis = 0; axis < 3; axis++)
+            {
+                float from = clip.Translation.Read(3 * before + axis), to = clip.Translation.Read(3 * after + axis);
+                translation[axis] = IsPlain ? from : from + t * (float)(to - from); // the reference subtracts floats
+            }
         }
 
         private QuaternionD Rotation(int frame, int joint)
@@ -79,13 +82,6 @@ namespace Mua.Motion
             int at = 4 * (frame * joints + joint);
             Tensor q = clip.Rotations;
             return new QuaternionD(q.Read(at), q.Read(at + 1), q.Read(at + 2), q.Read(at + 3)).Normalized();
-        }
-
-        private Vector3D Translation(int frame)
-        {
-            int at = 3 * frame;
-            Tensor t = clip.Translation;
-            return new Vector3D(t.Read(at), t.Read(at + 1), t.Read(at + 2));
         }
     }
 }

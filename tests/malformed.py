@@ -1,0 +1,195 @@
+"""Ways to spoil a `.muaavatar`, and the code and field that every reader must answer with.
+
+MALFORMED edits the tree of a sound file before it is built and sealed again, DAMAGED its bytes.
+"""
+
+import struct
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mua.asset.flatbuffer import FormatError, Tree, build, parse
+from mua.asset.tensors import pack, pack_indices
+from mua.asset.write import seal
+
+
+def malformed(content: bytes, edit: Callable[[Tree], None]) -> bytes:
+    """A sound file after `edit`, sealed."""
+    tree = parse(content)
+    edit(tree)
+    return seal_unread(build(tree))
+
+
+def seal_unread(content: bytes) -> bytes:
+    """Seal a file that the parser may refuse."""
+    try:
+        return seal(content)
+    except FormatError:
+        return content
+
+
+def child(tree: Tree, path: str) -> tuple[Any, Any]:
+    """The container of the last part of a dotted path, and that part."""
+    parts: list[Any] = [int(p) if p.isdigit() else p for p in path.split(".")]
+    for part in parts[:-1]:
+        tree = tree[part]
+    return tree, parts[-1]
+
+
+def put(path: str, value: Any) -> Callable[[Tree], None]:
+    def edit(tree: Tree) -> None:
+        container, last = child(tree, path)
+        container[last] = value
+
+    return edit
+
+
+def poke(path: str, at: int, value: float) -> Callable[[Tree], None]:
+    """Change one element of an f32, f16 or i32 tensor."""
+
+    def edit(tree: Tree) -> None:
+        container, last = child(tree, path)
+        tensor = container[last]
+        dtype = {"F32": "<f4", "F16": "<f2", "I32": "<i4"}[tensor["type"]]
+        values = tensor["data"].view(dtype).copy()
+        values[at] = value
+        container[last] = {**tensor, "data": values.view(np.uint8)}
+
+    return edit
+
+
+def drop(path: str) -> Callable[[Tree], None]:
+    def edit(tree: Tree) -> None:
+        container, last = child(tree, path)
+        del container[last]
+
+    return edit
+
+
+def grow_texture(tree: Tree) -> None:
+    """A side that halves three times, where the wavelet has four levels."""
+    tree["texels"]["size"] += 8
+
+
+def empty(*shape: int) -> Tree:
+    """A tensor without elements whose other sides may be anything."""
+    return {**pack(np.zeros((0, 1))), "shape": np.array(shape, np.uint32)}
+
+
+NAN = float("nan")
+MALFORMED = [
+    ("version", "version_major", put("version_major", 2)),
+    ("missing", "skeleton", drop("skeleton")),
+    ("missing", "geometry.mlp", drop("geometry.mlp")),
+    ("value", "skeleton.parents", poke("skeleton.parents", 1, 2)),
+    ("range", "skeleton.parents", poke("skeleton.parents", 1, 9)),
+    ("value", "skeleton.root", put("skeleton.root", 3)),
+    ("value", "skeleton.bind_rotations", poke("skeleton.bind_rotations", 0, 2)),
+    ("shape", "skeleton.bind_rotations.shape", put("skeleton.bind_rotations", pack(np.full((1, 3, 4), 0.5)))),
+    ("finite", "skeleton.bind_translations", poke("skeleton.bind_translations", 0, NAN)),
+    ("value", "skeleton.bind_inverse", poke("skeleton.bind_inverse", 5, 0.5)),
+    ("shape", "skeleton.bind_inverse.shape", put("skeleton.bind_inverse", pack(np.zeros((3, 7))))),
+    ("value", "encoding.joints", poke("encoding.joints", 0, 0)),
+    ("range", "encoding.joints", poke("encoding.joints", 0, 7)),
+    ("value", "encoding.window", put("encoding.window", 0)),
+    ("value", "encoding.window", put("encoding.window", 17)),
+    ("shape", "encoding.scale.shape", put("encoding.window", 2)),
+    ("value", "encoding.rate", put("encoding.rate", NAN)),
+    ("value", "encoding.scale", poke("encoding.scale", 0, 0)),
+    ("finite", "encoding.mean", poke("encoding.mean", 0, NAN)),
+    ("range", "template.faces", poke("template.faces", 0, 12)),
+    ("range", "template.faces", poke("template.faces", 0, -1)),
+    ("range", "template.uv_faces", poke("template.uv_faces", 2, 99)),
+    ("range", "template.skin_indices", poke("template.skin_indices", 0, 3)),
+    ("value", "template.skin_weights", poke("template.skin_weights", 0, 5)),
+    ("type", "template.faces", put("template.faces", pack(np.zeros((18, 3))))),
+    ("type", "template.uv", put("template.uv", pack_indices(np.zeros((16, 2))))),
+    ("value", "texels.size", put("texels.size", 0)),
+    ("shape", "geometry.ll_basis.shape", put("texels.size", 64)),
+    ("value", "texels.texels", poke("texels.texels", 0, 900)),
+    ("range", "texels.texels", poke("texels.texels", 0, 1024)),
+    ("range", "texels.triangles", poke("texels.triangles", 0, 18)),
+    ("value", "texels.barycentrics", poke("texels.barycentrics", 0, 1.5)),
+    ("value", "wavelet.levels", put("wavelet.levels", 99)),
+    ("value", "wavelet.rec_lo", put("wavelet.rec_lo", np.zeros(3))),
+    ("finite", "wavelet.rec_lo", put("wavelet.rec_lo", np.full(10, NAN))),
+    ("finite", "coarse.mean", poke("coarse.mean", 3, float("inf"))),
+    ("shape", "coarse.basis.shape", put("coarse.basis", pack(np.zeros((4, 11, 3))))),
+    ("shape", "coarse.mlp", put("coarse.mlp", [])),
+    ("shape", "coarse.mlp[0].weight.shape", put("coarse.mlp.0.weight", pack(np.zeros((16, 5))))),
+    ("shape", "geometry.mlp", drop("geometry.mlp.2")),
+    ("value", "texels.size", grow_texture),
+    ("finite", "geometry.ll_mean", poke("geometry.ll_mean", 0, NAN)),
+    ("finite", "geometry.details[0].mean", poke("geometry.details.0.mean", 0, NAN)),
+    ("shape", "geometry.static_offset.shape", put("geometry.static_offset", pack(np.zeros((11, 3))))),
+    ("shape", "appearance.ll_basis.shape", put("appearance.ll_basis", pack(np.zeros((11, 4, 2, 2))))),
+    ("shape", "geometry.ll_basis.scale", put("geometry.ll_basis.scale", np.ones(7))),
+    ("shape", "geometry.ll_basis.data", put("geometry.ll_basis.data", np.zeros(5, np.uint8))),
+    ("shape", "geometry.ll_basis.shape", put("geometry.ll_basis.shape", np.ones(9, np.uint32))),
+    ("finite", "geometry.ll_basis", put("geometry.ll_basis.scale", np.full(44, NAN))),
+    ("value", "clips[0].rotations", poke("clips.0.rotations", 0, 9)),
+    ("value", "clips[0].rotations", put("clips.0.rotations", empty(0, 3, 4))),
+    ("shape", "clips[0].rotations.shape", put("clips.0.rotations", pack(np.full((3, 4), 0.5)))),
+    ("shape", "clips[0].rotations.shape", put("clips.0.rotations", empty(0, *[2**32 - 1] * 3))),
+    ("shape", "clips[0].translation.shape", put("clips.0.translation", pack(np.zeros((3, 3))))),
+    ("value", "clips[0].rate", put("clips.0.rate", 0)),
+    ("value", "bounds", poke("bounds", 0, 5)),
+    ("value", "thumbnail", put("thumbnail", np.frombuffer(b"GIF89a", np.uint8))),
+]
+
+
+def patch(at: int, form: str, value: int, content: bytes) -> bytes:
+    return content[:at] + struct.pack(form, value) + content[at + struct.calcsize(form) :]
+
+
+def pointed(content: bytes, at: int) -> int:
+    """Where the offset at byte `at` points to."""
+    return at + int(struct.unpack_from("<I", content, at)[0])
+
+
+def root(content: bytes, field: str) -> int:
+    """The byte at which a field of the root table stands."""
+    return int(parse(content)["_at"][field])
+
+
+def newer(content: bytes) -> bytes:
+    """A file of a later major version, of which the rest cannot be read."""
+    kept = patch(root(content, "version_major"), "<H", 9, content)[: len(content) // 2]
+    return kept + bytes(len(content) - len(kept))
+
+
+def without_checksum(content: bytes) -> bytes:
+    start = pointed(content, 0)
+    vtable = start - struct.unpack_from("<i", content, start)[0]
+    return patch(vtable + 4 + 2 * 2, "<H", 0, content)  # crc32 is slot 2
+
+
+def twice(content: bytes) -> bytes:
+    """Geometry is appearance, which is larger: tables and vectors claim more bytes than there are."""
+    at = root(content, "geometry")
+    return patch(at, "<I", pointed(content, root(content, "appearance")) - at, content)
+
+
+DAMAGED: list[tuple[str, str, Callable[[bytes], bytes]]] = [
+    ("truncated", "", lambda content: b""),
+    ("truncated", "", lambda content: content[:7]),
+    ("identifier", "", lambda content: patch(4, "<I", 0, content)),
+    ("truncated", "", lambda content: patch(0, "<I", 2**32 - 4, content)),
+    ("offset", "", lambda content: patch(0, "<I", pointed(content, 0) + 1, content)),
+    ("offset", "", lambda content: patch(pointed(content, 0), "<i", 1, content)),
+    ("truncated", "", lambda content: patch(pointed(content, 0), "<i", -(2**31), content)),
+    ("version", "version_major", newer),
+    ("missing", "crc32", without_checksum),
+    ("checksum", "crc32", lambda content: patch(root(content, "crc32"), "<I", 0, content)),
+    ("checksum", "crc32", lambda content: content + b"\0"),
+    ("enum", "axes", lambda content: patch(root(content, "axes"), "<B", 1, content)),
+    ("offset", "name", lambda content: patch(root(content, "name"), "<I", 1, content)),
+    ("truncated", "notes", lambda content: patch(root(content, "notes"), "<I", 2**31, content)),
+    ("truncated", "name", lambda content: patch(pointed(content, root(content, "name")), "<I", 2**32 - 1, content)),
+    ("truncated", "clips", lambda content: patch(pointed(content, root(content, "clips")), "<I", 2**31, content)),
+    ("text", "name", lambda content: patch(pointed(content, root(content, "name")) + 4, "<B", 0xFF, content)),
+    ("text", "name", lambda content: patch(pointed(content, root(content, "name")) + 4, "<I", 0x80A0ED, content)),
+    ("text", "name", lambda content: patch(pointed(content, root(content, "name")) + 4, "<H", 0x80C0, content)),
+    ("offset", "appearance.static_offset.data", twice),
+]
