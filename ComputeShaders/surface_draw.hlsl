@@ -1,4 +1,4 @@
-// Posed surfaces and what stands around them: what the desktop player's shaders and Unity's share (paper, section System).
+// Posed surfaces and what stands around them: shared by the desktop player's shaders and Unity's (paper, section System).
 //
 //   normal of a vertex = sum over the triangles (vertex, j, k) about it of (p_j - p) x (p_k - p), so weighted by area
 //   ring[ring_starts[v] .. ring_starts[v + 1]) = (j, k) in turning order, counter-clockwise seen from outside
@@ -13,6 +13,7 @@
 
 static const float AMBIENT = 0.28; // of the colour, where the light only grazes
 static const float INSIDE = 0.45; // of the colour, on the inside of an open surface
+static const float TURNED = 0.25; // cosine past the outline from which on a surface is surely seen from inside
 static const float BEHIND_SPLATS = 0.01; // metres that a surface yields in depth, so that the splats on it cover it
 static const float SMALLEST_LENGTH = 1e-20; // keeps the direction of a vanishing normal finite
 static const float NEAREST_W = 1e-3; // clip w at which a bone that passes the camera is cut
@@ -75,7 +76,8 @@ SurfaceVaryings surfaceVaryings(float3 place, float3 normal, float3 camera, floa
 float3 surfaceShade(SurfaceVaryings varyings, float3 color)
 {
     float facing = dot(normalize(varyings.normal), normalize(varyings.toCamera));
-    return color * (AMBIENT + (1 - AMBIENT) * abs(facing)) * (facing < 0 ? INSIDE : 1);
+    float inside = saturate(-facing / TURNED); // smooth normals turn away a little before the outline
+    return color * (AMBIENT + (1 - AMBIENT) * abs(facing)) * lerp(1, INSIDE, inside);
 }
 
 // The same light on a flat facet, whose two sides are alike.
@@ -92,7 +94,7 @@ float3 shadowPlace(float3 place, float3 light, float ground)
     return place - light * ((place.y - ground) / light.y);
 }
 
-// Weights of four neighbouring samples, for a place 0..1 between the inner two: a cubic B-spline, soft and without steps.
+// Weights of four neighbouring samples at a place 0..1 between the inner two: a cubic B-spline, soft and without steps.
 float4 splineWeights(float t)
 {
     float s = 1 - t;
@@ -118,14 +120,21 @@ float shadowCover(float2 at, uint size, StructuredBuffer<uint> mask)
     return cover;
 }
 
+// An end of a stroke in clip space, moved towards the other end until it lies before the camera.
+float4 strokeEnd(float4 end, float4 other)
+{
+    float share = saturate((NEAREST_W - end.w) / max(other.w - end.w, SMALLEST_LENGTH));
+    return end.w < NEAREST_W ? lerp(end, other, share) : end;
+}
+
 // One of six vertices of a stroke between two points, `width` pixels wide and round at both ends.
 StrokeVaryings strokeVertex(uint corner, float3 start, float3 end, float width, float2 screen, float4x4 viewProjection)
 {
     float4 first = mul(viewProjection, float4(start, 1));
     float4 last = mul(viewProjection, float4(end, 1));
     bool hidden = max(first.w, last.w) < NEAREST_W;
-    float4 clippedFirst = first.w < NEAREST_W ? lerp(first, last, (NEAREST_W - first.w) / max(last.w - first.w, NEAREST_W * 1e-3)) : first;
-    float4 clippedLast = last.w < NEAREST_W ? lerp(last, first, (NEAREST_W - last.w) / max(first.w - last.w, NEAREST_W * 1e-3)) : last;
+    float4 clippedFirst = strokeEnd(first, last);
+    float4 clippedLast = strokeEnd(last, first);
     float2 from = clippedFirst.xy / max(clippedFirst.w, NEAREST_W) * screen / 2; // pixels, rows running up
     float2 to = clippedLast.xy / max(clippedLast.w, NEAREST_W) * screen / 2;
     float reach = distance(from, to);

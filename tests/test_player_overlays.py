@@ -19,7 +19,16 @@ from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import view_projection
-from mua.player.overlays import DARKNESS, GEOMETRY_COLOR, JOINT_COLOR, LIGHT, TEMPLATE_COLOR, ground_height, shadow_area
+from mua.player.overlays import (
+    DARKNESS,
+    GEOMETRY_COLOR,
+    JOINT_COLOR,
+    LIGHT,
+    MASK_SIZE,
+    TEMPLATE_COLOR,
+    ground_height,
+    shadow_area,
+)
 from mua.player.scene import Scene, Toggles, draw_picture, parse_toggles
 from mua.player.splats import SplatFrame
 from mua.rig.skeleton import Pose
@@ -133,7 +142,7 @@ def test_casts_one_shadow_however_many_walls_overlap(stage: Stage) -> None:
     assert np.mean(darkness > 0.9 * DARKNESS) > 0.5  # but for facets at the soft edge
     outline = drawn_box(image)
     at = pixels(camera, fallen)
-    softness = 2 * shadow_area(stage.avatar.bounds, ground)[2] / 256  # two samples of the mask, metres
+    softness = 2 * shadow_area(stage.avatar.bounds, ground)[2] / MASK_SIZE  # two samples of the mask, metres
     pixel = np.ptp(pixels(camera, np.array([[0, ground, 0], [1, ground, 0]])), axis=0)[0]
     reach = softness * pixel + 2
     assert np.abs(outline - np.concatenate([at.min(axis=0), at.max(axis=0)])).max() < reach

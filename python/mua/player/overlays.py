@@ -31,7 +31,7 @@ BONE_WIDTH, JOINT_WIDTH, OUTLINE = 2.5, 5.0, 1.5  # pixels; an outline shows on 
 
 LIGHT = (-0.35, -1.0, -0.45)  # from above, the character's left and front: the shadow falls behind it
 DARKNESS = 0.45  # of the ground in full shadow
-MASK_SIZE = 256  # samples along the shadow's square
+MASK_SIZE = 512  # samples along the shadow's square
 GROUND_FRAMES = 32  # of a clip, in which the lowest point is sought
 BELOW_GROUND = 0.1  # of these that may reach below it: captured feet stray, and others leap or climb
 MARGIN = 0.1  # metres round the shadow, so that its soft edge is not cut off
