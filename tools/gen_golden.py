@@ -1,4 +1,4 @@
-"""Write tests/parity/golden from tests/parity/golden_cases.py; --check says whether it is up to date.
+"""Write tests/parity/golden from the cases beside it; --check says whether it is up to date.
 
 The format is on the page tests/parity/golden/README.md.
 """
@@ -17,9 +17,20 @@ KERNELS = ROOT / "ComputeShaders"
 GOLDEN = ROOT / "tests" / "parity" / "golden"
 sys.path += [str(ROOT / "tests" / "parity"), str(ROOT / "tests")]
 
-from golden_cases import Case, Expected, cases  # noqa: E402 its folder is known only now
+import golden_decoding  # noqa: E402 their folder is known only now
+import golden_sorting  # noqa: E402
+from golden_case import Case, Expected  # noqa: E402
 
 from mua.arrays import Array  # noqa: E402
+
+CASES = {
+    "mlp_matmul": golden_decoding.mlp_matmul_cases,
+    "blend_subbands": golden_decoding.blend_subbands_cases,
+    "inverse_dwt": golden_decoding.inverse_dwt_cases,
+    "dq_skinning": golden_decoding.dq_skinning_cases,
+    "splat_project": golden_sorting.splat_project_cases,
+    "splat_sort": golden_sorting.splat_sort_cases,
+}
 
 
 class Blob:
@@ -59,8 +70,8 @@ def document(stem: str, listed: list[Case]) -> tuple[str, bytes]:
 def generate() -> dict[Path, bytes]:
     """Path and content of every golden file."""
     found: dict[Path, bytes] = {}
-    for stem, listed in cases().items():
-        text, content = document(stem, listed)
+    for stem, cases in CASES.items():
+        text, content = document(stem, cases())
         found |= {GOLDEN / f"{stem}.json": text.encode(), GOLDEN / f"{stem}.bin": content}
     return found
 

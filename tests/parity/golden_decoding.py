@@ -1,0 +1,215 @@
+"""Golden cases of the kernels from pose to splats, with inputs and bounds of the kernels' own tests."""
+
+import numpy as np
+from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
+from splat_rounding import ULP
+from stored import STORAGES, groups, store
+from test_dq_skinning import (
+    BLEND_BOUND,
+    CENTRE_BOUND,
+    COVARIANCE_BOUND,
+    FACES,
+    JOINTS,
+    OPACITY_BOUND,
+    random_influences,
+    random_joints,
+    random_texels,
+)
+from test_inverse_dwt import taps
+from test_mlp_matmul import layer, shader_bound
+
+from mua.asset.tensors import Storage
+from mua.kernels.blend_subbands import blend_detail, blend_ll
+from mua.kernels.dq_skinning import METRES2_TO_MM2, blend_texels, blend_vertices, covariances, skin_splats
+from mua.kernels.inverse_dwt import add_static, inverse_dwt
+from mua.kernels.mlp_matmul import mlp_matmul
+
+
+def mlp_matmul_cases() -> list[Case]:
+    return [_layer(s, relu=relu) for s in STORAGES for relu in (0, 1)] + [_mesh(s) for s in STORAGES]
+
+
+def blend_subbands_cases() -> list[Case]:
+    return [make(s) for make in (_blend_ll, _blend_detail) for s in STORAGES]
+
+
+def inverse_dwt_cases() -> list[Case]:
+    levels = [_level(name, full=full) for name in ("bior4.4", "bior2.2") for full in (True, False)]
+    return levels + [_static(s) for s in STORAGES]
+
+
+def dq_skinning_cases() -> list[Case]:
+    return [_vertices(), _texels()]
+
+
+def _layer(storage: Storage, *, relu: int) -> Case:
+    raw_weight, raw_bias, x = layer(37, 29, np.float32)
+    weight, bias = store(raw_weight, storage, rows=37), store(raw_bias, "f32")
+    y = mlp_matmul(weight.values, bias.values, x.astype(float), relu=bool(relu))
+    bound = float(shader_bound(weight.values, bias.values, x).max())
+    return Case(
+        f"{storage}, {'ReLU' if relu else 'linear'}",
+        "MlpMatmul",
+        groups((37, 8)),
+        {"weight_layout": weight.layout, "bias_layout": bias.layout, "inputs": 29, "outputs": 37, "relu": relu},
+        {"weight": weight.words, "bias": bias.words, "x": x, "y": np.full(37, UNTOUCHED)},
+        (Expected("y", "float", y, bound),),
+    )
+
+
+def _mesh(storage: Storage) -> Case:
+    raw_weight, raw_bias, x = layer(69, 11, np.float32)
+    basis, mean = store(np.ascontiguousarray(raw_weight.T), storage, rows=11), store(raw_bias, storage)
+    y = mlp_matmul(basis.values.T, mean.values, x.astype(float), relu=False)
+    bound = float(shader_bound(basis.values.T, mean.values, x).max())
+    return Case(
+        storage,
+        "MlpMatmulTransposed",
+        groups((69, 64)),
+        {"weight_layout": basis.layout, "bias_layout": mean.layout, "inputs": 11, "outputs": 69},
+        {"weight": basis.words, "bias": mean.words, "x": x, "y": np.full(69, UNTOUCHED)},
+        (Expected("y", "float", y, bound),),
+    )
+
+
+def _blend_ll(storage: Storage) -> Case:
+    channels, rank, size, offset = 3, 5, 9, 7
+    rng = np.random.default_rng(1)
+    mean = store(rng.normal(size=(channels, size, size)), storage, rows=channels)
+    basis = store(rng.normal(size=(channels, rank, size, size)), storage, rows=channels * rank)
+    alpha = rng.normal(size=(channels, rank)).astype(np.float32)
+    blended = blend_ll(mean.values, basis.values, alpha.astype(float))
+    magnitude = blend_ll(np.abs(mean.values), np.abs(basis.values), np.abs(alpha).astype(float)).max()
+    return Case(
+        storage,
+        "BlendLl",
+        groups((size * size, 64), (channels, 1)),
+        {
+            **{"mean_layout": mean.layout, "basis_layout": basis.layout},
+            **{"channels": channels, "rank": rank, "size": size, "alpha_offset": offset},
+        },
+        {
+            **{"mean": mean.words, "basis": basis.words, "alpha": np.append(np.full(offset, UNTOUCHED), alpha)},
+            "blended": np.full(blended.size, UNTOUCHED),
+        },
+        (Expected("blended", "float", blended, (rank + 2) * ULP * magnitude),),
+    )
+
+
+def _blend_detail(storage: Storage) -> Case:
+    channels, rank, size, offset = 2, 5, 27, 3
+    rng = np.random.default_rng(2)
+    mean = store(rng.normal(size=(3, channels, size, size)), storage, rows=3 * channels)
+    h, w = (store(f, storage, rows=3 * channels * rank) for f in rng.normal(size=(2, 3, channels, rank, size)))
+    alpha = rng.normal(size=(channels, rank)).astype(np.float32)
+    blended = blend_detail(mean.values, h.values, w.values, alpha.astype(float))
+    magnitude = blend_detail(*(np.abs(t.values) for t in (mean, h, w)), np.abs(alpha).astype(float)).max()
+    return Case(
+        storage,
+        "BlendDetail",
+        groups((size, 24), (size, 24), (3 * channels, 1)),
+        {
+            **{"mean_layout": mean.layout, "h_layout": h.layout, "w_layout": w.layout},
+            **{"channels": channels, "rank": rank, "size": size, "alpha_offset": offset},
+        },
+        {
+            **{"mean": mean.words, "h": h.words, "w": w.words},
+            **{"alpha": np.append(np.full(offset, UNTOUCHED), alpha), "blended": np.full(blended.size, UNTOUCHED)},
+        },
+        (Expected("blended", "float", blended, (rank + 3) * ULP * magnitude),),
+    )
+
+
+def _level(wavelet: str, *, full: bool) -> Case:
+    channels, size = 2, 19
+    lo, hi = (t.astype(np.float32) for t in taps(wavelet))
+    bands = np.random.default_rng(3).normal(size=(4, channels, size, size)).astype(np.float32)
+    ll, details = bands[0], bands[1:]
+    doubles = details.astype(float) if full else None
+    fine = inverse_dwt(ll.astype(float), doubles, lo.astype(float), hi.astype(float))
+    gain = (np.abs(lo).sum(dtype=float) + np.abs(hi).sum(dtype=float)) ** 2
+    sums_bound = 2 * (len(lo) + 1) * ULP * gain * float(np.abs(bands).max())
+    return Case(
+        wavelet,
+        "InverseDwt" if full else "InverseDwtLowPass",
+        groups((size, 16), (size, 16), (channels, 1)),
+        {"size": size, "taps": len(lo)} | ({"channels": channels} if full else {}),
+        {"ll": ll, "rec_lo": lo, "fine": np.full(fine.size, UNTOUCHED)}
+        | ({"details": details, "rec_hi": hi} if full else {}),
+        (Expected("fine", "float", fine, sums_bound),),
+    )
+
+
+def _static(storage: Storage) -> Case:
+    channels, size, count, first = 3, 13, 101, 2
+    rng = np.random.default_rng(4)
+    fine = rng.normal(size=(channels, size, size)).astype(np.float32)
+    texels = np.sort(rng.permutation(size * size)[:count]).astype(np.uint32)
+    offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
+    found = np.full((first + channels + 1, count), float(UNTOUCHED))
+    found[first : first + channels] = add_static(fine.astype(float), texels, offset.values)
+    return Case(
+        storage,
+        "AddStatic",
+        groups((count, 256)),
+        {
+            **{"static_offset_layout": offset.layout, "channels": channels, "size": size},
+            **{"texel_count": count, "first_channel": first},
+        },
+        {
+            **{"fine": fine, "texels": texels, "static_offset": offset.words},
+            "texel_channels": np.full(found.size, UNTOUCHED),
+        },
+        (Expected("texel_channels", "float", found, relative=2 * ULP),),
+    )
+
+
+def _vertices() -> Case:
+    rng = np.random.default_rng(5)
+    joints = (random_joints(rng) * rng.choice([-1.0, 1.0], (JOINTS, 1))).astype(np.float32)
+    indices, weights = random_influences(rng, 131)
+    return Case(
+        "five joints",
+        "BlendVertices",
+        groups((131, 64)),
+        {"vertex_count": 131},
+        {
+            **{"joints": joints, "indices": indices.astype(np.uint32), "weights": weights},
+            "vertex_dq": np.full((131, 8), UNTOUCHED),
+        },
+        (Expected("vertex_dq", "float", blend_vertices(joints.astype(float), indices, weights), BLEND_BOUND),),
+    )
+
+
+def _texels() -> Case:
+    count, others, rng = 67, 3, np.random.default_rng(6)
+    vertex_dq = (random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))).astype(np.float32)
+    mesh = rng.uniform(-0.5, 0.5, (6, 3)).astype(np.float32)
+    texels = random_texels(rng, count)
+    texels.texture[:, 7:10] = rng.uniform(-7, -5, (count, 3))  # 1 to 7 mm, so that one bound fits all covariances
+    texture = texels.texture.astype(float)
+    on_faces = FACES, texels.triangles, texels.barycentrics
+    texel_dq = blend_texels(vertex_dq.astype(float), *on_faces)
+    centres, rotations, scales, opacities = skin_splats(texel_dq, mesh, *on_faces, texture)
+    covariance = METRES2_TO_MM2 * covariances(rotations, scales)
+    covariance_bound = COVARIANCE_BOUND * METRES2_TO_MM2 * float(scales.max()) ** 2
+    return Case(
+        "three triangles",
+        "SkinSplats",
+        groups((count, 64)),
+        {"texel_count": count, "first_splat": others},
+        {
+            **{"vertex_dq": vertex_dq, "mesh": mesh, "faces": FACES.astype(np.uint32)},
+            **{"triangles": texels.triangles.astype(np.uint32), "barycentrics": texels.barycentrics[:, :2]},
+            **{"texel_channels": texels.texture.T, "splats": np.full((others + count, 16), UNWRITTEN)},
+        },
+        (
+            Expected("splats", "uint", np.full(16 * others, UNWRITTEN), length=16, period=16),
+            Expected("splats", "float", centres, CENTRE_BOUND, first=16 * others, length=3, period=16),
+            halves("splats", covariance, covariance_bound, first=16 * others + 3, length=3, period=16),
+            halves("splats", texel_dq[:, :4], BLEND_BOUND, first=16 * others + 6, length=2, period=16),
+            halves("splats", texture[:, 11:], 0, first=16 * others + 8, length=6, period=16),
+            Expected("splats", "float", opacities, OPACITY_BOUND, first=16 * others + 14, period=16),
+            Expected("splats", "uint", np.zeros(count), first=16 * others + 15, period=16),
+        ),
+    )
