@@ -14,6 +14,7 @@ from mua.bench.work import Work, frame_work
 from mua.camera import Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
+from mua.gpu.failure import naming
 from mua.gpu.timestamps import Timestamps
 from mua.motion.clip import Clip
 from mua.motion.resample import resample
@@ -91,7 +92,8 @@ def copy_bandwidth(device: Device) -> float:
     """Bytes a second that the device reads and writes when it copies a large buffer to another; the median copy."""
     size = min(COPIED, device.limits["max-buffer-size"])
     usage = wgpu.BufferUsage.COPY_SRC | wgpu.BufferUsage.COPY_DST
-    source, target = (device.wgpu.create_buffer(size=size, usage=usage) for _ in range(2))
+    with naming("buffers of the copy"):
+        source, target = (device.wgpu.create_buffer(size=size, usage=usage) for _ in range(2))
 
     def record(encoder: wgpu.GPUCommandEncoder, timestamps: Timestamps) -> None:
         for index in range(1, COPIES + 1):
@@ -147,7 +149,8 @@ def _draw(device: Device, renderer: SplatRenderer, splats: SortedSplats, cameras
     """Milliseconds of drawing all eyes side by side."""
     width, height = cameras[0].screen
     size = (len(cameras) * width, height, 1)
-    target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=wgpu.TextureUsage.RENDER_ATTACHMENT)
+    with naming(f"picture of {size[0]} x {size[1]} pixels"):
+        target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=wgpu.TextureUsage.RENDER_ATTACHMENT)
 
     def record(encoder: wgpu.GPUCommandEncoder, timestamps: Timestamps) -> None:
         cleared = {"view": target.create_view(), "load_op": "clear", "store_op": "store", "clear_value": (0, 0, 0, 0)}
@@ -164,11 +167,12 @@ def _timed(
 ) -> Array:  # [passes] milliseconds
     """Time what `record` appends, whose passes take the timestamps from 1 on."""
     timestamps = Timestamps(device.wgpu, 1 + passes)
-    encoder = device.wgpu.create_command_encoder()
-    encoder.begin_compute_pass(timestamp_writes=timestamps.of_pass(0)).end()
-    record(encoder, timestamps)
-    timestamps.resolve(encoder)
-    device.wgpu.queue.submit([encoder.finish()])
+    with naming("mua-bench"):
+        encoder = device.wgpu.create_command_encoder()
+        encoder.begin_compute_pass(timestamp_writes=timestamps.of_pass(0)).end()
+        record(encoder, timestamps)
+        timestamps.resolve(encoder)
+        device.wgpu.queue.submit([encoder.finish()])
     return np.asarray(np.diff(timestamps.milliseconds()))
 
 
