@@ -13,6 +13,9 @@ command -v flatc >/dev/null || missing="$missing flatbuffers-compiler"
 command -v glslangValidator >/dev/null || missing="$missing glslang-tools"
 find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2>/dev/null | grep -q . ||
     missing="$missing mesa-vulkan-drivers"
+# the Unity package's C# is compiled and run without Unity
+command -v mcs >/dev/null || missing="$missing mono-mcs"
+command -v mono >/dev/null || missing="$missing mono-runtime"
 # the interactive player is tested on a display that is not there
 command -v Xvfb >/dev/null || missing="$missing xvfb"
 find /usr/lib /lib -name libXext.so.6 2>/dev/null | grep -q . || missing="$missing libxext6"
