@@ -62,6 +62,12 @@ BAD = [  # what is replaced, by what, and what the fault must say
         "    if (id.x >= count)\n        return;\n    shared_values[thread] =",
         "before a barrier",
     ),
+    ("    GroupMemory", "    if (id.x < count)\n        GroupMemory", "Scale has a barrier in a branch"),
+    (
+        "    GroupMemory",
+        "    if (id.x < count) { } else { GroupMemoryBarrierWithGroupSync(); }\n    GroupMemory",
+        "in a branch",
+    ),
     ("float twice(", "float Twice(", "Twice, expected camelCase"),
 ]
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from shader_source import COMMENT, Shader
+from shader_source import COMMENT, Shader, closing
 
 MOST_BUFFERS = 8  # storage buffers that one stage may bind on every device
 MOST_GROUPSHARED = 16 * 1024  # bytes
@@ -119,19 +119,30 @@ def _entry_faults(shader: Shader) -> Iterator[str]:
         threads = math.prod(shader.threads(entry))
         if not LEAST_THREADS <= threads <= MOST_THREADS:
             yield f"{where} has {threads} threads in a group, expected {LEAST_THREADS} to {MOST_THREADS}"
-        yield from _returns_before_barriers(shader, entry)
+        yield from _barrier_faults(shader, entry)
 
 
-def _returns_before_barriers(shader: Shader, entry: str) -> Iterator[str]:
-    """A `return` ahead of a barrier, or of a call that holds one, in any function that the entry point reaches."""
+def _barrier_faults(shader: Shader, entry: str) -> Iterator[str]:
+    """A `return` ahead of a barrier, or of a call that holds one, and a barrier in a branch, in all that is reached."""
     reached = shader.reached(entry)
-    waits = {function.name for function in reached if _waits(shader, function.name)}
+    waiting = {function.name for function in reached if _waits(shader, function.name)}
     for function in reached:
-        barriers = [found.start() for found in re.finditer(r"\w+", function.body) if found[0] in waits]
-        barriers += [found.start() for found in BARRIER.finditer(function.body)]
-        last = max(barriers, default=0)
-        if re.search(r"\breturn\b", function.body[:last]):
-            yield f"{shader.path.name}: {entry}: {function.name} returns before a barrier"
+        where = f"{shader.path.name}: {entry}: {function.name}"
+        body = function.body
+        barriers = [found.start() for found in re.finditer(r"\w+", body) if found[0] in waiting]
+        barriers += [found.start() for found in BARRIER.finditer(body)]
+        if re.search(r"\breturn\b", body[: max(barriers, default=0)]):
+            yield f"{where} returns before a barrier"
+        if any(start < at < end for start, end in _branches(body) for at in barriers):
+            yield f"{where} has a barrier in a branch"
+
+
+def _branches(body: str) -> Iterator[tuple[int, int]]:
+    """Where the statements under each `if` and `else` begin and end."""
+    for found in re.finditer(r"\b(?:if|else)\b(?!\s+if\b)", body):
+        start = found.end() if found[0] == "else" else closing(body, body.index("(", found.end())) + 1
+        block = re.match(r"\s*\{", body[start:])
+        yield start, closing(body, start + block.end() - 1) if block else body.index(";", start)
 
 
 def _waits(shader: Shader, name: str) -> bool:

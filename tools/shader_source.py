@@ -178,11 +178,17 @@ def _accesses(body: str, buffer: str) -> list[str]:
     return found
 
 
+def closing(text: str, at: int) -> int:
+    """Where the bracket that opens at a place of a text is closed."""
+    depth = 0
+    for end in range(at, len(text)):
+        depth += (text[end] in "([{") - (text[end] in ")]}")
+        if depth == 0:
+            return end
+    return len(text)
+
+
 def _after_index(body: str, at: int) -> str:
     """What follows `[...]` at a place of a text."""
-    depth = 0
-    for end in range(at, len(body)):
-        depth += (body[end] == "[") - (body[end] == "]")
-        if depth == 0 and not body[end].isspace():
-            return body[end + 1 :] if body[end] == "]" else body[at:]
-    return ""
+    blank = len(body[at:]) - len(body[at:].lstrip())
+    return body[closing(body, at + blank) + 1 :] if body[at + blank : at + blank + 1] == "[" else body[at:]
