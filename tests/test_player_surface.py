@@ -81,13 +81,13 @@ def test_keeps_the_openings_of_the_template(size: int) -> None:
 def test_leaves_limbs_apart_that_touch_in_the_texture() -> None:
     one = tube().mesh
     count = len(one.vertices)
-    beside = one.vertices + [1.0, 0, 0]
+    beside = one.vertices + np.array([1.0, 0, 0])
     low, high = one.uv.min(axis=0), one.uv.max(axis=0)
     uv = (one.uv - low) / (high - low) * [0.5, 1]
     mesh = Mesh(
         np.concatenate([one.vertices, beside]),
         np.concatenate([one.faces, one.faces + count]),
-        np.concatenate([uv, uv + [0.5, 0]]),
+        np.concatenate([uv, uv + np.array([0.5, 0])]),
         np.concatenate([one.uv_faces, one.uv_faces + len(uv)]),
     )
     body, _ = solid(mesh, 64)
