@@ -1,0 +1,62 @@
+"""A C# compiler and a runtime for the tests of the Unity package, which need no Unity."""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+RUNTIME = ROOT / "unity-package" / "Runtime"
+PROGRAMS = Path(__file__).parent / "programs"
+OPTIONS = ("-langversion:7.2", "-warn:4", "-warnaserror", "-optimize+", "-nologo")  # what every Unity 6 understands
+
+
+class CSharp:
+    """Compiles with mcs, runs with mono; what is compiled once is kept by its content under the system's tmp folder."""
+
+    def __init__(self) -> None:
+        self._cache = Path(tempfile.gettempdir()) / f"mua-csharp-{os.getuid()}"
+
+    def build(
+        self,
+        sources: Sequence[Path],  # files, or folders of which all .cs files are meant
+        *,
+        library: bool = False,
+        references: Sequence[Path] = (),
+        defines: Sequence[str] = (),
+    ) -> Path:
+        """The .exe or .dll of `sources`; a warning is an error, and fails the test with the compiler's words."""
+        files = sorted(f for source in sources for f in ([source] if source.is_file() else source.rglob("*.cs")))
+        options = [*OPTIONS, *(f"-define:{name}" for name in defines), *(f"-reference:{path}" for path in references)]
+        folder = self._cache / _digest([*files, *references], options)
+        built = folder / (f"{sources[-1].stem}.dll" if library else f"{sources[-1].stem}.exe")
+        if built.exists():
+            return built
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            target = Path(scratch) / built.name
+            kind = "library" if library else "exe"
+            command = ["mcs", *options, f"-target:{kind}", f"-out:{target}", *map(str, files)]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stdout + done.stderr
+            for reference in references:  # mono looks for them beside the program
+                shutil.copy(reference, folder)
+            target.replace(built)
+        return built
+
+    def run(self, program: Path, *arguments: object, content: bytes = b"") -> str:
+        """What the program prints; fails the test with its words where it does not end well."""
+        command = ["mono", str(program), *map(str, arguments)]
+        done = subprocess.run(command, input=content, capture_output=True, check=False)
+        assert done.returncode == 0, (done.stdout[-2000:] + done.stderr[-4000:]).decode(errors="replace")
+        return done.stdout.decode()
+
+
+def _digest(files: Sequence[Path], options: Sequence[str]) -> str:
+    state = hashlib.sha256("\n".join(options).encode())
+    for path in files:
+        state.update(path.name.encode() + hashlib.sha256(path.read_bytes()).digest())
+    return state.hexdigest()[:32]

@@ -1,0 +1,265 @@
+// Runs the reader of unity-package/Runtime/Format for tests/unity/test_format.py and tools/bench_reader.py.
+
+using System;
+using System.Collections.Generic;
+using System.Diagnostics;
+using System.Globalization;
+using System.IO;
+using System.Linq;
+using System.Text;
+using Mua.Format;
+
+internal static class FormatProgram
+{
+    private static int Main(string[] arguments)
+    {
+        CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+        byte[] content = File.ReadAllBytes(arguments[1]);
+        switch (arguments[0])
+        {
+            case "dump":
+                Dump(AvatarFile.Read(content));
+                return 0;
+            case "answers":
+                foreach (string path in arguments.Skip(1))
+                {
+                    Console.WriteLine(Answer(File.ReadAllBytes(path)));
+                }
+                return 0;
+            case "truncate":
+                for (int length = 0; length < content.Length; length++)
+                {
+                    var cut = new byte[length];
+                    Array.Copy(content, cut, length);
+                    Console.WriteLine(Answer(cut));
+                }
+                return 0;
+            case "mutate":
+                Mutate(content, int.Parse(arguments[2]), int.Parse(arguments[3]));
+                return 0;
+            case "halves":
+                Print("halves", Enumerable.Range(0, 1 << 16).Select(bits => Half.ToSingle((ushort)bits)).ToArray());
+                return 0;
+            case "checksums":
+                for (int count = 0; count < 64; count++)
+                {
+                    Console.WriteLine(Crc32.Append(Crc32.Append(0, content, 0, count), content, count, 2 * count + 1));
+                }
+                return 0;
+            case "time":
+                Time(content, int.Parse(arguments[2]));
+                return 0;
+            default:
+                return 2;
+        }
+    }
+
+    /// <summary>`ok`, or code and field of the refusal; any other exception ends the program.</summary>
+    private static string Answer(byte[] content)
+    {
+        try
+        {
+            AvatarFile.Read(content);
+            return "ok";
+        }
+        catch (AvatarFormatException error)
+        {
+            return error.Code + "\t" + error.Field + "\t" + error.Message;
+        }
+    }
+
+    /// <summary>
+    /// Changes `count` bytes in all, one to eight at a time and half of them outside tensors, reads and restores; the
+    /// checksum is left out, for it would refuse them all.
+    /// </summary>
+    private static void Mutate(byte[] content, int count, int seed)
+    {
+        var random = new Random(seed);
+        int[] structure = Structure(AvatarFile.Read(content), content.Length);
+        byte[] telling = { 0, 1, 2, 4, 0x7F, 0x80, 0xFE, 0xFF };
+        var refused = new SortedDictionary<string, int>();
+        long most = 0, bound = 2L * content.Length;
+        var original = (byte[])content.Clone();
+        for (int changed = 0, read = 0; changed < count; read++)
+        {
+            int burst = 1 << random.Next(4);
+            for (int i = 0; i < burst; i++, changed++)
+            {
+                int at = read % 2 == 0 ? structure[random.Next(structure.Length)] : random.Next(content.Length);
+                content[at] = random.Next(2) == 0 ? telling[random.Next(telling.Length)] : (byte)random.Next(256);
+            }
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            string code = "ok";
+            try
+            {
+                new AvatarDecoder(content).Decode(Parser.Parse(content));
+            }
+            catch (AvatarFormatException error)
+            {
+                code = error.Code;
+            }
+            most = Math.Max(most, GC.GetAllocatedBytesForCurrentThread() - before);
+            refused.TryGetValue(code, out int seen);
+            refused[code] = seen + 1;
+            Buffer.BlockCopy(original, 0, content, 0, content.Length);
+        }
+        foreach (KeyValuePair<string, int> answer in refused)
+        {
+            Console.WriteLine(answer.Key + " " + answer.Value);
+        }
+        Console.WriteLine("allocated " + most + " of " + bound);
+    }
+
+    /// <summary>Bytes of the file that lie in no tensor.</summary>
+    private static int[] Structure(AvatarFile avatar, int length)
+    {
+        var free = new bool[length];
+        for (int i = 0; i < length; i++)
+        {
+            free[i] = true;
+        }
+        foreach (Tensor tensor in Tensors(avatar).Select(pair => pair.Value))
+        {
+            for (int i = 0; i < tensor.ByteLength; i++)
+            {
+                free[tensor.Offset + i] = false;
+            }
+        }
+        return Enumerable.Range(0, length).Where(i => free[i]).ToArray();
+    }
+
+    private static void Time(byte[] content, int runs)
+    {
+        var clock = new Stopwatch();
+        for (int i = 0; i < runs; i++)
+        {
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            clock.Restart();
+            AvatarFile avatar = AvatarFile.Read(content);
+            double milliseconds = clock.Elapsed.TotalMilliseconds;
+            long allocated = GC.GetAllocatedBytesForCurrentThread() - before;
+            Console.WriteLine(content.Length + " " + milliseconds.ToString("f1") + " " + allocated);
+            GC.KeepAlive(avatar);
+        }
+    }
+
+    /// <summary>Every value as `name kind hex`.</summary>
+    private static void Dump(AvatarFile avatar)
+    {
+        foreach (KeyValuePair<string, Tensor> pair in Tensors(avatar))
+        {
+            Print(pair.Key, pair.Value);
+        }
+        Print("name", avatar.Name);
+        Print("producer", avatar.Producer);
+        Print("notes", avatar.Notes);
+        Print("skeleton.names", string.Join("\n", avatar.Skeleton.Names));
+        Print("skeleton.parents", avatar.Skeleton.Parents);
+        Print("skeleton.bind_rotations", avatar.Skeleton.BindRotations);
+        Print("skeleton.bind_translations", avatar.Skeleton.BindTranslations);
+        Print("skeleton.bind_inverse", avatar.Skeleton.BindInverse);
+        Print("skeleton.root", new[] { avatar.Skeleton.Root });
+        Print("encoding.joints", avatar.Encoding.Joints);
+        Print("encoding.rate", new[] { avatar.Encoding.Rate });
+        Print("encoding.window", new[] { avatar.Encoding.Window, avatar.Encoding.Heading ? 1 : 0 });
+        Print("encoding.mean", avatar.Encoding.Mean);
+        Print("encoding.scale", avatar.Encoding.Scale);
+        Print("wavelet.name", avatar.Wavelet.Name);
+        Print("wavelet.levels", new[] { avatar.Wavelet.Levels });
+        Print("wavelet.rec_lo", avatar.Wavelet.RecLo);
+        Print("wavelet.rec_hi", avatar.Wavelet.RecHi);
+        Print("texels.size", new[] { avatar.Texels.Size });
+        Print("bounds", avatar.Bounds);
+        ArraySegment<byte> thumbnail = avatar.Thumbnail;
+        Print("thumbnail", "u1", thumbnail.Array.Skip(thumbnail.Offset).Take(thumbnail.Count).ToArray());
+        foreach (Clip clip in avatar.Clips)
+        {
+            Print("clip " + clip.Name, new[] { clip.Rate });
+        }
+    }
+
+    private static IEnumerable<KeyValuePair<string, Tensor>> Tensors(AvatarFile avatar)
+    {
+        var tensors = new List<KeyValuePair<string, Tensor>>();
+        Action<string, Tensor> add = (name, tensor) => tensors.Add(new KeyValuePair<string, Tensor>(name, tensor));
+        add("template.faces", avatar.Template.Faces);
+        add("template.uv", avatar.Template.Uv);
+        add("template.uv_faces", avatar.Template.UvFaces);
+        add("template.skin_indices", avatar.Template.SkinIndices);
+        add("template.skin_weights", avatar.Template.SkinWeights);
+        add("texels.texels", avatar.Texels.Indices);
+        add("texels.triangles", avatar.Texels.Triangles);
+        add("texels.barycentrics", avatar.Texels.Barycentrics);
+        add("coarse.mean", avatar.Coarse.Mean);
+        add("coarse.basis", avatar.Coarse.Basis);
+        AddMlp("coarse", avatar.Coarse.Mlp, add);
+        AddBranch("geometry", avatar.Geometry, add);
+        AddBranch("appearance", avatar.Appearance, add);
+        for (int i = 0; i < avatar.Clips.Length; i++)
+        {
+            add("clips." + i + ".rotations", avatar.Clips[i].Rotations);
+            add("clips." + i + ".translation", avatar.Clips[i].Translation);
+        }
+        return tensors;
+    }
+
+    private static void AddBranch(string name, Branch branch, Action<string, Tensor> add)
+    {
+        AddMlp(name, branch.Mlp, add);
+        add(name + ".ll_mean", branch.LlMean);
+        add(name + ".ll_basis", branch.LlBasis);
+        add(name + ".static_offset", branch.StaticOffset);
+        for (int i = 0; i < branch.Details.Length; i++)
+        {
+            add(name + ".details." + i + ".mean", branch.Details[i].Mean);
+            add(name + ".details." + i + ".h", branch.Details[i].H);
+            add(name + ".details." + i + ".w", branch.Details[i].W);
+        }
+    }
+
+    private static void AddMlp(string name, Layer[] mlp, Action<string, Tensor> add)
+    {
+        for (int i = 0; i < mlp.Length; i++)
+        {
+            add(name + ".mlp." + i + ".weight", mlp[i].Weight);
+            add(name + ".mlp." + i + ".bias", mlp[i].Bias);
+        }
+    }
+
+    private static void Print(string name, Tensor tensor)
+    {
+        if (tensor.Type == ElementType.I32)
+        {
+            var integers = new int[tensor.Count];
+            tensor.CopyTo(integers);
+            Print(name, integers);
+            return;
+        }
+        var values = new float[tensor.Count];
+        tensor.CopyTo(values);
+        Print(name, values);
+    }
+
+    private static void Print(string name, Array values)
+    {
+        string kind = values is int[] ? "i4" : values is float[] ? "f4" : "f8";
+        var bytes = new byte[Buffer.ByteLength(values)];
+        Buffer.BlockCopy(values, 0, bytes, 0, bytes.Length);
+        Print(name, kind, bytes);
+    }
+
+    private static void Print(string name, string text)
+    {
+        Print(name, "text", Encoding.UTF8.GetBytes(text));
+    }
+
+    private static void Print(string name, string kind, byte[] bytes)
+    {
+        var hex = new StringBuilder(2 * bytes.Length);
+        foreach (byte value in bytes)
+        {
+            hex.Append("0123456789abcdef"[value >> 4]).Append("0123456789abcdef"[value & 15]);
+        }
+        Console.WriteLine(name + "\t" + kind + "\t" + hex);
+    }
+}

@@ -1,0 +1,208 @@
+"""The C# reader gives the values of the Python reader bit for bit, and refuses the same files for the same reasons."""
+
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, RUNTIME, CSharp
+from malformed import DAMAGED, MALFORMED, malformed, seal_unread
+from synthetic_avatar import synthetic_avatar
+
+from mua.arrays import Array
+from mua.asset.avatar import Branch, Mlp
+from mua.asset.flatbuffer import FormatError, Tree
+from mua.asset.read import decode_tree, parse_checked
+from mua.asset.tensors import Storage, stored
+from mua.asset.write import encode
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "synthetic.muaavatar"
+MUTATED_FILES = 300
+MUTATED_BYTES = 1_000_000
+TABLES = 4000  # of the first bytes of a file are mostly tables
+CUTS = 211  # every so many bytes both readers are asked, which the Python reader can do in a second
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    return csharp.build([RUNTIME / "Format", PROGRAMS / "FormatProgram.cs"])
+
+
+@pytest.fixture(scope="module")
+def content() -> bytes:
+    return encode(synthetic_avatar(), storage="i8")
+
+
+def python_answer(content: bytes) -> tuple[str, ...]:
+    try:
+        decode_tree(parse_checked(content))
+    except FormatError as error:
+        return error.code, error.field
+    return ("ok",)
+
+
+def csharp_answers(csharp: CSharp, program: Path, files: list[Path]) -> list[tuple[str, ...]]:
+    """`ok`, or code and field for each file."""
+    lines = csharp.run(program, "answers", *files).splitlines()
+    return [tuple(line.split("\t")[:2]) for line in lines]
+
+
+def write_all(folder: Path, contents: list[bytes]) -> list[Path]:
+    files = [folder / f"{i}.muaavatar" for i in range(len(contents))]
+    for file, content in zip(files, contents, strict=True):
+        file.write_bytes(content)
+    return files
+
+
+def test_format_knows_no_engine(csharp: CSharp) -> None:
+    csharp.build([RUNTIME / "Format"], library=True)
+
+
+@pytest.mark.parametrize("storage", ["golden", "f32", "f16", "i8"])
+def test_values_are_those_of_the_python_reader(
+    csharp: CSharp, program: Path, tmp_path: Path, storage: Storage | str
+) -> None:
+    sound = GOLDEN.read_bytes() if storage == "golden" else encode(synthetic_avatar(), storage=storage)  # type: ignore
+    [path] = write_all(tmp_path, [sound])
+    expected = values(parse_checked(sound))
+    found = {}
+    for line in csharp.run(program, "dump", path).splitlines():
+        name, kind, digits = line.split("\t")
+        found[name] = (kind, bytes.fromhex(digits))
+    assert found.keys() == expected.keys()
+    assert [name for name in expected if found[name] != expected[name]] == []
+
+
+def test_every_half_is_expanded_exactly(csharp: CSharp, program: Path) -> None:
+    found = bytes.fromhex(csharp.run(program, "halves", GOLDEN).split()[2])
+    expected = np.arange(1 << 16, dtype="<u2").view("<f2").astype("<f4")
+    np.testing.assert_array_equal(np.frombuffer(found, "<f4"), expected)  # NaN equals NaN, whatever its payload
+    np.testing.assert_array_equal(np.signbit(np.frombuffer(found, "<f4")), np.signbit(expected))
+
+
+def test_checksum_is_that_of_zlib_at_any_length(csharp: CSharp, program: Path, content: bytes) -> None:
+    found = csharp.run(program, "checksums", GOLDEN).split()
+    golden = GOLDEN.read_bytes()
+    assert found == [str(zlib.crc32(golden[: 3 * count + 1])) for count in range(64)]
+
+
+def test_malformed_files_get_the_same_code_and_field(
+    csharp: CSharp, program: Path, tmp_path: Path, content: bytes
+) -> None:
+    files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
+    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED]]
+    assert csharp_answers(csharp, program, write_all(tmp_path, files)) == expected
+
+
+def test_truncation_at_every_offset_is_refused(csharp: CSharp, program: Path) -> None:
+    golden = GOLDEN.read_bytes()
+    answers = [tuple(line.split("\t")[:2]) for line in csharp.run(program, "truncate", GOLDEN).splitlines()]
+    assert len(answers) == len(golden)
+    assert ("ok",) not in answers
+    cuts = [*range(0, 200), *range(200, len(golden), CUTS)]
+    assert [answers[length] for length in cuts] == [python_answer(golden[:length]) for length in cuts]
+
+
+def test_mutated_files_get_the_same_code_and_field(
+    csharp: CSharp, program: Path, tmp_path: Path, content: bytes
+) -> None:
+    rng = np.random.default_rng(0)
+    mutated = [mutate(content, rng) for _ in range(MUTATED_FILES)]
+    expected = [python_answer(file) for file in mutated]
+    assert csharp_answers(csharp, program, write_all(tmp_path, mutated)) == expected
+    assert ("ok",) in expected
+    assert len(set(expected)) > 20
+
+
+def mutate(content: bytes, rng: np.random.Generator) -> bytes:
+    """A few bytes changed, mostly where tables are, sealed if its tables still can be read."""
+    mutated = bytearray(content)
+    tables = rng.random() < 0.8
+    for at in rng.integers(0, TABLES if tables else len(content), rng.integers(1, 4)):
+        mutated[at] = rng.choice([0, 1, 4, 0x7F, 0x80, 0xFF, rng.integers(256)])
+    return seal_unread(bytes(mutated))
+
+
+def test_a_million_mutated_bytes_neither_crash_nor_overallocate(
+    csharp: CSharp, program: Path, tmp_path: Path, content: bytes
+) -> None:
+    """No exception but the reader's own, and never twice the file's size in memory."""
+    [path] = write_all(tmp_path, [content])
+    *answers, last = [line.split() for line in csharp.run(program, "mutate", path, MUTATED_BYTES, 1).splitlines()]
+    counts = {code: int(count) for code, count in answers}
+    assert sum(counts.values()) > MUTATED_BYTES / 8
+    assert {"ok", "truncated", "offset", "missing", "enum", "text", "shape", "range", "finite", "value"} <= set(counts)
+    assert int(last[1]) < 2 * len(content)
+
+
+def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
+    """Kind and bytes of everything that the program dumps."""
+    avatar = decode_tree(tree)
+    rig, skeleton, encoding, wavelet = avatar.rig, avatar.rig.skeleton, avatar.encoding, avatar.wavelet
+    integers: dict[str, Any] = {
+        "template.faces": rig.mesh.faces,
+        "template.uv_faces": rig.mesh.uv_faces,
+        "template.skin_indices": rig.skin_indices,
+        "texels.texels": rig.texels.texels,
+        "texels.triangles": rig.texels.triangles,
+        "texels.size": rig.texels.size,
+        "skeleton.parents": skeleton.parents,
+        "skeleton.root": skeleton.root,
+        "encoding.joints": encoding.joints,
+        "encoding.window": (encoding.window, encoding.heading),
+        "wavelet.levels": wavelet.levels,
+    }
+    floats: dict[str, Any] = {
+        "template.uv": rig.mesh.uv,
+        "template.skin_weights": rig.skin_weights,
+        "texels.barycentrics": rig.texels.barycentrics[:, :2],
+        "coarse.mean": avatar.coarse.mean,
+        "coarse.basis": avatar.coarse.basis,
+        "encoding.rate": encoding.rate,
+        "encoding.mean": avatar.normalization.mean,
+        "encoding.scale": avatar.normalization.scale,
+        "bounds": avatar.bounds,
+        **mlp_values("coarse", avatar.coarse.mlp),
+        **branch_values("geometry", avatar.geometry),
+        **branch_values("appearance", avatar.appearance),
+    }
+    clips: dict[str, Any] = {f"clip {clip.name}": clip.rate for clip in avatar.clips}
+    for i, clip in enumerate(tree["clips"]):  # as stored: rotations not yet of unit length
+        clips |= {f"clips.{i}.{key}": stored(clip[key], key) for key in ("rotations", "translation")}
+    doubles: dict[str, Any] = {
+        "skeleton.bind_rotations": skeleton.bind_rotations,
+        "skeleton.bind_translations": skeleton.bind_translations,
+        "skeleton.bind_inverse": skeleton.bind_inverse,
+        "wavelet.rec_lo": wavelet.rec_lo,
+        "wavelet.rec_hi": wavelet.rec_hi,
+    }
+    texts = {
+        "name": avatar.name,
+        "producer": avatar.producer,
+        "notes": avatar.notes,
+        "wavelet.name": wavelet.name,
+        "skeleton.names": "\n".join(skeleton.names),
+    }
+    return {
+        **{name: ("i4", np.asarray(value, "<i4").tobytes()) for name, value in integers.items()},
+        **{name: ("f4", np.asarray(value, "<f4").tobytes()) for name, value in (floats | clips).items()},
+        **{name: ("f8", np.asarray(value, "<f8").tobytes()) for name, value in doubles.items()},
+        **{name: ("text", value.encode()) for name, value in texts.items()},
+        "thumbnail": ("u1", avatar.thumbnail),
+    }
+
+
+def mlp_values(name: str, mlp: Mlp) -> dict[str, Array]:
+    weights = {f"{name}.mlp.{i}.weight": layer.weight for i, layer in enumerate(mlp)}
+    return weights | {f"{name}.mlp.{i}.bias": layer.bias for i, layer in enumerate(mlp)}
+
+
+def branch_values(name: str, branch: Branch) -> dict[str, Array]:
+    bands = {
+        f"{name}.details.{i}.{part}": getattr(band, part)
+        for i, band in enumerate(branch.details)
+        for part in ("mean", "h", "w")
+    }
+    parts = {"ll_mean": branch.ll_mean, "ll_basis": branch.ll_basis, "static_offset": branch.static}
+    return mlp_values(name, branch.mlp) | bands | {f"{name}.{part}": value for part, value in parts.items()}
