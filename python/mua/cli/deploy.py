@@ -136,7 +136,7 @@ def _bench(
     benched = []
     for avatar in avatars:
         benched.append(bench(headset, avatar.name, seconds=seconds, rate=rate))
-        console.print(_figures(benched[-1]))
+        console.print(_heading(benched[-1]), _figures(benched[-1]))
         for warning in warnings(benched[-1]):
             console.print(f"warning: {warning}")
     if output is not None:
@@ -144,10 +144,13 @@ def _bench(
         files.write_bytes(output, json.dumps(content, indent=2).encode() + b"\n")
 
 
+def _heading(benched: Benched) -> str:
+    seconds = f"{len(benched.samples)} of {benched.seconds} seconds"
+    return f"{benched.avatar} on {benched.model}, {seconds} at {benched.rate} Hz"
+
+
 def _figures(benched: Benched) -> Table:
-    lines = len(benched.samples)
-    title = f"{benched.avatar} on {benched.model}, {lines} of {benched.seconds} seconds at {benched.rate} Hz"
-    table = Table("", "min", "median", "95 %", title=title, box=SIMPLE_HEAD)
+    table = Table("", "min", "median", "95 %", box=SIMPLE_HEAD)
     for column in table.columns[1:]:
         column.justify = "right"
     for name, spread in benched.figures().items():
