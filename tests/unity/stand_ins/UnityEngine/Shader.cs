@@ -1,0 +1,76 @@
+// Stand-in. Source: Unity 6000.0 scripting reference, Shader, Material, MaterialPropertyBlock.
+using System;
+using System.Collections.Generic;
+
+namespace UnityEngine
+{
+    public sealed class Shader : Object
+    {
+        private static readonly Dictionary<string, int> Ids = new Dictionary<string, int>();
+        private static readonly List<string> Names = new List<string>();
+
+        internal Shader(string name) { this.name = name; }
+
+        public bool isSupported { get { return true; } }
+        public static int PropertyToID(string name)
+        {
+            int id;
+            if (Ids.TryGetValue(name, out id))
+                return id;
+            Names.Add(name);
+            return Ids[name] = Names.Count - 1;
+        }
+
+        internal static string NameOf(int id) { return Names[id]; }
+    }
+
+    public class Material : Object
+    {
+        internal readonly StandIns.Bindings Constants = new StandIns.Bindings();
+        internal readonly Dictionary<int, GraphicsBuffer> Buffers = new Dictionary<int, GraphicsBuffer>();
+        private readonly HashSet<string> keywords = new HashSet<string>();
+
+        public Material(Shader shader)
+        {
+            if (shader == null)
+                throw new ArgumentNullException("shader");
+            this.shader = shader;
+            name = shader.name;
+        }
+
+        public Shader shader { get; set; }
+        public int renderQueue { get; set; }
+        public bool enableInstancing { get; set; }
+        public Color color { get; set; }
+        public int passCount { get { return 1; } }
+        public int FindPass(string passName) { return 0; }
+        public void SetInt(int nameID, int value) { Constants.Set(nameID, value); }
+        public void SetInteger(int nameID, int value) { Constants.Set(nameID, value); }
+        public void SetFloat(int nameID, float value) { Constants.Set(nameID, value); }
+        public void SetVector(int nameID, Vector4 value) { Constants.Set(nameID, value); }
+        public void SetColor(int nameID, Color value) { Constants.Set(nameID, (Vector4)value); }
+        public void SetMatrix(int nameID, Matrix4x4 value) { Constants.Set(nameID, value); }
+        public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
+        public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }
+        public void EnableKeyword(string keyword) { keywords.Add(keyword); }
+        public void DisableKeyword(string keyword) { keywords.Remove(keyword); }
+        public bool IsKeywordEnabled(string keyword) { return keywords.Contains(keyword); }
+    }
+
+    public sealed class MaterialPropertyBlock
+    {
+        internal readonly StandIns.Bindings Constants = new StandIns.Bindings();
+        internal readonly Dictionary<int, GraphicsBuffer> Buffers = new Dictionary<int, GraphicsBuffer>();
+
+        public bool isEmpty { get { return Buffers.Count == 0; } }
+        public void Clear() { Buffers.Clear(); }
+        public void SetInt(int nameID, int value) { Constants.Set(nameID, value); }
+        public void SetInteger(int nameID, int value) { Constants.Set(nameID, value); }
+        public void SetFloat(int nameID, float value) { Constants.Set(nameID, value); }
+        public void SetVector(int nameID, Vector4 value) { Constants.Set(nameID, value); }
+        public void SetColor(int nameID, Color value) { Constants.Set(nameID, (Vector4)value); }
+        public void SetMatrix(int nameID, Matrix4x4 value) { Constants.Set(nameID, value); }
+        public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
+        public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }
+    }
+}
