@@ -1,0 +1,131 @@
+"""Descriptor, forward kinematics, skinning and clip sampling in C# give the numbers of the Python reference."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, RUNTIME, CSharp
+from synthetic_avatar import synthetic_avatar
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar, Layer, Mlp
+from mua.asset.read import read
+from mua.asset.tensors import Storage
+from mua.asset.write import write
+from mua.motion.clip import Clip
+from mua.motion.descriptor import describe
+from mua.motion.encoding import Normalization, PoseEncoding
+from mua.motion.resample import resample
+from mua.rig.skeleton import Skeleton
+
+BOUND = 2048 * np.finfo(float).eps  # some hundred operations, each rounded once, on numbers up to ten
+ROUNDING = np.finfo(np.float32).eps  # what the kernels read is rounded to float32 in the end
+PLACE = rotation.dual_from_rigid(np.array([0.8, 0, 0.6, 0]), np.array([1, -2, 0.5]))
+SECONDS = (0.0, 0.04, 0.2, 0.5, 1.0, 12.345, 1e6, -0.01, -3.3)
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    file = csharp.build([RUNTIME / "Format"], library=True)
+    motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])  # apart, as Unity compiles them
+    return csharp.build([PROGRAMS / "MotionProgram.cs"], references=[file, motion])
+
+
+def avatar_of(*, heading: bool, window: int, rate: float, clips: Sequence[tuple[float, int]]) -> Avatar:
+    """The synthetic avatar on a skeleton whose root joint has a turned parent, with clips of (rate, frames)."""
+    avatar = synthetic_avatar()
+    rng = np.random.default_rng(window)
+    skeleton = replace(
+        avatar.rig.skeleton,
+        bind_rotations=rotation.normalize(rng.normal(size=(3, 4))),
+        bind_translations=rng.normal(size=(3, 3)),
+        root=1,
+    )
+    encoding = PoseEncoding(joints=(0, 2), rate=rate, window=window, heading=heading)
+    mean, scale = rng.normal(size=encoding.width), rng.uniform(0.5, 2, encoding.width)
+    return replace(
+        avatar,
+        rig=replace(avatar.rig, skeleton=skeleton),
+        encoding=encoding,
+        normalization=Normalization(mean, scale),
+        coarse=replace(avatar.coarse, mlp=widened(avatar.coarse.mlp, encoding.width)),
+        geometry=replace(avatar.geometry, mlp=widened(avatar.geometry.mlp, encoding.width)),
+        appearance=replace(avatar.appearance, mlp=widened(avatar.appearance.mlp, encoding.width)),
+        clips=tuple(random_clip(skeleton, rng, r, frames) for r, frames in clips),
+    )
+
+
+def widened(mlp: Mlp, width: int) -> Mlp:
+    return (Layer(np.zeros((len(mlp[0].bias), width), np.float32), mlp[0].bias), *mlp[1:])
+
+
+def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frames: int) -> Clip:
+    rotations = rotation.normalize(rng.normal(size=(frames, len(skeleton.names), 4)))
+    if frames > 2:
+        rotations[2] = rotations[1]  # a slerp between equals
+        rotations[1] *= -1
+    return Clip(f"{rate} Hz", rate, rotations, rng.normal(size=(frames, 3)))
+
+
+CASES = {
+    "own rate": (avatar_of(heading=True, window=3, rate=24, clips=[(24, 5), (24, 1)]), "f32"),
+    "other rates": (avatar_of(heading=True, window=3, rate=24, clips=[(30, 11), (23.976, 9), (120, 41)]), "f32"),
+    "halves": (avatar_of(heading=True, window=2, rate=24, clips=[(24, 6), (60, 13)]), "f16"),
+    "no heading": (avatar_of(heading=False, window=3, rate=30, clips=[(24, 7)]), "f32"),
+    "one frame": (avatar_of(heading=True, window=1, rate=30, clips=[(30, 4)]), "f32"),
+    "longest window": (avatar_of(heading=True, window=16, rate=24, clips=[(24, 20)]), "f32"),
+}
+
+
+@pytest.mark.parametrize(("avatar", "storage"), CASES.values(), ids=CASES)
+def test_numbers_are_those_of_the_reference(
+    csharp: CSharp, program: Path, tmp_path: Path, avatar: Avatar, storage: Storage
+) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, avatar, storage=storage)
+    avatar = read(path)
+    found = play(csharp, program, path)
+    clips = [resample(clip, avatar.encoding.rate) for clip in avatar.clips]
+    assert found.pop("frames") == [len(clip) for clip in clips]
+    assert found.pop("at") == [int(s * clip.rate % len(clip)) for clip in clips for s in SECONDS]
+    assert found.pop("allocated") == [0] * len(clips)
+    expected = [expected_numbers(avatar, clip) for clip in clips]
+    assert found.keys() == expected[0].keys()
+    for name, values in found.items():
+        wanted = np.concatenate([numbers[name] for numbers in expected]).reshape(len(values), -1)
+        rounded = ROUNDING if np.asarray(values).dtype == np.float32 else 0
+        np.testing.assert_allclose(values, wanted, rtol=rounded, atol=BOUND, err_msg=name)
+
+
+def play(csharp: CSharp, program: Path, path: Path) -> dict[str, list]:
+    """What the program prints, by name: integers, or arrays."""
+    found: dict[str, list] = defaultdict(list)
+    for line in csharp.run(program, path, *SECONDS).splitlines():
+        name, value = line.split(" ")
+        if name in ("frames", "at", "allocated"):
+            found[name].append(int(value))
+        else:
+            kind = "<f4" if name in ("descriptor", "skinning") else "<f8"
+            found[name].append(np.frombuffer(bytes.fromhex(value), kind))
+    return found
+
+
+def expected_numbers(avatar: Avatar, clip: Clip) -> dict[str, Array]:
+    """[F, ...] of every frame of a clip."""
+    skeleton, encoding = avatar.rig.skeleton, avatar.encoding
+    windows = np.array([encoding.frames(frame) for frame in range(len(clip))])
+    turned, placed = skeleton.world(clip.rotations, clip.translation)
+    descriptors = describe(skeleton, encoding, clip.rotations, clip.translation)
+    return {
+        "rotations": clip.rotations[windows],
+        "translations": clip.translation[windows],
+        "descriptor": (descriptors - avatar.normalization.mean) / avatar.normalization.scale,
+        "turned": turned,
+        "placed": placed,
+        "skinning": rotation.dual_multiply(PLACE, skeleton.skinning(clip.rotations, clip.translation)),
+        "root": placed[:, skeleton.root],
+    }
