@@ -12,6 +12,7 @@ from mua.arrays import Array
 from mua.asset import write
 from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
+from mua.bench.random_avatar import random_avatar
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
@@ -23,8 +24,9 @@ from mua.player.offscreen import Offscreen, reference_picture
 from mua.player.scene import Toggles
 from mua.player.splats import SplatFrame
 from mua.render import frame_bounds, render_premultiplied
+from mua.student.settings import preset
 
-POSITION_BOUND = 5e-5  # metres: a tenth of the finest splat; what float32 leaves is a fiftieth of it
+POSITION_BOUND = 5e-5  # metres; float32 leaves a fiftieth of it on a person two metres from the origin
 COLOR_BOUND = 1 / 512  # half a step of 8 bits
 OPACITY_BOUND = 2**-11  # a half float below 1, which a GPU may round towards zero
 LEAST_PSNR = 50.0  # dB of a picture against the CPU rasteriser's
@@ -190,6 +192,18 @@ def test_pictures_of_both_eyes_agree_with_the_cpu_rasteriser(device: Device, tmp
     image = Offscreen(device, buffers, clip, Toggles()).picture(index, cameras)
     for found, camera in zip(np.split(image, 2, axis=1), cameras, strict=True):
         assert psnr(found, render_premultiplied(posed, camera)) > LEAST_PSNR
+
+
+def test_a_figure_of_the_papers_proportions_agrees(device: Device, tmp_path: Path) -> None:
+    """Random numbers in the shapes of preset tiny, 54 joints, 18,496 splats."""
+    frame = opened(device, random_avatar(preset("tiny")), tmp_path, storage="f16")
+    avatar = frame.avatars[0].avatar.avatar
+    posed = PosedFrame(device, frame, avatar.clips[0], 12, eyes=1, screen=256)
+    errors = posed.errors()
+    assert errors.position < POSITION_BOUND
+    assert errors.color < COLOR_BOUND
+    image = draw_image(device, SplatRenderer(device, image_format(device)), frame.sorted, posed.cameras)
+    assert psnr(image, render_premultiplied(posed.exact, posed.cameras[0])) > LEAST_PSNR
 
 
 def test_the_next_frame_does_not_see_the_last(device: Device, tmp_path: Path) -> None:
