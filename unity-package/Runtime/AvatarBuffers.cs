@@ -1,0 +1,189 @@
+using System;
+using System.Collections.Generic;
+using System.Runtime.InteropServices;
+using Mua.Format;
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>
+    /// Everything of a file that does not change from frame to frame, in the types in which the file stores it
+    /// (python/mua/player/buffers.py). The constructor may run on any thread; Upload and Dispose belong to Unity's.
+    /// </summary>
+    internal sealed class AvatarBuffers : IDisposable
+    {
+        private const int Pair = 2 * sizeof(float);
+
+        private readonly BufferSet buffers = new BufferSet();
+        private readonly List<Upload> uploads = new List<Upload>();
+        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces, texels, triangles, barycentrics;
+        private int filled; // uploads
+        private long sent, total; // bytes
+
+        public AvatarBuffers(AvatarFile avatar)
+        {
+            Avatar = avatar;
+            CoarseMlp = Mlp(avatar.Coarse.Mlp, "coarse.mlp");
+            Mesh = MeshOf(avatar.Coarse);
+            Geometry = BranchOf(avatar.Geometry, "geometry");
+            Appearance = BranchOf(avatar.Appearance, "appearance");
+            recLo = Add(new Upload("wavelet.rec_lo", Floats(avatar.Wavelet.RecLo), sizeof(float)));
+            recHi = Add(new Upload("wavelet.rec_hi", Floats(avatar.Wavelet.RecHi), sizeof(float)));
+            skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
+            skinWeights = Add(new Upload("template.skin_weights", Floats(avatar.Template.SkinWeights), sizeof(float)));
+            faces = Add(Stored(avatar.Template.Faces, "template.faces"));
+            texels = Add(Stored(avatar.Texels.Indices, "texels.texels"));
+            triangles = Add(Stored(avatar.Texels.Triangles, "texels.triangles"));
+            barycentrics = Add(new Upload("texels.barycentrics", Pairs(avatar.Texels.Barycentrics), Pair));
+            foreach (Upload upload in uploads)
+            {
+                total += upload.Bytes;
+            }
+        }
+
+        /// <summary>The same file on the CPU.</summary>
+        public AvatarFile Avatar { get; }
+
+        public LayerBuffers[] CoarseMlp { get; }
+
+        public LayerBuffers Mesh { get; }
+
+        public BranchBuffers Geometry { get; }
+
+        public BranchBuffers Appearance { get; }
+
+        public int SplatCount => Avatar.Texels.Count;
+
+        public int VertexCount => Avatar.Coarse.Mean.Shape[0];
+
+        public int Taps => Avatar.Wavelet.RecLo.Length;
+
+        public GraphicsBuffer RecLo => recLo.Buffer;
+
+        public GraphicsBuffer RecHi => recHi.Buffer;
+
+        public GraphicsBuffer SkinIndices => skinIndices.Buffer;
+
+        public GraphicsBuffer SkinWeights => skinWeights.Buffer;
+
+        public GraphicsBuffer Faces => faces.Buffer;
+
+        public GraphicsBuffer Texels => texels.Buffer;
+
+        public GraphicsBuffer Triangles => triangles.Buffer;
+
+        public GraphicsBuffer Barycentrics => barycentrics.Buffer;
+
+        /// <summary>Share of the bytes that are on the device, 0 to 1.</summary>
+        public float Progress => total == 0 ? 1 : (float)((double)sent / total);
+
+        /// <summary>
+        /// Sends about `budget` more bytes; whether all are there. InvalidOperationException names the field that is more
+        /// than the device holds.
+        /// </summary>
+        public bool Upload(int budget)
+        {
+            while (filled < uploads.Count && budget > 0)
+            {
+                int before = budget;
+                bool done = uploads[filled].Continue(buffers, ref budget);
+                sent += before - budget;
+                filled += done ? 1 : 0;
+            }
+            return filled == uploads.Count;
+        }
+
+        public void Dispose()
+        {
+            buffers.Dispose();
+        }
+
+        private LayerBuffers[] Mlp(Layer[] layers, string path)
+        {
+            var uploaded = new LayerBuffers[layers.Length];
+            for (int i = 0; i < layers.Length; i++)
+            {
+                string layer = path + "[" + i + "]";
+                StoredBuffer weight = StoredOf(layers[i].Weight, layer + ".weight");
+                StoredBuffer bias = StoredOf(layers[i].Bias, layer + ".bias");
+                uploaded[i] = new LayerBuffers(weight, bias, layers[i].Inputs, layers[i].Outputs);
+            }
+            return uploaded;
+        }
+
+        /// <summary>Canonical vertices as a layer whose weight lies transposed: the basis [K, 3 V], the mean [3 V].</summary>
+        private LayerBuffers MeshOf(Coarse coarse)
+        {
+            StoredBuffer basis = StoredOf(coarse.Basis, "coarse.basis"), mean = StoredOf(coarse.Mean, "coarse.mean");
+            return new LayerBuffers(basis, mean, coarse.Basis.Shape[0], 3 * coarse.Basis.Shape[1]);
+        }
+
+        private BranchBuffers BranchOf(Branch branch, string name)
+        {
+            var details = new BandBuffers[branch.Details.Length];
+            var uploaded = new BranchBuffers
+            {
+                Mlp = Mlp(branch.Mlp, name + ".mlp"),
+                LlMean = StoredOf(branch.LlMean, name + ".ll_mean"),
+                LlBasis = StoredOf(branch.LlBasis, name + ".ll_basis"),
+                Details = details,
+                StaticOffset = StoredOf(branch.StaticOffset, name + ".static_offset"),
+                Channels = branch.Channels,
+                Rank = branch.Rank,
+            };
+            for (int i = 0; i < details.Length; i++)
+            {
+                details[i] = BandOf(branch.Details[i], name + ".details[" + i + "]");
+            }
+            return uploaded;
+        }
+
+        private BandBuffers BandOf(DetailBand band, string path)
+        {
+            StoredBuffer mean = StoredOf(band.Mean, path + ".mean");
+            StoredBuffer h = StoredOf(band.H, path + ".h"), w = StoredOf(band.W, path + ".w");
+            return new BandBuffers(mean, h, w, band.Rank, band.Size);
+        }
+
+        private StoredBuffer StoredOf(Tensor tensor, string field)
+        {
+            return new StoredBuffer(tensor, Add(Stored(tensor, field)));
+        }
+
+        private Upload Stored(Tensor tensor, string field)
+        {
+            var bytes = new ArraySegment<byte>(tensor.Content, tensor.Offset, tensor.ByteLength);
+            return new Upload(field, bytes, tensor.Scale);
+        }
+
+        private Upload Add(Upload upload)
+        {
+            uploads.Add(upload);
+            return upload;
+        }
+
+        private static float[] Floats(Tensor tensor)
+        {
+            var values = new float[tensor.Count];
+            tensor.CopyTo(values);
+            return values;
+        }
+
+        private static float[] Floats(double[] values)
+        {
+            var rounded = new float[values.Length];
+            for (int i = 0; i < values.Length; i++)
+            {
+                rounded[i] = (float)values[i];
+            }
+            return rounded;
+        }
+
+        private static Vector2[] Pairs(Tensor tensor)
+        {
+            var pairs = new Vector2[tensor.Shape[0]];
+            Floats(tensor).AsSpan().CopyTo(MemoryMarshal.Cast<Vector2, float>(pairs.AsSpan()));
+            return pairs;
+        }
+    }
+}

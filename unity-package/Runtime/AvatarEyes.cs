@@ -1,0 +1,72 @@
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>
+    /// One or two eyes as the kernels take them: right-handed world to eye, and the projection before the graphics API's
+    /// flip of rows and depth; SplatProject counts rows from the top itself.
+    /// </summary>
+    internal sealed class AvatarEyes
+    {
+        public const int Most = 2;
+
+        /// <summary>World to eye; a single eye stands in both places.</summary>
+        public readonly Matrix4x4[] View = new Matrix4x4[Most];
+
+        /// <summary>Eye to clip, -w to w in depth, as of Camera.projectionMatrix.</summary>
+        public readonly Matrix4x4[] Projection = new Matrix4x4[Most];
+
+        /// <summary>World to the clip space of render textures on this device, for the depth of what is drawn.</summary>
+        public readonly Matrix4x4[] DeviceViewProjection = new Matrix4x4[Most];
+
+        /// <summary>Width and height of one eye, pixels.</summary>
+        public readonly float[] Screen = new float[2];
+
+        public int Count { get; private set; }
+
+        /// <summary>Metres; what is nearer is not drawn.</summary>
+        public float Near { get; private set; }
+
+        /// <summary>Mean of the eyes' positions in the right-handed world, metres.</summary>
+        public Vector4 Middle { get; private set; }
+
+        /// <summary>Of the indirect draw: two where both eyes are drawn by instancing, which does not multiply it.</summary>
+        public int Instances { get; private set; }
+
+        /// <summary>Starts anew with a screen of so many pixels; Add the eyes after it, from the left.</summary>
+        public void Begin(int width, int height, float near, int instances = 1)
+        {
+            Screen[0] = width;
+            Screen[1] = height;
+            Near = near;
+            Instances = instances;
+            Count = 0;
+            Middle = Vector4.zero;
+        }
+
+        /// <summary>An eye with Unity's own matrices: left-handed world to eye, and eye to clip before the API's flip.</summary>
+        public void Add(Matrix4x4 unityView, Matrix4x4 projection)
+        {
+            Matrix4x4 view = AvatarSpace.View(unityView);
+            Matrix4x4 device = GL.GetGPUProjectionMatrix(projection, true) * view;
+            for (int eye = Count; eye < Most; eye++)
+            {
+                View[eye] = view;
+                Projection[eye] = projection;
+                DeviceViewProjection[eye] = device;
+            }
+            Vector4 position = Position(view), sum = Count * Middle + position;
+            Count++;
+            Middle = new Vector4(sum.x / Count, sum.y / Count, sum.z / Count, 1);
+        }
+
+        /// <summary>-R^T t of a rigid view.</summary>
+        private static Vector4 Position(Matrix4x4 view)
+        {
+            return new Vector4(
+                -(view.m00 * view.m03 + view.m10 * view.m13 + view.m20 * view.m23),
+                -(view.m01 * view.m03 + view.m11 * view.m13 + view.m21 * view.m23),
+                -(view.m02 * view.m03 + view.m12 * view.m13 + view.m22 * view.m23), 1);
+        }
+    }
+}

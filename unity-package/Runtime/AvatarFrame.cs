@@ -1,0 +1,257 @@
+using System;
+using System.Runtime.InteropServices;
+using Mua.Format;
+using Mua.Motion;
+using Unity.Profiling;
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    /// <summary>
+    /// One frame of an avatar: the dispatches from a window of poses to posed splats, in the order of
+    /// python/mua/player/frame.py. The buffers between the kernels are made once; the splats are shared with others.
+    /// </summary>
+    internal sealed class AvatarFrame : IDisposable
+    {
+        private const int Channels = 23;
+        private const int GeometryStart = 0, AppearanceStart = 11;
+        private const int Corners = 8;
+
+        private static readonly ProfilerMarker CoarseMarker = new ProfilerMarker("MUA coarse mesh");
+        private static readonly ProfilerMarker TextureMarker = new ProfilerMarker("MUA texture");
+        private static readonly ProfilerMarker PoseMarker = new ProfilerMarker("MUA pose");
+
+        private readonly MlpMatmul mlpMatmul;
+        private readonly BlendSubbands blendSubbands;
+        private readonly InverseDwt inverseDwt;
+        private readonly DqSkinning dqSkinning;
+        private readonly Descriptor describe;
+        private readonly SkeletonPose skeleton;
+        private readonly float[] descriptorValues;
+        private readonly Vector4[] jointValues; // [2 J]
+        private readonly BufferSet buffers = new BufferSet();
+        private readonly GraphicsBuffer[] activations = new GraphicsBuffer[2];
+        private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest, and its ll
+        private GraphicsBuffer descriptor, details, texelChannels;
+
+        /// <summary>InvalidOperationException where a kernel is missing or a buffer is more than the device holds.</summary>
+        public AvatarFrame(AvatarResources resources, AvatarBuffers avatar)
+        {
+            Avatar = avatar;
+            mlpMatmul = new MlpMatmul(resources.MlpMatmul);
+            blendSubbands = new BlendSubbands(resources.BlendSubbands);
+            inverseDwt = new InverseDwt(resources.InverseDwt);
+            dqSkinning = new DqSkinning(resources.DqSkinning);
+            AvatarFile file = avatar.Avatar;
+            describe = new Descriptor(file.Skeleton, file.Encoding);
+            skeleton = new SkeletonPose(file.Skeleton);
+            descriptorValues = new float[describe.Width];
+            jointValues = new Vector4[2 * file.Skeleton.JointCount];
+            try
+            {
+                CreateBuffers();
+            }
+            catch
+            {
+                Dispose();
+                throw;
+            }
+        }
+
+        public AvatarBuffers Avatar { get; }
+
+        public int SplatCount => Avatar.SplatCount;
+
+        /// <summary>[M, 16] words of all avatars, given by SplatFrame.</summary>
+        public GraphicsBuffer Splats { get; private set; }
+
+        /// <summary>Where this avatar's begin.</summary>
+        public int FirstSplat { get; private set; }
+
+        /// <summary>[V, 3] canonical vertices of the last decode, metres.</summary>
+        public GraphicsBuffer Mesh { get; private set; }
+
+        /// <summary>[2 V] dual quaternions of the last pose.</summary>
+        public GraphicsBuffer VertexDq { get; private set; }
+
+        /// <summary>[2 J] dual quaternions of the last pose.</summary>
+        public GraphicsBuffer Joints { get; private set; }
+
+        /// <summary>The last pose, in the avatar's space.</summary>
+        public SkeletonPose Skeleton => skeleton;
+
+        /// <summary>Lowest corner of the box of the last pose in the right-handed world, metres.</summary>
+        public Vector3 Low { get; private set; }
+
+        /// <summary>Highest corner.</summary>
+        public Vector3 High { get; private set; }
+
+        public void ShareSplats(GraphicsBuffer splats, int firstSplat)
+        {
+            Splats = splats;
+            FirstSplat = firstSplat;
+        }
+
+        /// <summary>
+        /// Appends the dispatches from a window of poses to posed splats; what depends on the pose alone is written to the
+        /// device at once.
+        /// </summary>
+        /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
+        /// <param name="translations">[k, 3] local translations of the root joint, metres.</param>
+        /// <param name="place">From the avatar's space to the right-handed world.</param>
+        public void Decode(
+            CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
+            in DualQuaternion place)
+        {
+            WriteDescriptor(rotations, translations);
+            WritePose(rotations, Vector3D.Load(translations, 0), place);
+            Coarse(commands);
+            Branch(commands, Avatar.Geometry, GeometryStart);
+            Branch(commands, Avatar.Appearance, AppearanceStart);
+            Pose(commands);
+        }
+
+        /// <summary>Appends what moves the last decoded avatar into another pose: [J, 4] and [3] as for Decode.</summary>
+        public void Repose(
+            CommandBuffer commands, ReadOnlySpan<double> rotations, Vector3D translation, in DualQuaternion place)
+        {
+            WritePose(rotations, translation, place);
+            Pose(commands);
+        }
+
+        public void Dispose()
+        {
+            buffers.Dispose();
+        }
+
+        private void CreateBuffers()
+        {
+            AvatarFile file = Avatar.Avatar;
+            int size = file.Texels.Size, layers = Math.Max(Widest(Avatar.CoarseMlp), 1);
+            layers = Math.Max(layers, Math.Max(Widest(Avatar.Geometry.Mlp), Widest(Avatar.Appearance.Mlp)));
+            long texture = (long)Math.Max(Avatar.Geometry.Channels, Avatar.Appearance.Channels) * size * size;
+            descriptor = buffers.Structured("descriptor", describe.Width, sizeof(float));
+            Mesh = buffers.Structured("mesh", 3L * Avatar.VertexCount, sizeof(float));
+            long bands = Math.Max(LargestBand(Avatar.Geometry), LargestBand(Avatar.Appearance));
+            details = buffers.Structured("details", bands, sizeof(float));
+            for (int i = 0; i < 2; i++)
+            {
+                activations[i] = buffers.Structured("activations", layers, sizeof(float));
+                textures[i] = buffers.Structured("texture", texture >> 2 * i, sizeof(float));
+            }
+            texelChannels = buffers.Structured("texel_channels", (long)Channels * SplatCount, sizeof(float));
+            Joints = buffers.Structured("joints", jointValues.Length, 4 * sizeof(float));
+            VertexDq = buffers.Structured("vertex_dq", 2L * Avatar.VertexCount, 4 * sizeof(float));
+        }
+
+        private void WriteDescriptor(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations)
+        {
+            describe.Write(rotations, translations, descriptorValues);
+            descriptor.SetData(descriptorValues);
+        }
+
+        private void WritePose(ReadOnlySpan<double> rotations, Vector3D translation, in DualQuaternion place)
+        {
+            skeleton.Set(rotations.Slice(0, 2 * jointValues.Length), translation);
+            skeleton.WriteSkinning(place, MemoryMarshal.Cast<Vector4, float>(new Span<Vector4>(jointValues)));
+            Joints.SetData(jointValues);
+            WriteBounds(place);
+        }
+
+        private void WriteBounds(in DualQuaternion place)
+        {
+            float[] box = Avatar.Avatar.Bounds;
+            var low = new Vector3(float.MaxValue, float.MaxValue, float.MaxValue);
+            Vector3 high = -low;
+            for (int corner = 0; corner < Corners; corner++)
+            {
+                var about = new Vector3D(
+                    box[(corner & 1) == 0 ? 0 : 3], box[(corner & 2) == 0 ? 1 : 4], box[(corner & 4) == 0 ? 2 : 5]);
+                Vector3D moved = place.Transform(skeleton.RootPosition + about);
+                var at = new Vector3((float)moved.X, (float)moved.Y, (float)moved.Z);
+                low = Vector3.Min(low, at);
+                high = Vector3.Max(high, at);
+            }
+            Low = low;
+            High = high;
+        }
+
+        /// <summary>What the MLP makes of the descriptor; good until the next MLP.</summary>
+        private GraphicsBuffer Mlp(CommandBuffer commands, LayerBuffers[] mlp)
+        {
+            GraphicsBuffer x = descriptor;
+            for (int i = 0; i < mlp.Length; i++)
+            {
+                GraphicsBuffer y = activations[i % 2];
+                mlpMatmul.Layer(commands, mlp[i], x, y, i < mlp.Length - 1);
+                x = y;
+            }
+            return x;
+        }
+
+        private void Coarse(CommandBuffer commands)
+        {
+            commands.BeginSample(CoarseMarker);
+            GraphicsBuffer coefficients = Mlp(commands, Avatar.CoarseMlp);
+            mlpMatmul.Transposed(commands, Avatar.Mesh, coefficients, Mesh);
+            commands.EndSample(CoarseMarker);
+        }
+
+        /// <summary>Coefficients, LL, then level by level to the whole texture; its valid texels go to `texelChannels`.</summary>
+        private void Branch(CommandBuffer commands, BranchBuffers branch, int firstChannel)
+        {
+            commands.BeginSample(TextureMarker);
+            GraphicsBuffer alpha = Mlp(commands, branch.Mlp);
+            int levels = Avatar.Avatar.Wavelet.Levels, size = Avatar.Avatar.Texels.Size >> levels;
+            blendSubbands.Low(commands, branch, alpha, size, textures[levels % 2]);
+            int offset = branch.Channels * branch.Rank;
+            for (int level = 0; level < levels; level++)
+            {
+                GraphicsBuffer ll = textures[(levels - level) % 2], fine = textures[(levels - level - 1) % 2];
+                if (level < branch.Details.Length)
+                {
+                    BandBuffers band = branch.Details[level];
+                    blendSubbands.Detail(commands, band, branch.Channels, alpha, offset, details);
+                    offset += branch.Channels * band.Rank;
+                    inverseDwt.Full(commands, Avatar, branch.Channels, size, ll, details, fine);
+                }
+                else
+                {
+                    inverseDwt.LowPass(commands, Avatar, branch.Channels, size, ll, fine);
+                }
+                size *= 2;
+            }
+            inverseDwt.AddStatic(commands, Avatar, branch, size, textures[0], texelChannels, firstChannel);
+            commands.EndSample(TextureMarker);
+        }
+
+        private void Pose(CommandBuffer commands)
+        {
+            commands.BeginSample(PoseMarker);
+            dqSkinning.BlendVertices(commands, Avatar, Joints, VertexDq);
+            dqSkinning.SkinSplats(commands, Avatar, VertexDq, Mesh, texelChannels, Splats, FirstSplat);
+            commands.EndSample(PoseMarker);
+        }
+
+        private static int Widest(LayerBuffers[] mlp)
+        {
+            int widest = 0;
+            foreach (LayerBuffers layer in mlp)
+            {
+                widest = Math.Max(widest, layer.Outputs);
+            }
+            return widest;
+        }
+
+        private static long LargestBand(BranchBuffers branch)
+        {
+            long largest = 0;
+            foreach (BandBuffers band in branch.Details)
+            {
+                largest = Math.Max(largest, 3L * branch.Channels * band.Size * band.Size);
+            }
+            return largest;
+        }
+    }
+}

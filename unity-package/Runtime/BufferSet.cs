@@ -1,0 +1,48 @@
+using System;
+using System.Collections.Generic;
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>GPU memory that is given back together.</summary>
+    internal sealed class BufferSet : IDisposable
+    {
+        private readonly List<GraphicsBuffer> buffers = new List<GraphicsBuffer>();
+
+        /// <summary>A structured buffer of at least one element; InvalidOperationException where it is too large.</summary>
+        public GraphicsBuffer Structured(string name, long count, int stride)
+        {
+            return Add(GraphicsBuffer.Target.Structured, name, count, stride);
+        }
+
+        /// <summary>Words that a kernel writes and that draws and dispatches take their counts from.</summary>
+        public GraphicsBuffer Arguments(string name, int count)
+        {
+            return Add(
+                GraphicsBuffer.Target.Structured | GraphicsBuffer.Target.IndirectArguments, name, count, sizeof(uint));
+        }
+
+        public void Dispose()
+        {
+            foreach (GraphicsBuffer buffer in buffers)
+            {
+                buffer.Dispose();
+            }
+            buffers.Clear();
+        }
+
+        private GraphicsBuffer Add(GraphicsBuffer.Target target, string name, long count, int stride)
+        {
+            long held = Math.Max(count, 1), bytes = held * stride, most = SystemInfo.maxGraphicsBufferSize;
+            if (bytes > most)
+            {
+                throw new InvalidOperationException(
+                    "MUA: the buffer " + name + " needs " + bytes + " bytes; " + SystemInfo.graphicsDeviceName
+                    + " holds at most " + most + " in one.");
+            }
+            var buffer = new GraphicsBuffer(target, (int)held, stride) { name = "MUA " + name };
+            buffers.Add(buffer);
+            return buffer;
+        }
+    }
+}
