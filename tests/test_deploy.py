@@ -277,7 +277,13 @@ def test_self_test_stops_waiting_although_the_log_goes_on(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(player, "PATIENCE", 0.2)
-    headset = FakeHeadset(player=lambda arguments: (vrapi() for _ in range(10) if time.sleep(0.1) is None))
+
+    def idle(arguments: list[str]) -> Iterator[str]:
+        for _ in range(10):
+            time.sleep(0.1)
+            yield vrapi()
+
+    headset = FakeHeadset(player=idle)
     with serving(monkeypatch, headset), refused(capsys, "nothing came from the player in time"):
         assert deploy(monkeypatch, "--self-test") == 1
 
@@ -300,7 +306,7 @@ def test_self_test_tells_a_crash(monkeypatch: pytest.MonkeyPatch, capsys: pytest
 def test_bench_measures_at_steady_clocks_and_puts_them_back(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], hero: Path, tmp_path: Path
 ) -> None:
-    during = {}
+    during: dict[str, str] = {}
 
     def look(arguments: list[str]) -> list[str]:
         during.update(headset.properties, worn=str(headset.worn))
