@@ -14,7 +14,15 @@ ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = ROOT / "schemas" / "muaavatar.fbs"
 LAYOUT = ROOT / "python" / "mua" / "asset" / "layout.py"
 LAYOUTS = ROOT / "unity-package" / "Runtime" / "Format" / "Layouts.cs"
-KINDS = {"bool": "Flag", "ubyte": "U8", "ushort": "U16", "uint": "U32", "float": "F32", "double": "F64", "string": "Text"}
+KINDS = {
+    "bool": "Flag",
+    "ubyte": "U8",
+    "ushort": "U16",
+    "uint": "U32",
+    "float": "F32",
+    "double": "F64",
+    "string": "Text",
+}
 
 ENUM = re.compile(r"enum (\w+) : ubyte \{ ([\w, ]+) \}")
 FIELD = re.compile(r"(\w+): (\[?\w+\]?)( \([\w:, ]+\))?;")
