@@ -10,7 +10,7 @@ namespace UnityEngine
     {
         private static readonly Regex Kernel = new Regex(@"^\s*#\s*pragma\s+kernel\s+(\w+)", RegexOptions.Multiline);
         private static readonly Regex Threads = new Regex(@"\[numthreads\((\w+),\s*(\w+),\s*(\w+)\)\]\s*void\s+(\w+)\s*\(");
-        private static readonly Regex Define = new Regex(@"^\s*#\s*define\s+(\w+)[ \t]+(\w+)", RegexOptions.Multiline);
+        private static readonly Regex Define = new Regex(@"^\s*(?:#\s*define\s+(\w+)[ \t]+|static const uint (\w+) = )(\w+)", RegexOptions.Multiline);
         private static readonly Regex Include = new Regex("^\\s*#\\s*include\\s+\"([^\"]+)\"", RegexOptions.Multiline);
 
         internal readonly string File;
@@ -91,7 +91,7 @@ namespace UnityEngine
                 ReadDefines(included, System.IO.File.ReadAllText(included), defines);
             }
             foreach (Match match in Define.Matches(text))
-                defines[match.Groups[1].Value] = match.Groups[2].Value;
+                defines[match.Groups[1].Value + match.Groups[2].Value] = match.Groups[3].Value;
         }
 
         private static uint Size(Match match, int group, Dictionary<string, string> defines)

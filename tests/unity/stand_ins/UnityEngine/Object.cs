@@ -98,3 +98,17 @@ namespace UnityEngine
         public string text { get { return System.Text.Encoding.UTF8.GetString(content); } }
     }
 }
+
+namespace UnityEngine
+{
+    public static class Resources
+    {
+        internal static readonly Dictionary<string, Object> Placed = new Dictionary<string, Object>();
+
+        public static T Load<T>(string path) where T : Object
+        {
+            Object found;
+            return Placed.TryGetValue(path, out found) ? found as T : null;
+        }
+    }
+}

@@ -89,7 +89,7 @@ namespace StandIns
     {
         private static readonly Dictionary<int, GraphicsBuffer> Alive = new Dictionary<int, GraphicsBuffer>();
         private static readonly Dictionary<int, string> Names = new Dictionary<int, string>();
-        private static StreamWriter lines;
+        private static StreamWriter lines, paused;
         private static FileStream binary;
 
         public static int Made { get; private set; }
@@ -113,6 +113,15 @@ namespace StandIns
             lines = new StreamWriter(path + ".json");
             binary = new FileStream(path + ".bin", FileMode.Create);
         }
+
+        /// <summary>Write nothing until Resume.</summary>
+        public static void Pause()
+        {
+            paused = lines;
+            lines = null;
+        }
+
+        public static void Resume() { lines = paused; }
 
         public static void Stop()
         {

@@ -1,0 +1,206 @@
+// Plays avatars by the package's own frames over the stand-ins, which record it. Arguments: the folder of the kernels, the
+// path of the recording, the scenario, the avatars. The scenario has one line for each step:
+//   screen WIDTH HEIGHT NEAR           eyes after it are of this screen
+//   eye VIEW[16] PROJECTION[16]        Unity's matrices, row by row
+//   decode AVATAR SECONDS PLACE[7]     Unity's position, then rotation (x, y, z, w)
+//   sort LABEL                         sort, execute, and keep what the frame left
+//   again COUNT                        without recording: decode and sort so often, and print what was allocated
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using System.Reflection;
+using Mua.Format;
+using Mua.Motion;
+using StandIns;
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    internal sealed class Actor : IDisposable
+    {
+        public readonly AvatarBuffers Buffers;
+        public readonly AvatarFrame Frame;
+        public readonly ClipSampler Clip;
+        private readonly double[] rotations, translations;
+
+        public Actor(AvatarResources resources, string path)
+        {
+            AvatarFile file = AvatarFile.Read(File.ReadAllBytes(path));
+            Buffers = new AvatarBuffers(file);
+            while (!Buffers.Upload(1 << 16))
+            {
+            }
+            Frame = new AvatarFrame(resources, Buffers);
+            Clip = new ClipSampler(file.Clips[0], file.Skeleton.JointCount, file.Encoding.Rate);
+            rotations = new double[4 * file.Encoding.Window * file.Skeleton.JointCount];
+            translations = new double[3 * file.Encoding.Window];
+        }
+
+        public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place)
+        {
+            Clip.ReadWindow(Clip.FrameAt(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
+            Frame.Decode(commands, rotations, translations, place);
+        }
+
+        public void Dispose()
+        {
+            Frame.Dispose();
+            Buffers.Dispose();
+        }
+    }
+
+    internal static class FrameProgram
+    {
+        private const int WarmUp = 10;
+
+        private static readonly AvatarEyes Eyes = new AvatarEyes();
+        private static readonly CommandBuffer Commands = new CommandBuffer();
+        private static readonly List<Actor> Actors = new List<Actor>();
+        private static int width, height;
+        private static float near;
+        private static bool newEyes;
+
+        public static int Main(string[] arguments)
+        {
+            CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+            Recorder.Start(arguments[1]);
+            AvatarResources resources = Resources(arguments[0]);
+            for (int i = 3; i < arguments.Length; i++)
+            {
+                Actors.Add(new Actor(resources, arguments[i]));
+            }
+            SplatFrame splats = new SplatFrame(resources, Actors.ConvertAll(actor => actor.Frame));
+            int made = Recorder.Made;
+            string[] steps = File.ReadAllLines(arguments[2]);
+            foreach (string step in steps)
+            {
+                Run(step.Split(' '), splats);
+            }
+            System.Console.WriteLine("made " + (Recorder.Made - made));
+            splats.Dispose();
+            splats.Dispose();
+            foreach (Actor actor in Actors)
+            {
+                actor.Dispose();
+                actor.Dispose();
+            }
+            Recorder.Stop();
+            System.Console.WriteLine("alive " + Recorder.AliveCount + " " + Recorder.AliveNames());
+            return 0;
+        }
+
+        private static void Run(string[] words, SplatFrame splats)
+        {
+            if (words[0] == "screen")
+            {
+                width = (int)Number(words, 1);
+                height = (int)Number(words, 2);
+                near = Number(words, 3);
+                newEyes = true;
+            }
+            else if (words[0] == "eye")
+            {
+                if (newEyes)
+                {
+                    Eyes.Begin(width, height, near);
+                }
+                newEyes = false;
+                Eyes.Add(Matrix(words, 1), Matrix(words, 17));
+            }
+            else if (words[0] == "decode")
+            {
+                double seconds = double.Parse(words[2], CultureInfo.InvariantCulture);
+                Actors[(int)Number(words, 1)].Decode(Commands, seconds, Place(words));
+            }
+            else if (words[0] == "sort")
+            {
+                int before = Recorder.Dispatches;
+                Execute(splats);
+                System.Console.WriteLine("dispatches " + words[1] + " " + (Recorder.Dispatches - before));
+                Keep(splats, words[1]);
+            }
+            else
+            {
+                Recorder.Pause();
+                System.Console.WriteLine("allocated " + Again((int)Number(words, 1), splats));
+                Recorder.Resume();
+            }
+        }
+
+        private static void Execute(SplatFrame splats)
+        {
+            splats.Sort(Commands, Eyes);
+            Graphics.ExecuteCommandBuffer(Commands);
+            Commands.Clear();
+        }
+
+        private static void Keep(SplatFrame splats, string label)
+        {
+            Recorder.Keep(splats.Splats, label + " splats");
+            Recorder.Keep(splats.Colors, label + " colors");
+            Recorder.Keep(splats.Ellipses, label + " ellipses");
+            Recorder.Keep(splats.Order, label + " order");
+            Recorder.Keep(splats.Flags, label + " flags");
+            Recorder.Keep(splats.Arguments, label + " arguments");
+        }
+
+        /// <summary>Bytes that so many frames leave on the managed heap.</summary>
+        private static long Again(int count, SplatFrame splats)
+        {
+            DualQuaternion place = AvatarSpace.Place(Vector3.zero, Quaternion.identity);
+            long before = 0;
+            for (int i = -WarmUp; i < count; i++)
+            {
+                if (i == 0)
+                {
+                    before = GC.GetTotalMemory(true);
+                }
+                foreach (Actor actor in Actors)
+                {
+                    actor.Decode(Commands, i / 50.0, place);
+                }
+                Execute(splats);
+            }
+            return GC.GetTotalMemory(false) - before;
+        }
+
+        private static AvatarResources Resources(string folder)
+        {
+            AvatarResources resources = ScriptableObject.CreateInstance<AvatarResources>();
+            var files = new Dictionary<string, string>
+            {
+                { "mlpMatmul", "mlp_matmul" }, { "blendSubbands", "blend_subbands" }, { "inverseDwt", "inverse_dwt" },
+                { "dqSkinning", "dq_skinning" }, { "splatProject", "splat_project" }, { "splatSort", "splat_sort" },
+            };
+            foreach (KeyValuePair<string, string> file in files)
+            {
+                FieldInfo field = typeof(AvatarResources).GetField(file.Key, BindingFlags.Instance | BindingFlags.NonPublic);
+                field.SetValue(resources, Recorder.Compute(Path.Combine(folder, file.Value + ".compute")));
+            }
+            return resources;
+        }
+
+        private static DualQuaternion Place(string[] words)
+        {
+            var position = new Vector3(Number(words, 3), Number(words, 4), Number(words, 5));
+            return AvatarSpace.Place(position, new Quaternion(Number(words, 6), Number(words, 7), Number(words, 8), Number(words, 9)));
+        }
+
+        private static Matrix4x4 Matrix(string[] words, int first)
+        {
+            var matrix = new Matrix4x4();
+            for (int i = 0; i < 16; i++)
+            {
+                matrix[i / 4, i % 4] = Number(words, first + i);
+            }
+            return matrix;
+        }
+
+        private static float Number(string[] words, int index)
+        {
+            return float.Parse(words[index], CultureInfo.InvariantCulture);
+        }
+    }
+}

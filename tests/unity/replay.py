@@ -1,0 +1,121 @@
+"""Replays on a device what the stand-ins recorded of the Unity package: its buffers, uploads and dispatches, in order.
+
+A recording is NAME.json, one event in a line, and NAME.bin, the uploaded bytes. Events: `buffer` (count, stride,
+target), `name`, `upload` (start in the buffer; offset in the binary, bytes), `dispatch` (shader, kernel, groups or
+indirect, buffers and constants bound by name then), `draw`, `keep` (a label for what a buffer holds), `release`.
+"""
+
+import base64
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.gpu import Buffer, Commands, Device
+from mua.gpu.kernel import Kernel
+from mua.gpu.reflect import Constant
+
+INDIRECT_ARGUMENTS = 256  # GraphicsBuffer.Target
+KINDS = {"Int": np.int32, "Float": np.float32, "Vector": np.float32, "Matrix": np.float32}
+SCALARS = {"Int": ("uint", "int"), "Float": ("float",), "Vector": ("float",), "Matrix": ("float",)}
+
+
+@dataclass
+class Replayed:
+    """What a recording did."""
+
+    kept: dict[str, Array] = field(default_factory=dict)  # by label, words
+    kernels: list[str] = field(default_factory=list)  # in order
+    draws: list[dict[str, Any]] = field(default_factory=list)
+
+
+class _Player:
+    def __init__(self, device: Device, content: bytes) -> None:
+        self.device, self.content, self.result = device, content, Replayed()
+        self.buffers: dict[int, Buffer] = {}
+        self.strides: dict[int, int] = {}
+        self.commands: Commands | None = None
+
+    def flush(self) -> None:
+        """Run what was dispatched so far: uploads and reads come after it."""
+        if self.commands is not None:
+            self.commands.submit()
+            self.commands = None
+
+    def buffer(self, event: dict[str, Any]) -> None:
+        size, indirect = event["count"] * event["stride"], bool(event["target"] & INDIRECT_ARGUMENTS)
+        garbage = np.full(-(-size // 4), 0x7FC12345, np.uint32)  # Unity clears nothing; as a float it is no number
+        self.buffers[event["buffer"]] = self.device.buffer(garbage, name=str(event["buffer"]), indirect=indirect)
+        self.strides[event["buffer"]] = event["stride"]
+
+    def name(self, event: dict[str, Any]) -> None:
+        self.buffers[event["buffer"]].name = event["name"]
+
+    def upload(self, event: dict[str, Any]) -> None:
+        self.flush()
+        data = np.frombuffer(self.content, np.uint8, event["bytes"], event["offset"])
+        self.buffers[event["buffer"]].write(data, event["start"])
+
+    def dispatch(self, event: dict[str, Any]) -> None:
+        kernel = self.device.kernel(event["shader"], event["kernel"])
+        self.result.kernels.append(kernel.name)
+        self.commands = self.commands or self.device.commands()
+        bound = {slot.name: self._bound(kernel, event, slot.name, slot.stride) for slot in kernel.buffers}
+        constants = {
+            name: _value(kernel, constant, *event["constants"][name])
+            for name, constant in kernel.constants.items()
+            if constant.used and name in event["constants"]
+        }
+        if "indirect" in event:
+            number, offset = event["indirect"]
+            self.commands.dispatch_indirect(kernel, self.buffers[number], offset, bound, **constants)
+        else:
+            self.commands.dispatch(kernel, tuple(event["groups"]), bound, **constants)
+
+    def draw(self, event: dict[str, Any]) -> None:
+        self.result.draws.append(event)
+
+    def keep(self, event: dict[str, Any]) -> None:
+        self.flush()
+        self.result.kept[event["label"]] = self.buffers[event["buffer"]].read()
+
+    def release(self, event: dict[str, Any]) -> None:
+        self.flush()
+        del self.buffers[event["buffer"]]
+
+    def _bound(self, kernel: Kernel, event: dict[str, Any], name: str, stride: int) -> Buffer:
+        """The buffer of a name; Unity asks for the stride of the shader's elements."""
+        assert name in event["buffers"], f"{kernel.name}: the buffer {name} was never set"
+        number = event["buffers"][name]
+        assert self.strides[number] == stride, f"{kernel.name}: {name} has stride {self.strides[number]}, not {stride}"
+        return self.buffers[number]
+
+
+def replay(device: Device, recording: Path) -> Replayed:
+    """Run a recording; an AssertionError or InputError says what Unity would have refused or done wrong."""
+    player = _Player(device, recording.with_suffix(".bin").read_bytes())
+    for line in recording.with_suffix(".json").read_text().splitlines():
+        event = json.loads(line)
+        getattr(player, event["event"])(event)
+    player.flush()
+    return player.result
+
+
+def _value(kernel: Kernel, constant: Constant, kind: str, content: str) -> Any:
+    """What a Set...Param call leaves in a constant: a vector is cut to its size, integers keep their bits."""
+    where = f"{kernel.name}: the constant {constant.name} of {constant.scalar} {constant.shape}"
+    assert constant.scalar in SCALARS[kind], f"{where} was set as {kind}"
+    values = np.frombuffer(base64.b64decode(content), KINDS[kind])
+    if constant.scalar == "uint":
+        values = values.view(np.uint32)
+    if kind == "Matrix":
+        values = values.reshape(-1, 4, 4).transpose(0, 2, 1).reshape(-1)  # Unity's memory is column by column
+    count = int(np.prod(constant.shape, dtype=int))
+    if kind == "Vector" and len(constant.shape) == 1:
+        values = values[:count]
+    assert len(values) == count, f"{where} was set to {len(values)} values"
+    assert kind == "Matrix" or len(constant.shape) < 2, f"{where} has gaps between its rows"
+    return values.reshape(constant.shape) if constant.shape else values[0]

@@ -1,0 +1,174 @@
+"""The package's own frames, run by mono over stand-ins that record them and replayed on Vulkan, against decode()."""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from replay import Replayed, replay
+from synthetic_avatar import synthetic_avatar
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset import read, write
+from mua.asset.avatar import Avatar
+from mua.asset.tensors import Storage
+from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.decode import Frame, decode_clip_frame
+from mua.gpu import Device
+from mua.kernels.splat_draw import splat_colors
+
+sys.path.append(str(ROOT / "tests" / "parity"))
+
+from packed_splats import unpacked
+from test_frame import COLOR_BOUND, FEWER_THAN, FRAME_ORDER, OPACITY_BOUND, POSITION_BOUND, part
+from test_splats import joined, moved
+
+MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
+VISIBLE_WORD = 7  # of `arguments`
+KEY_BITS = 0xFFFF
+STAND_INS = Path(__file__).parent / "stand_ins"
+FRAME = (  # what a frame is made of, without the components around it
+    *("AvatarFrame", "SplatFrame", "AvatarBuffers", "LayerBuffers", "BranchBuffers", "BandBuffers", "StoredBuffer"),
+    *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources"),
+)
+PLACES = (  # Unity's position, then rotation (x, y, z, w)
+    (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+    (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446),
+    (-0.4, 0.0, 0.3, 0.0, -0.9, 0.2, 0.38730),
+)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One frame of a scenario: what each avatar shows, and where."""
+
+    label: str
+    seconds: tuple[float, ...]
+    frames: tuple[int, ...]  # of the clip, that these seconds mean
+    eyes: int
+
+
+FIRST = Shot("first", (0.0, 0.0, 0.0), (0, 0, 0), 1)
+LATER = Shot("later", (3.2 / 24, 6.2 / 24, 2.2 / 24), (3, 6, 2), 2)
+WRAPPED = Shot("wrapped", (7.2 / 24, 12.2 / 24, 70.2 / 24), (0, 5, 0), 1)  # clips of 7 frames at 24 Hz
+SHOTS = (FIRST, LATER, WRAPPED)
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True)
+    file = csharp.build([RUNTIME / "Format"], library=True)
+    motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
+    package = [*(RUNTIME / f"{name}.cs" for name in FRAME), RUNTIME / "Kernels"]
+    return csharp.build([*package, PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion])
+
+
+def place_of(numbers: tuple[float, ...]) -> Array:
+    """The rigid dual quaternion of a Unity position and rotation, in the kernels' world."""
+    x, y, z, *turn = np.asarray(numbers, np.float32).astype(float)
+    i, j, k, w = turn
+    return rotation.dual_from_rigid(rotation.normalize(np.array([w, i, -j, -k])), np.array([-x, y, z]))
+
+
+class Recorded:
+    """A scenario, played by the package and replayed; and its reference."""
+
+    def __init__(
+        self, csharp: CSharp, program: Path, device: Device, folder: Path, avatars: list[Avatar], storage: Storage
+    ) -> None:
+        files = [folder / f"{index}.muaavatar" for index in range(len(avatars))]
+        for file, avatar in zip(files, avatars, strict=True):
+            write(file, avatar, storage=storage)
+        self.avatars = [read(file) for file in files]
+        self.exact = {shot.label: self._exact(shot) for shot in SHOTS}
+        self.cameras = {shot.label: self._cameras(shot) for shot in SHOTS}
+        scenario = folder / "scenario.txt"
+        scenario.write_text("".join(self._lines(shot) for shot in SHOTS) + "again 200\n")
+        said = csharp.run(program, ROOT / "ComputeShaders", folder / "recording", scenario, *files)
+        self.said = [line.split() for line in said.splitlines()]
+        self.replayed: Replayed = replay(device, folder / "recording")
+
+    def _exact(self, shot: Shot) -> Frame:
+        return joined(
+            [
+                moved(decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64), place_of(place))
+                for avatar, frame, place in zip(self.avatars, shot.frames, PLACES, strict=False)
+            ]
+        )
+
+    def _cameras(self, shot: Shot) -> tuple[Camera, ...]:
+        centres = self.exact[shot.label].centres
+        camera = orbit(np.stack([centres.min(axis=0), centres.max(axis=0)]), screen=(256, 192), azimuth=0.7)
+        return (camera,) if shot.eyes == 1 else stereo(camera, EYE_DISTANCE)
+
+    def _lines(self, shot: Shot) -> str:
+        cameras = self.cameras[shot.label]
+        lines = ["screen {} {} {}".format(*cameras[0].screen, NEAR)]
+        for camera in cameras:
+            numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+            lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+        for index, (seconds, place) in enumerate(zip(shot.seconds, PLACES, strict=False)):
+            if index < len(self.avatars):
+                lines.append(f"decode {index} {seconds!r} " + " ".join(map(repr, place)))
+        return "\n".join([*lines, f"sort {shot.label}\n"])
+
+    def kept(self, shot: Shot, name: str) -> Array:
+        return self.replayed.kept[f"{shot.label} {name}"]
+
+
+@pytest.fixture(scope="module", params=[(1, "f32"), (1, "f16"), (1, "i8"), (3, "f32")], ids=str)
+def recorded(
+    request: pytest.FixtureRequest,
+    csharp: CSharp,
+    program: Path,
+    device: Device,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Recorded:
+    count, storage = request.param
+    avatars = [
+        synthetic_avatar(1),
+        part(synthetic_avatar(2), slice(0, 301)),
+        part(synthetic_avatar(3), slice(100, 457)),
+    ]
+    return Recorded(csharp, program, device, tmp_path_factory.mktemp("recorded"), avatars[:count], storage)
+
+
+@pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
+def test_splats_are_those_of_the_reference(recorded: Recorded, shot: Shot) -> None:
+    exact, splats = recorded.exact[shot.label], unpacked(recorded.kept(shot, "splats"))
+    colors = recorded.kept(shot, "colors").view(np.float16).reshape(-1, 4).astype(float)
+    middle = np.mean([camera.position for camera in recorded.cameras[shot.label]], axis=0)
+    assert np.abs(splats["centre"] - exact.centres).max() < POSITION_BOUND
+    assert np.abs(splats["opacity"] - exact.opacities).max() < OPACITY_BOUND
+    assert np.abs(colors[:, :3] - splat_colors(exact.centres, exact.texel_dq, exact.sh, middle)).max() < COLOR_BOUND
+
+
+@pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
+def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded, shot: Shot) -> None:
+    exact, view = recorded.exact[shot.label], np.mean([c.view for c in recorded.cameras[shot.label]], axis=0)
+    count = int(recorded.kept(shot, "arguments")[VISIBLE_WORD])
+    order = recorded.kept(shot, "order")[:count]
+    keys = (recorded.kept(shot, "flags")[order] & KEY_BITS).astype(int)
+    depths = -(exact.centres[order] @ view[2, :3] + view[2, 3])
+    np.testing.assert_array_equal(np.sort(order), np.arange(len(exact.centres)))
+    assert np.all(np.diff(keys) >= 0)
+    assert np.all(np.diff(order.astype(int))[np.diff(keys) == 0] > 0)
+    # Nearer means a larger key: one key is at most this much of the depth that all avatars' boxes span.
+    assert np.all(np.diff(depths) < 2 * (POSITION_BOUND + 8 / KEY_BITS))
+
+
+def test_the_dispatches_are_those_of_the_desktop_player(recorded: Recorded) -> None:
+    decoded = FRAME_ORDER[: FRAME_ORDER.index("SplatProject")]
+    frame = [*decoded * len(recorded.avatars), *FRAME_ORDER[len(decoded) :]]
+    assert recorded.replayed.kernels == frame * len(SHOTS)
+    assert len(FRAME_ORDER) < FEWER_THAN
+
+
+def test_frames_allocate_nothing_and_leave_nothing_behind(recorded: Recorded) -> None:
+    said = {words[0]: words[1:] for words in recorded.said}
+    assert said["made"] == ["0"]
+    assert said["alive"] == ["0"]
+    assert int(said["allocated"][0]) <= 0
