@@ -146,7 +146,7 @@ namespace Mua
             Recorder.Keep(splats.Arguments, label + " arguments");
         }
 
-        /// <summary>Bytes that so many frames leave on the managed heap.</summary>
+        /// <summary>Bytes that so many frames ask of the managed heap.</summary>
         private static long Again(int count, SplatFrame splats)
         {
             DualQuaternion place = AvatarSpace.Place(Vector3.zero, Quaternion.identity);
@@ -155,7 +155,7 @@ namespace Mua
             {
                 if (i == 0)
                 {
-                    before = GC.GetTotalMemory(true);
+                    before = GC.GetAllocatedBytesForCurrentThread();
                 }
                 foreach (Actor actor in Actors)
                 {
@@ -163,7 +163,7 @@ namespace Mua
                 }
                 Execute(splats);
             }
-            return GC.GetTotalMemory(false) - before;
+            return GC.GetAllocatedBytesForCurrentThread() - before;
         }
 
         private static AvatarResources Resources(string folder)
