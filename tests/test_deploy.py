@@ -24,6 +24,8 @@ pytestmark = pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning
 
 FOLDER = f"/sdcard/Android/data/{PACKAGE}/files/avatars"
 HERO = f"{FOLDER}/hero.muaavatar"
+# A shell's background job, which a test run may be, starts with Ctrl-C ignored, and its children inherit that.
+HEAR_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
 RUN = "from mua.cli.deploy import run; run()"
 STEADY = {
     "debug.oculus.cpuLevel": "4",
@@ -371,14 +373,17 @@ def test_bench_says_that_a_lost_headset_keeps_its_settings(
 def test_bench_puts_the_headset_back_after_ctrl_c(monkeypatch: pytest.MonkeyPatch, hero: Path) -> None:
     headset = FakeHeadset()
     with serving(monkeypatch, headset):
-        command = [sys.executable, "-c", RUN, str(hero), "--bench", "60"]
+        command = [sys.executable, "-c", HEAR_CTRL_C + RUN, str(hero), "--bench", "60"]
         with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as deploying:
             until = time.monotonic() + 60
             while not headset.started and time.monotonic() < until:
                 time.sleep(0.02)
             assert headset.properties["debug.oculus.gpuLevel"] == "4"
             deploying.send_signal(signal.SIGINT)
-            _, error = deploying.communicate(timeout=30)
+            try:
+                _, error = deploying.communicate(timeout=30)
+            finally:
+                deploying.kill()  # of no effect on one that ended
     assert deploying.returncode != 0
     assert b"Traceback" not in error
     assert headset.properties["debug.oculus.gpuLevel"] == "2"
