@@ -104,8 +104,16 @@ namespace Mua
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
             in DualQuaternion place)
         {
+            Decode(commands, rotations, translations, rotations, Vector3D.Load(translations, 0), place);
+        }
+
+        /// <summary>The same, in a pose [J, 4] and [3] other than the window's newest.</summary>
+        public void Decode(
+            CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
+            ReadOnlySpan<double> pose, Vector3D translation, in DualQuaternion place)
+        {
             WriteDescriptor(rotations, translations);
-            WritePose(rotations, Vector3D.Load(translations, 0), place);
+            WritePose(pose, translation, place);
             Coarse(commands);
             Branch(commands, Avatar.Geometry, GeometryStart);
             Branch(commands, Avatar.Appearance, AppearanceStart);

@@ -37,7 +37,7 @@ namespace Mua
             if (bytes > most)
             {
                 throw new InvalidOperationException(
-                    "MUA: the buffer " + name + " needs " + bytes + " bytes; " + SystemInfo.graphicsDeviceName
+                    "the buffer " + name + " needs " + bytes + " bytes; " + SystemInfo.graphicsDeviceName
                     + " holds at most " + most + " in one.");
             }
             var buffer = new GraphicsBuffer(target, (int)held, stride) { name = "MUA " + name };

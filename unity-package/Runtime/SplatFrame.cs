@@ -27,18 +27,29 @@ namespace Mua
 
         /// <summary>One avatar at least; InvalidOperationException where the device cannot hold the buffers.</summary>
         public SplatFrame(AvatarResources resources, IReadOnlyList<AvatarFrame> avatars)
+            : this(resources, avatars, avatars.Count)
+        {
+        }
+
+        /// <summary>Only the first `shown` avatars are sorted and drawn; the others are posed for other views.</summary>
+        public SplatFrame(AvatarResources resources, IReadOnlyList<AvatarFrame> avatars, int shown)
         {
             splatProject = new SplatProject(resources.SplatProject);
             splatSort = new SplatSort(resources.SplatSort);
-            this.avatars = new AvatarFrame[avatars.Count];
+            this.avatars = new AvatarFrame[shown];
+            int posed = 0;
             for (int i = 0; i < avatars.Count; i++)
             {
-                this.avatars[i] = avatars[i];
-                SplatCount += avatars[i].SplatCount;
+                posed += avatars[i].SplatCount;
+                if (i < shown)
+                {
+                    this.avatars[i] = avatars[i];
+                    SplatCount = posed;
+                }
             }
             try
             {
-                CreateBuffers();
+                CreateBuffers(posed);
             }
             catch
             {
@@ -46,14 +57,14 @@ namespace Mua
                 throw;
             }
             int first = 0;
-            foreach (AvatarFrame avatar in this.avatars)
+            for (int i = 0; i < avatars.Count; i++)
             {
-                avatar.ShareSplats(Splats, first);
-                first += avatar.SplatCount;
+                avatars[i].ShareSplats(Splats, first);
+                first += avatars[i].SplatCount;
             }
         }
 
-        /// <summary>N, of all avatars.</summary>
+        /// <summary>N, of all avatars that are drawn.</summary>
         public int SplatCount { get; }
 
         /// <summary>[N, 16] words.</summary>
@@ -100,9 +111,9 @@ namespace Mua
             buffers.Dispose();
         }
 
-        private void CreateBuffers()
+        private void CreateBuffers(int posed)
         {
-            Splats = buffers.Structured("splats", 4L * SplatCount, 4 * sizeof(uint));
+            Splats = buffers.Structured("splats", 4L * posed, 4 * sizeof(uint));
             Ellipses = buffers.Structured("ellipses", 3L * AvatarEyes.Most * SplatCount, 2 * sizeof(float));
             Colors = buffers.Structured("colors", SplatCount, 2 * sizeof(uint));
             Flags = buffers.Structured("flags", SplatCount, sizeof(uint));

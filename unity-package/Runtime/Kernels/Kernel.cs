@@ -16,18 +16,18 @@ namespace Mua
             if (shader == null)
             {
                 throw new InvalidOperationException(
-                    "MUA: " + file + " is missing from AvatarResources; reimport the packages com.mua.kernels and com.mua.avatar.");
+                    file + " is missing from AvatarResources; reimport the packages com.mua.kernels and com.mua.avatar.");
             }
             if (!shader.HasKernel(name))
             {
                 throw new InvalidOperationException(
-                    "MUA: " + file + " has no kernel " + name + "; it did not compile, or com.mua.kernels is of another version.");
+                    file + " has no kernel " + name + "; it did not compile, or com.mua.kernels is of another version.");
             }
             index = shader.FindKernel(name);
             if (!shader.IsSupported(index))
             {
                 throw new InvalidOperationException(
-                    "MUA: " + SystemInfo.graphicsDeviceName + " cannot run the kernel " + name + " of " + file + ".");
+                    SystemInfo.graphicsDeviceName + " cannot run the kernel " + name + " of " + file + ".");
             }
             this.shader = shader;
         }

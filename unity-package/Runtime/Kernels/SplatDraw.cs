@@ -31,7 +31,7 @@ namespace Mua
             if (shader == null || !shader.isSupported)
             {
                 throw new InvalidOperationException(
-                    "MUA: " + File + " is missing, or " + SystemInfo.graphicsDeviceName + " cannot run it.");
+                    File + " is missing, or " + SystemInfo.graphicsDeviceName + " cannot run it.");
             }
             Material = new Material(shader) { name = "MUA splats", hideFlags = HideFlags.HideAndDontSave };
             Indirect = SystemInfo.supportsIndirectArgumentsBuffer;

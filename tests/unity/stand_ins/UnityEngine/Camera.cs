@@ -1,5 +1,6 @@
 // Stand-in. Source: facts 4.4, Unity 6000.0, Camera, GL; scripting reference, Mesh, Renderer, Animator.
 using System;
+using System.Collections.Generic;
 
 namespace UnityEngine
 {
@@ -11,7 +12,17 @@ namespace UnityEngine
 
         public static CameraCallback onPreCull, onPreRender, onPostRender;
 
+        internal readonly List<Rendering.CommandBuffer> Buffers = new List<Rendering.CommandBuffer>();
         private Matrix4x4 projection = Matrix4x4.Perspective(60, 4f / 3, 0.3f, 1000);
+
+        public Camera()
+        {
+            cullingMask = -1;
+            nearClipPlane = 0.3f;
+            farClipPlane = 1000;
+            fieldOfView = 60;
+            cameraType = CameraType.Game;
+        }
 
         public static Camera main { get { return FindFirstObjectByType<Camera>(); } }
         public int pixelWidth { get { return 640; } }
@@ -20,6 +31,7 @@ namespace UnityEngine
         public float nearClipPlane { get; set; }
         public float farClipPlane { get; set; }
         public int cullingMask { get; set; }
+        public CameraType cameraType { get; set; }
         public bool stereoEnabled { get; internal set; }
         public MonoOrStereoscopicEye stereoActiveEye { get { return MonoOrStereoscopicEye.Mono; } }
         public Matrix4x4 worldToCameraMatrix { get { return Matrix4x4.Scale(new Vector3(1, 1, -1)) * transform.worldToLocalMatrix; } }
@@ -28,6 +40,8 @@ namespace UnityEngine
         {
             return Matrix4x4.Translate(new Vector3(eye == StereoscopicEye.Left ? 0.0315f : -0.0315f, 0, 0)) * worldToCameraMatrix;
         }
+        public void AddCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.Add(buffer); }
+        public void RemoveCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.Remove(buffer); }
         public Matrix4x4 GetStereoProjectionMatrix(StereoscopicEye eye) { return projection; }
         public void Render()
         {
@@ -35,6 +49,8 @@ namespace UnityEngine
                 onPreCull(this);
             if (onPreRender != null)
                 onPreRender(this);
+            for (int i = 0; i < Buffers.Count; i++)
+                Graphics.ExecuteCommandBuffer(Buffers[i]);
             if (onPostRender != null)
                 onPostRender(this);
         }

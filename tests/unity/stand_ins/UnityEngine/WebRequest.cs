@@ -1,0 +1,68 @@
+// Stand-in. Source: facts 4.6, Unity 6000.0 scripting reference, UnityWebRequest. It reads files; a frame passes first.
+using System;
+using System.IO;
+
+namespace UnityEngine.Networking
+{
+    public class DownloadHandler
+    {
+        public byte[] data { get; internal set; }
+    }
+
+    public sealed class UnityWebRequestAsyncOperation : AsyncOperation { }
+
+    public sealed class UnityWebRequest : IDisposable
+    {
+        public enum Result { InProgress, Success, ConnectionError, ProtocolError, DataProcessingError }
+
+        private readonly int asked = Time.frameCount;
+        private bool done;
+
+        private UnityWebRequest(string url)
+        {
+            this.url = url;
+            downloadHandler = new DownloadHandler();
+            StandIns.Requests.Open++;
+        }
+
+        public string url { get; private set; }
+        public string error { get; private set; }
+        public Result result { get; private set; }
+        public DownloadHandler downloadHandler { get; private set; }
+        public float downloadProgress { get { return isDone ? 1 : 0; } }
+
+        public bool isDone
+        {
+            get
+            {
+                if (!done && Time.frameCount > asked)
+                    Finish();
+                return done;
+            }
+        }
+
+        public static UnityWebRequest Get(string uri) { return new UnityWebRequest(uri); }
+        public UnityWebRequestAsyncOperation SendWebRequest() { return new UnityWebRequestAsyncOperation(); }
+        public void Abort() { done = true; result = Result.ConnectionError; error = "Request aborted"; }
+        public void Dispose() { StandIns.Requests.Open--; }
+
+        private void Finish()
+        {
+            done = true;
+            string path = url.Substring(url.IndexOf("://", StringComparison.Ordinal) + 3);
+            bool there = File.Exists(path);
+            result = there ? Result.Success : Result.ProtocolError;
+            error = there ? null : "HTTP/1.1 404 Not Found";
+            downloadHandler.data = there ? File.ReadAllBytes(path) : null;
+        }
+    }
+}
+
+namespace StandIns
+{
+    /// <summary>Requests that were made and not disposed of. Not part of Unity's API.</summary>
+    public static class Requests
+    {
+        public static int Open;
+    }
+}

@@ -1,0 +1,16 @@
+// Stand-in. Source: facts 4.4, Unity 6000.0, XRSettings.
+namespace UnityEngine.XR
+{
+    public static class XRSettings
+    {
+        public enum StereoRenderingMode { MultiPass, SinglePass, SinglePassInstanced, SinglePassMultiview }
+
+        public static bool enabled { get { return isDeviceActive; } }
+        public static bool isDeviceActive { get; internal set; }
+        public static int eyeTextureWidth { get { return 1680; } }
+        public static int eyeTextureHeight { get { return 1760; } }
+        public static float eyeTextureResolutionScale { get; set; }
+        public static float renderViewportScale { get; set; }
+        public static StereoRenderingMode stereoRenderingMode { get; internal set; }
+    }
+}

@@ -1,0 +1,31 @@
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>An imported `.muaavatar`: its bytes as they are, and what the importer shows of it.</summary>
+    public sealed class AvatarAsset : ScriptableObject
+    {
+        [SerializeField, HideInInspector] private byte[] content = new byte[0];
+        [SerializeField] private Texture2D thumbnail = null;
+        [SerializeField, TextArea] private string summary = "";
+
+        /// <summary>The bytes of the file, which must not be changed.</summary>
+        public byte[] Content => content;
+
+        /// <summary>A portrait, or null.</summary>
+        public Texture2D Thumbnail => thumbnail;
+
+        /// <summary>What the file holds, in a few lines.</summary>
+        public string Summary => summary;
+
+        /// <summary>An asset of a file's bytes, which it keeps.</summary>
+        public static AvatarAsset Create(byte[] content, Texture2D thumbnail = null, string summary = "")
+        {
+            var asset = CreateInstance<AvatarAsset>();
+            asset.content = content;
+            asset.thumbnail = thumbnail;
+            asset.summary = summary;
+            return asset;
+        }
+    }
+}

@@ -1,0 +1,105 @@
+using System;
+using System.Collections.Generic;
+using Mua.Format;
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>
+    /// Transforms that carry an avatar's pose, whoever moves them: an Animator, physics, a script. They are found by the
+    /// joints' names and must have the bind orientations of the avatar's skeleton, as the rig that it was made from.
+    /// </summary>
+    internal sealed class AvatarJoints
+    {
+        private const int Named = 3; // missing joints in a message
+
+        private readonly Skeleton skeleton;
+        private readonly Transform root;
+        private readonly Transform[] joints; // null where there is none
+        private readonly double[] turned; // [J, 4] rotations in the root's space
+        private readonly double[] placed; // [J, 3] positions there, metres; of the joints above the root joint
+
+        /// <summary>InvalidOperationException where no transform below `root` has a joint's name.</summary>
+        public AvatarJoints(Skeleton skeleton, Transform root)
+        {
+            this.skeleton = skeleton;
+            this.root = root;
+            joints = new Transform[skeleton.JointCount];
+            turned = new double[4 * skeleton.JointCount];
+            placed = new double[3 * skeleton.JointCount];
+            int found = Find();
+            if (found == 0 || joints[skeleton.Root] == null)
+            {
+                throw new InvalidOperationException(
+                    "no transform below " + root.name + " is named " + skeleton.Names[skeleton.Root]
+                    + ", the avatar's root joint; give the root of the rig that the avatar was made from.");
+            }
+            Missing = found == joints.Length ? "" : DescribeMissing(joints.Length - found);
+        }
+
+        /// <summary>A sentence about joints that keep their bind pose, or nothing.</summary>
+        public string Missing { get; }
+
+        /// <summary>Whether the transforms are still there.</summary>
+        public bool Alive => root != null && joints[skeleton.Root] != null;
+
+        /// <summary>Local rotations [J, 4] and root translation [3], metres, of this moment.</summary>
+        public void Read(Span<double> rotations, Span<double> translation)
+        {
+            root.GetPositionAndRotation(out Vector3 origin, out Quaternion turn);
+            Quaternion back = Quaternion.Inverse(turn);
+            for (int joint = 0; joint < joints.Length; joint++)
+            {
+                int parent = skeleton.Parents[joint];
+                QuaternionD above = parent < 0 ? QuaternionD.Identity : QuaternionD.Load(turned, parent);
+                QuaternionD local = QuaternionD.Load(skeleton.BindRotations, joint);
+                if (joints[joint] != null)
+                {
+                    local = (above.Conjugate * AvatarSpace.Rotation(back * joints[joint].rotation)).Normalized();
+                }
+                local.Store(rotations, joint);
+                QuaternionD world = above * local;
+                world.Store(turned, joint);
+                Vector3D start = parent < 0 ? new Vector3D() : Vector3D.Load(placed, parent);
+                if (joint == skeleton.Root)
+                {
+                    Vector3D at = AvatarSpace.Position(back * (joints[joint].position - origin));
+                    above.Conjugate.Rotate(at - start).Store(translation, 0);
+                }
+                (start + above.Rotate(Vector3D.Load(skeleton.BindTranslations, joint))).Store(placed, joint);
+            }
+        }
+
+        private int Find()
+        {
+            var byName = new Dictionary<string, Transform>();
+            foreach (Transform transform in root.GetComponentsInChildren<Transform>())
+            {
+                if (!byName.ContainsKey(transform.name))
+                {
+                    byName.Add(transform.name, transform);
+                }
+            }
+            int found = 0;
+            for (int joint = 0; joint < joints.Length; joint++)
+            {
+                found += byName.TryGetValue(skeleton.Names[joint], out joints[joint]) ? 1 : 0;
+            }
+            return found;
+        }
+
+        private string DescribeMissing(int count)
+        {
+            var names = new List<string>();
+            for (int joint = 0; joint < joints.Length && names.Count < Named; joint++)
+            {
+                if (joints[joint] == null)
+                {
+                    names.Add(skeleton.Names[joint]);
+                }
+            }
+            return "below " + root.name + " " + count + " of " + joints.Length + " joints have no transform and keep their bind pose: "
+                + string.Join(", ", names) + (count > names.Count ? ", ..." : "");
+        }
+    }
+}

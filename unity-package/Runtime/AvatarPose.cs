@@ -1,0 +1,152 @@
+using System;
+using Mua.Format;
+using Mua.Motion;
+
+namespace Mua
+{
+    /// <summary>
+    /// What an avatar is doing: the window of poses, at the avatar's own rate, that it is decoded from, and the pose of this
+    /// moment, in which it is drawn.
+    /// </summary>
+    internal sealed class AvatarPose
+    {
+        private const double FrameSlack = 1e-6; // frames; a time that was a frame's own stays in it
+        private const int LongestGap = 4; // frames without a pose after which the window starts anew
+
+        private readonly Skeleton skeleton;
+        private readonly int frames;
+        private readonly double rate;
+        private readonly double[] window; // [k, J, 4] newest first
+        private readonly double[] windowTranslations; // [k, 3]
+        private readonly double[] current; // [J, 4]
+        private readonly double[] next; // [J, 4]
+        private readonly double[] translations = new double[6]; // of current and next
+        private ClipSampler clip; // of the window; null where it is of transforms
+        private int index = -1; // frame of the clip, newest of the window
+        private double newest; // seconds; of the window's newest pose of transforms
+        private bool started;
+
+        public AvatarPose(AvatarFile avatar)
+        {
+            skeleton = avatar.Skeleton;
+            frames = avatar.Encoding.Window;
+            rate = avatar.Encoding.Rate;
+            window = new double[4 * frames * skeleton.JointCount];
+            windowTranslations = new double[3 * frames];
+            current = new double[4 * skeleton.JointCount];
+            next = new double[4 * skeleton.JointCount];
+        }
+
+        /// <summary>[k, J, 4] local rotations, newest first.</summary>
+        public ReadOnlySpan<double> Window => window;
+
+        /// <summary>[k, 3] local translations of the root joint, metres.</summary>
+        public ReadOnlySpan<double> WindowTranslations => windowTranslations;
+
+        /// <summary>[J, 4] local rotations of this moment.</summary>
+        public ReadOnlySpan<double> Current => current;
+
+        /// <summary>Local translation of the root joint of this moment, metres.</summary>
+        public Vector3D CurrentTranslation => Vector3D.Load(translations, 0);
+
+        /// <summary>Whether the window is another than that of the last decode; who decodes it sets this back.</summary>
+        public bool IsFresh { get; set; }
+
+        /// <summary>The pose without motion: the bind pose, held still.</summary>
+        public void Hold()
+        {
+            if (started && clip == null && index < 0)
+            {
+                return;
+            }
+            skeleton.BindRotations.CopyTo(current, 0);
+            skeleton.BindTranslation.Store(translations, 0);
+            Fill();
+            clip = null;
+        }
+
+        /// <summary>The clip at a time that starts over at its end; between its frames the drawn pose is interpolated.</summary>
+        public void Sample(ClipSampler source, double seconds)
+        {
+            double position = Position(source, seconds);
+            int frame = (int)position;
+            if (source != clip || frame != index)
+            {
+                source.ReadWindow(frame, frames, window, windowTranslations);
+                clip = source;
+                index = frame;
+                started = false;
+                IsFresh = true;
+            }
+            new ReadOnlySpan<double>(window, 0, current.Length).CopyTo(current);
+            new ReadOnlySpan<double>(windowTranslations, 0, 3).CopyTo(translations);
+            double t = position - frame;
+            if (t > 0 && frame + 1 < source.FrameCount)
+            {
+                source.ReadFrame(frame + 1, next, new Span<double>(translations, 3, 3));
+                Approach(t);
+            }
+        }
+
+        /// <summary>The transforms as they are at a time; the window takes one pose in each frame of the avatar's rate.</summary>
+        public void Sample(AvatarJoints joints, double seconds)
+        {
+            joints.Read(current, translations);
+            double age = (seconds - newest) * rate;
+            if (!started || age < 0 || age > LongestGap)
+            {
+                Fill();
+                newest = seconds;
+            }
+            else if (age >= 1 - FrameSlack)
+            {
+                Push();
+                newest += Math.Floor(age + FrameSlack) / rate;
+            }
+            clip = null;
+            index = 0;
+        }
+
+        /// <summary>Frame of the clip that a time falls in, and how far it is past it.</summary>
+        public static double Position(ClipSampler source, double seconds)
+        {
+            double position = seconds * source.Rate, whole = Math.Round(position);
+            position = Math.Abs(position - whole) < FrameSlack ? whole : position;
+            position %= source.FrameCount;
+            position = position < 0 ? position + source.FrameCount : position;
+            return position < source.FrameCount ? position : 0;
+        }
+
+        private void Approach(double t)
+        {
+            for (int joint = 0; joint < skeleton.JointCount; joint++)
+            {
+                QuaternionD a = QuaternionD.Load(current, joint), b = QuaternionD.Load(next, joint);
+                QuaternionD.Slerp(a, b, t).Store(current, joint);
+            }
+            Vector3D from = Vector3D.Load(translations, 0), to = Vector3D.Load(translations, 1);
+            (from + t * (to - from)).Store(translations, 0);
+        }
+
+        private void Fill()
+        {
+            for (int age = 0; age < frames; age++)
+            {
+                current.CopyTo(window, age * current.Length);
+                CurrentTranslation.Store(windowTranslations, age);
+            }
+            started = true;
+            index = -1;
+            IsFresh = true;
+        }
+
+        private void Push()
+        {
+            Array.Copy(window, 0, window, current.Length, window.Length - current.Length);
+            Array.Copy(windowTranslations, 0, windowTranslations, 3, windowTranslations.Length - 3);
+            current.CopyTo(window, 0);
+            CurrentTranslation.Store(windowTranslations, 0);
+            IsFresh = true;
+        }
+    }
+}

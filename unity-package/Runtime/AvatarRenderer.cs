@@ -1,0 +1,386 @@
+using System;
+using System.Collections.Generic;
+using Mua.Format;
+using Mua.Motion;
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    /// <summary>
+    /// Shows an avatar where its GameObject stands: one of its own clips, or the pose of transforms that something else
+    /// moves. The character faces the GameObject's forward axis; scale is not supported.
+    /// </summary>
+    [ExecuteAlways, DisallowMultipleComponent, AddComponentMenu("MUA/Avatar"), DefaultExecutionOrder(1000)]
+    public sealed class AvatarRenderer : MonoBehaviour
+    {
+        [SerializeField, Tooltip("An imported avatar.")]
+        private AvatarAsset avatar = null;
+
+        [SerializeField, Tooltip("In place of an imported avatar: a file in persistentDataPath or StreamingAssets.")]
+        private string file = "";
+
+        [SerializeField, Tooltip("Root of a rig whose transforms give the pose; without one, a clip of the avatar plays.")]
+        private Transform rig = null;
+
+        [SerializeField, Tooltip("Name of a clip of the avatar; the first where it is empty.")]
+        private string clip = "";
+
+        [SerializeField, Tooltip("Of the clip; 1 is as recorded.")]
+        private float speed = 1;
+
+        [SerializeField]
+        private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
+
+        private AvatarLoader loader;
+        private AvatarBuffers buffers;
+        private AvatarPose pose;
+        private AvatarJoints joints;
+        private ClipSampler[] clips = new ClipSampler[0];
+        private string[] names = new string[0];
+        private int playing; // index of the clip
+        private double seconds; // in the clip
+        private double shown = double.NaN; // of those, what the pose is of
+        private bool hasMoved; // since the last Record
+        private bool isStale; // the inspector has changed a field
+        private bool isPlaced;
+        private bool isScaleReported;
+        private DualQuaternion place;
+        private Vector3 position;
+        private Quaternion rotation;
+
+        /// <summary>The imported avatar that is shown; null where it came from a file.</summary>
+        public AvatarAsset Avatar => avatar;
+
+        public AvatarState State { get; private set; }
+
+        /// <summary>Why there is nothing to see, or what is wrong with the pose; empty where all is well.</summary>
+        public string Message { get; private set; } = "";
+
+        /// <summary>Of loading, from 0 to 1.</summary>
+        public float Progress => State == AvatarState.Ready ? 1 : loader == null ? 0 : loader.Progress;
+
+        /// <summary>The file's name for the avatar; empty until it is ready.</summary>
+        public string AvatarName => State == AvatarState.Ready ? buffers.Avatar.Name : "";
+
+        /// <summary>Names of the avatar's clips.</summary>
+        public IReadOnlyList<string> Clips => names;
+
+        /// <summary>Index of the clip that plays.</summary>
+        public int ClipIndex
+        {
+            get => playing;
+            set
+            {
+                playing = clips.Length == 0 ? 0 : Mathf.Clamp(value, 0, clips.Length - 1);
+                seconds = 0;
+                shown = double.NaN;
+            }
+        }
+
+        /// <summary>Whether the clip goes on by itself.</summary>
+        public bool IsPlaying { get; set; } = true;
+
+        /// <summary>Of the clip; 1 is as recorded.</summary>
+        public float Speed
+        {
+            get => speed;
+            set => speed = value;
+        }
+
+        /// <summary>Seconds into the clip.</summary>
+        public double Seconds
+        {
+            get => seconds;
+            set => seconds = value;
+        }
+
+        /// <summary>Frame of the clip at the avatar's rate; setting it goes to the frame's beginning.</summary>
+        public int Frame
+        {
+            get => clips.Length == 0 ? 0 : (int)AvatarPose.Position(clips[playing], seconds);
+            set => seconds = clips.Length == 0 ? 0 : value / clips[playing].Rate;
+        }
+
+        /// <summary>Frames of the clip at the avatar's rate.</summary>
+        public int FrameCount => clips.Length == 0 ? 0 : clips[playing].FrameCount;
+
+        /// <summary>Transforms that give the pose, or null where a clip does.</summary>
+        public Transform Rig
+        {
+            get => rig;
+            set
+            {
+                rig = value;
+                BindRig();
+            }
+        }
+
+        public AvatarViews Views
+        {
+            get => views;
+            set
+            {
+                views = value;
+                AvatarWorld.Refresh();
+            }
+        }
+
+        /// <summary>Box of the last pose in Unity's world, metres.</summary>
+        public Bounds Bounds =>
+            State == AvatarState.Ready
+                ? AvatarSpace.Box(Decoded.Low, Decoded.High)
+                : new Bounds(transform.position, Vector3.zero);
+
+        /// <summary>The decoder; null until the avatar is ready.</summary>
+        internal AvatarFrame Decoded { get; private set; }
+
+        /// <summary>Shows another imported avatar; the present one goes at once.</summary>
+        public void Load(AvatarAsset asset)
+        {
+            avatar = asset;
+            file = "";
+            Reload();
+        }
+
+        /// <summary>Shows the avatar of a file: a full path, or one in persistentDataPath or StreamingAssets.</summary>
+        public void Load(string path)
+        {
+            avatar = null;
+            file = path;
+            Reload();
+        }
+
+        /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
+        internal void Record(CommandBuffer commands)
+        {
+            if (pose.IsFresh)
+            {
+                Decoded.Decode(
+                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslation, place);
+            }
+            else if (hasMoved)
+            {
+                Decoded.Repose(commands, pose.Current, pose.CurrentTranslation, place);
+            }
+            pose.IsFresh = false;
+            hasMoved = false;
+        }
+
+        /// <summary>Has the next Record pose the avatar again.</summary>
+        internal void MarkMoved()
+        {
+            hasMoved = true;
+        }
+
+        private void OnEnable()
+        {
+            Reload();
+        }
+
+        private void OnDisable()
+        {
+            Release();
+            State = AvatarState.Empty;
+        }
+
+        private void OnValidate()
+        {
+            isStale = isActiveAndEnabled; // nothing may be made or given back here
+        }
+
+        private void Update()
+        {
+            if (isStale)
+            {
+                Reload();
+            }
+            if (State == AvatarState.Loading)
+            {
+                ContinueLoading();
+            }
+        }
+
+        private void LateUpdate()
+        {
+            if (State == AvatarState.Ready)
+            {
+                Place();
+                Pose();
+            }
+        }
+
+        private void Reload()
+        {
+            Release();
+            isStale = false;
+            State = AvatarState.Empty;
+            Message = "";
+            if (!isActiveAndEnabled || (avatar == null && string.IsNullOrEmpty(file)))
+            {
+                return;
+            }
+            try
+            {
+                AvatarWorld.RequireResources();
+            }
+            catch (InvalidOperationException error)
+            {
+                Fail(error.Message);
+                return;
+            }
+            loader = avatar != null ? AvatarLoader.Of(avatar) : AvatarLoader.Of(file);
+            State = AvatarState.Loading;
+            if (!Application.isPlaying)
+            {
+                ContinueLoading();
+            }
+        }
+
+        private void ContinueLoading()
+        {
+            try
+            {
+                if (!Application.isPlaying)
+                {
+                    loader.Finish();
+                }
+                else if (!loader.Continue())
+                {
+                    return;
+                }
+                buffers = loader.Take();
+                Decoded = new AvatarFrame(AvatarWorld.RequireResources(), buffers);
+                Begin();
+            }
+            catch (Exception error) // whatever it is: the user sees one sentence, and no frame tries again
+            {
+                Fail(loader.Source + ": " + error.Message);
+            }
+        }
+
+        /// <summary>Everything is on the device.</summary>
+        private void Begin()
+        {
+            loader.Dispose();
+            AvatarFile content = buffers.Avatar;
+            pose = new AvatarPose(content);
+            clips = new ClipSampler[content.Clips.Length];
+            names = new string[clips.Length];
+            for (int i = 0; i < clips.Length; i++)
+            {
+                clips[i] = new ClipSampler(content.Clips[i], content.Skeleton.JointCount, content.Encoding.Rate);
+                names[i] = clips[i].Name;
+            }
+            ClipIndex = string.IsNullOrEmpty(clip) ? 0 : Array.IndexOf(names, clip);
+            if (!string.IsNullOrEmpty(clip) && Array.IndexOf(names, clip) < 0)
+            {
+                Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", names) + ".");
+            }
+            AvatarWorld.Add(this);
+            loader = null;
+            State = AvatarState.Ready;
+            BindRig();
+        }
+
+        private void BindRig()
+        {
+            joints = null;
+            if (rig == null || State != AvatarState.Ready)
+            {
+                return;
+            }
+            try
+            {
+                joints = new AvatarJoints(buffers.Avatar.Skeleton, rig);
+                if (joints.Missing.Length > 0)
+                {
+                    Warn(joints.Missing);
+                }
+            }
+            catch (InvalidOperationException error)
+            {
+                Warn(error.Message);
+            }
+        }
+
+        /// <summary>Where the GameObject stands now.</summary>
+        private void Place()
+        {
+            transform.GetPositionAndRotation(out Vector3 at, out Quaternion turned);
+            if (!at.Equals(position) || !turned.Equals(rotation) || !isPlaced)
+            {
+                position = at;
+                rotation = turned;
+                place = AvatarSpace.Place(at, turned);
+                isPlaced = true;
+                hasMoved = true;
+            }
+            if (!isScaleReported && !AvatarSpace.IsRigid(transform.lossyScale))
+            {
+                isScaleReported = true;
+                Warn("the GameObject is scaled by " + transform.lossyScale + "; an avatar keeps its size in metres.");
+            }
+        }
+
+        private void Pose()
+        {
+            if (joints != null && !joints.Alive)
+            {
+                joints = null;
+                Warn("the transforms of its pose were destroyed.");
+            }
+            if (joints != null)
+            {
+                pose.Sample(joints, Time.timeAsDouble);
+                shown = double.NaN;
+                hasMoved = true;
+            }
+            else if (clips.Length > 0)
+            {
+                seconds += IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0;
+                if (!seconds.Equals(shown))
+                {
+                    pose.Sample(clips[playing], seconds);
+                    shown = seconds;
+                    hasMoved = true;
+                }
+            }
+            else
+            {
+                pose.Hold();
+            }
+        }
+
+        private void Warn(string sentence)
+        {
+            Message = sentence;
+            Debug.LogWarning("MUA: " + name + ": " + sentence, this);
+        }
+
+        private void Fail(string sentence)
+        {
+            Release();
+            State = AvatarState.Failed;
+            Message = sentence;
+            AvatarWorld.Report(sentence, this);
+        }
+
+        /// <summary>Gives back what the avatar holds, however far it came.</summary>
+        private void Release()
+        {
+            AvatarWorld.Remove(this);
+            loader?.Dispose();
+            Decoded?.Dispose();
+            buffers?.Dispose();
+            loader = null;
+            Decoded = null;
+            buffers = null;
+            pose = null;
+            joints = null;
+            clips = new ClipSampler[0];
+            names = new string[0];
+            isPlaced = false;
+        }
+    }
+}

@@ -1,0 +1,224 @@
+using System;
+using System.Collections.Generic;
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    /// <summary>
+    /// All avatars that are ready, and what they share: kernels, one sort, one draw. It lives as long as there is one.
+    /// Whoever draws a camera calls Record for it, then draws Draw.
+    /// </summary>
+    internal sealed class AvatarWorld : IDisposable
+    {
+        private const int BuffersOfKernel = 8;
+        private const int BuffersOfVertex = 4;
+
+        private static readonly HashSet<string> Reported = new HashSet<string>();
+
+        private readonly List<AvatarRenderer> avatars = new List<AvatarRenderer>();
+        private readonly List<AvatarFrame> frames = new List<AvatarFrame>();
+        private readonly AvatarBuiltIn builtIn;
+        private SplatFrame splats;
+        private bool hasChanged; // avatars came or went
+
+        private AvatarWorld(AvatarResources resources)
+        {
+            Resources = resources;
+            Draw = new SplatDraw(resources.Splat);
+            builtIn = new AvatarBuiltIn(this);
+        }
+
+        /// <summary>The one world, or null while no avatar is ready.</summary>
+        public static AvatarWorld Current { get; private set; }
+
+        public AvatarResources Resources { get; }
+
+        /// <summary>The draw of what Record sorted last.</summary>
+        public SplatDraw Draw { get; }
+
+        /// <summary>Those that are ready, for other views of them.</summary>
+        public IReadOnlyList<AvatarRenderer> Avatars => avatars;
+
+        /// <summary>Splats that are sorted together.</summary>
+        public int SplatCount => splats == null ? 0 : splats.SplatCount;
+
+        /// <summary>
+        /// Takes an avatar whose buffers are on the device. InvalidOperationException says once what the device or the
+        /// package lacks.
+        /// </summary>
+        public static void Add(AvatarRenderer avatar)
+        {
+            if (Current == null)
+            {
+                Current = new AvatarWorld(RequireResources());
+            }
+            Current.avatars.Add(avatar);
+            Current.hasChanged = true;
+        }
+
+        public static void Remove(AvatarRenderer avatar)
+        {
+            if (Current == null || !Current.avatars.Remove(avatar))
+            {
+                return;
+            }
+            Current.hasChanged = true;
+            if (Current.avatars.Count == 0)
+            {
+                Current.Dispose();
+            }
+        }
+
+        /// <summary>The package's resources on a device that can run them.</summary>
+        public static AvatarResources RequireResources()
+        {
+            string missing = null;
+            if (!SystemInfo.supportsComputeShaders)
+            {
+                missing = "has no compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";
+            }
+            else if (SystemInfo.maxComputeBufferInputsCompute < BuffersOfKernel)
+            {
+                missing = "binds " + SystemInfo.maxComputeBufferInputsCompute + " buffers to a kernel; MUA needs "
+                    + BuffersOfKernel + ".";
+            }
+            else if (SystemInfo.maxComputeBufferInputsVertex < BuffersOfVertex)
+            {
+                missing = "binds " + SystemInfo.maxComputeBufferInputsVertex + " buffers to a vertex shader; MUA needs "
+                    + BuffersOfVertex + ".";
+            }
+            if (missing != null)
+            {
+                throw new InvalidOperationException(
+                    SystemInfo.graphicsDeviceName + " (" + SystemInfo.graphicsDeviceType + ") " + missing);
+            }
+            AvatarResources resources = AvatarResources.Load();
+            if (resources == null)
+            {
+                throw new InvalidOperationException(
+                    "Runtime/Resources/MuaAvatarResources of com.mua.avatar is missing; reimport the package.");
+            }
+            return resources;
+        }
+
+        /// <summary>Has the next Record sort the avatars that are shown by then.</summary>
+        public static void Refresh()
+        {
+            if (Current != null)
+            {
+                Current.hasChanged = true;
+            }
+        }
+
+        /// <summary>Logs an error, once however often it is found.</summary>
+        public static void Report(string sentence, UnityEngine.Object context)
+        {
+            if (Reported.Add(sentence))
+            {
+                Debug.LogError("MUA: " + sentence, context);
+            }
+        }
+
+        /// <summary>
+        /// Appends what one camera needs of all avatars: decoding and posing what moved since it was last drawn, then one
+        /// sort for the eyes. Whether there are splats to draw.
+        /// </summary>
+        public bool Record(CommandBuffer commands, Camera camera, AvatarEyes eyes)
+        {
+            if (hasChanged)
+            {
+                hasChanged = false;
+                Share();
+            }
+            if (splats == null || !IsSeen(camera))
+            {
+                return false;
+            }
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                avatars[i].Record(commands);
+            }
+            if (splats.SplatCount == 0)
+            {
+                return false;
+            }
+            splats.Sort(commands, eyes);
+            Draw.Bind(splats);
+            return true;
+        }
+
+        public void Dispose()
+        {
+            builtIn.Dispose();
+            Release();
+            Draw.Dispose();
+            if (Current == this)
+            {
+                Current = null;
+            }
+        }
+
+        [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
+        private static void Restart()
+        {
+            Reported.Clear();
+            if (Current != null)
+            {
+                Current.Dispose();
+            }
+        }
+
+        /// <summary>One set of shared buffers for the avatars that there are now, those whose splats are drawn first.</summary>
+        private void Share()
+        {
+            Release();
+            frames.Clear();
+            AddFrames(true);
+            int shown = frames.Count;
+            AddFrames(false);
+            try
+            {
+                splats = frames.Count == 0 ? null : new SplatFrame(Resources, frames, shown);
+            }
+            catch (InvalidOperationException error)
+            {
+                Report(error.Message, null);
+            }
+        }
+
+        private void AddFrames(bool withSplats)
+        {
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                if (withSplats == ((avatars[i].Views & AvatarViews.Splats) != 0))
+                {
+                    frames.Add(avatars[i].Decoded);
+                    avatars[i].MarkMoved();
+                }
+            }
+        }
+
+        private void Release()
+        {
+            if (splats != null)
+            {
+                splats.Dispose();
+                splats = null;
+            }
+        }
+
+        /// <summary>Whether the camera draws the layer of an avatar; all avatars are drawn together then.</summary>
+        private bool IsSeen(Camera camera)
+        {
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                if ((camera.cullingMask & (1 << avatars[i].gameObject.layer)) != 0)
+                {
+                    return true;
+                }
+            }
+            return false;
+        }
+    }
+}
