@@ -6,23 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from shared_data import SharedData
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 
 if TYPE_CHECKING:
     from mua.gpu import Device
-
-SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
-
-
-class SharedData:
-    """Real inputs that lie beside a checkout; a test that needs an absent one skips and names it."""
-
-    def path(self, name: str) -> Path:
-        found = SHARED_DATA / name
-        if not found.exists():
-            pytest.skip(f"needs shared/data/{name} beside the checkout")
-        return found
 
 
 @pytest.fixture(scope="session")

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SharedData
 from scipy.spatial.transform import Rotation
+from shared_data import SharedData
 
 from mua.errors import InputError
 from mua.motion.bvh import read_bvh

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SharedData
+from shared_data import SharedData
 
 from mua.errors import InputError
 from mua.motion.read import read_motion

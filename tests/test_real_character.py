@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import torch
-from conftest import SharedData
+from shared_data import SharedData
 from silent import Silent
 
 from mua.bake.pipeline import Order, bake

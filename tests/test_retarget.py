@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from conftest import SharedData
 from scipy.spatial.transform import Rotation
+from shared_data import SharedData
 
 from mua import rotation
 from mua.errors import InputError
