@@ -25,6 +25,7 @@ class CSharp:
         sources: Sequence[Path],  # files, or folders of which all .cs files are meant
         *,
         library: bool = False,
+        name: str = "",  # of the assembly; the last source's where there is none
         references: Sequence[Path] = (),
         defines: Sequence[str] = (),
     ) -> Path:
@@ -32,7 +33,7 @@ class CSharp:
         files = sorted(f for source in sources for f in ([source] if source.is_file() else source.rglob("*.cs")))
         options = [*OPTIONS, *(f"-define:{name}" for name in defines), *(f"-reference:{path}" for path in references)]
         folder = self._cache / _digest([*files, *references], options)
-        built = folder / (f"{sources[-1].stem}.dll" if library else f"{sources[-1].stem}.exe")
+        built = folder / f"{name or sources[-1].stem}.{'dll' if library else 'exe'}"
         if built.exists():
             return built
         folder.mkdir(parents=True, exist_ok=True)

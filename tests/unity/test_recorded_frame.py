@@ -15,20 +15,23 @@ from mua.arrays import Array
 from mua.asset import read, write
 from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
+from mua.bounds import root_positions
 from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import Frame, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_draw import splat_colors
+from mua.kernels.splat_project import LAST_KEY
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
+from frame_errors import exact_depths
 from packed_splats import unpacked
+from splat_rounding import exact_keys
 from test_frame import COLOR_BOUND, FEWER_THAN, FRAME_ORDER, OPACITY_BOUND, POSITION_BOUND, part
 from test_splats import joined, moved
 
 MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
 VISIBLE_WORD = 7  # of `arguments`
-KEY_BITS = 0xFFFF
 STAND_INS = Path(__file__).parent / "stand_ins"
 FRAME = (  # what a frame is made of, without the components around it
     *("AvatarFrame", "SplatFrame", "AvatarBuffers", "LayerBuffers", "BranchBuffers", "BandBuffers", "StoredBuffer"),
@@ -115,6 +118,14 @@ class Recorded:
                 lines.append(f"decode {index} {seconds!r} " + " ".join(map(repr, place)))
         return "\n".join([*lines, f"sort {shot.label}\n"])
 
+    def bounds(self, shot: Shot) -> Array:
+        """The box [2, 3] around the boxes of all avatars, each turned and moved with its avatar, metres."""
+        corners = []
+        for avatar, frame, place in zip(self.avatars, shot.frames, PLACES, strict=False):
+            box = avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[frame]
+            corners.append(rotation.dual_transform(place_of(place), np.stack(np.meshgrid(*box.T)).reshape(3, -1).T))
+        return np.stack([np.min(corners, axis=(0, 1)), np.max(corners, axis=(0, 1))])
+
     def kept(self, shot: Shot, name: str) -> Array:
         return self.replayed.kept[f"{shot.label} {name}"]
 
@@ -148,16 +159,18 @@ def test_splats_are_those_of_the_reference(recorded: Recorded, shot: Shot) -> No
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
 def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded, shot: Shot) -> None:
-    exact, view = recorded.exact[shot.label], np.mean([c.view for c in recorded.cameras[shot.label]], axis=0)
+    """That of the keys over the box around all; splats of equal keys stay in the order of avatars and texels."""
+    exact, views = recorded.exact[shot.label], np.stack([camera.view for camera in recorded.cameras[shot.label]])
     count = int(recorded.kept(shot, "arguments")[VISIBLE_WORD])
     order = recorded.kept(shot, "order")[:count]
-    keys = (recorded.kept(shot, "flags")[order] & KEY_BITS).astype(int)
-    depths = -(exact.centres[order] @ view[2, :3] + view[2, 3])
+    keys = (recorded.kept(shot, "flags")[order] & LAST_KEY).astype(int)
+    bounds = recorded.bounds(shot)
+    expected, rounding = exact_keys(exact.centres[order], views, bounds)
+    span = np.ptp(exact_depths(bounds, recorded.cameras[shot.label]))
     np.testing.assert_array_equal(np.sort(order), np.arange(len(exact.centres)))
+    assert np.abs(keys - expected).max() <= 0.5 + rounding + LAST_KEY * POSITION_BOUND * np.sqrt(3) / span
     assert np.all(np.diff(keys) >= 0)
     assert np.all(np.diff(order.astype(int))[np.diff(keys) == 0] > 0)
-    # Nearer means a larger key: one key is at most this much of the depth that all avatars' boxes span.
-    assert np.all(np.diff(depths) < 2 * (POSITION_BOUND + 8 / KEY_BITS))
 
 
 def test_the_dispatches_are_those_of_the_desktop_player(recorded: Recorded) -> None:

@@ -1,0 +1,108 @@
+"""Every assembly of the package compiles against the stand-ins, with just its own references, as Unity compiles it."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from csharp import ROOT, CSharp
+
+PACKAGE = ROOT / "unity-package"
+STAND_INS = Path(__file__).parent / "stand_ins"
+UNITY_6 = ("UNITY_6000_0_OR_NEWER", "UNITY_2022_3_OR_NEWER")
+EDITOR = (*UNITY_6, "UNITY_EDITOR", "UNITY_EDITOR_WIN", "UNITY_STANDALONE_WIN")
+PLAYERS = {"editor": EDITOR, "quest": (*UNITY_6, "UNITY_ANDROID"), "pc": (*UNITY_6, "UNITY_STANDALONE_WIN")}
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """An asmdef and what it compiles."""
+
+    definition: dict[str, Any]
+    folder: Path
+
+    @property
+    def name(self) -> str:
+        return str(self.definition["name"])
+
+    @property
+    def references(self) -> list[str]:
+        """By name; the engine's own come with every assembly that does not forbid it."""
+        engine = [] if self.definition.get("noEngineReferences") else ["UnityEngine"]
+        editor = ["UnityEditor"] if self.definition.get("includePlatforms") == ["Editor"] else []
+        return [*engine, *editor, *self.definition.get("references", [])]
+
+    def defines(self, platform: str, *, packages: bool) -> tuple[str, ...]:
+        """Symbols on a platform; `packages`: whether those that are optional are installed."""
+        optional = [rule["define"] for rule in self.definition.get("versionDefines", [])] if packages else []
+        return (*PLAYERS[platform], *optional)
+
+    def sources(self) -> list[Path]:
+        """The folder's files, less those below another asmdef."""
+        others = [path.parent for path in self.folder.rglob("*.asmdef") if path.parent != self.folder]
+        files = sorted(self.folder.rglob("*.cs"))
+        return [file for file in files if not any(other in file.parents for other in others)]
+
+
+def assemblies() -> dict[str, Assembly]:
+    """By name."""
+    found = [Assembly(json.loads(path.read_text()), path.parent) for path in sorted(PACKAGE.rglob("*.asmdef"))]
+    return {assembly.name: assembly for assembly in found}
+
+
+class Compiler:
+    """Compiles assemblies and what they refer to."""
+
+    def __init__(self, csharp: CSharp, platform: str, *, packages: bool) -> None:
+        self._csharp, self._platform, self._packages = csharp, platform, packages
+        self._known, self._built = assemblies(), dict[str, Path]()
+
+    def has(self, assembly: Assembly) -> bool:
+        """Whether Unity compiles an assembly here."""
+        only = assembly.definition.get("includePlatforms", [])
+        wanted = set(assembly.definition.get("defineConstraints", [])) - {"UNITY_INCLUDE_TESTS"}
+        defined = set(assembly.defines(self._platform, packages=self._packages))
+        return wanted <= defined and (only != ["Editor"] or self._platform == "editor")
+
+    def built(self, name: str) -> Path:
+        """The .dll of an assembly or of a folder of stand-ins; what is neither is no reference that Unity knows."""
+        if name not in self._built:
+            self._built[name] = self._own(self._known[name]) if name in self._known else self._stand_in(name)
+        return self._built[name]
+
+    def _own(self, assembly: Assembly) -> Path:
+        symbols = assembly.defines(self._platform, packages=self._packages)
+        references = list(dict.fromkeys(path for name in assembly.references for path in self._closed(name)))
+        return self._csharp.build(
+            assembly.sources(), library=True, name=assembly.name, references=references, defines=symbols
+        )
+
+    def _stand_in(self, name: str) -> Path:
+        folder = STAND_INS / name
+        assert folder.is_dir(), f"{name} is no assembly of the package and has no stand-ins in {STAND_INS}"
+        below = folder / "references.txt"
+        references = [self.built(other) for other in below.read_text().split()] if below.exists() else []
+        return self._csharp.build([folder], library=True, name=name, references=references)
+
+    def _closed(self, name: str) -> Iterator[Path]:
+        """A reference; optional ones are absent where their package is not installed."""
+        known = self._known.get(name)
+        if known is None and not self._packages and name not in ("UnityEngine", "UnityEditor"):
+            return
+        yield self.built(name)
+
+
+@pytest.mark.parametrize("packages", [True, False], ids=["with URP and XR", "without"])
+@pytest.mark.parametrize("platform", list(PLAYERS))
+@pytest.mark.parametrize("assembly", assemblies().values(), ids=lambda assembly: assembly.name)
+def test_an_assembly_compiles(csharp: CSharp, assembly: Assembly, platform: str, packages: bool) -> None:
+    compiler = Compiler(csharp, platform, packages=packages)
+    if compiler.has(assembly):
+        assert compiler.built(assembly.name).name == f"{assembly.name}.dll"
+
+
+def test_no_source_is_outside_an_assembly() -> None:
+    compiled = {file for assembly in assemblies().values() for file in assembly.sources()}
+    assert compiled == set(PACKAGE.rglob("*.cs"))
