@@ -21,13 +21,24 @@ from mua.decode import Frame, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
+from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
+from mua.render import render_premultiplied
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
 from frame_errors import exact_depths
 from packed_splats import unpacked
 from splat_rounding import exact_keys
-from test_frame import COLOR_BOUND, FEWER_THAN, FRAME_ORDER, OPACITY_BOUND, POSITION_BOUND, part
+from test_frame import (
+    COLOR_BOUND,
+    FEWER_THAN,
+    FRAME_ORDER,
+    LEAST_PSNR,
+    OPACITY_BOUND,
+    POSITION_BOUND,
+    part,
+    psnr,
+)
 from test_splats import joined, moved
 
 MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
@@ -104,7 +115,9 @@ class Recorded:
 
     def _cameras(self, shot: Shot) -> tuple[Camera, ...]:
         centres = self.exact[shot.label].centres
-        camera = orbit(np.stack([centres.min(axis=0), centres.max(axis=0)]), screen=(256, 192), azimuth=0.7)
+        camera = orbit(
+            np.stack([centres.min(axis=0), centres.max(axis=0)]), screen=(256, 192), azimuth=0.7, elevation=0.3
+        )
         return (camera,) if shot.eyes == 1 else stereo(camera, EYE_DISTANCE)
 
     def _lines(self, shot: Shot) -> str:
@@ -171,6 +184,18 @@ def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded,
     assert np.abs(keys - expected).max() <= 0.5 + rounding + LAST_KEY * POSITION_BOUND * np.sqrt(3) / span
     assert np.all(np.diff(keys) >= 0)
     assert np.all(np.diff(order.astype(int))[np.diff(keys) == 0] > 0)
+
+
+@pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
+def test_the_picture_agrees_with_the_cpu_rasteriser(recorded: Recorded, device: Device, shot: Shot) -> None:
+    """By the desktop player's draw of what the package's frame left: splat_draw.hlsl is the same file."""
+    names = ("splats", "ellipses", "colors", "order")
+    buffers = [device.buffer(recorded.kept(shot, name), name=name) for name in names]
+    arguments = device.buffer(recorded.kept(shot, "arguments"), name="arguments", indirect=True)
+    splats, cameras = SortedSplats(len(recorded.exact[shot.label].centres), *buffers, arguments), recorded.cameras
+    image = draw_image(device, SplatRenderer(device, image_format(device)), splats, cameras[shot.label])
+    for found, camera in zip(np.split(image, shot.eyes, axis=1), cameras[shot.label], strict=True):
+        assert psnr(found, render_premultiplied(recorded.exact[shot.label], camera)) > LEAST_PSNR
 
 
 def test_the_dispatches_are_those_of_the_desktop_player(recorded: Recorded) -> None:
