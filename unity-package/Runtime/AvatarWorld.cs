@@ -7,7 +7,7 @@ namespace Mua
 {
     /// <summary>
     /// All avatars that are ready, and what they share: kernels, one sort, one draw. It lives as long as there is one.
-    /// Whoever draws a camera calls Record for it, then draws Draw.
+    /// Whoever draws a camera calls Record for it, then draws Draws.
     /// </summary>
     internal sealed class AvatarWorld : IDisposable
     {
@@ -18,6 +18,8 @@ namespace Mua
 
         private readonly List<AvatarRenderer> avatars = new List<AvatarRenderer>();
         private readonly List<AvatarFrame> frames = new List<AvatarFrame>();
+        private readonly List<AvatarDraw> draws = new List<AvatarDraw>();
+        private readonly SplatDraw splatDraw;
         private readonly AvatarBuiltIn builtIn;
         private SplatFrame splats;
         private bool hasChanged; // avatars came or went
@@ -25,7 +27,7 @@ namespace Mua
         private AvatarWorld(AvatarResources resources)
         {
             Resources = resources;
-            Draw = new SplatDraw(resources.Splat);
+            splatDraw = new SplatDraw(resources.Splat);
             builtIn = new AvatarBuiltIn(this);
         }
 
@@ -34,8 +36,8 @@ namespace Mua
 
         public AvatarResources Resources { get; }
 
-        /// <summary>The draw of what Record sorted last.</summary>
-        public SplatDraw Draw { get; }
+        /// <summary>What the last Record found to draw, in this order.</summary>
+        public IReadOnlyList<AvatarDraw> Draws => draws;
 
         /// <summary>Those that are ready, for other views of them.</summary>
         public IReadOnlyList<AvatarRenderer> Avatars => avatars;
@@ -99,7 +101,15 @@ namespace Mua
                 throw new InvalidOperationException(
                     "Runtime/Resources/MuaAvatarResources of com.mua.avatar is missing; reimport the package.");
             }
+            RequireKernels(resources);
             return resources;
+        }
+
+        /// <summary>Those of the sort; an avatar's own are found as its AvatarFrame is made.</summary>
+        private static void RequireKernels(AvatarResources resources)
+        {
+            new SplatProject(resources.SplatProject);
+            new SplatSort(resources.SplatSort);
         }
 
         /// <summary>Has the next Record sort the avatars that are shown by then.</summary>
@@ -122,10 +132,11 @@ namespace Mua
 
         /// <summary>
         /// Appends what one camera needs of all avatars: decoding and posing what moved since it was last drawn, then one
-        /// sort for the eyes. Whether there are splats to draw.
+        /// sort for the eyes. Whether there is anything to draw.
         /// </summary>
         public bool Record(CommandBuffer commands, Camera camera, AvatarEyes eyes)
         {
+            draws.Clear();
             if (hasChanged)
             {
                 hasChanged = false;
@@ -139,20 +150,20 @@ namespace Mua
             {
                 avatars[i].Record(commands);
             }
-            if (splats.SplatCount == 0)
+            if (splats.SplatCount > 0)
             {
-                return false;
+                splats.Sort(commands, eyes);
+                draws.Add(splatDraw.Bind(splats));
             }
-            splats.Sort(commands, eyes);
-            Draw.Bind(splats);
-            return true;
+            return draws.Count > 0;
         }
 
         public void Dispose()
         {
             builtIn.Dispose();
             Release();
-            Draw.Dispose();
+            draws.Clear();
+            splatDraw.Dispose();
             if (Current == this)
             {
                 Current = null;
@@ -162,11 +173,7 @@ namespace Mua
         [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
         private static void Restart()
         {
-            Reported.Clear();
-            if (Current != null)
-            {
-                Current.Dispose();
-            }
+            Reported.Clear(); // avatars that outlive the start of a game without a reload stay in their world
         }
 
         /// <summary>One set of shared buffers for the avatars that there are now, those whose splats are drawn first.</summary>

@@ -168,6 +168,9 @@ namespace StandIns
             Application.persistentDataPath = persistentData;
         }
 
+        /// <summary>Put an asset where Resources.Load finds it.</summary>
+        public static void Place(string path, UnityEngine.Object asset) { Resources.Placed[path] = asset; }
+
         public static void Platform(RuntimePlatform platform) { Application.platform = platform; }
         public static void Playing(bool playing) { Application.isPlaying = playing; }
         public static void ComputeShaders(bool supported) { SystemInfo.supportsComputeShaders = supported; }

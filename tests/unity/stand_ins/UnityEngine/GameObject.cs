@@ -10,6 +10,15 @@ namespace UnityEngine
     public class Component : Object
     {
         public GameObject gameObject { get; internal set; }
+        public override string name
+        {
+            get { return gameObject == null ? "" : gameObject.name; }
+            set
+            {
+                if (gameObject != null)
+                    gameObject.name = value;
+            }
+        }
         public Transform transform { get { return gameObject.transform; } }
         public string tag { get; set; }
 

@@ -20,7 +20,7 @@ namespace UnityEngine
         private readonly int id = ++lastId;
         internal bool destroyed;
 
-        public string name { get; set; }
+        public virtual string name { get; set; } // virtual only here: a component has its GameObject's
         public HideFlags hideFlags { get; set; }
 
         public Object() { name = ""; }

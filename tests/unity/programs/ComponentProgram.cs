@@ -1,0 +1,321 @@
+// Runs AvatarRenderer in the stand-ins' player loop. Arguments: the folder of the kernels, the story, avatars. It prints what
+// tests/unity/test_component.py asks about; a story ends with all objects destroyed.
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using System.Reflection;
+using System.Threading;
+using Mua.Format;
+using Mua.Motion;
+using StandIns;
+using UnityEngine;
+
+namespace Mua
+{
+    internal static class ComponentProgram
+    {
+        private const int Patience = 4000; // frames, with a millisecond each, until loading must be over
+        private const float Step = 1f / 72;
+
+        private static readonly List<GameObject> Scene = new List<GameObject>();
+        private static AvatarResources resources;
+        private static string[] files;
+
+        public static int Main(string[] arguments)
+        {
+            CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+            resources = MakeResources(arguments[0]);
+            Machine.Place("MuaAvatarResources", resources);
+            files = new List<string>(arguments).GetRange(2, arguments.Length - 2).ToArray();
+            Make("camera").AddComponent<Camera>();
+            MethodInfo story = typeof(ComponentProgram).GetMethod(arguments[1], BindingFlags.Static | BindingFlags.NonPublic);
+            story.Invoke(null, null);
+            foreach (GameObject thing in Scene)
+            {
+                UnityEngine.Object.DestroyImmediate(thing);
+            }
+            Say("alive", Recorder.AliveCount);
+            Say("requests", Requests.Open);
+            Say("world", AvatarWorld.Current == null ? 0 : 1);
+            foreach (KeyValuePair<LogType, string> line in StandIns.Console.Lines)
+            {
+                Say("log", line.Key + " " + line.Value);
+            }
+            return 0;
+        }
+
+        private static void Plays()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            Say("state", shown.State);
+            Say("clips", string.Join(" ", new List<string>(shown.Clips).ToArray()));
+            Frames(10);
+            int dispatches = Recorder.Dispatches, draws = Recorder.Draws;
+            Frames(72);
+            Say("dispatches", Recorder.Dispatches - dispatches);
+            Say("draws", Recorder.Draws - draws);
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            Frames(72);
+            Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
+            shown.IsPlaying = false;
+            shown.Frame = 3;
+            Say("frame", shown.Frame);
+            Frames(2);
+            dispatches = Recorder.Dispatches;
+            Frames(10);
+            Say("idle", Recorder.Dispatches - dispatches);
+            Bounds box = shown.Bounds;
+            shown.transform.position = new Vector3(5, 0, 0);
+            Frames(1);
+            Say("moved", (shown.Bounds.center - box.center).x);
+        }
+
+        private static void Crowd()
+        {
+            AvatarRenderer first = Show(files[0]), second = Show(files[1]);
+            Frames(2);
+            Say("both", AvatarWorld.Current.SplatCount);
+            second.Views = AvatarViews.Mesh;
+            Frames(2);
+            Say("one", AvatarWorld.Current.SplatCount);
+            int alive = Recorder.AliveCount;
+            second.enabled = false;
+            Frames(2);
+            Say("fewer", Recorder.AliveCount < alive ? 1 : 0);
+            second.enabled = true;
+            Until(second);
+            Frames(2);
+            Say("again", Recorder.AliveCount == alive ? 1 : 0);
+            first.Load(files[1]);
+            Until(first);
+            Say("state", first.State + " " + second.State);
+        }
+
+        private static void GoesMidUpload()
+        {
+            AvatarRenderer shown = Begin(files[0]);
+            for (int i = 0; i < Patience && shown.Progress < 0.4f; i++)
+            {
+                Frames(1);
+                Thread.Sleep(1);
+            }
+            Say("state", shown.State);
+            Say("progress", shown.Progress > 0 && shown.Progress < 1 ? 1 : 0);
+            Say("held", Recorder.AliveCount > 0 ? 1 : 0);
+        }
+
+        private static void GoesMidRead()
+        {
+            Begin(files[0]);
+            Begin("jar:file://" + files[0]);
+            Thread.Sleep(200);
+        }
+
+        private static void Streams()
+        {
+            Say("state", Show("jar:file://" + files[0]).State);
+            Say("state", Show("jar:file://" + files[0] + ".not").State);
+        }
+
+        private static void FindsFiles()
+        {
+            string folder = Path.GetDirectoryName(files[0]), name = Path.GetFileName(files[0]);
+            Machine.Paths(folder, "/nowhere");
+            Say("state", Show(name).State);
+            Machine.Paths("/nowhere", folder);
+            Say("state", Show(name).State);
+            var asset = AvatarAsset.Create(File.ReadAllBytes(files[0]));
+            AvatarRenderer shown = Make("avatar").AddComponent<AvatarRenderer>();
+            shown.Load(asset);
+            Until(shown);
+            Say("state", shown.State);
+        }
+
+        private static void Fails()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            Frames(20);
+            Say("state", shown.State);
+            Say("message", shown.Message);
+        }
+
+        private static void LacksKernel()
+        {
+            Set("splatSort", null);
+            Fails();
+            Show(files[0]);
+        }
+
+        private static void LacksResources()
+        {
+            Machine.Place("MuaAvatarResources", null);
+            Fails();
+        }
+
+        private static void LacksCompute()
+        {
+            Machine.ComputeShaders(false);
+            Fails();
+            Show(files[0]);
+        }
+
+        private static void LacksBuffers()
+        {
+            Machine.ComputeBuffers(4);
+            Fails();
+        }
+
+        private static void LacksMemory()
+        {
+            Machine.BufferSize(1 << 12);
+            Fails();
+        }
+
+        private static void FollowsRig()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
+            var read = new double[4 * rig.Length];
+            var translation = new double[3];
+            joints.Read(read, translation);
+            var clip = new ClipSampler(avatar.Clips[0], rig.Length, avatar.Encoding.Rate);
+            var wanted = new double[4 * rig.Length];
+            var wantedTranslation = new double[3];
+            clip.ReadFrame(2, wanted, wantedTranslation);
+            double turned = 0, moved = 0;
+            for (int i = 0; i < rig.Length; i++)
+            {
+                QuaternionD a = QuaternionD.Load(read, i), b = QuaternionD.Load(wanted, i);
+                turned = Math.Max(turned, 1 - Math.Abs(a.W * b.W + a.X * b.X + a.Y * b.Y + a.Z * b.Z));
+            }
+            for (int i = 0; i < 3; i++)
+            {
+                moved = Math.Max(moved, Math.Abs(translation[i] - wantedTranslation[i]));
+            }
+            Say("turned", turned);
+            Say("translated", moved);
+            AvatarRenderer shown = Show(files[0]);
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Frames(10);
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            Frames(72);
+            Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
+            UnityEngine.Object.DestroyImmediate(rig[avatar.Skeleton.Root].gameObject);
+            Frames(20);
+            Say("state", shown.State);
+        }
+
+        private static void LacksJoint()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            rig[rig.Length - 1].gameObject.name = "Another";
+            AvatarRenderer shown = Show(files[0]);
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Frames(20);
+            rig[avatar.Skeleton.Root].gameObject.name = "NoRoot";
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Frames(20);
+            Say("state", shown.State);
+        }
+
+        private static void IsScaled()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.transform.localScale = new Vector3(2, 2, 2);
+            Frames(20);
+            Say("state", shown.State);
+        }
+
+        /// <summary>Transforms that stand as frame 2 of the first clip, below a root that is moved and turned.</summary>
+        private static Transform[] MakeRig(AvatarFile avatar)
+        {
+            Skeleton skeleton = avatar.Skeleton;
+            var clip = new ClipSampler(avatar.Clips[0], skeleton.JointCount, avatar.Encoding.Rate);
+            var rotations = new double[4 * skeleton.JointCount];
+            var translation = new double[3];
+            clip.ReadFrame(2, rotations, translation);
+            GameObject root = Make("rig");
+            root.transform.SetPositionAndRotation(new Vector3(3, -1, 2), Quaternion.Euler(10, 200, -30));
+            var rig = new Transform[skeleton.JointCount];
+            for (int i = 0; i < rig.Length; i++)
+            {
+                rig[i] = new GameObject(skeleton.Names[i]).transform;
+                Vector3D at = i == skeleton.Root ? Vector3D.Load(translation, 0) : Vector3D.Load(skeleton.BindTranslations, i);
+                rig[i].SetParent(skeleton.Parents[i] < 0 ? root.transform : rig[skeleton.Parents[i]], false);
+                rig[i].localPosition = AvatarSpace.Position(at);
+                rig[i].localRotation = AvatarSpace.Rotation(QuaternionD.Load(rotations, i));
+            }
+            return rig;
+        }
+
+        private static AvatarRenderer Show(string file)
+        {
+            AvatarRenderer shown = Begin(file);
+            Until(shown);
+            return shown;
+        }
+
+        private static AvatarRenderer Begin(string file)
+        {
+            AvatarRenderer shown = Make("avatar").AddComponent<AvatarRenderer>();
+            shown.Load(file);
+            return shown;
+        }
+
+        private static void Until(AvatarRenderer shown)
+        {
+            for (int i = 0; i < Patience && shown.State == AvatarState.Loading; i++)
+            {
+                Frames(1);
+                Thread.Sleep(1);
+            }
+        }
+
+        private static void Frames(int count)
+        {
+            for (int i = 0; i < count; i++)
+            {
+                PlayerLoop.Frame(Step);
+            }
+        }
+
+        private static GameObject Make(string name)
+        {
+            var thing = new GameObject(name);
+            Scene.Add(thing);
+            return thing;
+        }
+
+        private static AvatarResources MakeResources(string folder)
+        {
+            resources = ScriptableObject.CreateInstance<AvatarResources>();
+            string[] stems = { "mlp_matmul", "blend_subbands", "inverse_dwt", "dq_skinning", "splat_project", "splat_sort" };
+            string[] fields = { "mlpMatmul", "blendSubbands", "inverseDwt", "dqSkinning", "splatProject", "splatSort" };
+            for (int i = 0; i < stems.Length; i++)
+            {
+                Set(fields[i], Recorder.Compute(Path.Combine(folder, stems[i] + ".compute")));
+            }
+            foreach (FieldInfo field in typeof(AvatarResources).GetFields(BindingFlags.Instance | BindingFlags.NonPublic))
+            {
+                if (field.FieldType == typeof(Shader))
+                {
+                    field.SetValue(resources, Recorder.Drawing(field.Name));
+                }
+            }
+            return resources;
+        }
+
+        private static void Set(string field, UnityEngine.Object value)
+        {
+            typeof(AvatarResources).GetField(field, BindingFlags.Instance | BindingFlags.NonPublic).SetValue(resources, value);
+        }
+
+        private static void Say(string name, object value)
+        {
+            System.Console.WriteLine(name + "\t" + value);
+        }
+    }
+}

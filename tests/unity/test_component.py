@@ -1,0 +1,179 @@
+"""AvatarRenderer in a player loop of stand-ins: what it shows, what it says, what it gives back."""
+
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset import write
+from mua.asset.avatar import Layer
+
+sys.path.append(str(ROOT / "tests" / "parity"))
+
+from test_frame import FEWER_THAN, FRAME_ORDER
+
+STAND_INS = Path(__file__).parent / "stand_ins"
+KERNELS = ROOT / "ComputeShaders"
+WIDE = 1500  # a layer that needs more than one frame's chunk
+SECOND = 72  # frames of the program's player loop
+RATE = 24  # of the synthetic avatars
+TURNED, TRANSLATED = 1e-6, 1e-5  # float32 of a few transforms on top of each other
+Told = dict[str, list[str]]
+Story = Callable[..., Told]
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "ComponentProgram.cs"]
+    return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two avatars, one that takes several frames to upload, and one that is damaged."""
+    made = tmp_path_factory.mktemp("avatars")
+    avatar = synthetic_avatar(1)
+    write(made / "first.muaavatar", avatar, storage="f16")
+    write(made / "second.muaavatar", synthetic_avatar(2), storage="i8")
+    first, *others, last = avatar.coarse.mlp
+    outputs, inputs = len(last.bias), first.weight.shape[1]
+    zeros = [np.zeros(shape, np.float32) for shape in ((WIDE, inputs), (WIDE, WIDE), (outputs, WIDE))]
+    mlp = tuple(Layer(weight, np.zeros(len(weight), np.float32)) for weight in zeros)
+    write(made / "wide.muaavatar", replace(avatar, coarse=replace(avatar.coarse, mlp=mlp)), storage="f32")
+    content = bytearray((made / "first.muaavatar").read_bytes())
+    content[len(content) // 2] ^= 0xFF
+    (made / "damaged.muaavatar").write_bytes(content)
+    return made
+
+
+@pytest.fixture
+def story(csharp: CSharp, program: Path, folder: Path) -> Story:
+    def tell(name: str, *files: str) -> Told:
+        told: Told = {"log": []}
+        said = csharp.run(program, KERNELS, name, *(folder / f"{file}.muaavatar" for file in files))
+        for line in said.splitlines():
+            key, value = line.split("\t", 1)
+            told.setdefault(key, []).append(value)
+        assert (told["alive"], told["requests"], told["world"]) == (["0"], ["0"], ["0"]), told
+        return told
+
+    return tell
+
+
+def test_a_clip_plays(story: Story) -> None:
+    told = story("Plays", "first")
+    assert told["state"] == ["Ready"]
+    assert told["clips"] == [" ".join(clip.name for clip in synthetic_avatar(1).clips)]
+    assert told["draws"] == [str(SECOND)]
+    assert told["log"] == []
+
+
+def test_an_avatar_is_decoded_at_its_own_rate_and_posed_in_every_frame(story: Story) -> None:
+    posed = FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :]
+    decodes, rest = divmod(int(story("Plays", "first")["dispatches"][0]) - SECOND * len(posed), len(FRAME_ORDER) - len(posed))
+    assert rest == 0
+    assert abs(decodes - RATE) <= 1
+    assert len(FRAME_ORDER) < FEWER_THAN
+
+
+def test_a_frame_allocates_nothing(story: Story) -> None:
+    assert story("Plays", "first")["allocated"] == ["0"]
+    assert story("FollowsRig", "first")["allocated"] == ["0"]
+
+
+def test_a_still_avatar_is_only_sorted(story: Story) -> None:
+    told = story("Plays", "first")
+    sorting = FRAME_ORDER[FRAME_ORDER.index("SplatProject") :]
+    assert told["frame"] == ["3"]
+    assert told["idle"] == [str(10 * len(sorting))]
+
+
+def test_an_avatar_stands_where_its_object_stands(story: Story) -> None:
+    assert float(story("Plays", "first")["moved"][0]) == pytest.approx(5, abs=1e-4)
+
+
+def test_avatars_come_and_go(story: Story) -> None:
+    told = story("Crowd", "first", "second")
+    counts = [len(synthetic_avatar(seed).rig.texels.texels) for seed in (1, 2)]
+    assert told["both"] == [str(sum(counts))]
+    assert told["one"] == [str(counts[0])]
+    assert (told["fewer"], told["again"]) == (["1"], ["1"])
+    assert told["state"] == ["Ready Ready"]
+    assert told["log"] == []
+
+
+def test_an_avatar_destroyed_while_it_uploads_leaves_nothing(story: Story) -> None:
+    told = story("GoesMidUpload", "wide")
+    assert (told["state"], told["progress"], told["held"]) == (["Loading"], ["1"], ["1"])
+
+
+def test_an_avatar_destroyed_while_it_is_read_leaves_nothing(story: Story) -> None:
+    assert story("GoesMidRead", "first")["log"] == []
+
+
+def test_a_file_is_found_in_both_folders_and_in_an_asset(story: Story) -> None:
+    assert story("FindsFiles", "first")["state"] == ["Ready"] * 3
+
+
+def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
+    told = story("Streams", "first")
+    assert told["state"] == ["Ready", "Failed"]
+    assert len(told["log"]) == 1
+    assert "404" in told["log"][0]
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "words"),
+    [
+        ("Fails", "damaged", "crc32"),
+        ("Fails", "absent", "absent.muaavatar"),
+        ("LacksKernel", "first", "splat_sort.compute"),
+        ("LacksResources", "first", "MuaAvatarResources"),
+        ("LacksCompute", "first", "compute shaders"),
+        ("LacksBuffers", "first", "4 buffers"),
+        ("LacksMemory", "first", "4096"),
+    ],
+)
+def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: str) -> None:
+    told = story(name, file)
+    assert told["state"] == ["Failed"]
+    assert len(told["log"]) == 1, told["log"]
+    assert told["log"][0].startswith("Error MUA: ")
+    assert words in told["log"][0]
+    assert told["log"][0].endswith(told["message"][0])
+
+
+def test_transforms_give_the_pose_wherever_their_root_stands(story: Story) -> None:
+    told = story("FollowsRig", "first")
+    assert float(told["turned"][0]) < TURNED
+    assert float(told["translated"][0]) < TRANSLATED
+
+
+def test_a_rig_that_is_destroyed_is_said_once(story: Story) -> None:
+    told = story("FollowsRig", "first")
+    assert told["state"] == ["Ready"]
+    assert len(told["log"]) == 1
+    assert "destroyed" in told["log"][0]
+
+
+def test_missing_joints_are_said_once(story: Story) -> None:
+    told = story("LacksJoint", "first")
+    assert told["state"] == ["Ready"]
+    some, root = told["log"]
+    assert synthetic_avatar(1).rig.skeleton.names[-1] in some
+    assert "root joint" in root
+
+
+def test_a_scale_is_refused_once(story: Story) -> None:
+    told = story("IsScaled", "first")
+    assert told["state"] == ["Ready"]
+    assert len(told["log"]) == 1
+    assert "size in metres" in told["log"][0]
