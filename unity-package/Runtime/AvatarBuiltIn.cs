@@ -39,13 +39,17 @@ namespace Mua
             Take(camera);
             compute.Clear();
             draw.Clear();
-            bool hasSplats = world.Record(compute, camera, eyes);
+            bool hasDraws = world.Record(compute, camera, eyes);
             Graphics.ExecuteCommandBuffer(compute);
-            if (hasSplats)
+            if (!hasDraws)
             {
-                world.Draw.Draw(draw);
-                camera.AddCommandBuffer(Moment, draw);
+                return;
             }
+            for (int i = 0; i < world.Draws.Count; i++)
+            {
+                world.Draws[i].Append(draw);
+            }
+            camera.AddCommandBuffer(Moment, draw);
         }
 
         private void AfterCamera(Camera camera)

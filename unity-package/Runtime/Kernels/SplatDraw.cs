@@ -1,12 +1,10 @@
 using System;
 using UnityEngine;
-using UnityEngine.Rendering;
 
 namespace Mua
 {
     /// <summary>
-    /// The draw of sorted splats: Shaders/splat.shader over ComputeShaders/splat_draw.hlsl. A pipeline takes the parts, or
-    /// lets Draw append them.
+    /// The draw of sorted splats: Shaders/splat.shader over ComputeShaders/splat_draw.hlsl.
     /// </summary>
     internal sealed class SplatDraw : IDisposable
     {
@@ -41,20 +39,11 @@ namespace Mua
 
         public MaterialPropertyBlock Properties { get; } = new MaterialPropertyBlock();
 
-        /// <summary>[4] vertices and instances of the draw, at byte 0.</summary>
-        public GraphicsBuffer Arguments { get; private set; }
-
-        /// <summary>Of a direct draw, which covers all splats, the visible ones first.</summary>
-        public int VertexCount { get; private set; }
-
-        /// <summary>Of a direct draw; render pipelines multiply it where an indirect one needs AvatarEyes.Instances.</summary>
-        public int InstanceCount => 1;
-
         /// <summary>Whether the device takes counts from Arguments.</summary>
         public bool Indirect { get; }
 
-        /// <summary>Takes the buffers and eyes of what was sorted last.</summary>
-        public void Bind(SplatFrame frame)
+        /// <summary>The draw of what was sorted last; a direct one covers all splats, the visible ones first.</summary>
+        public AvatarDraw Bind(SplatFrame frame)
         {
             Properties.SetBuffer(Order, frame.Order);
             Properties.SetBuffer(Ellipses, frame.Ellipses);
@@ -66,21 +55,9 @@ namespace Mua
             Properties.SetInteger(EyeCount, frame.Eyes.Count);
             Properties.SetBuffer(VisibleArguments, frame.Arguments);
             Properties.SetInteger(Direct, Indirect ? 0 : 1);
-            Arguments = frame.Arguments;
-            VertexCount = VerticesPerSplat * frame.SplatCount;
-        }
-
-        /// <summary>Appends the draw of what Bind took.</summary>
-        public void Draw(CommandBuffer commands)
-        {
-            if (Indirect)
-            {
-                commands.DrawProceduralIndirect(
-                    Matrix4x4.identity, Material, 0, MeshTopology.Triangles, Arguments, 0, Properties);
-                return;
-            }
-            commands.DrawProcedural(
-                Matrix4x4.identity, Material, 0, MeshTopology.Triangles, VertexCount, InstanceCount, Properties);
+            return Indirect
+                ? AvatarDraw.Indirect(Material, 0, Properties, frame.Arguments)
+                : AvatarDraw.Direct(Material, 0, Properties, VerticesPerSplat * frame.SplatCount);
         }
 
         public void Dispose()

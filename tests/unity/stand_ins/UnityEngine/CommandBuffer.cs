@@ -24,7 +24,7 @@ namespace UnityEngine.Rendering
             public ComputeShader Shader;
             public int Kernel, Name, X, Y, Z, Start;
             public StandIns.Value Value;
-            public GraphicsBuffer Buffer;
+            public GraphicsBuffer Buffer, Indices;
             public Material Material;
             public MaterialPropertyBlock Properties;
         }
@@ -128,6 +128,11 @@ namespace UnityEngine.Rendering
         {
             Append(new Command { Kind = Kind.Draw, Material = material, Properties = properties, Kernel = shaderPass, X = vertexCount, Y = instanceCount });
         }
+        public void DrawProcedural(GraphicsBuffer indexBuffer, Matrix4x4 matrix, Material material, int shaderPass, MeshTopology topology, int indexCount, int instanceCount, MaterialPropertyBlock properties)
+        {
+            CheckIndices(indexBuffer);
+            Append(new Command { Kind = Kind.Draw, Material = material, Properties = properties, Kernel = shaderPass, Indices = indexBuffer, X = indexCount, Y = instanceCount });
+        }
         public void DrawProceduralIndirect(Matrix4x4 matrix, Material material, int shaderPass, MeshTopology topology, GraphicsBuffer bufferWithArgs)
         {
             DrawProceduralIndirect(matrix, material, shaderPass, topology, bufferWithArgs, 0, null);
@@ -138,9 +143,12 @@ namespace UnityEngine.Rendering
         }
         public void DrawProceduralIndirect(Matrix4x4 matrix, Material material, int shaderPass, MeshTopology topology, GraphicsBuffer bufferWithArgs, int argsOffset, MaterialPropertyBlock properties)
         {
-            if ((bufferWithArgs.target & GraphicsBuffer.Target.IndirectArguments) == 0)
-                throw new ArgumentException("bufferWithArgs must have been created with the IndirectArguments target");
-            Append(new Command { Kind = Kind.Draw, Material = material, Properties = properties, Kernel = shaderPass, Buffer = bufferWithArgs, X = argsOffset });
+            DrawIndirect(null, material, shaderPass, bufferWithArgs, argsOffset, properties);
+        }
+        public void DrawProceduralIndirect(GraphicsBuffer indexBuffer, Matrix4x4 matrix, Material material, int shaderPass, MeshTopology topology, GraphicsBuffer bufferWithArgs, int argsOffset, MaterialPropertyBlock properties)
+        {
+            CheckIndices(indexBuffer);
+            DrawIndirect(indexBuffer, material, shaderPass, bufferWithArgs, argsOffset, properties);
         }
 
         internal void Run()
@@ -156,9 +164,22 @@ namespace UnityEngine.Rendering
                 case Kind.Constant: command.Shader.Constants.Set(command.Name, command.Value, payload, command.Start, command.Y); break;
                 case Kind.Buffer: command.Shader.Bind(command.Kernel, command.Name, command.Buffer); break;
                 case Kind.Upload: StandIns.Recorder.Uploaded(command.Buffer, payload, command.Start, command.X, command.Y); break;
-                case Kind.Draw: StandIns.Recorder.Drawn(command.Material, command.Properties, command.Kernel, command.X, command.Y, command.Buffer); break;
+                case Kind.Draw: StandIns.Recorder.Drawn(command.Material, command.Properties, command.Kernel, command.X, command.Y, command.Buffer, command.Indices); break;
                 default: StandIns.Recorder.Dispatched(command.Shader, command.Kernel, command.X, command.Y, command.Z, command.Buffer, command.X); break;
             }
+        }
+
+        private void DrawIndirect(GraphicsBuffer indices, Material material, int shaderPass, GraphicsBuffer bufferWithArgs, int argsOffset, MaterialPropertyBlock properties)
+        {
+            if ((bufferWithArgs.target & GraphicsBuffer.Target.IndirectArguments) == 0)
+                throw new ArgumentException("bufferWithArgs must have been created with the IndirectArguments target");
+            Append(new Command { Kind = Kind.Draw, Material = material, Properties = properties, Kernel = shaderPass, Indices = indices, Buffer = bufferWithArgs, X = argsOffset });
+        }
+
+        private static void CheckIndices(GraphicsBuffer indexBuffer)
+        {
+            if ((indexBuffer.target & GraphicsBuffer.Target.Index) == 0)
+                throw new ArgumentException("indexBuffer must have been created with the Index target");
         }
 
         private void Constant(ComputeShader shader, int name, StandIns.Kinds kind, int start)

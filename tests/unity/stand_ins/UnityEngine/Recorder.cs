@@ -188,12 +188,14 @@ namespace StandIns
                 + ", \"buffers\": {" + Listed(shader.Buffers[kernel]) + "}, \"constants\": {" + Listed(shader.Constants) + "}}");
         }
 
-        internal static void Drawn(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments)
+        internal static void Drawn(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments, GraphicsBuffer indices)
         {
             Draws++;
             if (lines == null)
                 return;
             string counts = arguments == null ? "\"vertices\": " + vertices + ", \"instances\": " + instances : "\"indirect\": [" + arguments.Id + ", " + vertices + "]";
+            if (indices != null)
+                counts += ", \"indices\": " + indices.Id;
             string blocks = ", \"buffers\": {" + Listed(material.Buffers) + "}, \"constants\": {" + Listed(material.Constants) + "}";
             if (properties != null)
                 blocks += ", \"block_buffers\": {" + Listed(properties.Buffers) + "}, \"block_constants\": {" + Listed(properties.Constants) + "}";

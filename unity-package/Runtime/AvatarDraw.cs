@@ -1,0 +1,80 @@
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    /// <summary>One procedural draw of triangles, for whichever pipeline's command buffer.</summary>
+    internal readonly struct AvatarDraw
+    {
+        public AvatarDraw(
+            Material material, int pass, MaterialPropertyBlock properties, GraphicsBuffer indices,
+            GraphicsBuffer arguments, int count, int instances)
+        {
+            Material = material;
+            Pass = pass;
+            Properties = properties;
+            Indices = indices;
+            Arguments = arguments;
+            Count = count;
+            Instances = instances;
+        }
+
+        public Material Material { get; }
+
+        /// <summary>Index of the material's pass.</summary>
+        public int Pass { get; }
+
+        public MaterialPropertyBlock Properties { get; }
+
+        /// <summary>Null where the draw is not indexed.</summary>
+        public GraphicsBuffer Indices { get; }
+
+        /// <summary>Of an indirect draw, from byte 0; null where Count and Instances are what is drawn.</summary>
+        public GraphicsBuffer Arguments { get; }
+
+        /// <summary>Vertices, or indices where there are any.</summary>
+        public int Count { get; }
+
+        /// <summary>Of a direct draw, which the engine multiplies where it draws both eyes by instancing.</summary>
+        public int Instances { get; }
+
+        /// <summary>So many vertices or, with `indices`, so many of them.</summary>
+        public static AvatarDraw Direct(
+            Material material, int pass, MaterialPropertyBlock properties, int count, GraphicsBuffer indices = null)
+        {
+            return new AvatarDraw(material, pass, properties, indices, null, count, 1);
+        }
+
+        /// <summary>As many vertices and instances as the device has written to `arguments`.</summary>
+        public static AvatarDraw Indirect(
+            Material material, int pass, MaterialPropertyBlock properties, GraphicsBuffer arguments)
+        {
+            return new AvatarDraw(material, pass, properties, null, arguments, 0, 0);
+        }
+
+        /// <summary>Appends the draw.</summary>
+        public void Append(CommandBuffer commands)
+        {
+            Matrix4x4 place = Matrix4x4.identity;
+            if (Indices != null && Arguments != null)
+            {
+                commands.DrawProceduralIndirect(
+                    Indices, place, Material, Pass, MeshTopology.Triangles, Arguments, 0, Properties);
+            }
+            else if (Indices != null)
+            {
+                commands.DrawProcedural(
+                    Indices, place, Material, Pass, MeshTopology.Triangles, Count, Instances, Properties);
+            }
+            else if (Arguments != null)
+            {
+                commands.DrawProceduralIndirect(
+                    place, Material, Pass, MeshTopology.Triangles, Arguments, 0, Properties);
+            }
+            else
+            {
+                commands.DrawProcedural(place, Material, Pass, MeshTopology.Triangles, Count, Instances, Properties);
+            }
+        }
+    }
+}
