@@ -56,5 +56,42 @@ namespace Mua.Format
         {
             return positions[layout.Slot(field)];
         }
+
+        /// <summary>Bytes of all vectors of scalars in a field and below it.</summary>
+        public long Held(string field)
+        {
+            return Held(layout.Slot(field));
+        }
+
+        private long Held()
+        {
+            long held = 0;
+            for (int slot = 0; slot < values.Length; slot++)
+            {
+                held += Held(slot);
+            }
+            return held;
+        }
+
+        private long Held(int slot)
+        {
+            if (values[slot] is Block block)
+            {
+                return (long)block.Count * layout.Fields[slot].Width;
+            }
+            if (values[slot] is Table child)
+            {
+                return child.Held();
+            }
+            long held = 0;
+            if (values[slot] is Table[] children)
+            {
+                foreach (Table table in children)
+                {
+                    held += table.Held();
+                }
+            }
+            return held;
+        }
     }
 }
