@@ -43,7 +43,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     avatar = synthetic_avatar(1)
     write(made / "first.muaavatar", avatar, storage="f16")
     write(made / "second.muaavatar", synthetic_avatar(2), storage="i8")
-    first, *others, last = avatar.coarse.mlp
+    first, *_, last = avatar.coarse.mlp
     outputs, inputs = len(last.bias), first.weight.shape[1]
     zeros = [np.zeros(shape, np.float32) for shape in ((WIDE, inputs), (WIDE, WIDE), (outputs, WIDE))]
     mlp = tuple(Layer(weight, np.zeros(len(weight), np.float32)) for weight in zeros)
@@ -78,7 +78,9 @@ def test_a_clip_plays(story: Story) -> None:
 
 def test_an_avatar_is_decoded_at_its_own_rate_and_posed_in_every_frame(story: Story) -> None:
     posed = FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :]
-    decodes, rest = divmod(int(story("Plays", "first")["dispatches"][0]) - SECOND * len(posed), len(FRAME_ORDER) - len(posed))
+    decodes, rest = divmod(
+        int(story("Plays", "first")["dispatches"][0]) - SECOND * len(posed), len(FRAME_ORDER) - len(posed)
+    )
     assert rest == 0
     assert abs(decodes - RATE) <= 1
     assert len(FRAME_ORDER) < FEWER_THAN
