@@ -50,15 +50,19 @@ def assets(folder: Path) -> Iterator[Path]:
         yield from below
 
 
+def guid(package: str, path: str) -> str:
+    """The GUID of `path`, relative to the package of that name."""
+    return hashlib.md5(f"{package}:{path}".encode()).hexdigest()
+
+
 def meta(package: str, path: str, *, folder: bool) -> str:
     """Text of the .meta file of `path`, relative to the package; a type not listed gets Unity's default importer."""
-    guid = hashlib.md5(f"{package}:{path}".encode()).hexdigest()
     name = Path(path).name
     importer, settings = IMPORTERS.get(name) or IMPORTERS.get(Path(path).suffix) or ("DefaultImporter", PLAIN)
     if folder:
         importer, settings = "DefaultImporter", PLAIN
     kind = "folderAsset: yes\n" if folder else ""
-    return f"fileFormatVersion: 2\nguid: {guid}\n{kind}{importer}:\n{settings}{TAIL}"
+    return f"fileFormatVersion: 2\nguid: {guid(package, path)}\n{kind}{importer}:\n{settings}{TAIL}"
 
 
 def expected(folder: Path) -> dict[Path, str]:

@@ -1,19 +1,5 @@
 namespace Mua.Format
 {
-    /// <summary>What stands in one slot of a table.</summary>
-    internal enum Kind
-    {
-        Flag,
-        U8,
-        U16,
-        U32,
-        F32,
-        F64,
-        Enum,
-        Text,
-        Table,
-    }
-
     /// <summary>One slot of a table.</summary>
     internal sealed class Field
     {
