@@ -153,6 +153,18 @@ def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: s
     assert told["log"][0].endswith(told["message"][0])
 
 
+def test_an_avatar_that_has_no_room_beside_others_goes_alone(story: Story) -> None:
+    told = story("LacksMemoryForTwo", "first")
+    assert told["state"] == ["Ready Failed"]
+    assert told["shown"] == ["1"]
+    assert len(told["log"]) == 1, told["log"]
+    assert "splats" in told["message"][0]
+
+
+def test_a_game_that_starts_without_a_reload_keeps_its_avatars(story: Story) -> None:
+    assert story("StartsWithoutReload", "first")["draws"] == ["10"]
+
+
 def test_transforms_give_the_pose_wherever_their_root_stands(story: Story) -> None:
     told = story("FollowsRig", "first")
     assert float(told["turned"][0]) < TURNED

@@ -45,6 +45,7 @@ namespace Mua
         private bool isStale; // the inspector has changed a field
         private bool isPlaced;
         private bool isScaleReported;
+        private string refusal; // why there is no room for the avatar beside the others
         private DualQuaternion place;
         private Vector3 position;
         private Quaternion rotation;
@@ -173,6 +174,12 @@ namespace Mua
             hasMoved = true;
         }
 
+        /// <summary>Has the next Update end the avatar; nothing may go while a camera is drawn.</summary>
+        internal void Refuse(string sentence)
+        {
+            refusal = sentence;
+        }
+
         private void OnEnable()
         {
             Reload();
@@ -194,6 +201,10 @@ namespace Mua
             if (isStale)
             {
                 Reload();
+            }
+            if (refusal != null)
+            {
+                Fail(buffers.Avatar.Name + " beside the other avatars: " + refusal);
             }
             if (State == AvatarState.Loading)
             {
@@ -381,6 +392,7 @@ namespace Mua
             clips = new ClipSampler[0];
             names = new string[0];
             isPlaced = false;
+            refusal = null;
         }
     }
 }

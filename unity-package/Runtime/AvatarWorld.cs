@@ -105,13 +105,6 @@ namespace Mua
             return resources;
         }
 
-        /// <summary>Those of the sort; an avatar's own are found as its AvatarFrame is made.</summary>
-        private static void RequireKernels(AvatarResources resources)
-        {
-            new SplatProject(resources.SplatProject);
-            new SplatSort(resources.SplatSort);
-        }
-
         /// <summary>Has the next Record sort the avatars that are shown by then.</summary>
         public static void Refresh()
         {
@@ -176,7 +169,17 @@ namespace Mua
             Reported.Clear(); // avatars that outlive the start of a game without a reload stay in their world
         }
 
-        /// <summary>One set of shared buffers for the avatars that there are now, those whose splats are drawn first.</summary>
+        /// <summary>Those of the sort; an avatar's own are found as its AvatarFrame is made.</summary>
+        private static void RequireKernels(AvatarResources resources)
+        {
+            new SplatProject(resources.SplatProject);
+            new SplatSort(resources.SplatSort);
+        }
+
+        /// <summary>
+        /// One set of shared buffers for the avatars that there are now, those whose splats are drawn first. Where the device
+        /// cannot hold them, the avatar that came last goes.
+        /// </summary>
         private void Share()
         {
             Release();
@@ -190,7 +193,7 @@ namespace Mua
             }
             catch (InvalidOperationException error)
             {
-                Report(error.Message, null);
+                avatars[avatars.Count - 1].Refuse(error.Message);
             }
         }
 

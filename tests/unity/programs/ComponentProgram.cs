@@ -172,6 +172,28 @@ namespace Mua
             Fails();
         }
 
+        private static void LacksMemoryForTwo()
+        {
+            AvatarRenderer first = Show(files[0]);
+            Frames(2);
+            Machine.BufferSize(2 * 64 * AvatarWorld.Current.SplatCount - 1);
+            AvatarRenderer second = Show(files[0]);
+            Frames(20);
+            Say("state", first.State + " " + second.State);
+            Say("message", second.Message);
+            Say("shown", AvatarWorld.Current.Draws.Count);
+        }
+
+        private static void StartsWithoutReload()
+        {
+            Show(files[0]);
+            Frames(2);
+            typeof(AvatarWorld).GetMethod("Restart", BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
+            int draws = Recorder.Draws;
+            Frames(10);
+            Say("draws", Recorder.Draws - draws);
+        }
+
         private static void FollowsRig()
         {
             AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
