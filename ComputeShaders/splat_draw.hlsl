@@ -13,6 +13,10 @@
 
 #include "common.hlsl"
 
+#ifndef LEAST_DEPTH
+#define LEAST_DEPTH 0.0 // of clip z / w; an includer for OpenGL says -1
+#endif
+
 static const float LEAST_OPACITY = 1.0 / 255.0; // below it a splat changes no 8-bit image
 static const float MOST_ALPHA = 0.99; // of one splat at one pixel
 static const float SH_C0 = 0.28209479177387814;
@@ -84,8 +88,9 @@ SplatVaryings splatVertex(uint vertex, uint eye, uint splatCount, float2 screen,
     float4 clip = mul(viewProjection, float4(asfloat(splats[4 * splat].xyz), 1));
     bool seen = deviations.x > 0;
 
+    float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
     SplatVaryings varyings;
-    varyings.position = float4(2 * pixel.x / screen.x - 1, 1 - 2 * pixel.y / screen.y, saturate(clip.z / clip.w), 1);
+    varyings.position = float4(2 * pixel.x / screen.x - 1, 1 - 2 * pixel.y / screen.y, depth, 1);
     if (!seen)
         varyings.position = float4(2, 2, 0, 1);
     varyings.offset = offset;

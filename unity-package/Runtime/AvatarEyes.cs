@@ -16,7 +16,7 @@ namespace Mua
         /// <summary>Eye to clip, -w to w in depth, as of Camera.projectionMatrix.</summary>
         public readonly Matrix4x4[] Projection = new Matrix4x4[Most];
 
-        /// <summary>World to the clip space of render textures on this device, for the depth of what is drawn.</summary>
+        /// <summary>World to clip space with y up and this device's depth; Shaders/target.hlsl turns y where Unity does.</summary>
         public readonly Matrix4x4[] DeviceViewProjection = new Matrix4x4[Most];
 
         /// <summary>Width and height of one eye, pixels.</summary>
@@ -48,7 +48,7 @@ namespace Mua
         public void Add(Matrix4x4 unityView, Matrix4x4 projection)
         {
             Matrix4x4 view = AvatarSpace.View(unityView);
-            Matrix4x4 device = GL.GetGPUProjectionMatrix(projection, true) * view;
+            Matrix4x4 device = GL.GetGPUProjectionMatrix(projection, false) * view;
             for (int eye = Count; eye < Most; eye++)
             {
                 View[eye] = view;

@@ -11,6 +11,7 @@ namespace Mua
         public const int VerticesPerSplat = 6;
 
         private const string File = "the splat shader";
+        private const int IndirectPass = 0, DirectPass = 1;
 
         private static readonly int Order = Shader.PropertyToID("order");
         private static readonly int Ellipses = Shader.PropertyToID("ellipses");
@@ -21,7 +22,6 @@ namespace Mua
         private static readonly int SplatCount = Shader.PropertyToID("splat_count");
         private static readonly int EyeCount = Shader.PropertyToID("eye_count");
         private static readonly int VisibleArguments = Shader.PropertyToID("visible_arguments");
-        private static readonly int Direct = Shader.PropertyToID("direct");
 
         /// <summary>InvalidOperationException where the shader is missing or the device cannot run it.</summary>
         public SplatDraw(Shader shader)
@@ -54,10 +54,9 @@ namespace Mua
             Properties.SetInteger(SplatCount, frame.SplatCount);
             Properties.SetInteger(EyeCount, frame.Eyes.Count);
             Properties.SetBuffer(VisibleArguments, frame.Arguments);
-            Properties.SetInteger(Direct, Indirect ? 0 : 1);
             return Indirect
-                ? AvatarDraw.Indirect(Material, 0, Properties, frame.Arguments)
-                : AvatarDraw.Direct(Material, 0, Properties, VerticesPerSplat * frame.SplatCount);
+                ? AvatarDraw.Indirect(Material, IndirectPass, Properties, frame.Arguments)
+                : AvatarDraw.Direct(Material, DirectPass, Properties, VerticesPerSplat * frame.SplatCount);
         }
 
         public void Dispose()

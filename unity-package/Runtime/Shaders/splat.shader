@@ -1,0 +1,99 @@
+// The draw of sorted splats for one or two eyes: splat_draw.hlsl of com.mua.kernels with the buffers that
+// Runtime/Kernels/SplatDraw.cs binds. Both passes draw the same: SplatsDirect where the device takes no counts from a
+// buffer, and so draws all splats, of which the visible ones stand first in order.
+Shader "Hidden/MUA/Splat"
+{
+    SubShader
+    {
+        Tags { "Queue" = "Transparent" "RenderType" = "Transparent" "IgnoreProjector" = "True" }
+        Blend One OneMinusSrcAlpha
+        ZTest LEqual
+        ZWrite Off
+        Cull Off
+
+        HLSLINCLUDE
+        #include "target.hlsl"
+        #include "Packages/com.mua.kernels/splat_draw.hlsl"
+
+        StructuredBuffer<uint> order; // [M] splats, back to front
+        StructuredBuffer<float2> ellipses; // [E, N, 3] (column, row), (cos, sin), (major, minor), pixels
+        StructuredBuffer<uint2> colors; // [N] half floats: red and green, blue and opacity
+        StructuredBuffer<uint4> splats; // [N, 4] 64 bytes each; the centre is read
+
+        float4x4 view_projection[2]; // of each eye, clip y up
+        float4 screen; // width and height of one eye, pixels
+        uint splat_count;
+        uint eye_count;
+
+        struct Attributes
+        {
+            uint vertex : SV_VertexID;
+            UNITY_VERTEX_INPUT_INSTANCE_ID
+        };
+
+        struct Varyings
+        {
+            SplatVaryings splat;
+            UNITY_VERTEX_OUTPUT_STEREO
+        };
+
+        Varyings vertexOf(Attributes attributes, bool isVisible)
+        {
+            UNITY_SETUP_INSTANCE_ID(attributes);
+            Varyings varyings;
+            varyings.splat = (SplatVaryings)0;
+            varyings.splat.position = float4(2, 2, 0, 1); // outside the clip volume
+            if (isVisible)
+            {
+                uint eye = boundEye(eye_count);
+                varyings.splat = splatVertex(attributes.vertex, eye, splat_count, screen.xy, view_projection[eye],
+                                             order, ellipses, colors, splats);
+                varyings.splat.position = targetPosition(varyings.splat.position);
+                varyings.splat.color.rgb = targetColor(varyings.splat.color.rgb);
+            }
+            UNITY_INITIALIZE_VERTEX_OUTPUT_STEREO(varyings);
+            return varyings;
+        }
+
+        Varyings SplatVert(Attributes attributes)
+        {
+            return vertexOf(attributes, true);
+        }
+
+        float4 SplatFrag(Varyings varyings) : SV_Target
+        {
+            UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(varyings);
+            return splatFragment(varyings.splat);
+        }
+        ENDHLSL
+
+        Pass
+        {
+            Name "Splats"
+
+            HLSLPROGRAM
+            #pragma target 4.5
+            #pragma vertex SplatVert
+            #pragma fragment SplatFrag
+            ENDHLSL
+        }
+
+        Pass
+        {
+            Name "SplatsDirect"
+
+            HLSLPROGRAM
+            #pragma target 4.5
+            #pragma vertex SplatDirectVert
+            #pragma fragment SplatFrag
+
+            StructuredBuffer<uint> visible_arguments; // [8]; the first is the vertices of all visible splats
+
+            Varyings SplatDirectVert(Attributes attributes)
+            {
+                return vertexOf(attributes, attributes.vertex < visible_arguments[0]);
+            }
+            ENDHLSL
+        }
+    }
+}
