@@ -2,9 +2,11 @@
 
 Inside a UV chart neighbouring texels make triangles. Along a seam the nearest texel of one side is followed by that of
 the other, and the two rows are zipped. What then stays open where several charts meet is filled.
+
+unity-package/Runtime/TexelGrid.cs makes the same triangles: all is in double precision, and sums are taken in order.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -36,12 +38,19 @@ def build_surface(mesh: Mesh, texels: TexelMap) -> Surface:
     count = len(texels.texels)
     if not count:
         return rings(np.empty((0, 3), np.int64), 0)
-    places = np.einsum("nk,nki->ni", texels.barycentrics, mesh.vertices[mesh.faces[texels.triangles]])
+    mesh = replace(mesh, vertices=mesh.vertices.astype(np.float64), uv=mesh.uv.astype(np.float64))
+    places = _sum3(texels.barycentrics[:, :, None] * mesh.vertices[mesh.faces[texels.triangles]])
     charts = find_charts(_nodes(mesh), mesh.uv[mesh.uv_faces])
     inner = _grid(mesh, texels, places=places, charts=charts)
     seams = _seams(mesh, texels, places=places, charts=charts)
     triangles = np.concatenate([inner, _fitting(seams, inner, places)])
     return rings(np.concatenate([triangles, _patches(triangles, places, mesh)]), count)
+
+
+def _sum3(
+    terms: Array,  # [P, 3, ...]
+) -> Array:
+    return np.asarray(terms[:, 0] + terms[:, 1] + terms[:, 2])
 
 
 def _nodes(mesh: Mesh) -> Array:
@@ -63,7 +72,7 @@ def _grid(
     rank[np.divmod(texels.texels, size)] = np.arange(len(texels.texels))
     a, b, c, d = (rank[r : r + size, s : s + size].ravel() for r in (0, 1) for s in (0, 1))
     full = (a >= 0) & (b >= 0) & (c >= 0) & (d >= 0)
-    falling = np.linalg.norm(places[a] - places[d], axis=1) <= np.linalg.norm(places[b] - places[c], axis=1)
+    falling = _sum3((places[a] - places[d]) ** 2) <= _sum3((places[b] - places[c]) ** 2)
     along_ad, along_bc = full & falling, full & ~falling
     # A block with one empty corner keeps the triangle of the other three.
     halves = [
@@ -96,7 +105,8 @@ def _footprints(mesh: Mesh, texels: TexelMap) -> Array:
 def _edge_lengths(places: Array, triangles: Array) -> Array:
     """Longest edge [T], metres."""
     corners = places[triangles]
-    return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    sides = (corners - np.roll(corners, 1, axis=1)).reshape(-1, 3)
+    return np.asarray(np.sqrt(_sum3(sides**2)).reshape(-1, 3).max(axis=1))
 
 
 def _seams(
@@ -109,7 +119,7 @@ def _seams(
     """Triangles [T, 3] that zip the texels on both sides of every edge that UV or charts cut."""
     left, right = _cut_edges(mesh, charts)
     ends = [mesh.uv[mesh.uv_faces[f[:, None], k]] * texels.size for f, k in (left, right)]  # [S, 2, 2]
-    steps = np.ceil(np.max([np.linalg.norm(e[:, 1] - e[:, 0], axis=1) for e in ends], axis=0) / SEAM_STEP)
+    steps = np.ceil(np.max([np.sqrt(((e[:, 1] - e[:, 0]) ** 2).sum(axis=1)) for e in ends], axis=0) / SEAM_STEP)
     steps = np.maximum(steps, 1).astype(np.int64)
     edge = np.repeat(np.arange(len(steps)), steps + 1)
     within = np.arange(len(edge)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)
@@ -132,7 +142,7 @@ def _cut_edges(mesh: Mesh, charts: Array) -> tuple[tuple[Array, Array], tuple[Ar
     face, k = np.divmod(np.arange(3 * len(mesh.faces)), 3)
     start, end = mesh.faces[face, k].astype(np.int64), mesh.faces[face, (k + 1) % 3].astype(np.int64)
     name, back = start * len(mesh.vertices) + end, end * len(mesh.vertices) + start
-    order = np.argsort(name)
+    order = np.argsort(name, kind="stable")
     found = order[np.minimum(np.searchsorted(name[order], back), len(name) - 1)]
     paired = (name[found] == back) & (start < end)
     one, other = np.flatnonzero(paired), found[paired]

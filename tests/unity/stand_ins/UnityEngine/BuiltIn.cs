@@ -8,10 +8,14 @@ namespace UnityEngine.Rendering
 {
     public enum CameraEvent { BeforeForwardOpaque = 10, AfterForwardOpaque = 11, BeforeForwardAlpha = 16, AfterForwardAlpha = 17, AfterEverything = 19 }
 
-    public abstract class RenderPipelineAsset : ScriptableObject { }
+    public abstract class RenderPipelineAsset : ScriptableObject
+    {
+        public virtual Shader defaultShader { get { return null; } }
+    }
 
     public static class GraphicsSettings
     {
         public static RenderPipelineAsset currentRenderPipeline { get; internal set; }
+        public static RenderPipelineAsset defaultRenderPipeline { get { return currentRenderPipeline; } }
     }
 }

@@ -4,6 +4,8 @@ using System.Collections.Generic;
 
 namespace UnityEngine
 {
+    public enum CameraClearFlags { Skybox = 1, SolidColor, Depth, Nothing }
+
     public sealed class Camera : Behaviour
     {
         public enum StereoscopicEye { Left, Right }
@@ -31,6 +33,10 @@ namespace UnityEngine
         public float nearClipPlane { get; set; }
         public float farClipPlane { get; set; }
         public int cullingMask { get; set; }
+        public CameraClearFlags clearFlags { get; set; }
+        public Color backgroundColor { get; set; }
+        public bool allowHDR { get; set; }
+        public bool allowMSAA { get; set; }
         public CameraType cameraType { get; set; }
         public bool stereoEnabled { get; internal set; }
         public MonoOrStereoscopicEye stereoActiveEye { get { return MonoOrStereoscopicEye.Mono; } }

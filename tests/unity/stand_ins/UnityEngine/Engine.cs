@@ -30,6 +30,7 @@ namespace UnityEngine
 
         public static event LogCallback logMessageReceived;
         public static event Action quitting { add { } remove { } }
+        public static event Events.UnityAction onBeforeRender;
 
         static Application()
         {
@@ -52,6 +53,12 @@ namespace UnityEngine
         public static int targetFrameRate { get; set; }
         public static void Quit() { }
         public static void Quit(int exitCode) { }
+
+        internal static void BeforeRender()
+        {
+            if (onBeforeRender != null)
+                onBeforeRender();
+        }
 
         internal static void Received(string condition, LogType type)
         {
@@ -107,6 +114,7 @@ namespace UnityEngine
         public static bool supportsComputeShaders { get; internal set; }
         public static bool supportsIndirectArgumentsBuffer { get; internal set; }
         public static bool supportsAsyncGPUReadback { get; internal set; }
+        public static bool supportsGpuRecorder { get; internal set; }
         public static bool supportsMultiview { get; internal set; }
         public static bool usesReversedZBuffer { get { return true; } }
         public static bool graphicsUVStartsAtTop { get { return true; } }
@@ -128,6 +136,11 @@ namespace UnityEngine
         public static string deviceModel { get { return "stand-in"; } }
         public static string operatingSystem { get { return "stand-in"; } }
     }
+}
+
+namespace UnityEngine.Events
+{
+    public delegate void UnityAction();
 }
 
 namespace UnityEngine.Rendering
@@ -176,6 +189,7 @@ namespace StandIns
         public static void ComputeShaders(bool supported) { SystemInfo.supportsComputeShaders = supported; }
         public static void ComputeBuffers(int most) { SystemInfo.maxComputeBufferInputsCompute = most; }
         public static void BufferSize(long most) { SystemInfo.maxGraphicsBufferSize = most; }
+        public static void GpuRecorder(bool supported) { SystemInfo.supportsGpuRecorder = supported; }
         public static void Multiview(bool supported) { SystemInfo.supportsMultiview = supported; }
         public static void GraphicsDevice(UnityEngine.Rendering.GraphicsDeviceType type) { SystemInfo.graphicsDeviceType = type; }
     }

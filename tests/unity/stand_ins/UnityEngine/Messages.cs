@@ -46,7 +46,7 @@ namespace StandIns
         }
     }
 
-    /// <summary>Runs frames: Start, Update, coroutines, LateUpdate, then every camera.</summary>
+    /// <summary>Runs frames: Start, Update, coroutines, LateUpdate, onBeforeRender, then every camera.</summary>
     public static class PlayerLoop
     {
         private static readonly List<Behaviour> Running = new List<Behaviour>();
@@ -72,6 +72,7 @@ namespace StandIns
                     script.StepCoroutines();
             }
             SendAll("LateUpdate");
+            Application.BeforeRender();
             for (int i = 0; i < Running.Count; i++)
             {
                 Camera camera = Running[i] as Camera;

@@ -110,5 +110,6 @@ namespace UnityEngine
             Object found;
             return Placed.TryGetValue(path, out found) ? found as T : null;
         }
+        public static T GetBuiltinResource<T>(string path) where T : Object { return Load<T>(path); }
     }
 }

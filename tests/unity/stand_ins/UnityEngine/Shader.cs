@@ -39,6 +39,7 @@ namespace UnityEngine
         }
 
         public Shader shader { get; set; }
+        public Color color { get; set; }
         public int renderQueue { get; set; }
         public bool enableInstancing { get; set; }
         public Color color { get; set; }

@@ -1,0 +1,58 @@
+// Stand-in. Source: Unity 6000.0, ProfilerRecorder.bindings.cs; a test says what the markers measured.
+using System;
+using System.Collections.Generic;
+
+namespace Unity.Profiling
+{
+    public struct ProfilerCategory
+    {
+        public static ProfilerCategory Render { get { return new ProfilerCategory(); } }
+        public static ProfilerCategory Scripts { get { return new ProfilerCategory(); } }
+    }
+
+    [Flags]
+    public enum ProfilerRecorderOptions
+    {
+        None = 0, StartImmediately = 1, KeepAliveDuringDomainReload = 2, CollectOnlyOnCurrentThread = 4, WrapAroundWhenCapacityReached = 8,
+        SumAllSamplesInFrame = 16, GpuRecorder = 64, Default = WrapAroundWhenCapacityReached | SumAllSamplesInFrame
+    }
+
+    public struct ProfilerRecorderSample
+    {
+        public long Value { get; internal set; }
+        public long Count { get { return 1; } }
+    }
+
+    public struct ProfilerRecorder : IDisposable
+    {
+        private string name;
+
+        public static ProfilerRecorder StartNew(ProfilerCategory category, string statName, int capacity = 1, ProfilerRecorderOptions options = ProfilerRecorderOptions.Default)
+        {
+            StandIns.Markers.Open++;
+            return new ProfilerRecorder { name = statName };
+        }
+
+        public bool Valid { get { return name != null && StandIns.Markers.Samples.ContainsKey(name); } }
+        public int Count { get { return StandIns.Markers.Samples[name].Length; } }
+        public long LastValue { get { return Count == 0 ? 0 : GetSample(Count - 1).Value; } }
+        public ProfilerRecorderSample GetSample(int index) { return new ProfilerRecorderSample { Value = StandIns.Markers.Samples[name][index] }; }
+        public void Dispose()
+        {
+            StandIns.Markers.Open -= name == null ? 0 : 1;
+            name = null;
+        }
+    }
+}
+
+namespace StandIns
+{
+    /// <summary>What the profiler measured of a marker, nanoseconds by frame. Not part of Unity's API.</summary>
+    public static class Markers
+    {
+        internal static readonly Dictionary<string, long[]> Samples = new Dictionary<string, long[]>();
+
+        public static int Open { get; internal set; }
+        public static void Measure(string marker, params long[] nanoseconds) { Samples[marker] = nanoseconds; }
+    }
+}

@@ -1,0 +1,125 @@
+using System;
+using System.Collections;
+using System.Collections.Generic;
+using System.IO;
+using UnityEngine;
+using UnityEngine.Networking;
+
+namespace Mua.Samples.VrPlayer
+{
+    /// <summary>
+    /// The avatars that the player finds: files in the folder of avatars first, then those that came with the app, both by name,
+    /// then those of the scene.
+    /// </summary>
+    internal sealed class AvatarShelf
+    {
+        public const string Pattern = "*.muaavatar";
+
+        /// <summary>Lists what StreamingAssets holds, one path a line, where a folder cannot be listed.</summary>
+        public const string Index = "avatars.txt";
+
+        private readonly List<AvatarEntry> entries = new List<AvatarEntry>();
+
+        /// <summary>Where a user puts avatars.</summary>
+        public static string Folder => Path.Combine(Application.persistentDataPath, "avatars");
+
+        public int Count => entries.Count;
+
+        /// <summary>Index of the one that is shown.</summary>
+        public int Position { get; private set; }
+
+        /// <summary>The one that is shown, or null while there is none.</summary>
+        public AvatarEntry Current => entries.Count == 0 ? null : entries[Position];
+
+        /// <summary>Looks everywhere; a coroutine, since inside an Android package a file has to be asked for.</summary>
+        public IEnumerator Fill(AvatarAsset[] assets)
+        {
+            entries.Clear();
+            Position = 0;
+            AddFolder(Folder, SearchOption.TopDirectoryOnly);
+            string streaming = Application.streamingAssetsPath;
+            if (streaming.Contains("://"))
+            {
+                using (UnityWebRequest request = UnityWebRequest.Get(streaming + "/" + Index))
+                {
+                    yield return request.SendWebRequest();
+                    if (request.result == UnityWebRequest.Result.Success)
+                    {
+                        AddLines(streaming, System.Text.Encoding.UTF8.GetString(request.downloadHandler.data));
+                    }
+                }
+            }
+            else
+            {
+                AddFolder(streaming, SearchOption.AllDirectories);
+            }
+            AddAssets(assets);
+        }
+
+        /// <summary>Goes on by 1 or -1, from the last to the first, past those that cannot be shown.</summary>
+        public void Step(int by)
+        {
+            for (int i = 0; i < entries.Count; i++)
+            {
+                Position = (Position + by + entries.Count) % entries.Count;
+                if (!Current.HasFailed)
+                {
+                    return;
+                }
+            }
+        }
+
+        /// <summary>Goes to the avatar of a name; whether there is one.</summary>
+        public bool Find(string name)
+        {
+            int found = entries.FindIndex(entry => entry.Name == name);
+            Position = found < 0 ? Position : found;
+            return found >= 0;
+        }
+
+        /// <summary>Gives up the present avatar and goes on to the next; whether there is one.</summary>
+        public bool Skip()
+        {
+            Current.HasFailed = true;
+            Step(1);
+            return !Current.HasFailed;
+        }
+
+        private void AddFolder(string folder, SearchOption option)
+        {
+            if (!Directory.Exists(folder))
+            {
+                return;
+            }
+            string[] paths = Directory.GetFiles(folder, Pattern, option);
+            Array.Sort(paths, string.CompareOrdinal);
+            foreach (string path in paths)
+            {
+                entries.Add(new AvatarEntry(Path.GetFileNameWithoutExtension(path), path, null));
+            }
+        }
+
+        private void AddLines(string folder, string lines)
+        {
+            foreach (string line in lines.Split('\n'))
+            {
+                string path = line.Trim();
+                if (path.Length > 0)
+                {
+                    entries.Add(new AvatarEntry(Path.GetFileNameWithoutExtension(path), folder + "/" + path, null));
+                }
+            }
+        }
+
+        private void AddAssets(AvatarAsset[] assets)
+        {
+            foreach (AvatarAsset asset in assets)
+            {
+                if (asset != null)
+                {
+                    entries.Add(new AvatarEntry(asset.name, null, asset));
+                }
+            }
+        }
+    }
+}

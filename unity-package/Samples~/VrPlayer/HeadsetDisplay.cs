@@ -1,0 +1,75 @@
+using System.Collections.Generic;
+using UnityEngine;
+using UnityEngine.XR;
+#if MUA_META_OPENXR && (UNITY_ANDROID || UNITY_EDITOR_WIN)
+using UnityEngine.XR.OpenXR.Features.Meta;
+#endif
+
+namespace Mua.Samples.VrPlayer
+{
+    /// <summary>
+    /// Sets up the headset once it is there: foveation, the floor as origin, and the display's rate where a package that can
+    /// ask for it, com.unity.xr.meta-openxr, is installed; elsewhere the rate stays as the headset or Quest Link has it.
+    /// </summary>
+    internal sealed class HeadsetDisplay
+    {
+        private const int FramesOfStart = 3; // until Unity lets a display be asked
+
+        private readonly List<XRDisplaySubsystem> displays = new List<XRDisplaySubsystem>();
+        private readonly List<XRInputSubsystem> inputs = new List<XRInputSubsystem>();
+        private readonly float wantedRate, wantedFoveation;
+        private XRDisplaySubsystem display;
+
+        public HeadsetDisplay(float rate, float foveation)
+        {
+            wantedRate = rate;
+            wantedFoveation = foveation;
+        }
+
+        /// <summary>Of the display, Hz; NaN without a headset.</summary>
+        public double Rate
+        {
+            get
+            {
+                float rate = 0;
+                return display != null && display.TryGetDisplayRefreshRate(out rate) ? rate : double.NaN;
+            }
+        }
+
+        /// <summary>From 0 to 1; NaN without a headset.</summary>
+        public double Foveation => display == null ? double.NaN : display.foveatedRenderingLevel;
+
+        /// <summary>Takes a headset that has come up since the last call, or drops one that went.</summary>
+        public void Refresh()
+        {
+            if (display != null && display.running)
+            {
+                return;
+            }
+            display = null;
+            SubsystemManager.GetSubsystems(displays);
+            if (Time.frameCount < FramesOfStart || displays.Count == 0 || !displays[0].running)
+            {
+                return;
+            }
+            display = displays[0];
+            display.foveatedRenderingLevel = wantedFoveation;
+            RequestRate();
+            SubsystemManager.GetSubsystems(inputs);
+            foreach (XRInputSubsystem input in inputs)
+            {
+                input.TrySetTrackingOriginMode(TrackingOriginModeFlags.Floor);
+            }
+        }
+
+        private void RequestRate()
+        {
+#if MUA_META_OPENXR && (UNITY_ANDROID || UNITY_EDITOR_WIN)
+            if (!display.TryRequestDisplayRefreshRate(wantedRate))
+            {
+                Debug.LogWarning("MUA: the headset does not take a display rate of " + wantedRate + " Hz; it keeps " + Rate + ".");
+            }
+#endif
+        }
+    }
+}

@@ -1,0 +1,111 @@
+using System;
+
+namespace Mua.Samples.VrPlayer
+{
+    /// <summary>Text that is built again and again in one buffer; what does not fit is left out.</summary>
+    internal sealed class PanelText
+    {
+        private readonly char[] characters = new char[2048];
+        private int length;
+
+        public PanelText Clear()
+        {
+            length = 0;
+            return this;
+        }
+
+        public PanelText Add(string text)
+        {
+            return Add(text, 0, text.Length);
+        }
+
+        /// <summary>Text in lines of at most so many characters, parted at spaces where there are any.</summary>
+        public PanelText Wrap(string text, int columns)
+        {
+            int start = 0;
+            while (text.Length - start > columns)
+            {
+                int space = text.LastIndexOf(' ', start + columns, columns);
+                int end = space > start ? space : start + columns;
+                Add(text, start, end).Line();
+                start = space > start ? space + 1 : end;
+            }
+            return Add(text, start, text.Length);
+        }
+
+        public PanelText Line()
+        {
+            Add('\n');
+            return this;
+        }
+
+        public PanelText Add(int value)
+        {
+            if (value < 0)
+            {
+                Add('-');
+            }
+            long rest = Math.Abs((long)value), unit = 1;
+            while (rest / unit >= 10)
+            {
+                unit *= 10;
+            }
+            for (; unit > 0; unit /= 10)
+            {
+                Add((char)('0' + rest / unit % 10));
+            }
+            return this;
+        }
+
+        /// <summary>A number that is not negative, to a number of digits behind the point; a dash where it is not known.</summary>
+        public PanelText Add(double value, int digits)
+        {
+            int scale = 1;
+            for (int i = 0; i < digits; i++)
+            {
+                scale *= 10;
+            }
+            double rounded = Math.Round(value * scale);
+            if (!(rounded >= 0 && rounded < int.MaxValue))
+            {
+                return Add("-");
+            }
+            int whole = (int)rounded;
+            Add(whole / scale);
+            for (int unit = scale / 10; unit > 0; unit /= 10)
+            {
+                Add(unit == scale / 10 ? "." : "");
+                Add((char)('0' + whole / unit % 10));
+            }
+            return this;
+        }
+
+        public bool Same(string text)
+        {
+            return text != null && text.Length == length
+                && text.AsSpan().SequenceEqual(new ReadOnlySpan<char>(characters, 0, length));
+        }
+
+        public override string ToString()
+        {
+            return new string(characters, 0, length);
+        }
+
+        private PanelText Add(string text, int start, int end)
+        {
+            for (int i = start; i < end; i++)
+            {
+                Add(text[i]);
+            }
+            return this;
+        }
+
+        private void Add(char character)
+        {
+            if (length < characters.Length)
+            {
+                characters[length++] = character;
+            }
+        }
+    }
+}

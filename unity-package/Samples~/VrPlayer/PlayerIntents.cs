@@ -1,0 +1,29 @@
+using UnityEngine;
+
+namespace Mua.Samples.VrPlayer
+{
+    /// <summary>What the user asks for in one frame, whichever device said so. Amounts are of full speed, from -1 to 1.</summary>
+    internal struct PlayerIntents
+    {
+        /// <summary>Buttons and keys that went down in this frame.</summary>
+        public PlayerAction Pressed;
+
+        /// <summary>To the right and forward, of where the user looks.</summary>
+        public Vector2 Walk;
+
+        /// <summary>Upwards.</summary>
+        public float Rise;
+
+        /// <summary>To the right and up, degrees of this frame.</summary>
+        public Vector2 Look;
+
+        /// <summary>Of the avatar, seen from above clockwise.</summary>
+        public float Turn;
+
+        /// <summary>Nearer, which shows it larger.</summary>
+        public float Zoom;
+
+        /// <summary>Through the clip, forwards.</summary>
+        public float Scrub;
+    }
+}
