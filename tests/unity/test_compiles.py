@@ -37,7 +37,8 @@ class Assembly:
     def defines(self, platform: str, *, packages: bool) -> tuple[str, ...]:
         """Symbols on a platform; `packages`: whether those that are optional are installed."""
         optional = [rule["define"] for rule in self.definition.get("versionDefines", [])] if packages else []
-        return (*PLAYERS[platform], *optional)
+        keys = "ENABLE_INPUT_SYSTEM" if packages else "ENABLE_LEGACY_INPUT_MANAGER"  # as a project without the package
+        return (*PLAYERS[platform], *optional, keys)
 
     def sources(self) -> list[Path]:
         """The folder's files, less those below another asmdef."""

@@ -17,14 +17,17 @@ namespace Mua.Samples.VrPlayer
 
         private readonly List<XRDisplaySubsystem> displays = new List<XRDisplaySubsystem>();
         private readonly List<XRInputSubsystem> inputs = new List<XRInputSubsystem>();
-        private readonly float wantedRate, wantedFoveation;
+        private readonly float foveation;
         private XRDisplaySubsystem display;
 
         public HeadsetDisplay(float rate, float foveation)
         {
-            wantedRate = rate;
-            wantedFoveation = foveation;
+            WantedRate = rate;
+            this.foveation = foveation;
         }
+
+        /// <summary>That the display was to have, Hz.</summary>
+        public float WantedRate { get; }
 
         /// <summary>Of the display, Hz; NaN without a headset.</summary>
         public double Rate
@@ -53,7 +56,7 @@ namespace Mua.Samples.VrPlayer
                 return;
             }
             display = displays[0];
-            display.foveatedRenderingLevel = wantedFoveation;
+            display.foveatedRenderingLevel = foveation;
             RequestRate();
             SubsystemManager.GetSubsystems(inputs);
             foreach (XRInputSubsystem input in inputs)
@@ -65,9 +68,9 @@ namespace Mua.Samples.VrPlayer
         private void RequestRate()
         {
 #if MUA_META_OPENXR && (UNITY_ANDROID || UNITY_EDITOR_WIN)
-            if (!display.TryRequestDisplayRefreshRate(wantedRate))
+            if (!display.TryRequestDisplayRefreshRate(WantedRate))
             {
-                Debug.LogWarning("MUA: the headset does not take a display rate of " + wantedRate + " Hz; it keeps " + Rate + ".");
+                Debug.LogWarning("MUA: the headset does not take a display rate of " + WantedRate + " Hz; it keeps its own.");
             }
 #endif
         }

@@ -66,7 +66,8 @@ namespace Mua.Samples.VrPlayer
             text.Add(times.OfFrame(), 1).Add(" ms GPU").Line();
             if (display.Rate > 0)
             {
-                text.Add("display ").Add(display.Rate, 0).Add(" Hz   foveation ").Add(display.Foveation, 2).Line();
+                text.Add("display ").Add(display.Rate, 0).Add(" Hz, ").Add(display.WantedRate, 0).Add(" wanted   foveation ");
+                text.Add(display.Foveation, 2).Line();
             }
         }
 

@@ -12,6 +12,7 @@ namespace UnityEngine
         internal Shader(string name) { this.name = name; }
 
         public bool isSupported { get { return true; } }
+        public static Shader Find(string name) { return new Shader(name); }
         public static int PropertyToID(string name)
         {
             int id;
@@ -39,7 +40,6 @@ namespace UnityEngine
         }
 
         public Shader shader { get; set; }
-        public Color color { get; set; }
         public int renderQueue { get; set; }
         public bool enableInstancing { get; set; }
         public Color color { get; set; }
