@@ -7,7 +7,8 @@ namespace Mua
     {
         [SerializeField, HideInInspector] private byte[] content = new byte[0];
         [SerializeField] private Texture2D thumbnail = null;
-        [SerializeField, TextArea] private string summary = "";
+        [SerializeField, HideInInspector] private string summary = "";
+        [SerializeField, HideInInspector] private string fault = "";
 
         /// <summary>The bytes of the file, which must not be changed.</summary>
         public byte[] Content => content;
@@ -15,8 +16,11 @@ namespace Mua
         /// <summary>A portrait, or null.</summary>
         public Texture2D Thumbnail => thumbnail;
 
-        /// <summary>What the file holds, in a few lines.</summary>
+        /// <summary>What the file holds: a line for each row of a table, cells apart by tabs, tables by empty lines.</summary>
         public string Summary => summary;
+
+        /// <summary>Why the avatar cannot be shown: one sentence; empty where it can.</summary>
+        public string Fault => fault;
 
         /// <summary>An asset of a file's bytes, which it keeps.</summary>
         public static AvatarAsset Create(byte[] content, Texture2D thumbnail = null, string summary = "")
@@ -25,6 +29,14 @@ namespace Mua
             asset.content = content;
             asset.thumbnail = thumbnail;
             asset.summary = summary;
+            return asset;
+        }
+
+        /// <summary>An asset in place of a file that cannot be shown.</summary>
+        public static AvatarAsset CreateFaulty(string fault)
+        {
+            var asset = CreateInstance<AvatarAsset>();
+            asset.fault = fault;
             return asset;
         }
     }

@@ -38,7 +38,10 @@ namespace Mua
         {
             var loader = new AvatarLoader(asset.name);
             byte[] content = asset.Content;
-            loader.reading = Task.Run(() => Read(content));
+            string fault = asset.Fault;
+            loader.reading = fault.Length > 0
+                ? Task.FromException<AvatarBuffers>(new InvalidOperationException(fault))
+                : Task.Run(() => Read(content));
             return loader;
         }
 

@@ -11,6 +11,7 @@ namespace UnityEngine.Rendering
     public abstract class RenderPipelineAsset : ScriptableObject
     {
         public virtual Shader defaultShader { get { return null; } }
+        public virtual Material defaultMaterial { get { return null; } }
     }
 
     public static class GraphicsSettings

@@ -1,6 +1,10 @@
-// Stand-in. Source: Unity 6000.0 scripting reference, Texture, Texture2D.
+// Stand-in. Source: Unity 6000.0 scripting reference, Texture, Texture2D, TextureFormat, ImageConversion.
 namespace UnityEngine
 {
+    public enum TextureFormat { Alpha8 = 1, RGB24 = 3, RGBA32 = 4, ARGB32 = 5 }
+
+    public class UnityException : System.Exception { public UnityException(string message) : base(message) { } }
+
     public class Texture : Object
     {
         public virtual int width { get; protected set; }
@@ -15,6 +19,52 @@ namespace UnityEngine
             this.height = height;
         }
 
+        public Texture2D(int width, int height, TextureFormat textureFormat, bool mipChain) : this(width, height) { format = textureFormat; }
+
+        public TextureFormat format { get; private set; }
+
+        internal byte[] Content; // as it was loaded
+
+        public void LoadRawTextureData(byte[] data)
+        {
+            if (data.Length < 4 * width * height)
+                throw new UnityException("LoadRawTextureData: not enough data provided (will result in overread).");
+            Content = (byte[])data.Clone();
+        }
         public void Apply() { }
+
+        internal void Become(int width, int height, byte[] content)
+        {
+            this.width = width;
+            this.height = height;
+            Content = content;
+        }
+    }
+
+    /// <summary>Reads no more of a PNG than that it is whole: signature, size and the chunk at its end.</summary>
+    public static class ImageConversion
+    {
+        private const int Smallest = 57; // bytes: signature, IHDR, an empty IDAT, IEND
+
+        public static bool LoadImage(this Texture2D tex, byte[] data)
+        {
+            bool whole = data.Length >= Smallest && data[data.Length - 8] == 'I' && data[data.Length - 5] == 'D';
+            tex.Become(whole ? Side(data, 16) : 8, whole ? Side(data, 20) : 8, data);
+            return whole;
+        }
+
+        private static int Side(byte[] data, int at)
+        {
+            return data[at] << 24 | data[at + 1] << 16 | data[at + 2] << 8 | data[at + 3];
+        }
+    }
+}
+
+namespace StandIns
+{
+    /// <summary>What was loaded into a texture. Not part of Unity's API.</summary>
+    public static class Textures
+    {
+        public static byte[] Content(UnityEngine.Texture2D texture) { return texture.Content; }
     }
 }

@@ -1,0 +1,66 @@
+// Stand-in. Source: Unity 6000.0 scripting reference, Editor, CustomEditor, SerializedObject, SerializedProperty (by reflection).
+using System;
+using System.Reflection;
+using Object = UnityEngine.Object;
+
+namespace UnityEditor
+{
+    [AttributeUsage(AttributeTargets.Class)]
+    public sealed class CustomEditor : Attribute { public CustomEditor(Type inspectedType) { } }
+
+    [AttributeUsage(AttributeTargets.Class)]
+    public sealed class CanEditMultipleObjects : Attribute { }
+
+    public class Editor : UnityEngine.ScriptableObject
+    {
+        public Object target { get; set; }
+        public Object[] targets { get; internal set; }
+        public SerializedObject serializedObject { get; internal set; }
+
+        public virtual void OnInspectorGUI() { }
+        public virtual bool RequiresConstantRepaint() { return false; }
+        protected internal static void DrawPropertiesExcluding(SerializedObject obj, params string[] propertyToExclude) { }
+    }
+
+    public sealed class SerializedObject
+    {
+        private readonly Object edited;
+
+        internal SerializedObject(Object edited) { this.edited = edited; }
+
+        public void Update() { }
+        public bool ApplyModifiedProperties() { return true; }
+        public SerializedProperty FindProperty(string propertyPath)
+        {
+            FieldInfo field = edited.GetType().GetField(propertyPath, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public);
+            return field == null ? null : new SerializedProperty(edited, field);
+        }
+    }
+
+    public sealed class SerializedProperty
+    {
+        private readonly Object edited;
+        private readonly FieldInfo field;
+
+        internal SerializedProperty(Object edited, FieldInfo field) { this.edited = edited; this.field = field; }
+
+        public string stringValue { get { return (string)field.GetValue(edited); } set { field.SetValue(edited, value); } }
+    }
+}
+
+namespace StandIns
+{
+    /// <summary>Opens an inspector. Not part of Unity's API.</summary>
+    public static class Inspectors
+    {
+        public static T Open<T>(params Object[] edited) where T : UnityEditor.Editor
+        {
+            T made = (T)Activator.CreateInstance(typeof(T), true);
+            made.target = edited[0];
+            made.targets = edited;
+            made.serializedObject = new UnityEditor.SerializedObject(edited[0]);
+            Messages.Send(made, "OnEnable");
+            return made;
+        }
+    }
+}

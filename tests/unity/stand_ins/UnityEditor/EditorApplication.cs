@@ -1,0 +1,10 @@
+// Stand-in. Source: Unity 6000.0 scripting reference, EditorApplication.
+namespace UnityEditor
+{
+    public static class EditorApplication
+    {
+        public static bool isPlayingOrWillChangePlaymode { get { return false; } }
+        public static void QueuePlayerLoopUpdate() { }
+        public static void Exit(int returnValue) { throw new System.OperationCanceledException("exit " + returnValue); }
+    }
+}

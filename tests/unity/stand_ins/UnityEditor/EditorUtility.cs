@@ -1,0 +1,26 @@
+// Stand-in. Source: Unity 6000.0 scripting reference, EditorUtility; a test answers its dialogs.
+using System.Collections.Generic;
+
+namespace UnityEditor
+{
+    public static class EditorUtility
+    {
+        public static bool DisplayDialog(string title, string message, string ok) { return DisplayDialog(title, message, ok, ""); }
+        public static bool DisplayDialog(string title, string message, string ok, string cancel)
+        {
+            StandIns.Dialogs.Shown.Add(message);
+            return StandIns.Dialogs.Answer;
+        }
+        public static void SetDirty(UnityEngine.Object target) { }
+    }
+}
+
+namespace StandIns
+{
+    /// <summary>What was asked, and the answer to it all. Not part of Unity's API.</summary>
+    public static class Dialogs
+    {
+        public static readonly List<string> Shown = new List<string>();
+        public static bool Answer = true;
+    }
+}

@@ -1,0 +1,56 @@
+using System;
+using System.IO;
+using Mua.Format;
+using UnityEditor.AssetImporters;
+using UnityEngine;
+
+namespace Mua.Editor
+{
+    /// <summary>
+    /// Makes an AvatarAsset of a `.muaavatar` file. Of a file that is not sound, or cannot be read, it makes one that says
+    /// why, and logs an import error.
+    /// </summary>
+    [ScriptedImporter(Version, Extension)]
+    internal sealed class AvatarImporter : ScriptedImporter
+    {
+        /// <summary>Of file names, without a dot.</summary>
+        public const string Extension = "muaavatar";
+
+        private const int Version = 1; // to be raised whenever what is made of a file changes
+        private const string AvatarId = "avatar", ThumbnailId = "thumbnail"; // by which references find the parts
+
+        public override void OnImportAsset(AssetImportContext ctx)
+        {
+            try
+            {
+                Add(ctx, AvatarFile.Read(File.ReadAllBytes(ctx.assetPath)));
+            }
+            catch (AvatarFormatException error)
+            {
+                AddFaulty(ctx, error.Message);
+            }
+            catch (Exception error) when (error is IOException || error is UnauthorizedAccessException)
+            {
+                AddFaulty(ctx, "the file cannot be read (" + error.Message.TrimEnd('.') + ")");
+            }
+        }
+
+        private static void Add(AssetImportContext ctx, AvatarFile avatar)
+        {
+            Texture2D thumbnail = Thumbnail.Of(avatar);
+            thumbnail.name = ThumbnailId;
+            AvatarAsset asset = AvatarAsset.Create(avatar.Content, thumbnail, AvatarSummary.Of(avatar));
+            ctx.AddObjectToAsset(ThumbnailId, thumbnail);
+            ctx.AddObjectToAsset(AvatarId, asset, thumbnail);
+            ctx.SetMainObject(asset);
+        }
+
+        private static void AddFaulty(AssetImportContext ctx, string fault)
+        {
+            AvatarAsset asset = AvatarAsset.CreateFaulty(fault);
+            ctx.AddObjectToAsset(AvatarId, asset);
+            ctx.SetMainObject(asset);
+            ctx.LogImportError("MUA: " + ctx.assetPath + ": " + fault + ".", asset);
+        }
+    }
+}

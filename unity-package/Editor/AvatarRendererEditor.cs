@@ -1,0 +1,99 @@
+using System.Collections.Generic;
+using UnityEditor;
+using UnityEngine;
+
+namespace Mua.Editor
+{
+    /// <summary>The fields of an AvatarRenderer, how far it has come, what is wrong, and its clip to scrub through.</summary>
+    [CustomEditor(typeof(AvatarRenderer)), CanEditMultipleObjects]
+    internal sealed class AvatarRendererEditor : UnityEditor.Editor
+    {
+        private SerializedProperty clip;
+        private string[] clips = new string[0];
+
+        private void OnEnable()
+        {
+            clip = serializedObject.FindProperty("clip");
+        }
+
+        public override bool RequiresConstantRepaint()
+        {
+            var shown = (AvatarRenderer)target;
+            return shown.State == AvatarState.Loading || (shown.State == AvatarState.Ready && Application.isPlaying);
+        }
+
+        public override void OnInspectorGUI()
+        {
+            var shown = (AvatarRenderer)target;
+            bool isOne = targets.Length == 1;
+            serializedObject.Update();
+            DrawPropertiesExcluding(serializedObject, "m_Script", "clip");
+            if (isOne && shown.Clips.Count > 0)
+            {
+                ChooseClip(shown.Clips);
+            }
+            else
+            {
+                EditorGUILayout.PropertyField(clip);
+            }
+            serializedObject.ApplyModifiedProperties();
+            if (isOne)
+            {
+                ShowState(shown);
+            }
+        }
+
+        private void ChooseClip(IReadOnlyList<string> names)
+        {
+            if (clips.Length != names.Count)
+            {
+                clips = new List<string>(names).ToArray();
+            }
+            for (int i = 0; i < clips.Length; i++)
+            {
+                clips[i] = names[i];
+            }
+            int present = Mathf.Max(0, System.Array.IndexOf(clips, clip.stringValue));
+            EditorGUI.BeginChangeCheck();
+            int chosen = EditorGUILayout.Popup("Clip", present, clips);
+            if (EditorGUI.EndChangeCheck())
+            {
+                clip.stringValue = clips[chosen];
+            }
+        }
+
+        private static void ShowState(AvatarRenderer shown)
+        {
+            if (shown.Message.Length > 0)
+            {
+                bool isFailed = shown.State == AvatarState.Failed;
+                EditorGUILayout.HelpBox(shown.Message, isFailed ? MessageType.Error : MessageType.Warning);
+            }
+            if (shown.State == AvatarState.Loading)
+            {
+                Rect bar = EditorGUILayout.GetControlRect();
+                EditorGUI.ProgressBar(bar, shown.Progress, "Loading");
+            }
+            if (shown.State == AvatarState.Ready && shown.FrameCount > 1 && shown.Rig == null)
+            {
+                Scrub(shown);
+            }
+        }
+
+        private static void Scrub(AvatarRenderer shown)
+        {
+            if (Application.isPlaying)
+            {
+                shown.IsPlaying = EditorGUILayout.Toggle("Playing", shown.IsPlaying);
+            }
+            EditorGUI.BeginChangeCheck();
+            int frame = EditorGUILayout.IntSlider("Frame", shown.Frame, 0, shown.FrameCount - 1);
+            if (EditorGUI.EndChangeCheck())
+            {
+                shown.Frame = frame;
+                EditorApplication.QueuePlayerLoopUpdate(); // outside of play nothing else runs one
+                SceneView.RepaintAll();
+            }
+        }
+    }
+}
