@@ -86,9 +86,9 @@ SplatVaryings splatVertex(uint vertex, uint eye, uint splatCount, float2 screen,
     float2 offset = splatCorner(vertex % 6) * splatHalfLengths(deviations, color.a);
     float2 pixel = middle + float2(axis.x * offset.x - axis.y * offset.y, axis.y * offset.x + axis.x * offset.y);
     float4 clip = mul(viewProjection, float4(asfloat(splats[4 * splat].xyz), 1));
+    float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
     bool seen = deviations.x > 0;
 
-    float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
     SplatVaryings varyings;
     varyings.position = float4(2 * pixel.x / screen.x - 1, 1 - 2 * pixel.y / screen.y, depth, 1);
     if (!seen)

@@ -254,7 +254,7 @@ FAULTS = {
             "axis.x * offset.x + axis.y * offset.y",
         ),
         drawn("pixels run up", "1 - 2 * pixel.y / screen.y", "2 * pixel.y / screen.y - 1"),
-        drawn("depth inverted", "saturate(clip.z / clip.w)", "saturate(clip.w / clip.z)"),
+        drawn("depth inverted", "clamp(clip.z / clip.w", "clamp(clip.w / clip.z"),
         drawn("cubic term of the mass lost", "1.6 + 0.07 * right * right", "1.6"),
         drawn("half a pixel of the mass lost", "(offset + 0.5) / deviations", "offset / deviations"),
         drawn("not premultiplied", "float4(varyings.color.rgb * alpha, alpha)", "float4(varyings.color.rgb, alpha)"),

@@ -2,7 +2,8 @@
 
 A recording is NAME.json, one event in a line, and NAME.bin, the uploaded bytes. Events: `buffer` (count, stride,
 target), `name`, `upload` (start in the buffer; offset in the binary, bytes), `dispatch` (shader, kernel, groups or
-indirect, buffers and constants bound by name then), `draw`, `keep` (a label for what a buffer holds), `release`.
+indirect, buffers and constants bound by name then), `draw` (shader, pass, counts or indirect, what was bound), `keep`
+(a label for what a buffer holds), `release`. A draw is kept with what its buffers held, for who knows the target.
 """
 
 import base64
@@ -23,13 +24,26 @@ KINDS = {"Int": np.int32, "Float": np.float32, "Vector": np.float32, "Matrix": n
 SCALARS = {"Int": ("uint", "int"), "Float": ("float",), "Vector": ("float",), "Matrix": ("float",)}
 
 
+@dataclass(frozen=True)
+class Drawn:
+    """A draw of triangles, with what its buffers held."""
+
+    shader: str
+    pass_index: int
+    arguments: tuple[int, int]  # vertices, instances
+    indirect: bool  # whether the device was to take them from a buffer
+    buffers: dict[str, Array]  # by name, words
+    strides: dict[str, int]  # by name, bytes of an element
+    constants: dict[str, tuple[str, str]]  # by name, kind and content
+
+
 @dataclass
 class Replayed:
     """What a recording did."""
 
     kept: dict[str, Array] = field(default_factory=dict)  # by label, words
     kernels: list[str] = field(default_factory=list)  # in order
-    draws: list[dict[str, Any]] = field(default_factory=list)
+    draws: list[Drawn] = field(default_factory=list)
 
 
 class _Player:
@@ -65,7 +79,7 @@ class _Player:
         self.commands = self.commands or self.device.commands()
         bound = {slot.name: self._bound(kernel, event, slot.name, slot.stride) for slot in kernel.buffers}
         constants = {
-            name: _value(kernel, constant, *event["constants"][name])
+            name: value(kernel.name, constant, *event["constants"][name])
             for name, constant in kernel.constants.items()
             if constant.used and name in event["constants"]
         }
@@ -76,7 +90,23 @@ class _Player:
             self.commands.dispatch(kernel, tuple(event["groups"]), bound, **constants)
 
     def draw(self, event: dict[str, Any]) -> None:
-        self.result.draws.append(event)
+        self.flush()
+        numbers = {**event["buffers"], **event.get("block_buffers", {})}
+        counts = event.get("vertices"), event.get("instances")
+        if "indirect" in event:
+            number, offset = event["indirect"]
+            counts = self.buffers[number].read()[offset // 4 :][:2].tolist()
+        self.result.draws.append(
+            Drawn(
+                shader=event["shader"],
+                pass_index=event["pass"],
+                arguments=tuple(counts),
+                indirect="indirect" in event,
+                buffers={name: self.buffers[number].read() for name, number in numbers.items()},
+                strides={name: self.strides[number] for name, number in numbers.items()},
+                constants={**event["constants"], **event.get("block_constants", {})},
+            )
+        )
 
     def keep(self, event: dict[str, Any]) -> None:
         self.flush()
@@ -104,9 +134,9 @@ def replay(device: Device, recording: Path) -> Replayed:
     return player.result
 
 
-def _value(kernel: Kernel, constant: Constant, kind: str, content: str) -> Any:
-    """What a Set...Param call leaves in a constant: a vector is cut to its size, integers keep their bits."""
-    where = f"{kernel.name}: the constant {constant.name} of {constant.scalar} {constant.shape}"
+def value(label: str, constant: Constant, kind: str, content: str) -> Any:
+    """What a Set... call leaves in a constant: a vector is cut to its size, integers keep their bits."""
+    where = f"{label}: the constant {constant.name} of {constant.scalar} {constant.shape}"
     assert constant.scalar in SCALARS[kind], f"{where} was set as {kind}"
     values = np.frombuffer(base64.b64decode(content), KINDS[kind])
     if constant.scalar == "uint":

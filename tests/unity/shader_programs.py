@@ -1,7 +1,6 @@
 """The HLSL programs of the package's .shader files, as text that a compiler takes with Unity's include replaced."""
 
 import re
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,12 +8,17 @@ from csharp import RUNTIME
 
 SHADERS = sorted(RUNTIME.rglob("*.shader"))
 STAND_IN = Path(__file__).parent / "stand_ins" / "shader"
+ENGINE = frozenset(  # what a program is given by Unity, or in its place by a test
+    {"_ProjectionParams", "unity_StereoEyeIndex", "replayed_layer", "replayed_view"}
+)
 KERNELS_PACKAGE = "Packages/com.mua.kernels/"  # whose files the compilers find by their names
 VARIANTS = {"mono": (), "instanced": ("STEREO_INSTANCING_ON",), "multiview": ("STEREO_MULTIVIEW_ON",)}
 
+COMMENT = re.compile(r"//[^\n]*")
 NAME = re.compile(r'^Shader\s+"([^"]+)"', re.MULTILINE)
 SHARED = re.compile(r"\bHLSLINCLUDE\b(.*?)\bENDHLSL\b", re.DOTALL)
 PASS = re.compile(r'\bPass\s*\{\s*Name\s+"(\w+)"(.*?)\bHLSLPROGRAM\b(.*?)\bENDHLSL\b', re.DOTALL)
+STATE = re.compile(r"^\s*(Blend|ZTest|ZWrite|Cull|ColorMask)\s+([\w ]+?)\s*$", re.MULTILINE)
 STAGE = re.compile(r"#pragma\s+(vertex|fragment)\s+(\w+)")
 PRAGMA = re.compile(r"^\s*#pragma\b.*\n", re.MULTILINE)
 
@@ -26,16 +30,18 @@ class Program:
     shader: str
     name: str  # of the pass
     index: int  # among the passes, from 0
-    state: str  # what the pass itself sets before its program
-    text: str  # HLSL with what the passes share before it
+    state: dict[str, str]  # fixed-function settings by their words
+    text: str  # HLSL, with what the passes share before it
     vertex: str
     fragment: str
+
+    def __str__(self) -> str:
+        return f"{self.shader.split('/')[-1]} {self.name}"
 
     def write(self, folder: Path, *defines: str) -> Path:
         """The program as a file in a folder, with what it includes beside it and with definitions before it."""
         for source in (*RUNTIME.joinpath("Shaders").glob("*.hlsl"), *STAND_IN.iterdir()):
-            text = source.read_text().replace(KERNELS_PACKAGE, "")
-            folder.joinpath(source.name).write_text(text)
+            folder.joinpath(source.name).write_text(source.read_text().replace(KERNELS_PACKAGE, ""))
         path = folder / f"{self.name}.hlsl"
         path.write_text("".join(f"#define {define}\n" for define in defines) + self.text)
         return path
@@ -43,15 +49,16 @@ class Program:
 
 def programs(path: Path) -> list[Program]:
     """The passes of a .shader file; each has a name, and is written in HLSL."""
-    text = path.read_text()
+    text = COMMENT.sub("", path.read_text())
     name, shared = NAME.search(text), "".join(SHARED.findall(text))
     assert name is not None, f"{path.name} names no shader"
+    common = dict(STATE.findall(text[: re.search(r"\bHLSLINCLUDE\b|\bPass\b", text).start()]))
     found = []
     for index, (title, state, own) in enumerate(PASS.findall(text)):
         stages = dict(STAGE.findall(shared + own))
         code = PRAGMA.sub("", shared + own).replace(KERNELS_PACKAGE, "")
-        found.append(Program(name[1], title, index, state, code, stages["vertex"], stages["fragment"]))
-    assert len(found) == len(re.findall(r"\bENDHLSL\b", text)) - len(SHARED.findall(text)), (
-        f"{path.name}: a pass has no Name"
-    )
+        settings = common | dict(STATE.findall(state))
+        found.append(Program(name[1], title, index, settings, code, stages["vertex"], stages["fragment"]))
+    count = len(re.findall(r"\bHLSLPROGRAM\b", text))
+    assert len(found) == count, f"{path.name}: {len(found)} of {count} passes begin with a Name"
     return found

@@ -46,7 +46,7 @@ VISIBLE_WORD = 7  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
 FRAME = (  # what a frame is made of, without the components around it
     *("AvatarFrame", "SplatFrame", "AvatarBuffers", "LayerBuffers", "BranchBuffers", "BandBuffers", "StoredBuffer"),
-    *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources"),
+    *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources", "AvatarDraw"),
 )
 PLACES = (  # Unity's position, then rotation (x, y, z, w)
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
@@ -122,7 +122,7 @@ class Recorded:
 
     def _lines(self, shot: Shot) -> str:
         cameras = self.cameras[shot.label]
-        lines = ["screen {} {} {}".format(*cameras[0].screen, NEAR)]
+        lines = ["screen {} {} {} 1".format(*cameras[0].screen, NEAR)]
         for camera in cameras:
             numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
             lines.append("eye " + " ".join(repr(float(number)) for number in numbers))

@@ -1,9 +1,10 @@
 // Plays avatars by the package's own frames over the stand-ins, which record it. Arguments: the folder of the kernels, the
 // path of the recording, the scenario, the avatars. The scenario has one line for each step:
-//   screen WIDTH HEIGHT NEAR           eyes after it are of this screen
+//   screen WIDTH HEIGHT NEAR INSTANCES eyes after it are of this screen; an indirect draw is of so many instances
 //   eye VIEW[16] PROJECTION[16]        Unity's matrices, row by row
 //   decode AVATAR SECONDS PLACE[7]     Unity's position, then rotation (x, y, z, w)
 //   sort LABEL                         sort, execute, and keep what the frame left
+//   draw MODE                          draw what was sorted, `indirect` or `direct`
 //   again COUNT                        without recording: decode and sort so often, and print what was allocated
 using System;
 using System.Collections.Generic;
@@ -59,6 +60,7 @@ namespace Mua
         private static readonly CommandBuffer Commands = new CommandBuffer();
         private static readonly List<Actor> Actors = new List<Actor>();
         private static int width, height;
+        private static int instances;
         private static float near;
         private static bool newEyes;
 
@@ -98,13 +100,14 @@ namespace Mua
                 width = (int)Number(words, 1);
                 height = (int)Number(words, 2);
                 near = Number(words, 3);
+                instances = (int)Number(words, 4);
                 newEyes = true;
             }
             else if (words[0] == "eye")
             {
                 if (newEyes)
                 {
-                    Eyes.Begin(width, height, near);
+                    Eyes.Begin(width, height, near, instances);
                 }
                 newEyes = false;
                 Eyes.Add(Matrix(words, 1), Matrix(words, 17));
@@ -121,6 +124,10 @@ namespace Mua
                 System.Console.WriteLine("dispatches " + words[1] + " " + (Recorder.Dispatches - before));
                 Keep(splats, words[1]);
             }
+            else if (words[0] == "draw")
+            {
+                Draw(splats, words[1] == "indirect");
+            }
             else
             {
                 Recorder.Pause();
@@ -134,6 +141,17 @@ namespace Mua
             splats.Sort(Commands, Eyes);
             Graphics.ExecuteCommandBuffer(Commands);
             Commands.Clear();
+        }
+
+        private static void Draw(SplatFrame splats, bool indirect)
+        {
+            typeof(SystemInfo).GetProperty("supportsIndirectArgumentsBuffer").SetValue(null, indirect);
+            using (var draw = new SplatDraw(Recorder.Drawing("Hidden/MUA/Splat")))
+            {
+                draw.Bind(splats).Append(Commands);
+                Graphics.ExecuteCommandBuffer(Commands);
+                Commands.Clear();
+            }
         }
 
         private static void Keep(SplatFrame splats, string label)

@@ -1,0 +1,250 @@
+"""The package's draw of a frame, recorded by mono and replayed on Vulkan by the program of splat.shader itself.
+
+Against the desktop player's draw of the same buffers, which is held to the CPU rasteriser by test_recorded_frame.py.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import wgpu
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
+from replay import Drawn, replay
+from shader_programs import VARIANTS, programs
+from synthetic_avatar import synthetic_avatar
+from test_recorded_frame import FRAME, MIRROR, STAND_INS
+
+from mua.arrays import Array
+from mua.asset import write
+from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.decode import decode_clip_frame
+from mua.gpu import Device
+from mua.player.draw import SortedSplats, SplatRenderer, image_format
+
+SCREEN = (160, 200)
+LEAST_PSNR = 80.0  # dB where splats are; matrices are rounded to float32 on another way
+GAMMA = ("UNITY_COLORSPACE_GAMMA",)
+FRAME_AT = 3 / 24  # seconds into a clip of 24 Hz
+MODES = ("indirect", "direct")
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What mono recorded of one frame, for some eyes."""
+
+    cameras: tuple[Camera, ...]
+    drawn: dict[str, Drawn]  # by mode
+    depths: Array  # [E, 2] nearest and farthest splat of each eye, metres
+
+
+def eyes(bounds: Array, count: int) -> tuple[Camera, ...]:
+    """The right one of two looks outwards, as where a headset's displays are canted."""
+    camera = orbit(bounds, screen=SCREEN, azimuth=0.7, elevation=0.3)
+    if count == 1:
+        return (camera,)
+    left, right = stereo(camera, EYE_DISTANCE)
+    turn = np.eye(4)
+    turn[:3, :3] = [[np.cos(0.05), 0, np.sin(0.05)], [0, 1, 0], [-np.sin(0.05), 0, np.cos(0.05)]]
+    return left, replace(right, view=turn @ right.view)
+
+
+@pytest.fixture(scope="module")
+def frame_program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True)
+    file = csharp.build([RUNTIME / "Format"], library=True)
+    motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
+    package = [*(RUNTIME / f"{name}.cs" for name in FRAME), RUNTIME / "Kernels"]
+    return csharp.build([*package, PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion])
+
+
+def record(csharp: CSharp, program: Path, device: Device, folder: Path, *, count: int, instances: int) -> Scene:
+    """One avatar where it stands, seen by `count` eyes."""
+    avatar = synthetic_avatar(1)
+    file, scenario = folder / "a.muaavatar", folder / "scenario.txt"
+    write(file, avatar, storage="f32")
+    centres = decode_clip_frame(avatar, avatar.clips[0], frame=round(FRAME_AT * 24), dtype=np.float64).centres
+    cameras = eyes(np.stack([centres.min(axis=0), centres.max(axis=0)]), count)
+    lines = ["screen {} {} {} {}".format(*SCREEN, NEAR, instances)]
+    for camera in cameras:
+        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    lines += [f"decode 0 {FRAME_AT + 1e-3!r} 0 0 0 0 0 0 1", "sort frame", *(f"draw {mode}" for mode in MODES), ""]
+    scenario.write_text("\n".join(lines))
+    csharp.run(program, ROOT / "ComputeShaders", folder / "recording", scenario, file)
+    drawn = dict(zip(MODES, replay(device, folder / "recording").draws, strict=True))
+    depths = [-(centres @ camera.view[2, :3] + camera.view[2, 3]) for camera in cameras]
+    return Scene(cameras, drawn, np.array([[depth.min(), depth.max()] for depth in depths]))
+
+
+@pytest.fixture(scope="module")
+def mono(csharp: CSharp, frame_program: Path, device: Device, tmp_path_factory: pytest.TempPathFactory) -> Scene:
+    return record(csharp, frame_program, device, tmp_path_factory.mktemp("mono"), count=1, instances=1)
+
+
+@pytest.fixture(scope="module")
+def both(csharp: CSharp, frame_program: Path, device: Device, tmp_path_factory: pytest.TempPathFactory) -> Scene:
+    return record(csharp, frame_program, device, tmp_path_factory.mktemp("both"), count=2, instances=1)
+
+
+@pytest.fixture(scope="module")
+def instanced(csharp: CSharp, frame_program: Path, device: Device, tmp_path_factory: pytest.TempPathFactory) -> Scene:
+    return record(csharp, frame_program, device, tmp_path_factory.mktemp("instanced"), count=2, instances=2)
+
+
+@pytest.fixture
+def painter(device: Device, tmp_path: Path) -> "Painter":
+    return Painter(device, tmp_path)
+
+
+class Painter:
+    """Draws scenes as Unity would and as the desktop player does."""
+
+    def __init__(self, device: Device, folder: Path) -> None:
+        self.device, self.folder, self.format = device, folder, image_format(device)
+        self.passes = {program.index: program for program in programs(RUNTIME / "Shaders" / "splat.shader")}
+
+    def unity(
+        self,
+        drawn: Drawn,
+        *,
+        variant: str = "mono",
+        space: tuple[str, ...] = GAMMA,
+        turned: bool = False,
+        plane: float | None = None,  # depth on the device, over the left half of the target
+        **engine: Any,
+    ) -> Array:
+        """[H, W, 4] of one eye, rows as the target stores them."""
+        defines = (*VARIANTS[variant], *space)
+        draw = UnityDraw(self.device, drawn, self.passes[drawn.pass_index], self.folder, defines, self.format)
+        target = Target(self.device, self.format, SCREEN, 0.0, self.folder)
+        half = None if plane is None else (plane, (0, 0, SCREEN[0] // 2, SCREEN[1]))
+        given = {"unity_StereoEyeIndex": 0, "_ProjectionParams": rows(turned=turned), **engine}
+        return target.image(lambda render_pass: draw.draw(render_pass, **given), half)
+
+    def player(
+        self, scene: Scene, *, colors: Array | None = None, plane: tuple[int, float] | None = None
+    ) -> list[Array]:
+        """[H, W, 4] of each eye; `plane`: an eye and the depth on the device over the left half of its image."""
+        held = dict(scene.drawn["indirect"].buffers)
+        held |= {} if colors is None else {"colors": colors}
+        buffers = [self.device.buffer(held[name], name=name) for name in ("splats", "ellipses", "colors", "order")]
+        words = np.array([scene.drawn["indirect"].arguments[0], 1, 0, 0], np.uint32)
+        arguments = self.device.buffer(words, name="arguments", indirect=True)
+        splats = SortedSplats(len(held["splats"]) // 16, *buffers, arguments)
+        renderer = SplatRenderer(self.device, self.format, depth_format=DEPTH_FORMAT)
+        target = Target(self.device, self.format, (len(scene.cameras) * SCREEN[0], SCREEN[1]), 1.0, self.folder)
+        half = None if plane is None else (plane[1], (plane[0] * SCREEN[0], 0, SCREEN[0] // 2, SCREEN[1]))
+
+        def draw(render_pass: wgpu.GPURenderPassEncoder) -> None:
+            renderer.draw(render_pass, splats, scene.cameras)
+
+        return np.split(target.image(draw, half), len(scene.cameras), axis=1)
+
+
+def agree(found: Array, expected: Array) -> None:
+    """Over the pixels that either covers."""
+    covered = (found[..., 3] > 0) | (expected[..., 3] > 0)
+    error = np.mean(np.square(found - expected)[covered])
+    assert -10 * np.log10(max(error, 1e-12)) > LEAST_PSNR
+
+
+def seen(image: Array) -> bool:
+    """Whether a picture would tell an upside-down one, or one shifted as between the eyes."""
+    return np.mean(image[..., 3] > 0.5) > 0.05
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["back buffer", "texture"])
+@pytest.mark.parametrize("mode", MODES)
+def test_one_eye_is_as_the_player_draws_it(painter: Painter, mono: Scene, mode: str, turned: bool) -> None:
+    """Rows of a target that the engine turns upside down run from the lowest."""
+    (expected,) = painter.player(mono)
+    found = painter.unity(mono.drawn[mode], turned=turned)
+    assert seen(expected)
+    agree(found[::-1] if turned else found, expected)
+
+
+def test_counts_of_draws(mono: Scene, instanced: Scene) -> None:
+    """A direct draw covers all splats; the engine itself doubles it where both eyes are drawn by instances."""
+    for scene, instances in ((mono, 1), (instanced, 2)):
+        indirect, direct = scene.drawn["indirect"], scene.drawn["direct"]
+        assert (indirect.indirect, direct.indirect) == (True, False)
+        assert indirect.arguments[1] == instances
+        assert direct.arguments == (6 * len(direct.buffers["splats"]) // 16, 1)
+        assert 0 < indirect.arguments[0] <= direct.arguments[0]
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("eye", [0, 1])
+def test_each_instance_draws_its_eye(painter: Painter, instanced: Scene, eye: int, mode: str) -> None:
+    drawn = instanced.drawn[mode]
+    doubled = replace(drawn, arguments=(drawn.arguments[0], 2))
+    expected = painter.player(instanced)
+    agree(painter.unity(doubled, variant="instanced", replayed_layer=eye), expected[eye])
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+def test_each_view_of_a_multiview_pass_draws_its_eye(painter: Painter, both: Scene, eye: int) -> None:
+    found = painter.unity(both.drawn["indirect"], variant="multiview", replayed_view=eye)
+    agree(found, painter.player(both)[eye])
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+def test_each_pass_of_its_own_draws_its_eye(painter: Painter, both: Scene, eye: int) -> None:
+    found = painter.unity(both.drawn["indirect"], unity_StereoEyeIndex=eye)
+    agree(found, painter.player(both)[eye])
+
+
+def test_the_eyes_differ(painter: Painter, both: Scene) -> None:
+    left, right = painter.player(both)
+    with pytest.raises(AssertionError):
+        agree(left, right)
+
+
+def test_a_single_eye_serves_both_views(painter: Painter, mono: Scene) -> None:
+    """Where a pipeline draws a camera without stereo by a pass with it."""
+    found = painter.unity(mono.drawn["indirect"], variant="multiview", replayed_view=1)
+    agree(found, painter.player(mono)[0])
+
+
+def places(scene: Scene, eye: int) -> Iterator[tuple[str, float]]:
+    nearest, farthest = scene.depths[eye]
+    yield "before", nearest - 0.1
+    yield "within", (nearest + farthest) / 2
+    yield "behind", farthest + 0.1
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+def test_what_is_drawn_before_hides_the_splats_behind_it(painter: Painter, both: Scene, eye: int) -> None:
+    """A plane across the left half; the player's depth is not reversed, so the two share no mistake of it."""
+    free = painter.player(both)[eye]
+    middle = SCREEN[0] // 2
+    for place, depth in places(both, eye):
+        row = both.cameras[eye].projection[2]
+        device_depth = (row[3] - row[2] * depth) / depth  # -1 to 1, away from the eye
+        expected = painter.player(both, plane=(eye, (1 + device_depth) / 2))[eye]
+        for turned in (False, True):
+            found = painter.unity(
+                both.drawn["indirect"], plane=(1 - device_depth) / 2, turned=turned, unity_StereoEyeIndex=eye
+            )
+            agree(found[::-1] if turned else found, expected)
+        assert np.array_equal(expected[:, middle:], free[:, middle:])
+        assert np.array_equal(expected, free) == (place == "behind")
+        assert np.any(expected[:, :middle]) == (place != "before")
+
+
+def test_a_linear_project_is_given_light(painter: Painter, mono: Scene) -> None:
+    """sRGB of each splat turned to light before it is blended."""
+    halves = mono.drawn["indirect"].buffers["colors"].view(np.float16).reshape(-1, 4).astype(float)
+    srgb = halves[:, :3]
+    light = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    lit = np.column_stack([light, halves[:, 3]]).astype(np.float16).view(np.uint32).ravel()
+    (expected,) = painter.player(mono, colors=lit)
+    found = painter.unity(mono.drawn["indirect"], space=())
+    covered = expected[..., 3] > 0
+    assert np.abs(found - expected)[covered].max() < 2.0**-9  # of the expected colours' half floats
+    with pytest.raises(AssertionError):
+        agree(found, painter.player(mono)[0])
