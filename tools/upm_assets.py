@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 import gen_meta
 from upm_package import FOLDED, GUID, Package, is_imported, needs_meta
 
-LONGEST_PATH = 140  # Windows takes 260 characters, of which a project and its Library/PackageCache may take 120
+LONGEST_PATH = 140  # Windows takes 260: a project and its Library/PackageCache take some 110, .meta takes 5
 NAMES = re.compile(r"[A-Za-z0-9 ._~+-]+")
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECASE)  # devices of Windows
 LEFT_BY_SYSTEMS = ("Thumbs.db", "desktop.ini", "Desktop.ini")
@@ -26,13 +26,15 @@ def path_faults(package: Package) -> Iterator[str]:
     """Paths that some system cannot hold, and files that no package should."""
     seen: dict[str, PurePosixPath] = {}
     for path in package.entries:
+        if path.suffix == ".meta" and (package.root / path.with_suffix("")).exists():
+            continue  # named by its asset
         where = package.where(path)
         if (package.root / path).is_symlink():
             yield f"{where}: a link, expected a file or folder of its own"
         if len(str(path)) > LONGEST_PATH:
             yield f"{where}: {len(str(path))} characters, expected at most {LONGEST_PATH}"
         if not NAMES.fullmatch(path.name) or path.name.endswith((".", " ")) or RESERVED.fullmatch(path.name):
-            yield f"{where}: name {path.name!a}, expected ASCII letters, digits, blanks and ._~+- that Windows takes"
+            yield f"{where}: name {path.name!a}, expected letters, digits, blanks and ._~+-, and no device of Windows"
         if path.name in (*LEFT_BY_SYSTEMS, ".DS_Store"):
             yield f"{where}: left by an operating system, expected only files of the package"
         other = seen.setdefault(str(path).lower(), path)

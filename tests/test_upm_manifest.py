@@ -1,0 +1,108 @@
+"""Every rule for package.json and the pages beside it finds its fault."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import upm_files
+from upm_files import MANIFEST, Break, edited, faults_after, put
+
+
+@pytest.fixture
+def packages(tmp_path: Path) -> list[Path]:
+    return upm_files.write(tmp_path)
+
+
+MANIFESTS: list[tuple[dict[str, Any], str]] = [
+    ({"name": "Mua Test"}, 'name: "Mua Test", expected a name like com.owner.package'),
+    ({"version": "1.0"}, 'version: "1.0", expected a version like 1.2.3'),
+    ({"version": None}, "version: not there, expected a version like 1.2.3"),
+    ({"displayName": " "}, 'displayName: " ", expected a text'),
+    ({"description": 7}, "description: 7, expected a text"),
+    ({"unity": "6000.0.20f1"}, 'unity: "6000.0.20f1", expected a version of the editor like 6000.0'),
+    ({"unityRelease": "20"}, 'unityRelease: "20", expected a release of the editor like 20f1'),
+    ({"license": "see LICENSE"}, 'license: "see LICENSE", expected an SPDX identifier'),
+    ({"author": {"mail": "x"}}, 'author: {"mail": "x"}, expected a name, or an object with one'),
+    ({"keywords": "avatar"}, 'keywords: "avatar", expected a list of words'),
+    ({"documentationUrl": "docs/unity.md"}, 'documentationUrl: "docs/unity.md", expected an https:// address'),
+    ({"hideInEditor": "no"}, 'hideInEditor: "no", expected true or false'),
+    ({"dependecies": {}}, "dependecies: a field that Unity's package manager does not know"),
+    ({"dependencies": []}, "dependencies: [], expected an object of names and versions"),
+    ({"samples": {}}, "samples: {}, expected a list of samples"),
+    (
+        {"dependencies": {"com.mua.other": "https://host/other.git"}},
+        'dependencies.com.mua.other: "https://host/other.git", expected an exact version, no range and no address',
+    ),
+    (
+        {"dependencies": {"com.mua.other": "0.1.0"}},
+        'dependencies.com.mua.other: "0.1.0", expected "0.2.0", the version of that package here',
+    ),
+    (
+        {"dependencies": {**MANIFEST["dependencies"], "org.else.where": "1.0.0"}},  # type: ignore[dict-item]
+        'dependencies.org.else.where: "1.0.0", expected only packages of Unity\'s own registry and of this repository',
+    ),
+    (
+        {"dependencies": {**MANIFEST["dependencies"], "Unity": "1.0.0"}},  # type: ignore[dict-item]
+        "dependencies.Unity: not the name of a package",
+    ),
+    ({"samples": ["Viewer"]}, 'samples[0]: "Viewer", expected displayName, description and path'),
+    (
+        {"samples": [{"displayName": "Viewer", "path": "Samples~/Viewer"}]},
+        "samples[0].description: null, expected a text",
+    ),
+    (
+        {"samples": [{"displayName": "Viewer", "description": "x", "path": "Samples/Viewer"}]},
+        'samples[0].path: "Samples/Viewer", expected a folder directly below Samples~',
+    ),
+    (
+        {"samples": [{"displayName": "Viewer", "description": "x", "path": "Samples~/Gone"}]},
+        'samples[0].path: "Samples~/Gone", expected a folder with files in it',
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"), MANIFESTS, ids=lambda value: value[:30] if isinstance(value, str) else ""
+)
+def test_finds_a_wrong_manifest(packages: list[Path], changes: dict[str, Any], fault: str) -> None:
+    found = faults_after(packages, lambda root: edited(root / "package.json", **changes))
+    assert any(line.endswith(f"/package.json: {fault}") for line in found), found
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [(None, "not there, expected the package's manifest"), ("[]", "[], expected an object"), ("{", "expected JSON")],
+)
+def test_finds_a_manifest_that_cannot_be_read(packages: list[Path], text: str | None, fault: str) -> None:
+    path = packages[0] / "package.json"
+    found = faults_after(packages, lambda _: path.unlink() if text is None else path.write_text(text))
+    assert any(line.startswith("test/package.json: ") and line.endswith(fault) for line in found)
+
+
+def test_finds_samples_that_are_not_listed(packages: list[Path]) -> None:
+    found = faults_after(packages, lambda root: edited(root / "package.json", samples=None))
+    assert found == ["com.mua.test/Samples~/Viewer: a sample that package.json does not list"]
+
+
+PAGES: dict[str, tuple[bool, Break, str]] = {
+    "no readme": (
+        True,
+        lambda root: (root / "README.md").unlink(),
+        "README.md: not there, expected a page beside package.json",
+    ),
+    "no licence": (
+        True,
+        lambda root: (root / "LICENSE.md").unlink(),
+        "LICENSE.md: not there, expected a page beside package.json",
+    ),
+    "changelog behind": (
+        True,
+        lambda root: put(root / "CHANGELOG.md", "## 0.0.9\n"),
+        'CHANGELOG.md: no heading "## 0.1.0", expected one for the version of package.json',
+    ),
+}
+
+
+@pytest.mark.parametrize(("metas", "change", "fault"), PAGES.values(), ids=list(PAGES))
+def test_finds_a_wrong_page(packages: list[Path], metas: bool, change: Break, fault: str) -> None:
+    assert faults_after(packages, change, metas=metas) == [f"com.mua.test/{fault}"]
