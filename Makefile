@@ -1,11 +1,12 @@
-# `make demo` bakes the procedural character; `make test` checks everything. Both set up what they need.
+# `make demo` bakes the procedural character; `make test` checks everything, `make package` packs what
+# Unity installs. All set up what they need.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO := build/demo
 
-.PHONY: demo test test-long check setup clean
+.PHONY: demo test test-long check package setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -25,6 +26,11 @@ check: setup
 	$(BIN)/python tools/gen_golden.py --check
 	$(BIN)/python tools/gen_kernel_table.py --check
 	$(BIN)/python tools/gen_meta.py --check
+	$(BIN)/python tools/lint_upm.py
+	$(BIN)/python tools/pack_upm.py --check
+
+package: setup
+	$(BIN)/python tools/pack_upm.py
 
 setup: $(VENV)/.installed
 

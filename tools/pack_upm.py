@@ -1,0 +1,165 @@
+"""Fold com.mua.avatar and its kernels into one tarball that Unity's "Install package from tarball" takes.
+
+The kernels become com.mua.avatar/ComputeShaders, byte for byte and with the GUIDs that they have; shaders include them
+from there, and the dependency goes. The same checkout gives the same bytes. --check holds a tarball, or what would be
+packed where none is given, to the checkout and to Unity's rules.
+"""
+
+import argparse
+import gzip
+import io
+import json
+import re
+import sys
+import tarfile
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
+
+import gen_meta
+import lint_upm
+from upm_package import FOLDED
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE, KERNELS = ROOT / "unity-package", ROOT / "ComputeShaders"
+GUIDE = ROOT / "docs" / "unity.md"
+GUIDE_IN_PACKAGE = "Documentation~/com.mua.avatar.md"  # where Unity's "View documentation" looks
+
+PREFIX = "package/"  # that of npm's tarballs
+FOLDER = KERNELS.name
+NAME = "com.mua.avatar"
+SEPARATE, TOGETHER = f"Packages/{FOLDED[FOLDER]}/", f"Packages/{NAME}/{FOLDER}/"
+SHADERS = (".shader", ".hlsl", ".cginc", ".compute")
+LINK = re.compile(rb"!?\[([^\]]*)\]\((?!https?:|#)[^)]*\)")
+MODE, TIME = 0o644, 946684800  # seconds; 2000-01-01, as some tools refuse the year 1970
+LEVEL = 9
+
+
+def contents() -> dict[str, bytes]:
+    """Path and bytes of every file of the packed package."""
+    found = {path: _packed(path, content) for path, content in _files(PACKAGE).items()}
+    kernels = {path: content for path, content in _files(KERNELS).items() if path.split(".meta")[0] != "package.json"}
+    found |= {f"{FOLDER}/{path}": content for path, content in kernels.items()}
+    found[f"{FOLDER}.meta"] = gen_meta.meta(NAME, FOLDER, folder=True).encode()
+    found[GUIDE_IN_PACKAGE] = _unlinked(GUIDE.read_bytes())
+    return dict(sorted(found.items()))
+
+
+def _files(folder: Path) -> dict[str, bytes]:
+    paths = [path for path in folder.rglob("*") if path.is_file()]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+
+def _packed(path: str, content: bytes) -> bytes:
+    if path == "package.json":
+        manifest = json.loads(content)
+        del manifest["dependencies"][FOLDED[FOLDER]]
+        return (json.dumps(manifest, indent=2) + "\n").encode()
+    if path.endswith(".md"):
+        return _unlinked(content)
+    return content.replace(SEPARATE.encode(), TOGETHER.encode()) if path.endswith(SHADERS) else content
+
+
+def _unlinked(page: bytes) -> bytes:
+    """A page whose links into the repository, which lead nowhere from a tarball, are plain text."""
+    return LINK.sub(rb"\1", page)
+
+
+def pack(files: Mapping[str, bytes]) -> bytes:
+    """A tarball of files: same files, same bytes."""
+    tarball = io.BytesIO()
+    with tarfile.open(fileobj=tarball, mode="w", format=tarfile.USTAR_FORMAT) as archive:
+        for path, content in sorted(files.items()):
+            member = tarfile.TarInfo(PREFIX + path)
+            member.size, member.mode, member.mtime = len(content), MODE, TIME
+            archive.addfile(member, io.BytesIO(content))
+    return gzip.compress(tarball.getvalue(), LEVEL, mtime=0)
+
+
+def faults(tarball: bytes, source: str) -> list[str]:
+    """What is wrong with a tarball, one sentence each; `source` names it."""
+    try:
+        with tarfile.open(fileobj=io.BytesIO(tarball), mode="r:gz") as archive:
+            members = archive.getmembers()
+            found = [f"{source}: {fault}" for fault in _member_faults(members)]
+            if found:
+                return found
+            files = {}
+            for member in members:
+                opened = archive.extractfile(member)
+                assert opened is not None  # they are all plain files
+                files[member.name.removeprefix(PREFIX)] = opened.read()
+    except (tarfile.TarError, OSError, EOFError) as error:
+        return [f"{source}: {error}, expected a gzip-compressed tarball"]
+    return [f"{source}: {fault}" for fault in (*_content_faults(files), *_rule_faults(files))]
+
+
+def _member_faults(members: list[tarfile.TarInfo]) -> Iterator[str]:
+    names = [member.name for member in members]
+    if names != sorted(set(names)):
+        yield "members, expected each once, in order of their names"
+    for member in members:
+        path = PurePosixPath(member.name)
+        if not member.name.startswith(PREFIX) or ".." in path.parts or "\\" in member.name or path.is_absolute():
+            yield f"{member.name}: path, expected one below {PREFIX}"
+        if not member.isreg():
+            yield f"{member.name}: type {member.type!r}, expected a plain file"
+        if (member.uid, member.gid, member.uname, member.gname) != (0, 0, "", ""):
+            yield f"{member.name}: owner {member.uid}:{member.gid}, expected none"
+        if (member.mode, member.mtime) != (MODE, TIME):
+            yield f"{member.name}: mode {member.mode:o} and time {member.mtime}, expected {MODE:o} and {TIME}"
+
+
+def _content_faults(files: Mapping[str, bytes]) -> Iterator[str]:
+    """Every file of the checkout is there with the bytes that it should have, and no other."""
+    expected = contents()
+    yield from (f"{path}: missing" for path in expected.keys() - files.keys())
+    yield from (f"{path}: not in the checkout" for path in files.keys() - expected.keys())
+    for path in sorted(expected.keys() & files.keys()):
+        if files[path] != expected[path]:
+            yield f"{path}: other bytes than in the checkout"
+    for path, content in sorted(files.items()):
+        if SEPARATE.encode() in content and path != GUIDE_IN_PACKAGE:
+            yield f"{path}: names {SEPARATE}, expected only shaders to, which are rewritten"
+
+
+def _rule_faults(files: Mapping[str, bytes]) -> list[str]:
+    with tempfile.TemporaryDirectory() as scratch:
+        unpack(files, Path(scratch))
+        return lint_upm.faults([Path(scratch)])
+
+
+def unpack(files: Mapping[str, bytes], folder: Path) -> None:
+    """Write files of a tarball, whose paths were checked, below a folder."""
+    for path, content in files.items():
+        target = folder / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content)
+
+
+def default_output() -> Path:
+    """Where the tarball goes, named by its version."""
+    version = json.loads((PACKAGE / "package.json").read_text())["version"]
+    return ROOT / "build" / f"{NAME}-{version}.tgz"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", nargs="?", const="", metavar="FILE", help="hold a tarball to this checkout")
+    parser.add_argument("-o", "--output", type=Path, default=None, metavar="FILE", help="build/<name>-<version>.tgz")
+    arguments = parser.parse_args()
+    packed = Path(arguments.check).read_bytes() if arguments.check else pack(contents())
+    if found := faults(packed, arguments.check or "the tarball"):
+        sys.exit("\n".join(found))
+    output = arguments.output or default_output()
+    if arguments.check is None:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        partial = output.with_name(output.name + ".part")
+        partial.write_bytes(packed)
+        partial.replace(output)
+    count = len(contents())
+    print(f"{arguments.check or ('packs to' if arguments.check == '' else output)}: {count} files, {len(packed)} bytes")
+
+
+if __name__ == "__main__":
+    main()
