@@ -1,4 +1,5 @@
 using UnityEditor;
+using UnityEditor.SceneManagement;
 using UnityEngine;
 
 namespace Mua.Editor
@@ -15,6 +16,10 @@ namespace Mua.Editor
             if (parent != null)
             {
                 GameObjectUtility.SetParentAndAlign(made, parent.gameObject);
+            }
+            else
+            {
+                StageUtility.PlaceGameObjectInCurrentStage(made); // a prefab may be open
             }
             GameObjectUtility.EnsureUniqueNameForSibling(made);
             made.transform.position = position;

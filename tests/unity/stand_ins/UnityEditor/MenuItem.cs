@@ -6,8 +6,17 @@ namespace UnityEditor
     [AttributeUsage(AttributeTargets.Method, AllowMultiple = true)]
     public sealed class MenuItem : Attribute
     {
-        public MenuItem(string itemName) { }
-        public MenuItem(string itemName, bool isValidateFunction) { }
-        public MenuItem(string itemName, bool isValidateFunction, int priority) { }
+        public string menuItem;
+        public bool validate;
+        public int priority;
+
+        public MenuItem(string itemName) : this(itemName, false) { }
+        public MenuItem(string itemName, bool isValidateFunction) : this(itemName, isValidateFunction, 1000) { }
+        public MenuItem(string itemName, bool isValidateFunction, int priority)
+        {
+            menuItem = itemName;
+            validate = isValidateFunction;
+            this.priority = priority;
+        }
     }
 }
