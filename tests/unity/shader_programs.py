@@ -52,7 +52,7 @@ def programs(path: Path) -> list[Program]:
     text = COMMENT.sub("", path.read_text())
     name, shared = NAME.search(text), "".join(SHARED.findall(text))
     assert name is not None, f"{path.name} names no shader"
-    common = dict(STATE.findall(text[: re.search(r"\bHLSLINCLUDE\b|\bPass\b", text).start()]))
+    common = dict(STATE.findall(re.split(r"\bHLSLINCLUDE\b|\bPass\b", text)[0]))
     found = []
     for index, (title, state, own) in enumerate(PASS.findall(text)):
         stages = dict(STAGE.findall(shared + own))

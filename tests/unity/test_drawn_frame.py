@@ -154,7 +154,7 @@ def agree(found: Array, expected: Array) -> None:
 
 def seen(image: Array) -> bool:
     """Whether a picture would tell an upside-down one, or one shifted as between the eyes."""
-    return np.mean(image[..., 3] > 0.5) > 0.05
+    return bool(np.mean(image[..., 3] > 0.5) > 0.05)
 
 
 @pytest.mark.parametrize("turned", [False, True], ids=["back buffer", "texture"])
