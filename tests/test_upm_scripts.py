@@ -101,6 +101,12 @@ CASES: dict[str, tuple[Break, str]] = {
         lambda root: replaced(root / FRAME, "namespace Mua.Frames", "namespace Frames"),
         f'{FRAME}: type Frame: namespace "Frames", expected Mua or below it',
     ),
+    "module": (
+        lambda root: replaced(
+            root / FRAME, "private enum", "private Animator rig; // AudioSource\n        private enum"
+        ),
+        f"{FRAME}: Animator of com.unity.modules.animation, which is not in dependencies",
+    ),
     "no assembly": (
         lambda root: put(root / "Tools/Walk.cs", "namespace Mua { interface Walk { } }"),
         "Tools/Walk.cs: in no assembly, expected an .asmdef in its folder or above",

@@ -51,6 +51,21 @@ VERSION_SYMBOL = re.compile(r"UNITY_\d+_\d+_OR_NEWER")
 CONDITION = re.compile(r"^\s*#\s*(?:el)?if\s+(.*)$", re.MULTILINE)
 DEFINED = re.compile(r"^\s*#\s*define\s+(\w+)", re.MULTILINE)
 
+# The engine's own parts that a project may have switched off, by the words that need them.
+MODULES = {
+    r"Animator|AnimationClip|HumanBodyBones": "com.unity.modules.animation",
+    r"AndroidJava\w+": "com.unity.modules.androidjni",
+    r"AudioSource|AudioClip": "com.unity.modules.audio",
+    r"AssetBundle": "com.unity.modules.assetbundle",
+    r"LoadImage|EncodeToPNG|ImageConversion": "com.unity.modules.imageconversion",
+    r"JsonUtility": "com.unity.modules.jsonserialize",
+    r"Collider|Rigidbody|Physics": "com.unity.modules.physics",
+    r"ScreenCapture": "com.unity.modules.screencapture",
+    r"UnityWebRequest|DownloadHandler\w*": "com.unity.modules.unitywebrequest",
+    r"XRSettings|XRStats|XRDevice": "com.unity.modules.vr",
+    r"InputDevices|XRNode|XRDisplaySubsystem|XRInputSubsystem": "com.unity.modules.xr",
+}
+
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|@"(?:[^"]|"")*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 TOKEN = re.compile(
     r"[{}]|\bnamespace\s+(?P<namespace>[\w.]+)|\b(?:class|struct|interface|enum)\s+(?P<type>\w+)"
@@ -150,6 +165,10 @@ def source_faults(package: Package) -> Iterator[str]:
             for symbol in sorted(set(SYMBOL.findall(condition)) - known - {"true", "false"}):
                 if not VERSION_SYMBOL.fullmatch(symbol):
                     yield f"{where}: #if {symbol}: nothing defines it, expected a symbol of Unity or of versionDefines"
+        for words, module in MODULES.items():
+            found = re.search(rf"\b({words})\b", text)
+            if found and module not in package.manifest.get("dependencies", {}):
+                yield f"{where}: {found[0]} of {module}, which is not in dependencies"
         yield from _types(where, path.stem, text)
 
 
