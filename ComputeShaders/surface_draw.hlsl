@@ -33,21 +33,22 @@ struct StrokeVaryings
     nointerpolation float2 extent : TEXCOORD1; // half its length between the ends, half its width, pixels
 };
 
-float3 surfaceSplat(StructuredBuffer<uint4> splats, uint texel)
+float3 surfaceSplat(StructuredBuffer<uint4> splats, uint splat)
 {
-    return asfloat(splats[4 * texel].xyz);
+    return asfloat(splats[4 * splat].xyz);
 }
 
-// Sum of the normals of the triangles about a texel, times twice their areas.
-float3 surfaceTexelNormal(uint texel, StructuredBuffer<uint4> splats, StructuredBuffer<uint> ringStarts,
-                          StructuredBuffer<uint2> ring)
+// Sum of the normals of the triangles about a texel, times twice their areas. An avatar's splats begin at firstSplat.
+float3 surfaceTexelNormal(uint texel, uint firstSplat, StructuredBuffer<uint4> splats,
+                          StructuredBuffer<uint> ringStarts, StructuredBuffer<uint2> ring)
 {
-    float3 place = surfaceSplat(splats, texel);
+    float3 place = surfaceSplat(splats, firstSplat + texel);
     float3 normal = 0;
     uint end = ringStarts[texel + 1];
     [loop]
     for (uint i = ringStarts[texel]; i < end; ++i)
-        normal += cross(surfaceSplat(splats, ring[i].x) - place, surfaceSplat(splats, ring[i].y) - place);
+        normal += cross(surfaceSplat(splats, firstSplat + ring[i].x) - place,
+                        surfaceSplat(splats, firstSplat + ring[i].y) - place);
     return normal;
 }
 

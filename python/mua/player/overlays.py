@@ -41,9 +41,10 @@ MARGIN = 0.1  # metres round the shadow, so that its soft edge is not cut off
 class PosedBuffers:
     """What the overlays read of a frame."""
 
-    splats: Buffer  # uint4 [4 N]
+    splats: Buffer  # uint4 [4 M] of all avatars
     vertex_dq: Buffer  # float4 [2 V]
     mesh: Buffer  # float [3 V] canonical
+    first_splat: int = 0  # of the avatar
 
 
 _Indices = tuple[wgpu.GPUBuffer, int]  # triangles' corners, and how many of these
@@ -130,7 +131,9 @@ class Overlays:
     def draw_geometry(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
         """Draw the texel grid as a lit mesh."""
         rings, indices = self._surface
-        self._draw_surface.bind(render_pass, {"splats": self._posed.splats, **rings}, **_lit(camera, GEOMETRY_COLOR))
+        buffers = {"splats": self._posed.splats, **rings}
+        constants = {**_lit(camera, GEOMETRY_COLOR), "first_splat": self._posed.first_splat}
+        self._draw_surface.bind(render_pass, buffers, **constants)
         _draw_indexed(render_pass, indices)
 
     def draw_template(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:

@@ -58,7 +58,7 @@ class Scene:
         self._splats = frame.sorted
         self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
         (avatar,) = frame.avatars
-        posed = PosedBuffers(frame.splats, avatar.vertex_dq, avatar.mesh)
+        posed = PosedBuffers(frame.splats, avatar.vertex_dq, avatar.mesh, first_splat=avatar.first_splat)
         self._overlays = Overlays(device, avatar.avatar.avatar, posed, color=color_format, depth=DEPTH_FORMAT)
         self._depth: wgpu.GPUTexture | None = None
 

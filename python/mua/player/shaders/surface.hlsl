@@ -2,7 +2,7 @@
 
 #include "surface_draw.hlsl"
 
-StructuredBuffer<uint4> splats; // [N, 4] 64 bytes each; the centre is read
+StructuredBuffer<uint4> splats; // [M, 4] of all avatars, 64 bytes each; the centre is read
 StructuredBuffer<uint> ring_starts; // [N + 1] into ring
 StructuredBuffer<uint2> ring; // the other corners of the triangles about each texel
 
@@ -11,12 +11,13 @@ cbuffer Constants
     float4x4 view_projection; // of this eye, clip z in 0..w
     float4 camera; // this eye's position, world
     float4 color; // sRGB
+    uint first_splat; // of the avatar
 };
 
 SurfaceVaryings SurfaceVert(uint texel : SV_VertexID)
 {
-    float3 normal = surfaceTexelNormal(texel, splats, ring_starts, ring);
-    return surfaceVaryings(surfaceSplat(splats, texel), normal, camera.xyz, view_projection);
+    float3 normal = surfaceTexelNormal(texel, first_splat, splats, ring_starts, ring);
+    return surfaceVaryings(surfaceSplat(splats, first_splat + texel), normal, camera.xyz, view_projection);
 }
 
 float4 SurfaceFrag(SurfaceVaryings varyings) : SV_Target
