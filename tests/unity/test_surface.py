@@ -1,17 +1,14 @@
 """The package's surfaces: the texel grid that mono builds is the desktop player's."""
 
 import os
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
-from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
-from mua.asset import read, write
-from mua.asset.avatar import Avatar
+from mua.asset import read
 from mua.player.surface import build_surface
 
 GRID = [RUNTIME / f"{name}.cs" for name in ("TexelGrid", "TexelRest", "TexelCharts", "TexelSeams", "TexelHoles")]

@@ -19,6 +19,9 @@ namespace Mua
         /// <summary>World to clip space with y up and this device's depth; Shaders/target.hlsl turns y where Unity does.</summary>
         public readonly Matrix4x4[] DeviceViewProjection = new Matrix4x4[Most];
 
+        /// <summary>In the right-handed world, metres.</summary>
+        public readonly Vector4[] Positions = new Vector4[Most];
+
         /// <summary>Width and height of one eye, pixels.</summary>
         public readonly float[] Screen = new float[2];
 
@@ -48,14 +51,15 @@ namespace Mua
         public void Add(Matrix4x4 unityView, Matrix4x4 projection)
         {
             Matrix4x4 view = AvatarSpace.View(unityView);
+            Vector4 position = Position(view), sum = Count * Middle + position;
             Matrix4x4 device = GL.GetGPUProjectionMatrix(projection, false) * view;
             for (int eye = Count; eye < Most; eye++)
             {
                 View[eye] = view;
                 Projection[eye] = projection;
                 DeviceViewProjection[eye] = device;
+                Positions[eye] = position;
             }
-            Vector4 position = Position(view), sum = Count * Middle + position;
             Count++;
             Middle = new Vector4(sum.x / Count, sum.y / Count, sum.z / Count, 1);
         }

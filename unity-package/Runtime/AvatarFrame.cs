@@ -78,6 +78,9 @@ namespace Mua
         /// <summary>[2 J] dual quaternions of the last pose.</summary>
         public GraphicsBuffer Joints { get; private set; }
 
+        /// <summary>Whether a decode has been recorded: until then the buffers hold nothing.</summary>
+        public bool IsDecoded { get; private set; }
+
         /// <summary>The last pose, in the avatar's space.</summary>
         public SkeletonPose Skeleton => skeleton;
 
@@ -118,6 +121,7 @@ namespace Mua
             Branch(commands, Avatar.Geometry, GeometryStart);
             Branch(commands, Avatar.Appearance, AppearanceStart);
             Pose(commands);
+            IsDecoded = true;
         }
 
         /// <summary>Appends what moves the last decoded avatar into another pose: [J, 4] and [3] as for Decode.</summary>

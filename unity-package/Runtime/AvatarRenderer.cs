@@ -34,6 +34,7 @@ namespace Mua
 
         private AvatarLoader loader;
         private AvatarBuffers buffers;
+        private AvatarSurface surface;
         private AvatarPose pose;
         private AvatarJoints joints;
         private ClipSampler[] clips = new ClipSampler[0];
@@ -168,6 +169,18 @@ namespace Mua
             hasMoved = false;
         }
 
+        /// <summary>Adds what is drawn before the splats.</summary>
+        internal void AddOpaque(List<AvatarDraw> draws, AvatarEyes eyes)
+        {
+            surface.AddOpaque(draws, eyes, views);
+        }
+
+        /// <summary>Adds what is drawn over all else.</summary>
+        internal void AddOverlay(List<AvatarDraw> draws, AvatarEyes eyes)
+        {
+            surface.AddOverlay(draws, eyes, views);
+        }
+
         /// <summary>Has the next Record pose the avatar again.</summary>
         internal void MarkMoved()
         {
@@ -218,6 +231,7 @@ namespace Mua
             {
                 Place();
                 Pose();
+                surface.CastShadow(views, Bounds, gameObject.layer);
             }
         }
 
@@ -262,6 +276,7 @@ namespace Mua
                 }
                 buffers = loader.Take();
                 Decoded = new AvatarFrame(AvatarWorld.RequireResources(), buffers);
+                surface = new AvatarSurface(AvatarWorld.RequireResources(), Decoded);
                 Begin();
             }
             catch (Exception error) // whatever it is: the user sees one sentence, and no frame tries again
@@ -382,9 +397,11 @@ namespace Mua
         {
             AvatarWorld.Remove(this);
             loader?.Dispose();
+            surface?.Dispose();
             Decoded?.Dispose();
             buffers?.Dispose();
             loader = null;
+            surface = null;
             Decoded = null;
             buffers = null;
             pose = null;

@@ -15,6 +15,12 @@ namespace Mua
             return Add(GraphicsBuffer.Target.Structured, name, count, stride);
         }
 
+        /// <summary>Corners of triangles.</summary>
+        public GraphicsBuffer Indices(string name, int count)
+        {
+            return Add(GraphicsBuffer.Target.Index, name, count, sizeof(uint));
+        }
+
         /// <summary>Words that a kernel writes and that draws and dispatches take their counts from.</summary>
         public GraphicsBuffer Arguments(string name, int count)
         {

@@ -36,6 +36,20 @@ float4 targetPosition(float4 clip)
     return float4(clip.x, clip.y * _ProjectionParams.x, clip.zw);
 }
 
+// A point of the package's right-handed world in the map of the light whose shadows are drawn: Unity's world mirrors x,
+// and both pipelines put the light's matrix, turned as its target needs, where a camera's stands. What lies nearer to
+// the light than its volume still casts a shadow: it is drawn on the near side. No bias: only other objects receive.
+float4 shadowPosition(float3 place)
+{
+    float4 clip = mul(UNITY_MATRIX_VP, float4(-place.x, place.yz, 1));
+#ifdef UNITY_REVERSED_Z
+    clip.z = min(clip.z, clip.w * UNITY_NEAR_CLIP_VALUE);
+#else
+    clip.z = max(clip.z, clip.w * UNITY_NEAR_CLIP_VALUE);
+#endif
+    return clip;
+}
+
 // Colours of splats are sRGB; a project in linear colour space blends light.
 float3 targetColor(float3 srgb)
 {

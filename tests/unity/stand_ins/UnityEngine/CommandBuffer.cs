@@ -9,6 +9,10 @@ namespace UnityEngine
     public static class Graphics
     {
         public static void ExecuteCommandBuffer(Rendering.CommandBuffer buffer) { buffer.Run(); }
+        public static void RenderPrimitivesIndexed(in RenderParams rparams, MeshTopology topology, GraphicsBuffer indexBuffer, int indexCount, int startIndex = 0, int instanceCount = 1)
+        {
+            StandIns.Recorder.Rendered(rparams, indexBuffer, indexCount, instanceCount);
+        }
     }
 }
 

@@ -40,6 +40,12 @@ namespace StandIns
             for (int i = 0; i < 16 * values.Length; i++)
                 Bytes.Put(values[i / 16][i % 16], place, 4 * i);
         }
+        internal void Set(int name, Vector4[] values)
+        {
+            byte[] place = Place(name, Kinds.Vector, 16 * values.Length);
+            for (int i = 0; i < 4 * values.Length; i++)
+                Bytes.Put(values[i / 4][i % 4], place, 4 * i);
+        }
         internal void Set(int name, Value value, byte[] content, int start, int length)
         {
             Buffer.BlockCopy(content, start, Place(name, value.Kind, length), 0, length);
@@ -186,6 +192,14 @@ namespace StandIns
             string groups = arguments == null ? "\"groups\": [" + x + ", " + y + ", " + z + "]" : "\"indirect\": [" + arguments.Id + ", " + offset + "]";
             Line("{\"event\": \"dispatch\", \"shader\": \"" + shader.File + "\", \"kernel\": \"" + shader.Kernels[kernel] + "\", " + groups
                 + ", \"buffers\": {" + Listed(shader.Buffers[kernel]) + "}, \"constants\": {" + Listed(shader.Constants) + "}}");
+        }
+
+        /// <summary>A draw that waits for the engine's own passes; one that only casts shadows is the shader's fourth.</summary>
+        internal static void Rendered(RenderParams parameters, GraphicsBuffer indices, int count, int instances)
+        {
+            indices.CheckUsable("RenderPrimitivesIndexed");
+            bool isShadow = parameters.shadowCastingMode == UnityEngine.Rendering.ShadowCastingMode.ShadowsOnly;
+            Drawn(parameters.material, parameters.matProps, isShadow ? 3 : 0, count, instances, null, indices);
         }
 
         internal static void Drawn(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments, GraphicsBuffer indices)

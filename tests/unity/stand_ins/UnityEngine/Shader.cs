@@ -52,6 +52,7 @@ namespace UnityEngine
         public void SetColor(int nameID, Color value) { Constants.Set(nameID, (Vector4)value); }
         public void SetMatrix(int nameID, Matrix4x4 value) { Constants.Set(nameID, value); }
         public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
+        public void SetVectorArray(int nameID, Vector4[] values) { Constants.Set(nameID, values); }
         public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }
         public void EnableKeyword(string keyword) { keywords.Add(keyword); }
         public void DisableKeyword(string keyword) { keywords.Remove(keyword); }
@@ -72,6 +73,7 @@ namespace UnityEngine
         public void SetColor(int nameID, Color value) { Constants.Set(nameID, (Vector4)value); }
         public void SetMatrix(int nameID, Matrix4x4 value) { Constants.Set(nameID, value); }
         public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
+        public void SetVectorArray(int nameID, Vector4[] values) { Constants.Set(nameID, values); }
         public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }
     }
 }

@@ -9,6 +9,11 @@
 
 float4 _ProjectionParams; // x: -1 where the engine turns the target upside down
 
+float4x4 unity_MatrixVP; // world to clip of what is drawn: of a light, where its shadows are
+#define UNITY_MATRIX_VP unity_MatrixVP
+#define UNITY_REVERSED_Z 1 // as on Vulkan, Direct3D and Metal
+#define UNITY_NEAR_CLIP_VALUE (1.0)
+
 #if defined(STEREO_INSTANCING_ON)
 
 static uint unity_StereoEyeIndex;
