@@ -17,7 +17,7 @@ namespace Mua.Samples.VrPlayer
         private readonly HeadsetDisplay display;
         private readonly StageTimes times = new StageTimes();
         private readonly PanelText text = new PanelText();
-        private string last;
+        private string last = "";
         private float elapsed = Interval; // seconds since the last text
         private int frames; // in these
 

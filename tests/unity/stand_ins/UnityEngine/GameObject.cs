@@ -120,6 +120,9 @@ namespace UnityEngine
             while (coroutine.Calls.Count > 0)
             {
                 IEnumerator top = coroutine.Calls.Peek();
+                AsyncOperation pending = top.Current as AsyncOperation;
+                if (pending != null && !pending.isDone)
+                    return;
                 if (!top.MoveNext())
                 {
                     coroutine.Calls.Pop();
@@ -127,7 +130,7 @@ namespace UnityEngine
                 }
                 IEnumerator inner = top.Current as IEnumerator;
                 if (inner == null)
-                    return; // every instruction waits for one frame here
+                    return; // every other instruction waits for one frame here
                 coroutine.Calls.Push(inner);
             }
             Coroutines.Remove(coroutine);

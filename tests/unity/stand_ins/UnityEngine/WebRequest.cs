@@ -9,7 +9,12 @@ namespace UnityEngine.Networking
         public byte[] data { get; internal set; }
     }
 
-    public sealed class UnityWebRequestAsyncOperation : AsyncOperation { }
+    public sealed class UnityWebRequestAsyncOperation : AsyncOperation
+    {
+        internal UnityWebRequest Request;
+
+        public override bool isDone { get { return Request.isDone; } }
+    }
 
     public sealed class UnityWebRequest : IDisposable
     {
@@ -17,6 +22,7 @@ namespace UnityEngine.Networking
 
         private readonly int asked = Time.frameCount;
         private bool done;
+        private Result outcome;
 
         private UnityWebRequest(string url)
         {
@@ -27,7 +33,7 @@ namespace UnityEngine.Networking
 
         public string url { get; private set; }
         public string error { get; private set; }
-        public Result result { get; private set; }
+        public Result result { get { return isDone ? outcome : Result.InProgress; } }
         public DownloadHandler downloadHandler { get; private set; }
         public float downloadProgress { get { return isDone ? 1 : 0; } }
 
@@ -42,8 +48,8 @@ namespace UnityEngine.Networking
         }
 
         public static UnityWebRequest Get(string uri) { return new UnityWebRequest(uri); }
-        public UnityWebRequestAsyncOperation SendWebRequest() { return new UnityWebRequestAsyncOperation(); }
-        public void Abort() { done = true; result = Result.ConnectionError; error = "Request aborted"; }
+        public UnityWebRequestAsyncOperation SendWebRequest() { return new UnityWebRequestAsyncOperation { Request = this }; }
+        public void Abort() { done = true; outcome = Result.ConnectionError; error = "Request aborted"; }
         public void Dispose() { StandIns.Requests.Open--; }
 
         private void Finish()
@@ -51,7 +57,7 @@ namespace UnityEngine.Networking
             done = true;
             string path = url.Substring(url.IndexOf("://", StringComparison.Ordinal) + 3);
             bool there = File.Exists(path);
-            result = there ? Result.Success : Result.ProtocolError;
+            outcome = there ? Result.Success : Result.ProtocolError;
             error = there ? null : "HTTP/1.1 404 Not Found";
             downloadHandler.data = there ? File.ReadAllBytes(path) : null;
         }

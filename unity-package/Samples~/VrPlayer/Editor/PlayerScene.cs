@@ -79,9 +79,8 @@ namespace Mua.Samples.VrPlayer.Editor
             head.transform.SetParent(user.transform, false);
             head.transform.localPosition = new Vector3(0, EyeHeight, 0);
             AddCamera(head);
-            TextMesh panel = AddText("Panel", new Vector3(-1.6f, 1.9f, 0.2f), -30);
-            TextMesh help = AddText("Help", new Vector3(0.7f, 1.9f, 0.2f), 30);
-            help.text = HelpPage.Text;
+            TextMesh panel = AddText("Panel", "", new Vector3(-1.6f, 1.9f, 0.2f), -30);
+            TextMesh help = AddText("Help", HelpPage.Text, new Vector3(0.7f, 1.9f, 0.2f), 30);
             user.AddComponent<VrPlayer>().Connect(avatar, head.AddComponent<HeadPose>(), panel, help.gameObject, FindAvatars());
         }
 
@@ -96,7 +95,7 @@ namespace Mua.Samples.VrPlayer.Editor
             camera.allowMSAA = false;
         }
 
-        private static TextMesh AddText(string name, Vector3 position, float yaw)
+        private static TextMesh AddText(string name, string content, Vector3 position, float yaw)
         {
             var thing = new GameObject(name, typeof(MeshRenderer), typeof(TextMesh));
             thing.transform.SetPositionAndRotation(position, Quaternion.Euler(0, yaw, 0));
@@ -105,6 +104,7 @@ namespace Mua.Samples.VrPlayer.Editor
             text.fontSize = LetterPixels;
             text.characterSize = LetterHeight / (UnitsOfPixel * LetterPixels);
             text.anchor = TextAnchor.UpperLeft;
+            text.text = content;
             thing.GetComponent<MeshRenderer>().sharedMaterial = text.font.material;
             return text;
         }

@@ -1,0 +1,424 @@
+// Runs the VR player in the stand-ins' player loop. Arguments: the folder of the kernels, the story, a folder for Assets, that of
+// persistentDataPath, that of StreamingAssets. It prints what tests/unity/test_vr_player.py asks about.
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using System.Reflection;
+using System.Text.RegularExpressions;
+using System.Threading;
+using Mua.Samples.VrPlayer.Editor;
+using StandIns;
+using UnityEditor;
+using UnityEngine;
+using UnityEngine.XR;
+
+namespace Mua.Samples.VrPlayer
+{
+    internal static class PlayerProgram
+    {
+        private const int Patience = 4000; // frames, with a millisecond each, until loading must be over
+        private const float Step = 1f / 72;
+        private const string Place = "Assets/Scenes/Player.unity";
+
+        private static readonly Dictionary<string, string> Before = new Dictionary<string, string>();
+        private static AvatarRenderer shown;
+        private static Transform user;
+        private static TextMesh panel;
+        private static Camera head;
+
+        public static int Main(string[] arguments)
+        {
+            CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+            Directory.SetCurrentDirectory(arguments[2]);
+            Machine.Paths(arguments[4], arguments[3]);
+            Machine.Place("MuaAvatarResources", MakeResources(arguments[0]));
+            Machine.Place("LegacyRuntime.ttf", new Font { material = new Material(Shader.Find("GUI/Text Shader")) });
+            typeof(PlayerProgram).GetMethod(arguments[1], BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
+            foreach (string name in new[] { "User", "Avatar", "Panel", "Help", "Light", "Ground" })
+            {
+                UnityEngine.Object.DestroyImmediate(GameObject.Find(name));
+            }
+            Say("alive", Recorder.AliveCount);
+            Say("recorders", Markers.Open);
+            foreach (KeyValuePair<LogType, string> line in StandIns.Console.Lines)
+            {
+                Say("log", line.Key + " " + line.Value);
+            }
+            return 0;
+        }
+
+        private static void Scene()
+        {
+            AvatarAsset[] assets = { AvatarAsset.Create(new byte[0]), AvatarAsset.Create(new byte[0]) };
+            AssetDatabase.CreateAsset(assets[0], "Assets/b.muaavatar");
+            AssetDatabase.CreateAsset(assets[1], "Assets/a.muaavatar");
+            Make();
+            Say("saved", string.Join(" ", Scenes.Saved.ToArray()));
+            foreach (Transform at in UnityEngine.Object.FindObjectsByType<Transform>(FindObjectsSortMode.None))
+            {
+                GameObject thing = at.gameObject;
+                string kinds = string.Join(" ", new List<Component>(thing.GetComponentsInChildren<Component>())
+                    .FindAll(c => c.gameObject == thing && !(c is Transform)).ConvertAll(c => c.GetType().Name).ToArray());
+                Say(thing.name, kinds);
+            }
+            Light light = UnityEngine.Object.FindFirstObjectByType<Light>();
+            Say("light", light.type + " " + light.shadows);
+            Say("ground", AssetDatabase.LoadAssetAtPath<Material>("Assets/Scenes/PlayerGround.mat")
+                == GameObject.Find("Ground").GetComponent<MeshRenderer>().sharedMaterial);
+            Say("camera", head.allowHDR + " " + head.allowMSAA + " " + head.clearFlags + " " + head.gameObject.tag);
+            Say("faces", Format(shown.transform.forward) + ", the user at " + Format(user.position));
+            var given = (AvatarAsset[])typeof(VrPlayer).GetField("avatars", BindingFlags.Instance | BindingFlags.NonPublic)
+                .GetValue(user.GetComponent<VrPlayer>());
+            Say("avatars", given[0] == assets[1] && given[1] == assets[0] && given.Length == 2);
+            Say("help", GameObject.Find("Help").GetComponent<TextMesh>().text.Replace('\n', '|'));
+        }
+
+        private static void Keys()
+        {
+            Begin();
+            foreach (string key in new[]
+            {
+                "Space", "Space", "Period", "Comma", "Comma", "RightBracket", "LeftBracket", "LeftBracket", "Digit1", "Digit2", "Digit3",
+                "Digit4", "Digit5", "H", "H", "W", "S", "D", "A", "R", "F", "E", "RightArrow", "LeftArrow", "UpArrow", "Backspace",
+                "Q", "DownArrow", "Backspace", "PageDown", "PageUp", "PageUp",
+            })
+            {
+                StandIns.Keys.Press(key);
+                Tell(key);
+                StandIns.Keys.Release(key);
+            }
+            StandIns.Keys.Drag = new Vector2(40, 20);
+            Tell("drag");
+            StandIns.Keys.Press("Mouse1");
+            Tell("right drag");
+            StandIns.Keys.Release("Mouse1");
+            StandIns.Keys.Drag = Vector2.zero;
+            StandIns.Keys.Scroll = 1;
+            Tell("wheel");
+        }
+
+        private static void Controllers()
+        {
+            Begin();
+            Button(XRNode.RightHand, CommonUsages.primaryButton, "A");
+            Button(XRNode.RightHand, CommonUsages.primaryButton, "A");
+            Button(XRNode.RightHand, CommonUsages.triggerButton, "right trigger");
+            Button(XRNode.LeftHand, CommonUsages.triggerButton, "left trigger");
+            Button(XRNode.RightHand, CommonUsages.secondaryButton, "B");
+            Button(XRNode.LeftHand, CommonUsages.menuButton, "menu");
+            Button(XRNode.LeftHand, CommonUsages.primary2DAxisClick, "left stick pressed");
+            Stick(XRNode.LeftHand, new Vector2(0, 1), "left stick up");
+            Stick(XRNode.LeftHand, new Vector2(0.1f, -0.1f), "left stick at rest");
+            Stick(XRNode.RightHand, new Vector2(1, 0), "right stick right");
+            Stick(XRNode.RightHand, new Vector2(0, 1), "right stick up");
+            Devices.Report(XRNode.RightHand, CommonUsages.gripButton, true);
+            Stick(XRNode.RightHand, new Vector2(1, 0), "right grip, right stick right");
+            Devices.Report(XRNode.RightHand, CommonUsages.gripButton, false);
+            Button(XRNode.RightHand, CommonUsages.primary2DAxisClick, "right stick pressed");
+            Button(XRNode.LeftHand, CommonUsages.secondaryButton, "Y");
+            Button(XRNode.LeftHand, CommonUsages.primaryButton, "X");
+            Devices.Report(XRNode.LeftHand, CommonUsages.gripButton, true);
+            Button(XRNode.RightHand, CommonUsages.primaryButton, "left grip, A");
+            Button(XRNode.RightHand, CommonUsages.secondaryButton, "left grip, B");
+            Button(XRNode.LeftHand, CommonUsages.primaryButton, "left grip, X");
+            Button(XRNode.LeftHand, CommonUsages.secondaryButton, "left grip, Y");
+            Button(XRNode.RightHand, CommonUsages.triggerButton, "left grip, right trigger");
+            Button(XRNode.LeftHand, CommonUsages.triggerButton, "left grip, left trigger");
+        }
+
+        private static void Headset()
+        {
+            StandIns.Headset.Connect();
+            Devices.Report(XRNode.Head, CommonUsages.centerEyePosition, new Vector3(0.5f, 1.8f, 0.25f));
+            Devices.Report(XRNode.Head, CommonUsages.centerEyeRotation, Quaternion.Euler(0, 90, 0));
+            Begin();
+            Frames(72);
+            Say("head", Format(head.transform.position) + " looks " + Format(head.transform.forward));
+            Say("foveation", StandIns.Headset.Display.foveatedRenderingLevel);
+            Say("origin", StandIns.Headset.Input.GetTrackingOriginMode());
+            Say("rate", StandIns.Headset.Rate);
+            Say("panel", panel.text.Replace('\n', '|'));
+            Remember();
+            Stick(XRNode.LeftHand, new Vector2(0, 1), "left stick up");
+            StandIns.Keys.Press("Mouse1");
+            StandIns.Keys.Drag = new Vector2(40, 20);
+            Tell("right drag");
+            StandIns.Keys.Drag = Vector2.zero;
+            Devices.Report(XRNode.RightHand, CommonUsages.primary2DAxis, new Vector2(0, 1));
+            Frames(72);
+            Devices.Report(XRNode.RightHand, CommonUsages.primary2DAxis, Vector2.zero);
+            Frames(1);
+            Say("zoomed", Format(head.transform.position) + " near " + head.nearClipPlane.ToString("0.000"));
+        }
+
+        private static void Panel()
+        {
+            foreach (string stage in new[] { "coarse mesh", "texture", "pose", "project", "sort" })
+            {
+                Markers.Measure("MUA " + stage, 250000, 750000);
+            }
+            Timings.Gpu = 9.84;
+            Machine.GpuRecorder(true);
+            Make();
+            Frames(1);
+            Say("first", panel.text.Replace('\n', '|'));
+            Begin();
+            shown.IsPlaying = false;
+            shown.Frame = 3;
+            Frames(72);
+            Say("panel", panel.text.Replace('\n', '|'));
+        }
+
+        private static void Allocates()
+        {
+            StandIns.Headset.Connect();
+            Devices.Report(XRNode.Head, CommonUsages.centerEyePosition, new Vector3(0, 1.8f, 0));
+            Devices.Report(XRNode.Head, CommonUsages.centerEyeRotation, Quaternion.identity);
+            Devices.Report(XRNode.LeftHand, CommonUsages.primary2DAxis, new Vector2(0.3f, 0.4f));
+            Devices.Report(XRNode.RightHand, CommonUsages.primary2DAxis, new Vector2(0.3f, 0.4f));
+            foreach (string stage in new[] { "coarse mesh", "texture", "pose", "project", "sort", "draw" })
+            {
+                Markers.Measure("MUA " + stage, 250000, 750000);
+            }
+            Begin();
+            shown.IsPlaying = true;
+            Frames(200);
+            int texts = 0;
+            long most = 0, all = GC.GetAllocatedBytesForCurrentThread();
+            for (int i = 0; i < 144; i++)
+            {
+                string text = panel.text;
+                long before = GC.GetAllocatedBytesForCurrentThread();
+                PlayerLoop.Frame(Step);
+                long spent = GC.GetAllocatedBytesForCurrentThread() - before;
+                bool isNew = !ReferenceEquals(text, panel.text);
+                texts += isNew ? 1 : 0;
+                most = isNew ? most : Math.Max(most, spent);
+                all += isNew ? 2 * panel.text.Length : 0;
+            }
+            long rest = GC.GetAllocatedBytesForCurrentThread() - all;
+            Say("texts", texts);
+            Say("allocated", most);
+            Say("beyond texts", rest);
+            shown.IsPlaying = false;
+            Frames(72);
+            long still = GC.GetAllocatedBytesForCurrentThread();
+            Frames(72);
+            rest = GC.GetAllocatedBytesForCurrentThread() - still;
+            Say("still", rest);
+        }
+
+        private static void Order()
+        {
+            var asset = AvatarAsset.Create(File.ReadAllBytes(Directory.GetFiles(Application.persistentDataPath + "/avatars")[0]));
+            asset.name = "asset";
+            AssetDatabase.CreateAsset(asset, "Assets/asset.muaavatar");
+            Walk();
+        }
+
+        private static void Streams()
+        {
+            StreamingIndex.Write(Application.streamingAssetsPath);
+            Say("index", File.ReadAllText(Path.Combine(Application.streamingAssetsPath, AvatarShelf.Index)).Replace('\n', '|'));
+            Machine.Paths("jar:file://" + Application.streamingAssetsPath, Application.persistentDataPath);
+            Walk();
+        }
+
+        private static void Goes()
+        {
+            Make();
+            for (int i = 0; i < 100; i++)
+            {
+                Frames(1);
+                Thread.Sleep(5);
+            }
+            Say("panel", panel.text.Replace('\n', '|'));
+            Say("state", shown.State + " " + shown.AvatarName);
+            StandIns.Keys.Press("PageUp");
+            Frames(1);
+            Until(100);
+            Frames(72);
+            Say("on", panel.text.Replace('\n', '|'));
+        }
+
+        private static void Switches()
+        {
+            Begin();
+            Frames(2);
+            int alive = Recorder.AliveCount;
+            for (int i = 0; i < 4; i++)
+            {
+                StandIns.Keys.Press("PageDown");
+                Frames(1);
+                StandIns.Keys.Release("PageDown");
+                Say("uploading", Recorder.AliveCount < alive);
+                Until();
+                Frames(2);
+                Say("shown", shown.AvatarName.Length > 0);
+            }
+            Say("kept", Recorder.AliveCount == alive);
+        }
+
+        private static void Walk()
+        {
+            Begin();
+            string first = Entry(), at = first;
+            do
+            {
+                Say("entry", at);
+                StandIns.Keys.Press("PageDown");
+                Frames(1);
+                StandIns.Keys.Release("PageDown");
+                Until();
+                Frames(36);
+                at = Entry();
+            }
+            while (at != first);
+        }
+
+        /// <summary>Of the panel: "avatar 1/3   name".</summary>
+        private static string Entry()
+        {
+            foreach (string line in panel.text.Split('\n'))
+            {
+                if (line.StartsWith("avatar "))
+                {
+                    return line;
+                }
+            }
+            return "";
+        }
+
+        private static void Make()
+        {
+            PlayerScene.Create(Place);
+            shown = UnityEngine.Object.FindFirstObjectByType<AvatarRenderer>();
+            user = GameObject.Find("User").transform;
+            head = UnityEngine.Object.FindFirstObjectByType<Camera>();
+            panel = GameObject.Find("Panel").GetComponent<TextMesh>();
+        }
+
+        private static void Begin()
+        {
+            if (shown == null)
+            {
+                Make();
+            }
+            Until();
+            Frames(36);
+            shown.IsPlaying = false;
+            shown.Seconds = 0;
+            Frames(1);
+            Remember();
+        }
+
+        private static void Button(XRNode hand, InputFeatureUsage<bool> usage, string name)
+        {
+            Devices.Report(hand, usage, true);
+            Tell(name);
+            Devices.Report(hand, usage, false);
+            Frames(1);
+            Remember();
+        }
+
+        private static void Stick(XRNode hand, Vector2 value, string name)
+        {
+            Devices.Report(hand, CommonUsages.primary2DAxis, value);
+            Tell(name);
+            Devices.Report(hand, CommonUsages.primary2DAxis, Vector2.zero);
+            Frames(1);
+            Remember();
+        }
+
+        /// <summary>Ten frames, and what is another than it was.</summary>
+        private static void Tell(string what)
+        {
+            Frames(10);
+            Until();
+            Dictionary<string, string> now = State();
+            List<string> changes = new List<string>();
+            foreach (KeyValuePair<string, string> value in now)
+            {
+                if (Before[value.Key] != value.Value)
+                {
+                    changes.Add(value.Key + " " + value.Value);
+                }
+            }
+            Say(what, string.Join("; ", changes.ToArray()));
+            Remember();
+        }
+
+        private static void Remember()
+        {
+            Before.Clear();
+            foreach (KeyValuePair<string, string> value in State())
+            {
+                Before[value.Key] = value.Value;
+            }
+        }
+
+        private static Dictionary<string, string> State()
+        {
+            GameObject help = GameObject.Find("Help");
+            return new Dictionary<string, string>
+            {
+                { "playing", shown.IsPlaying.ToString() },
+                { "frame", shown.IsPlaying ? "-" : shown.Frame.ToString() },
+                { "clip", shown.ClipIndex.ToString() },
+                { "avatar", shown.AvatarName },
+                { "views", shown.Views.ToString() },
+                { "help", (help != null).ToString() },
+                { "user", Format(user.position) },
+                { "head", Format(head.transform.forward) },
+                { "size", user.localScale.x.ToString("0.000") },
+                { "avatar faces", Format(shown.transform.forward) },
+            };
+        }
+
+        private static void Until(int patience = Patience)
+        {
+            for (int i = 0; i < patience && shown.State != AvatarState.Ready; i++)
+            {
+                Frames(1);
+                Thread.Sleep(1);
+            }
+        }
+
+        private static void Frames(int count)
+        {
+            for (int i = 0; i < count; i++)
+            {
+                PlayerLoop.Frame(Step);
+            }
+        }
+
+        private static string Format(Vector3 v)
+        {
+            return (v.x + 0f).ToString("0.00") + " " + v.y.ToString("0.00") + " " + v.z.ToString("0.00");
+        }
+
+        private static AvatarResources MakeResources(string folder)
+        {
+            var resources = ScriptableObject.CreateInstance<AvatarResources>();
+            foreach (FieldInfo field in typeof(AvatarResources).GetFields(BindingFlags.Instance | BindingFlags.NonPublic))
+            {
+                string stem = Regex.Replace(field.Name, "[A-Z]", found => "_" + found.Value.ToLowerInvariant());
+                if (field.FieldType == typeof(Shader))
+                {
+                    field.SetValue(resources, Recorder.Drawing(field.Name));
+                }
+                else if (field.FieldType == typeof(ComputeShader))
+                {
+                    field.SetValue(resources, Recorder.Compute(Path.Combine(folder, stem + ".compute")));
+                }
+            }
+            return resources;
+        }
+
+        private static void Say(string name, object value)
+        {
+            System.Console.WriteLine(name + "\t" + value);
+        }
+    }
+}

@@ -1,0 +1,251 @@
+"""The VR player's scene in a player loop of stand-ins: what its inputs change, what it shows, what it says."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from csharp import PROGRAMS, ROOT, CSharp
+from synthetic_avatar import synthetic_avatar
+from test_compiles import Compiler, assemblies
+
+from mua.asset import write
+
+KERNELS = ROOT / "ComputeShaders"
+SAMPLE = ROOT / "unity-package" / "Samples~" / "VrPlayer"
+HEADER = 32  # bytes of a string beyond its characters
+Told = dict[str, list[str]]
+Story = Callable[..., Told]
+
+
+@pytest.fixture(scope="module", params=[True, False], ids=["input system", "input manager"])
+def program(csharp: CSharp, request: pytest.FixtureRequest) -> Path:
+    """The sample and its editor part with the test's program, for each of Unity's two input systems."""
+    compiler = Compiler(csharp, "editor", packages=request.param)
+    sample, editor = assemblies()["Mua.Samples.VrPlayer"], assemblies()["Mua.Samples.VrPlayer.Editor"]
+    names = ["UnityEngine", "UnityEditor", *(["Unity.InputSystem", "Unity.XR.MetaOpenXR"] if request.param else [])]
+    references = [compiler.built(name) for name in (*names, "Mua.Format", "Mua.Motion", "Mua.Avatar")]
+    defines = sample.defines("editor", packages=request.param)
+    sources = [*sample.sources(), *editor.sources(), PROGRAMS / "PlayerProgram.cs"]
+    return csharp.build(sources, name="PlayerProgram", references=references, defines=defines)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Assets, persistent data and StreamingAssets, all empty."""
+    for name in ("Assets", "persistent/avatars", "streaming"):
+        (tmp_path / name).mkdir(parents=True)
+    return tmp_path
+
+
+@pytest.fixture
+def story(csharp: CSharp, program: Path, folder: Path) -> Story:
+    def tell(name: str, *, files: tuple[str, ...] = ("persistent/avatars/first", "persistent/avatars/second")) -> Told:
+        for seed, file in enumerate(files):
+            put(folder / f"{file}.muaavatar", seed)
+        told: Told = {"log": []}
+        said = csharp.run(program, KERNELS, name, folder, folder / "persistent", folder / "streaming")
+        for line in said.splitlines():
+            key, value = line.split("\t", 1)
+            told.setdefault(key, []).append(value)
+        assert (told["alive"], told["recorders"]) == (["0"], ["0"])
+        return told
+
+    return tell
+
+
+def put(path: Path, seed: int) -> None:
+    """An avatar of two clips, called after its file."""
+    avatar = synthetic_avatar(seed)
+    clip = avatar.clips[0]
+    path.parent.mkdir(exist_ok=True)
+    write(path, replace(avatar, name=path.stem, clips=(clip, replace(clip, name="another"))), storage="i8")
+
+
+def test_the_scene_has_what_the_player_needs(story: Story) -> None:
+    told = story("Scene", files=())
+    assert told["saved"] == ["Assets/Scenes/Player.unity"]
+    assert [told[name] for name in ("Ground", "Avatar", "User", "Head", "Panel", "Help")] == [
+        ["MeshFilter MeshRenderer"],
+        ["AvatarRenderer"],
+        ["VrPlayer"],
+        ["Camera HeadPose"],
+        ["MeshRenderer TextMesh"],
+        ["MeshRenderer TextMesh"],
+    ]
+    assert told["light"] == ["Directional Soft"]
+    assert told["camera"] == ["False False SolidColor MainCamera"]
+    assert (told["ground"], told["avatars"]) == (["True"], ["True"])
+    assert told["faces"] == ["0.00 0.00 -1.00, the user at 0.00 0.00 -2.20"]
+    assert told["log"] == []
+
+
+def test_keys_do_what_the_table_says(story: Story) -> None:
+    told = story("Keys")
+    assert told == {
+        "Space": ["playing True; frame -", "playing False; frame 3"],
+        "Period": ["frame 4"],
+        "Comma": ["frame 3", "frame 2"],
+        "RightBracket": ["frame 0; clip 1"],
+        "LeftBracket": ["clip 0", "clip 1"],
+        "Digit1": ["views Shadow"],
+        "Digit2": ["views Geometry, Shadow"],
+        "Digit3": ["views Geometry, Mesh, Shadow"],
+        "Digit4": ["views Geometry, Mesh, Skeleton, Shadow"],
+        "Digit5": ["views Geometry, Mesh, Skeleton"],
+        "H": ["help False", "help True"],
+        "W": ["user 0.00 0.00 -1.99"],
+        "S": ["user 0.00 0.00 -2.20"],
+        "D": ["user 0.21 0.00 -2.20"],
+        "A": ["user 0.00 0.00 -2.20"],
+        "R": ["user 0.00 0.21 -2.20"],
+        "F": ["user 0.00 0.00 -2.20"],
+        "E": ["avatar faces -0.22 0.00 -0.98"],
+        "RightArrow": ["frame 6"],
+        "LeftArrow": ["frame 0"],
+        "UpArrow": ["user 0.00 0.15 -2.00; size 0.908"],
+        "Backspace": [
+            "user 0.00 0.00 -2.20; size 1.000; avatar faces 0.00 0.00 -1.00",
+            "user 0.00 0.00 -2.20; size 1.000; avatar faces 0.00 0.00 -1.00",
+        ],
+        "Q": ["avatar faces 0.22 0.00 -0.98"],
+        "DownArrow": ["user 0.00 -0.16 -2.42; size 1.101"],
+        "PageDown": ["clip 0; avatar second"],
+        "PageUp": ["avatar first", "avatar second"],
+        "drag": [""],
+        "right drag": ["head 0.75 0.50 0.43"],
+        "wheel": ["user 0.00 0.86 -1.02; size 0.463"],
+        "log": [],
+        "alive": ["0"],
+        "recorders": ["0"],
+    }
+
+
+def test_buttons_do_what_the_table_says(story: Story) -> None:
+    told = story("Controllers")
+    assert told == {
+        "A": ["playing True; frame -", "playing False; frame 3"],
+        "right trigger": ["frame 4"],
+        "left trigger": ["frame 3"],
+        "B": ["frame 0; clip 1"],
+        "menu": ["help False"],
+        "left stick pressed": ["help True"],
+        "left stick up": ["user 0.00 0.00 -1.99"],
+        "left stick at rest": [""],
+        "right stick right": ["avatar faces -0.22 0.00 -0.98"],
+        "right stick up": ["user 0.00 0.15 -1.81; size 0.908"],
+        "right grip, right stick right": ["frame 6"],
+        "right stick pressed": ["user 0.00 0.00 -2.20; size 1.000; avatar faces 0.00 0.00 -1.00"],
+        "Y": ["frame 0; clip 0; avatar second"],
+        "X": ["avatar first"],
+        "left grip, A": ["views Shadow"],
+        "left grip, B": ["views Geometry, Shadow"],
+        "left grip, X": ["views Geometry, Mesh, Shadow"],
+        "left grip, Y": ["views Geometry, Mesh, Skeleton, Shadow"],
+        "left grip, right trigger": ["views Geometry, Mesh, Skeleton"],
+        "left grip, left trigger": ["clip 1"],
+        "log": [],
+        "alive": ["0"],
+        "recorders": ["0"],
+    }
+
+
+def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
+    told = story("Headset")
+    assert told["head"] == ["0.50 1.80 -1.95 looks 1.00 0.00 0.00"]
+    assert (told["foveation"], told["origin"], told["rate"]) == (["0.5"], ["Floor"], ["72"])
+    assert "display 72 Hz, 72 wanted   foveation 0.50" in told["panel"][0]
+    assert told["left stick up"] == ["user 0.21 0.00 -2.20"]  # to where the head looks
+    assert told["right drag"] == [""]  # a mouse does not turn a head that is tracked
+    assert told["zoomed"] == ["0.35 1.80 -0.98 near 0.025"]  # half as far, at the same height
+
+
+def test_the_panel_says_what_is_shown_and_how_fast(story: Story) -> None:
+    told = story("Panel")
+    assert "|loading 0 %|" in told["first"][0]
+    assert told["panel"][0].split("|") == [
+        "72 fps   13.9 ms a frame   9.8 ms GPU",
+        "",
+        "ms on the GPU",
+        "coarse mesh 0.50   texture 0.50   pose 0.50",
+        "project 0.50   sort 0.50   draw -",
+        "",
+        "avatar 1/2   first",
+        "clip 1/2   wave",
+        "frame 4/7   paused",
+        "shown: splats shadow",
+        "",
+    ]
+
+
+def test_a_frame_allocates_nothing_and_a_second_two_texts(story: Story) -> None:
+    told = story("Allocates")
+    assert told["texts"] == ["4"]
+    assert told["allocated"] == ["0"]
+    assert int(told["beyond texts"][0]) < 4 * HEADER
+    assert told["still"] == ["0"]
+
+
+def test_avatars_come_in_the_order_of_folder_app_and_scene(story: Story) -> None:
+    files = ("persistent/avatars/b", "persistent/avatars/a", "streaming/more/d", "streaming/c")
+    order = ["a", "b", "c", "d", "asset"]
+    assert story("Order", files=files)["entry"] == [f"avatar {i}/5   {name}" for i, name in enumerate(order, 1)]
+
+
+def test_avatars_inside_an_android_package_are_found_by_their_index(story: Story) -> None:
+    told = story("Streams", files=("persistent/avatars/a", "streaming/more/d", "streaming/c"))
+    assert told["index"] == ["c.muaavatar|more/d.muaavatar|"]
+    assert told["entry"] == ["avatar 1/3   a", "avatar 2/3   c", "avatar 3/3   d"]
+
+
+def test_switching_gives_back_the_avatar_before(story: Story) -> None:
+    told = story("Switches")
+    assert (told["uploading"], told["shown"], told["kept"]) == (["True"] * 4, ["True"] * 4, ["True"])
+
+
+def test_without_an_avatar_the_panel_says_where_to_put_one(story: Story, folder: Path) -> None:
+    told = story("Goes", files=())
+    assert told["state"] == ["Empty "]
+    said = told["panel"][0].replace("|", " ")
+    assert "No avatar was found. Put files like hero.muaavatar in" in said
+    assert str(folder / "persistent" / "avatars") in told["panel"][0].replace("|", "")
+    assert told["log"] == []
+
+
+def test_an_avatar_that_fails_says_why_and_makes_way_for_the_next(story: Story, folder: Path) -> None:
+    (folder / "persistent" / "avatars" / "broken.muaavatar").write_bytes(b"no avatar at all")
+    told = story("Goes")
+    assert told["state"] == ["Ready first"]
+    assert "avatar 2/3   first" in told["panel"][0]
+    assert "broken.muaavatar" in told["panel"][0].replace("|", "")
+    assert "avatar 3/3   second" in told["on"][0]  # back past the broken one, from the first to the last
+    assert "broken" not in told["on"][0]
+    assert len(told["log"]) == 1
+
+
+def test_where_all_avatars_fail_the_player_rests(story: Story, folder: Path) -> None:
+    for name in ("broken", "other"):
+        (folder / "persistent" / "avatars" / f"{name}.muaavatar").write_bytes(b"no avatar at all")
+    told = story("Goes", files=())
+    assert told["state"] == ["Failed "]
+    assert "broken.muaavatar" in told["panel"][0].replace("|", "") or "other.muaavatar" in told["panel"][0].replace(
+        "|", ""
+    )
+    assert len(told["log"]) == 2
+
+
+def test_the_page_of_buttons_and_the_readme_name_the_same_actions(story: Story) -> None:
+    page, readme = story("Scene", files=())["help"][0], (SAMPLE / "README.md").read_text()
+    for action in (
+        "walk",
+        "turn",
+        "zoom",
+        "scrub",
+        "play, pause",
+        "next clip",
+        "previous clip",
+        "skeleton",
+        "back to the start",
+    ):
+        assert action in page
+        assert action in readme
