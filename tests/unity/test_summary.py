@@ -1,6 +1,6 @@
 """What the editor shows of a file: the tables of mua-inspect, and a picture of the mesh at rest."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -75,7 +75,7 @@ def python_tables(path: Path) -> list[list[str]]:
 
 def flattened(table: Table) -> list[str]:
     rows = zip(*(column.cells for column in table.columns), strict=True)
-    cells = [[str(table.title)], [column.header for column in table.columns], *rows]
+    cells: list[Sequence[object]] = [[table.title], [column.header for column in table.columns], *rows]
     return ["\t".join(" ".join(str(cell).split()) for cell in row) for row in cells]
 
 

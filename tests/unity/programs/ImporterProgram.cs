@@ -1,0 +1,179 @@
+// Runs the assembly Mua.Avatar.Editor over the stand-ins. Arguments: the story, files. It prints what
+// tests/unity/test_importer.py asks about.
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using System.Linq;
+using System.Reflection;
+using Mua.Format;
+using StandIns;
+using UnityEditor;
+using UnityEngine;
+
+namespace Mua.Editor
+{
+    internal static class ImporterProgram
+    {
+        private const BindingFlags Hidden = BindingFlags.Static | BindingFlags.NonPublic;
+
+        private static string[] files;
+
+        public static int Main(string[] arguments)
+        {
+            CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+            Machine.Playing(false);
+            files = arguments.Skip(1).ToArray();
+            typeof(ImporterProgram).GetMethod(arguments[0], Hidden).Invoke(null, null);
+            foreach (KeyValuePair<LogType, string> line in StandIns.Console.Lines)
+            {
+                Say("log", line.Key, line.Value);
+            }
+            return 0;
+        }
+
+        private static void Imports()
+        {
+            foreach (string file in files)
+            {
+                var import = new Import(new AvatarImporter(), file);
+                var asset = (AvatarAsset)import.Main;
+                string icon = import.Icon == null ? "" : import.Icon.width + " x " + import.Icon.height;
+                Say("asset", asset.name, asset.Content.Length, asset.Fault, string.Join(" ", import.Parts), icon);
+                Say("error", string.Join(" | ", import.Errors));
+                Say("summary", asset.Summary.Split('\n')[0]);
+            }
+        }
+
+        /// <summary>Bytes and thumbnail of what is imported are those of the file.</summary>
+        private static void Keeps()
+        {
+            var import = new Import(new AvatarImporter(), files[0]);
+            var asset = (AvatarAsset)import.Main;
+            byte[] content = File.ReadAllBytes(files[0]);
+            AvatarFile avatar = AvatarFile.Read(content);
+            byte[] drawn = Textures.Content(asset.Thumbnail);
+            Say("content", asset.Content.SequenceEqual(content));
+            Say("summary", asset.Summary == AvatarSummary.Of(avatar));
+            Say("own", drawn.SequenceEqual(avatar.Thumbnail.ToArray()));
+            Say("portrait", drawn.SequenceEqual(Portrait.Draw(avatar, asset.Thumbnail.width)));
+        }
+
+        private static void Inspects()
+        {
+            var inspector = Inspectors.Open<AvatarAssetEditor>(new Import(new AvatarImporter(), files[0]).Main);
+            inspector.OnInspectorGUI();
+            Gui.Lines.ForEach(line => Say("gui", line));
+        }
+
+        private static void HasNoAvatar()
+        {
+            Menu("MUA/Create Demo Scene");
+            Tell();
+        }
+
+        private static void MakesScene()
+        {
+            Place(files);
+            Menu("MUA/Create Demo Scene");
+            Tell();
+        }
+
+        private static void KeepsScene()
+        {
+            Place(files);
+            Project.Assets[DemoScene.Location] = new SceneAsset();
+            Dialogs.Answer = false;
+            Menu("MUA/Create Demo Scene");
+            Tell();
+        }
+
+        private static void MakesObject()
+        {
+            Place(files);
+            var parent = new GameObject("parent");
+            parent.transform.position = new Vector3(1, 2, 3);
+            Menu("GameObject/MUA Avatar", new MenuCommand(parent));
+            Tell();
+        }
+
+        private static void Drops()
+        {
+            Place(files);
+            typeof(AvatarDrop).GetMethod("Register", Hidden).Invoke(null, null);
+            AvatarAsset asset = AvatarObject.Find();
+            Say("hover", Drag.Drop(new Vector3(1, 0, 2), false, asset), UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None).Length);
+            Say("other", Drag.Drop(new Vector3(1, 0, 2), true, asset.Thumbnail));
+            Say("drop", Drag.Drop(new Vector3(1, 0, 2), true, asset));
+            Tell();
+        }
+
+        private static void Selects()
+        {
+            Place(files);
+            Selection.activeObject = Project.Assets["Assets/" + Path.GetFileName(files[1])];
+            Say("found", AvatarObject.Find().name);
+        }
+
+        private static void Menus()
+        {
+            foreach (MenuItem item in Items().Keys)
+            {
+                Say("menu", item.menuItem);
+            }
+        }
+
+        private static void Place(string[] paths)
+        {
+            foreach (string path in paths)
+            {
+                Project.Assets["Assets/" + Path.GetFileName(path)] = new Import(new AvatarImporter(), path).Main;
+            }
+        }
+
+        private static Dictionary<MenuItem, MethodInfo> Items()
+        {
+            var items = new Dictionary<MenuItem, MethodInfo>();
+            foreach (Type type in typeof(AvatarImporter).Assembly.GetTypes())
+            {
+                foreach (MethodInfo method in type.GetMethods(Hidden | BindingFlags.Public | BindingFlags.DeclaredOnly))
+                {
+                    foreach (MenuItem item in method.GetCustomAttributes(typeof(MenuItem), false))
+                    {
+                        items.Add(item, method);
+                    }
+                }
+            }
+            return items;
+        }
+
+        private static void Menu(string name, params object[] arguments)
+        {
+            Items().Single(item => item.Key.menuItem == name).Value.Invoke(null, arguments);
+        }
+
+        /// <summary>What is in the scene, and what the user was asked.</summary>
+        private static void Tell()
+        {
+            foreach (GameObject thing in UnityEngine.Object.FindObjectsByType<Transform>(FindObjectsSortMode.None).Select(at => at.gameObject))
+            {
+                Vector3 at = thing.transform.position, ahead = thing.transform.forward;
+                string kinds = string.Join(" ", thing.GetComponentsInChildren<Component>().Where(c => c.gameObject == thing).Skip(1).Select(c => c.GetType().Name));
+                Say("object", thing.name, kinds, at.x, at.y, at.z, ahead.x, ahead.y, ahead.z, thing.transform.parent == null ? "" : thing.transform.parent.name);
+            }
+            foreach (AvatarRenderer shown in UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None))
+            {
+                Say("shows", shown.Avatar == null ? "" : shown.Avatar.name);
+            }
+            Say("selected", Selection.activeObject == null ? "" : Selection.activeObject.name);
+            Dialogs.Shown.ForEach(message => Say("dialog", message));
+            Undone.Created.ForEach(name => Say("undo", name));
+            Scenes.Saved.ForEach(path => Say("saved", path));
+        }
+
+        private static void Say(string key, params object[] values)
+        {
+            System.Console.WriteLine(key + "\t" + string.Join("\t", values));
+        }
+    }
+}

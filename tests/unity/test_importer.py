@@ -1,0 +1,184 @@
+"""The editor imports sound and unsound files, shows them, and places avatars by menu and drop."""
+
+import io
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, CSharp
+from malformed import DAMAGED, MALFORMED, malformed
+from PIL import Image
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset import write
+from mua.asset.write import encode
+
+sys.path.append(str(Path(__file__).parent))
+
+from test_compiles import Compiler, assemblies
+
+Told = dict[str, list[list[str]]]
+Story = Callable[..., Told]
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    """Named as the assembly that may see the package's internals."""
+    compiler = Compiler(csharp, "editor", packages=False)
+    editor = assemblies()["Mua.Avatar.Editor"]
+    names = [name for name in editor.references if name in assemblies() or name.startswith("UnityE")]
+    references = [compiler.built(name) for name in [*names, editor.name]]
+    return csharp.build([PROGRAMS / "ImporterProgram.cs"], name="Mua.Avatar.Editor.Tests", references=references)
+
+
+@pytest.fixture
+def story(csharp: CSharp, program: Path) -> Story:
+    def tell(name: str, *files: Path) -> Told:
+        told: Told = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
+        for line in csharp.run(program, name, *files).splitlines():
+            key, *values = line.split("\t")
+            told.setdefault(key, []).append(values)
+        return told
+
+    return tell
+
+
+@pytest.fixture
+def sound(tmp_path: Path) -> Path:
+    path = tmp_path / "Walking Woman.muaavatar"
+    write(path, synthetic_avatar(), storage="f16")
+    return path
+
+
+def test_a_sound_file_becomes_an_asset_of_its_bytes(story: Story, sound: Path) -> None:
+    told = story("Imports", sound)
+    assert told["asset"] == [["Walking Woman", str(sound.stat().st_size), "", "thumbnail avatar", "128 x 128"]]
+    assert told["error"] == [[""]]
+    assert told["summary"] == [["synthetic"]]
+    kept = story("Keeps", sound)
+    assert [kept[key] for key in ("content", "summary", "own", "portrait")] == [
+        [["True"]],
+        [["True"]],
+        [["False"]],
+        [["True"]],
+    ]
+
+
+def test_the_thumbnail_of_the_file_comes_before_a_portrait(story: Story, tmp_path: Path) -> None:
+    stream = io.BytesIO()
+    Image.fromarray(np.zeros((40, 30, 3), np.uint8)).save(stream, "PNG")
+    path = tmp_path / "a.muaavatar"
+    write(path, replace(synthetic_avatar(), thumbnail=stream.getvalue()), storage="f32")
+    assert story("Keeps", path)["own"] == [["True"]]
+    assert story("Imports", path)["asset"][0][-1] == "30 x 40"
+
+
+def test_a_thumbnail_that_is_no_picture_gives_way_to_a_portrait(story: Story, tmp_path: Path) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, replace(synthetic_avatar(), thumbnail=b"\x89PNG\r\n\x1a\n and nothing"), storage="f32")
+    assert story("Keeps", path)["portrait"] == [["True"]]
+
+
+def test_an_unsound_file_becomes_an_asset_that_says_why(story: Story, tmp_path: Path) -> None:
+    """Every malformed file: one import error with file, field and value, no exception, and the reader's field."""
+    content = encode(synthetic_avatar(), storage="i8")
+    bad = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
+    fields = [field for _, field, _ in [*MALFORMED, *DAMAGED]]
+    files = [tmp_path / f"{i}.muaavatar" for i in range(len(bad))]
+    for file, damaged in zip(files, bad, strict=True):
+        file.write_bytes(damaged)
+    told = story("Imports", *files)
+    assert told["log"] == []
+    for file, field, asset, [error] in zip(files, fields, told["asset"], told["error"], strict=True):
+        name, length, fault, parts, icon = asset
+        assert (name, length, parts, icon) == (file.stem, "0", "avatar", "")
+        assert fault.startswith(field + ": " if field else "")
+        assert error == f"MUA: {file}: {fault}."
+        assert len(fault) > len(field) + 10
+
+
+def test_an_empty_file_and_one_that_vanishes_say_so(story: Story, tmp_path: Path) -> None:
+    empty, gone, folder = (tmp_path / f"{name}.muaavatar" for name in ("empty", "gone", "folder"))
+    empty.touch()
+    folder.mkdir()
+    told = story("Imports", empty, gone, folder)
+    faults = [asset[2] for asset in told["asset"]]
+    assert "0 bytes" in faults[0]
+    assert all("cannot be read" in fault for fault in faults[1:])
+    assert all(error.count("|") == 0 and error.startswith("MUA: ") for [error] in told["error"])
+    assert told["log"] == []
+
+
+def test_the_inspector_shows_tables_or_the_fault(story: Story, sound: Path, tmp_path: Path) -> None:
+    lines = [line for [line] in story("Inspects", sound)["gui"]]
+    assert lines[:4] == ["texture 128 x 128", "title synthetic", "label format", lines[3]]
+    assert [line for line in lines if line.startswith("title")][-1] == "title 1 clip"
+    assert "label geometry ranks" in lines
+    bad = tmp_path / "bad.muaavatar"
+    bad.write_bytes(sound.read_bytes()[:100])
+    [[line]] = story("Inspects", bad)["gui"]
+    assert line.startswith("Error ")
+
+
+def test_the_demo_scene_shows_the_avatar_to_its_camera(story: Story, sound: Path) -> None:
+    told = story("MakesScene", sound)
+    objects = {name: (kinds, [float(value) for value in numbers]) for name, kinds, *numbers, _ in told["object"]}
+    assert {name: kinds for name, (kinds, _) in objects.items()} == {
+        "Ground": "MeshFilter MeshRenderer",
+        "Sun": "Light",
+        "Main Camera": "Camera",
+        "Walking Woman": "AvatarRenderer",
+    }
+    camera = objects["Main Camera"][1]
+    assert camera[2] > 3  # in front of the character, which looks along +Z and is 3 m tall
+    assert camera[3:] == pytest.approx([0, 0, -1], abs=1e-5)
+    assert objects["Sun"][1][4] < 0  # shines down
+    assert told["shows"] == [["Walking Woman"]]
+    assert told["selected"] == [["Walking Woman"]]
+    assert told["saved"] == [["Assets/MUA Demo.unity"]]
+    assert told["dialog"] == []
+
+
+def test_a_demo_scene_is_not_replaced_without_consent(story: Story, sound: Path) -> None:
+    told = story("KeepsScene", sound)
+    assert (told["object"], told["saved"]) == ([], [])
+    assert told["dialog"] == [["Assets/MUA Demo.unity exists. Replace it?"]]
+
+
+def test_without_an_avatar_the_menu_says_what_to_do(story: Story, tmp_path: Path) -> None:
+    told = story("HasNoAvatar")
+    assert (told["object"], told["saved"]) == ([], [])
+    assert ".muaavatar" in told["dialog"][0][0]
+    unsound = tmp_path / "bad.muaavatar"
+    unsound.touch()
+    assert story("MakesScene", unsound)["dialog"] == told["dialog"]
+
+
+def test_an_avatar_is_made_below_the_object_clicked_and_can_be_undone(story: Story, sound: Path) -> None:
+    told = story("MakesObject", sound)
+    [made] = [thing for thing in told["object"] if thing[0] == "Walking Woman"]
+    assert [made[1], made[-1]] == ["AvatarRenderer", "parent"]
+    assert [float(value) for value in made[2:5]] == [1, 2, 3]
+    assert told["undo"] == [["Create Walking Woman"]]
+    assert told["selected"] == [["Walking Woman"]]
+    assert [thing[0] for thing in story("MakesObject")["object"]] == ["parent", "MUA Avatar"]
+
+
+def test_an_avatar_is_dropped_into_the_scene(story: Story, sound: Path) -> None:
+    told = story("Drops", sound)
+    assert (told["hover"], told["other"], told["drop"]) == ([["Copy", "0"]], [["None"]], [["Copy"]])
+    [made] = told["object"]
+    assert [float(value) for value in made[2:5]] == [1, 0, 2]
+
+
+def test_the_selected_avatar_comes_first(story: Story, sound: Path, tmp_path: Path) -> None:
+    other = tmp_path / "Other.muaavatar"
+    write(other, synthetic_avatar(2), storage="f16")
+    assert story("Selects", sound, other)["found"] == [["Other"]]
+
+
+def test_the_menu_is_complete(story: Story) -> None:
+    assert {item for [item] in story("Menus")["menu"]} >= {"MUA/Create Demo Scene", "GameObject/MUA Avatar"}
