@@ -15,6 +15,8 @@ namespace Mua
         private readonly CommandBuffer compute = new CommandBuffer { name = "MUA compute" };
         private readonly CommandBuffer draw = new CommandBuffer { name = "MUA draw" };
 
+        private Camera camera; // that `draw` is attached to
+
         public AvatarBuiltIn(AvatarWorld world)
         {
             this.world = world;
@@ -22,24 +24,32 @@ namespace Mua
             Camera.onPostRender += AfterCamera;
         }
 
+        /// <summary>Forgets what the camera that is being rendered was to draw.</summary>
+        public void Clear()
+        {
+            draw.Clear();
+        }
+
         public void Dispose()
         {
             Camera.onPreRender -= BeforeCamera;
             Camera.onPostRender -= AfterCamera;
+            Detach();
             compute.Dispose();
             draw.Dispose();
         }
 
-        private void BeforeCamera(Camera camera)
+        private void BeforeCamera(Camera rendered)
         {
-            if (GraphicsSettings.currentRenderPipeline != null || camera.cameraType == CameraType.Preview)
+            if (GraphicsSettings.currentRenderPipeline != null)
             {
                 return; // a render pipeline calls no Camera events, but a part of it may
             }
-            Take(camera);
+            Detach();
             compute.Clear();
             draw.Clear();
-            bool hasDraws = world.Record(compute, camera, eyes);
+            Take(rendered);
+            bool hasDraws = world.Record(compute, rendered, eyes);
             Graphics.ExecuteCommandBuffer(compute);
             if (!hasDraws)
             {
@@ -49,35 +59,47 @@ namespace Mua
             {
                 world.Draws[i].Append(draw);
             }
-            camera.AddCommandBuffer(Moment, draw);
+            rendered.AddCommandBuffer(Moment, draw);
+            camera = rendered;
         }
 
-        private void AfterCamera(Camera camera)
+        private void AfterCamera(Camera rendered)
         {
-            if (GraphicsSettings.currentRenderPipeline == null)
+            Detach();
+        }
+
+        private void Detach()
+        {
+            if (camera != null)
             {
                 camera.RemoveCommandBuffer(Moment, draw);
             }
+            camera = null;
         }
 
-        private void Take(Camera camera)
+        /// <summary>
+        /// Both eyes of a headset, however it draws them: in one pass by two instances or by multiview, or in two passes,
+        /// of which each takes its own eye of the two.
+        /// </summary>
+        private void Take(Camera rendered)
         {
-            if (!camera.stereoEnabled)
+            if (!rendered.stereoEnabled)
             {
-                eyes.Begin(camera.pixelWidth, camera.pixelHeight, camera.nearClipPlane);
-                eyes.Add(camera.worldToCameraMatrix, camera.projectionMatrix);
+                eyes.Begin(rendered.scaledPixelWidth, rendered.scaledPixelHeight, rendered.nearClipPlane);
+                eyes.Add(rendered.worldToCameraMatrix, rendered.projectionMatrix);
                 return;
             }
+            float scale = XRSettings.renderViewportScale;
             bool instanced = XRSettings.stereoRenderingMode == XRSettings.StereoRenderingMode.SinglePassInstanced;
             eyes.Begin(
-                XRSettings.eyeTextureWidth, XRSettings.eyeTextureHeight, camera.nearClipPlane,
-                instanced ? AvatarEyes.Most : 1);
+                Mathf.CeilToInt(scale * XRSettings.eyeTextureWidth), Mathf.CeilToInt(scale * XRSettings.eyeTextureHeight),
+                rendered.nearClipPlane, instanced ? AvatarEyes.Most : 1);
             eyes.Add(
-                camera.GetStereoViewMatrix(Camera.StereoscopicEye.Left),
-                camera.GetStereoProjectionMatrix(Camera.StereoscopicEye.Left));
+                rendered.GetStereoViewMatrix(Camera.StereoscopicEye.Left),
+                rendered.GetStereoProjectionMatrix(Camera.StereoscopicEye.Left));
             eyes.Add(
-                camera.GetStereoViewMatrix(Camera.StereoscopicEye.Right),
-                camera.GetStereoProjectionMatrix(Camera.StereoscopicEye.Right));
+                rendered.GetStereoViewMatrix(Camera.StereoscopicEye.Right),
+                rendered.GetStereoProjectionMatrix(Camera.StereoscopicEye.Right));
         }
     }
 }

@@ -6,19 +6,6 @@ namespace Mua
     /// <summary>One procedural draw of triangles, for whichever pipeline's command buffer.</summary>
     internal readonly struct AvatarDraw
     {
-        public AvatarDraw(
-            Material material, int pass, MaterialPropertyBlock properties, GraphicsBuffer indices,
-            GraphicsBuffer arguments, int count, int instances)
-        {
-            Material = material;
-            Pass = pass;
-            Properties = properties;
-            Indices = indices;
-            Arguments = arguments;
-            Count = count;
-            Instances = instances;
-        }
-
         public Material Material { get; }
 
         /// <summary>Index of the material's pass.</summary>
@@ -56,25 +43,33 @@ namespace Mua
         public void Append(CommandBuffer commands)
         {
             Matrix4x4 place = Matrix4x4.identity;
-            if (Indices != null && Arguments != null)
+            if (Arguments != null)
             {
                 commands.DrawProceduralIndirect(
-                    Indices, place, Material, Pass, MeshTopology.Triangles, Arguments, 0, Properties);
+                    place, Material, Pass, MeshTopology.Triangles, Arguments, 0, Properties);
             }
             else if (Indices != null)
             {
                 commands.DrawProcedural(
                     Indices, place, Material, Pass, MeshTopology.Triangles, Count, Instances, Properties);
             }
-            else if (Arguments != null)
-            {
-                commands.DrawProceduralIndirect(
-                    place, Material, Pass, MeshTopology.Triangles, Arguments, 0, Properties);
-            }
             else
             {
                 commands.DrawProcedural(place, Material, Pass, MeshTopology.Triangles, Count, Instances, Properties);
             }
+        }
+
+        private AvatarDraw(
+            Material material, int pass, MaterialPropertyBlock properties, GraphicsBuffer indices,
+            GraphicsBuffer arguments, int count, int instances)
+        {
+            Material = material;
+            Pass = pass;
+            Properties = properties;
+            Indices = indices;
+            Arguments = arguments;
+            Count = count;
+            Instances = instances;
         }
     }
 }

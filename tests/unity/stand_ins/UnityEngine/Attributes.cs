@@ -48,5 +48,6 @@ namespace UnityEngine.Serialization
 
 namespace UnityEngine.Scripting
 {
+    [AttributeUsage(AttributeTargets.Assembly)] public class AlwaysLinkAssemblyAttribute : Attribute { }
     [AttributeUsage(AttributeTargets.All)] public sealed class PreserveAttribute : Attribute { }
 }

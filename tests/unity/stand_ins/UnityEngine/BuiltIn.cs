@@ -14,9 +14,13 @@ namespace UnityEngine.Rendering
         public virtual Material defaultMaterial { get { return null; } }
     }
 
-    public static class GraphicsSettings
+    public static partial class GraphicsSettings
     {
         public static RenderPipelineAsset currentRenderPipeline { get; internal set; }
-        public static RenderPipelineAsset defaultRenderPipeline { get { return currentRenderPipeline; } }
+        public static RenderPipelineAsset defaultRenderPipeline
+        {
+            get { return currentRenderPipeline; }
+            set { currentRenderPipeline = value; }
+        }
     }
 }

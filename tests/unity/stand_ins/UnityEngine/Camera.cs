@@ -16,6 +16,7 @@ namespace UnityEngine
 
         internal readonly List<Rendering.CommandBuffer> Buffers = new List<Rendering.CommandBuffer>();
         private Matrix4x4 projection = Matrix4x4.Perspective(60, 4f / 3, 0.3f, 1000);
+        private Matrix4x4? view;
 
         public Camera()
         {
@@ -29,6 +30,10 @@ namespace UnityEngine
         public static Camera main { get { return FindFirstObjectByType<Camera>(); } }
         public int pixelWidth { get { return 640; } }
         public int pixelHeight { get { return 480; } }
+        public int scaledPixelWidth { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.widthBufferScale : 1) * pixelWidth); } }
+        public int scaledPixelHeight { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.heightBufferScale : 1) * pixelHeight); } }
+        public bool allowDynamicResolution { get; set; }
+        public bool orthographic { get; set; }
         public float fieldOfView { get; set; }
         public float nearClipPlane { get; set; }
         public float farClipPlane { get; set; }
@@ -38,25 +43,41 @@ namespace UnityEngine
         public bool allowHDR { get; set; }
         public bool allowMSAA { get; set; }
         public CameraType cameraType { get; set; }
-        public bool stereoEnabled { get; internal set; }
+        public bool stereoEnabled { get { return StandIns.Eyes.IsWorn && cameraType == CameraType.Game; } }
         public MonoOrStereoscopicEye stereoActiveEye { get { return MonoOrStereoscopicEye.Mono; } }
-        public Matrix4x4 worldToCameraMatrix { get { return Matrix4x4.Scale(new Vector3(1, 1, -1)) * transform.worldToLocalMatrix; } }
-        public Matrix4x4 projectionMatrix { get { return projection; } set { projection = value; } }
-        public Matrix4x4 GetStereoViewMatrix(StereoscopicEye eye)
+        public Matrix4x4 worldToCameraMatrix
         {
-            return Matrix4x4.Translate(new Vector3(eye == StereoscopicEye.Left ? 0.0315f : -0.0315f, 0, 0)) * worldToCameraMatrix;
+            get { return view ?? Matrix4x4.Scale(new Vector3(1, 1, -1)) * transform.worldToLocalMatrix; }
+            set { view = value; }
         }
+        public Matrix4x4 projectionMatrix { get { return projection; } set { projection = value; } }
+        public Matrix4x4 GetStereoViewMatrix(StereoscopicEye eye) { return StandIns.Eyes.View(this, (int)eye); }
+        public Matrix4x4 GetStereoProjectionMatrix(StereoscopicEye eye) { return StandIns.Eyes.Projection(this, (int)eye); }
         public void AddCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.Add(buffer); }
-        public void RemoveCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.Remove(buffer); }
-        public Matrix4x4 GetStereoProjectionMatrix(StereoscopicEye eye) { return projection; }
+        public void RemoveCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.RemoveAll(held => held == buffer); }
         public void Render()
+        {
+            if (StandIns.Pipelines.Render != null)
+            {
+                StandIns.Pipelines.Render(this);
+                return;
+            }
+            bool twice = stereoEnabled && XR.XRSettings.stereoRenderingMode == XR.XRSettings.StereoRenderingMode.MultiPass;
+            for (int pass = 0; pass < (twice ? 2 : 1); pass++)
+                RenderPass();
+        }
+
+        private void RenderPass()
         {
             if (onPreCull != null)
                 onPreCull(this);
             if (onPreRender != null)
                 onPreRender(this);
+            bool instanced = stereoEnabled && XR.XRSettings.stereoRenderingMode == XR.XRSettings.StereoRenderingMode.SinglePassInstanced;
+            Graphics.InstanceMultiplier = instanced ? 2u : 1;
             for (int i = 0; i < Buffers.Count; i++)
                 Graphics.ExecuteCommandBuffer(Buffers[i]);
+            Graphics.InstanceMultiplier = 1;
             if (onPostRender != null)
                 onPostRender(this);
         }

@@ -8,6 +8,8 @@ namespace UnityEngine
 
     public static class Graphics
     {
+        internal static uint InstanceMultiplier = 1;
+
         public static void ExecuteCommandBuffer(Rendering.CommandBuffer buffer) { buffer.Run(); }
         public static void RenderPrimitivesIndexed(in RenderParams rparams, MeshTopology topology, GraphicsBuffer indexBuffer, int indexCount, int startIndex = 0, int instanceCount = 1)
         {
@@ -20,7 +22,7 @@ namespace UnityEngine.Rendering
 {
     public sealed class CommandBuffer : IDisposable
     {
-        private enum Kind { Constant, Buffer, Upload, Dispatch, Draw }
+        private enum Kind { Constant, Buffer, Upload, Dispatch, Draw, Multiplier, Note }
 
         private struct Command
         {
@@ -29,6 +31,7 @@ namespace UnityEngine.Rendering
             public int Kernel, Name, X, Y, Z, Start;
             public StandIns.Value Value;
             public GraphicsBuffer Buffer, Indices;
+            public string Text;
             public Material Material;
             public MaterialPropertyBlock Properties;
         }
@@ -47,7 +50,7 @@ namespace UnityEngine.Rendering
         public void EndSample(string name) { }
         public void BeginSample(Unity.Profiling.ProfilerMarker marker) { }
         public void EndSample(Unity.Profiling.ProfilerMarker marker) { }
-        public void SetInstanceMultiplier(uint multiplier) { }
+        public void SetInstanceMultiplier(uint multiplier) { Append(new Command { Kind = Kind.Multiplier, X = (int)multiplier }); }
 
         public void SetComputeIntParam(ComputeShader computeShader, int nameID, int val)
         {
@@ -155,6 +158,9 @@ namespace UnityEngine.Rendering
             DrawIndirect(indexBuffer, material, shaderPass, bufferWithArgs, argsOffset, properties);
         }
 
+        /// <summary>Not Unity's: a line of the recording when it is executed.</summary>
+        internal void Note(string text) { Append(new Command { Kind = Kind.Note, Text = text }); }
+
         internal void Run()
         {
             for (int i = 0; i < count; i++)
@@ -168,6 +174,8 @@ namespace UnityEngine.Rendering
                 case Kind.Constant: command.Shader.Constants.Set(command.Name, command.Value, payload, command.Start, command.Y); break;
                 case Kind.Buffer: command.Shader.Bind(command.Kernel, command.Name, command.Buffer); break;
                 case Kind.Upload: StandIns.Recorder.Uploaded(command.Buffer, payload, command.Start, command.X, command.Y); break;
+                case Kind.Multiplier: Graphics.InstanceMultiplier = (uint)command.X; break;
+                case Kind.Note: StandIns.Recorder.Note(command.Text); break;
                 case Kind.Draw: StandIns.Recorder.Drawn(command.Material, command.Properties, command.Kernel, command.X, command.Y, command.Buffer, command.Indices); break;
                 default: StandIns.Recorder.Dispatched(command.Shader, command.Kernel, command.X, command.Y, command.Z, command.Buffer, command.X); break;
             }
@@ -215,6 +223,7 @@ namespace Unity.Profiling
         public struct AutoScope : IDisposable { public void Dispose() { } }
 
         public ProfilerMarker(string name) { }
+        public ProfilerMarker(ProfilerCategory category, string name, LowLevel.MarkerFlags flags) { }
         public void Begin() { }
         public void End() { }
         public AutoScope Auto() { return new AutoScope(); }

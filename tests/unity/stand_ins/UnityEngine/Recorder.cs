@@ -102,6 +102,7 @@ namespace StandIns
         public static int Dispatches { get; private set; }
         public static int Draws { get; private set; }
         public static long UploadedBytes { get; private set; }
+        public static bool IsOn { get { return lines != null; } }
         public static int AliveCount { get { return Alive.Count; } }
 
         /// <summary>Names of the buffers that nobody has disposed.</summary>
@@ -147,6 +148,13 @@ namespace StandIns
 
         /// <summary>The shader of a .shader file of that name.</summary>
         public static Shader Drawing(string name) { return new Shader(name); }
+
+        /// <summary>A line that says what goes on between others.</summary>
+        public static void Note(string text)
+        {
+            if (lines != null)
+                Line("{\"event\": \"note\", \"text\": \"" + text + "\"}");
+        }
 
         internal static void Created(GraphicsBuffer buffer)
         {
@@ -208,6 +216,7 @@ namespace StandIns
             if (lines == null)
                 return;
             string counts = arguments == null ? "\"vertices\": " + vertices + ", \"instances\": " + instances : "\"indirect\": [" + arguments.Id + ", " + vertices + "]";
+            counts += ", \"multiplier\": " + Graphics.InstanceMultiplier;
             if (indices != null)
                 counts += ", \"indices\": " + indices.Id;
             string blocks = ", \"buffers\": {" + Listed(material.Buffers) + "}, \"constants\": {" + Listed(material.Constants) + "}";

@@ -5,6 +5,8 @@ namespace UnityEngine.XR
     {
         public enum StereoRenderingMode { MultiPass, SinglePass, SinglePassInstanced, SinglePassMultiview }
 
+        static XRSettings() { renderViewportScale = eyeTextureResolutionScale = 1; }
+
         public static bool enabled { get { return isDeviceActive; } }
         public static bool isDeviceActive { get; internal set; }
         public static int eyeTextureWidth { get { return 1680; } }

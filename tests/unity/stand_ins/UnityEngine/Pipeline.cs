@@ -1,0 +1,119 @@
+// Stand-in. Source: facts 4.5 and Unity 6000.0 reference source, RenderPipelineManager, ScriptableRenderContext,
+// RenderTextureDescriptor, ScalableBufferManager, GraphicsSettings.
+using System;
+using System.Collections.Generic;
+
+namespace UnityEngine
+{
+    public struct RenderTextureDescriptor
+    {
+        public int width { get; set; }
+        public int height { get; set; }
+        public int msaaSamples { get; set; }
+        public bool useDynamicScale { get; set; }
+    }
+
+    public static class ScalableBufferManager
+    {
+        static ScalableBufferManager() { widthBufferScale = heightBufferScale = 1; }
+
+        public static float widthBufferScale { get; private set; }
+        public static float heightBufferScale { get; private set; }
+        public static void ResizeBuffers(float widthScale, float heightScale)
+        {
+            widthBufferScale = widthScale;
+            heightBufferScale = heightScale;
+        }
+    }
+}
+
+namespace UnityEngine.Rendering
+{
+    public interface IRenderPipelineGraphicsSettings { int version { get; } }
+
+    public struct ScriptableRenderContext
+    {
+        public void ExecuteCommandBuffer(CommandBuffer commandBuffer) { Graphics.ExecuteCommandBuffer(commandBuffer); }
+        public void Submit() { }
+    }
+
+    public static class RenderPipelineManager
+    {
+        public static event Action<ScriptableRenderContext, Camera> beginCameraRendering;
+        public static event Action<ScriptableRenderContext, Camera> endCameraRendering;
+
+        internal static void Begin(Camera camera)
+        {
+            if (beginCameraRendering != null)
+                beginCameraRendering(new ScriptableRenderContext(), camera);
+        }
+
+        internal static void End(Camera camera)
+        {
+            if (endCameraRendering != null)
+                endCameraRendering(new ScriptableRenderContext(), camera);
+        }
+    }
+
+    public static partial class GraphicsSettings
+    {
+        internal static readonly Dictionary<Type, object> Settings = new Dictionary<Type, object>();
+
+        public static bool TryGetRenderPipelineSettings<T>(out T settings) where T : class, IRenderPipelineGraphicsSettings
+        {
+            object held;
+            settings = Settings.TryGetValue(typeof(T), out held) ? (T)held : null;
+            return settings != null;
+        }
+    }
+}
+
+namespace StandIns
+{
+    using UnityEngine;
+    using UnityEngine.Rendering;
+
+    /// <summary>What a stand-in of a render pipeline needs of the engine. Not Unity's API.</summary>
+    public static class Pipelines
+    {
+        /// <summary>Draws a camera in place of the built-in pipeline.</summary>
+        public static Action<Camera> Render;
+
+        public static void Use(RenderPipelineAsset asset) { GraphicsSettings.currentRenderPipeline = asset; }
+        public static void Set(IRenderPipelineGraphicsSettings settings) { GraphicsSettings.Settings[settings.GetType()] = settings; }
+        public static void Begin(Camera camera) { RenderPipelineManager.Begin(camera); }
+        public static void End(Camera camera) { RenderPipelineManager.End(camera); }
+        public static void Note(CommandBuffer commands, string text) { commands.Note(text); }
+    }
+
+    /// <summary>Two eyes that all game cameras are drawn for. Not Unity's API.</summary>
+    public static class Eyes
+    {
+        private const float HalfDistance = 0.0315f;
+        private static readonly Matrix4x4?[] Views = new Matrix4x4?[2];
+
+        public static bool IsWorn { get; private set; }
+
+        public static void Wear(UnityEngine.XR.XRSettings.StereoRenderingMode mode)
+        {
+            IsWorn = UnityEngine.XR.XRSettings.isDeviceActive = true;
+            UnityEngine.XR.XRSettings.stereoRenderingMode = mode;
+            Machine.Multiview(mode == UnityEngine.XR.XRSettings.StereoRenderingMode.SinglePassMultiview);
+        }
+
+        public static void TakeOff()
+        {
+            IsWorn = UnityEngine.XR.XRSettings.isDeviceActive = false;
+        }
+
+        /// <summary>Where an eye is; between the two where nobody says.</summary>
+        public static void Look(int eye, Matrix4x4 view) { Views[eye] = view; }
+
+        public static Matrix4x4 View(Camera camera, int eye)
+        {
+            return Views[eye] ?? Matrix4x4.Translate(new Vector3(eye == 0 ? HalfDistance : -HalfDistance, 0, 0)) * camera.worldToCameraMatrix;
+        }
+
+        public static Matrix4x4 Projection(Camera camera, int eye) { return camera.projectionMatrix; }
+    }
+}

@@ -1,0 +1,4 @@
+using UnityEngine.Scripting;
+
+// Nothing refers to this assembly, so a player would be built without it.
+[assembly: AlwaysLinkAssembly]

@@ -1,0 +1,77 @@
+using UnityEngine;
+using UnityEngine.Experimental.Rendering;
+using UnityEngine.Rendering;
+using UnityEngine.Rendering.RenderGraphModule;
+using UnityEngine.Rendering.Universal;
+
+namespace Mua
+{
+    /// <summary>
+    /// Poses what moved and sorts for the eyes of a camera, before its shadow maps and outside every native render pass.
+    /// </summary>
+    /// <remarks>
+    /// The buffers are those of the world and outlive the graph, which does not see them: the pass is kept by
+    /// AllowPassCulling(false), and its place before the draw is the order of recording, which the graph never changes.
+    /// All cameras share the buffers. URP executes and submits the graph of a camera before the next one begins, so the
+    /// dispatches of a second camera come after the draws of the first.
+    /// </remarks>
+    internal sealed class AvatarComputePass : AvatarPass
+    {
+        private static readonly BaseRenderFunc<Data, UnsafeGraphContext> Run = Execute;
+
+        private readonly AvatarEyes eyes = new AvatarEyes(); // of the camera that is recorded
+
+        public AvatarComputePass()
+            : base("MUA compute", RenderPassEvent.BeforeRendering)
+        {
+        }
+
+        protected override void Record(
+            RenderGraph graph, ContextContainer frame, UniversalCameraData camera, AvatarWorld world)
+        {
+            Take(camera);
+            using (IUnsafeRenderGraphBuilder builder = graph.AddUnsafePass(Name, out Data data, profilingSampler))
+            {
+                data.World = world;
+                data.Camera = camera.camera;
+                data.Eyes = eyes;
+                builder.AllowPassCulling(false);
+                builder.SetRenderFunc(Run);
+            }
+        }
+
+        private static void Execute(Data data, UnsafeGraphContext context)
+        {
+            if (ReferenceEquals(data.World, AvatarWorld.Current))
+            {
+                data.World.Record(CommandBufferHelpers.GetNativeCommandBuffer(context.cmd), data.Camera, data.Eyes);
+            }
+        }
+
+        /// <summary>
+        /// Both eyes in one pass, or the single eye of this pass. Where instances draw both, URP multiplies the instances
+        /// of direct draws, but not those that the device reads from a buffer.
+        /// </summary>
+        private void Take(UniversalCameraData camera)
+        {
+            int count = camera.xr.enabled ? Mathf.Min(camera.xr.viewCount, AvatarEyes.Most) : 1;
+            RenderTextureDescriptor target = camera.cameraTargetDescriptor;
+            float wide = target.useDynamicScale ? ScalableBufferManager.widthBufferScale : 1;
+            float high = target.useDynamicScale ? ScalableBufferManager.heightBufferScale : 1;
+            eyes.Begin(
+                Mathf.CeilToInt(wide * target.width), Mathf.CeilToInt(high * target.height),
+                camera.camera.nearClipPlane, SystemInfo.supportsMultiview ? 1 : count);
+            for (int eye = 0; eye < count; eye++)
+            {
+                eyes.Add(camera.GetViewMatrix(eye), camera.GetProjectionMatrix(eye));
+            }
+        }
+
+        private sealed class Data
+        {
+            public AvatarWorld World;
+            public Camera Camera;
+            public AvatarEyes Eyes;
+        }
+    }
+}
