@@ -3,6 +3,11 @@ namespace UnityEditor
 {
     public static class EditorApplication
     {
+        public delegate void CallbackFunction();
+
+        public static CallbackFunction update;
+        public static CallbackFunction delayCall;
+
         public static bool isPlayingOrWillChangePlaymode { get { return false; } }
         public static void QueuePlayerLoopUpdate() { }
         public static void Exit(int returnValue) { throw new System.OperationCanceledException("exit " + returnValue); }

@@ -5,6 +5,7 @@ using System.Collections.Generic;
 namespace UnityEngine
 {
     public enum LogType { Error, Assert, Warning, Log, Exception }
+    public enum LogOption { None, NoStacktrace }
 
     public static class Debug
     {
@@ -19,6 +20,10 @@ namespace UnityEngine
         public static void LogException(Exception exception) { StandIns.Console.Write(LogType.Exception, exception, null); }
         public static void LogException(Exception exception, Object context) { StandIns.Console.Write(LogType.Exception, exception, context); }
         public static void LogFormat(string format, params object[] args) { Log(string.Format(format, args)); }
+        public static void LogFormat(LogType logType, LogOption logOptions, Object context, string format, params object[] args)
+        {
+            StandIns.Console.Write(logType, string.Format(format, args), context);
+        }
         public static void Assert(bool condition, string message) { if (!condition) StandIns.Console.Write(LogType.Assert, message, null); }
     }
 
@@ -41,7 +46,8 @@ namespace UnityEngine
 
         public static bool isPlaying { get; internal set; }
         public static bool isEditor { get { return false; } }
-        public static bool isBatchMode { get { return true; } }
+        public static bool isMobilePlatform { get { return platform == RuntimePlatform.Android; } }
+        public static bool isBatchMode { get { return StandIns.Process.IsBatchMode; } }
         public static RuntimePlatform platform { get; internal set; }
         public static string streamingAssetsPath { get; internal set; }
         public static string persistentDataPath { get; internal set; }
@@ -51,8 +57,8 @@ namespace UnityEngine
         public static string productName { get { return "stand-in"; } }
         public static string identifier { get { return "org.mua.player"; } }
         public static int targetFrameRate { get; set; }
-        public static void Quit() { }
-        public static void Quit(int exitCode) { }
+        public static void Quit() { Quit(0); }
+        public static void Quit(int exitCode) { StandIns.Machine.ExitCode = exitCode; }
 
         internal static void BeforeRender()
         {
@@ -94,12 +100,6 @@ namespace UnityEngine
     }
 
     public enum ColorSpace { Uninitialized = -1, Gamma, Linear }
-
-    public static class QualitySettings
-    {
-        public static ColorSpace activeColorSpace { get { return ColorSpace.Linear; } }
-        public static int vSyncCount { get; set; }
-    }
 
     public static class SystemInfo
     {
@@ -175,6 +175,10 @@ namespace StandIns
 
     public static class Machine
     {
+        /// <summary>What the player was told to exit with; null while it runs on.</summary>
+        public static int? ExitCode { get; internal set; }
+
+        public static void Readback(bool supported) { SystemInfo.supportsAsyncGPUReadback = supported; }
         public static void Paths(string streamingAssets, string persistentData)
         {
             Application.streamingAssetsPath = streamingAssets;

@@ -1,0 +1,134 @@
+using System.Collections.Generic;
+using System.Linq;
+using UnityEditor;
+using UnityEngine;
+
+namespace Mua.Editor
+{
+    /// <summary>
+    /// Sets a project up for avatars in a headset: on a Quest by itself, and on a PC with a Quest linked. Both may be used
+    /// on one project; what is right already is left alone. Not yet verified in the editor.
+    /// </summary>
+    public static class ProjectSetup
+    {
+        /// <summary>Sets up for a Quest; in batch mode ends the editor, with 0, 1 or, to be run again, 3.</summary>
+        public static void Quest()
+        {
+            Start(BuildTarget.Android);
+        }
+
+        /// <summary>Sets up for Windows with a headset linked; in batch mode ends the editor as Quest does.</summary>
+        public static void PcLink()
+        {
+            Start(BuildTarget.StandaloneWindows64);
+        }
+
+        /// <summary>A sentence for each thing that is not as it should be for the platform that is active.</summary>
+        public static IReadOnlyList<string> Check()
+        {
+            bool isQuest = EditorUserBuildSettings.activeBuildTarget == BuildTarget.Android;
+            return Check(isQuest ? BuildTarget.Android : BuildTarget.StandaloneWindows64);
+        }
+
+        /// <summary>The same for Android, which is Quest, or StandaloneWindows64, which is PC Link. Changes nothing.</summary>
+        public static IReadOnlyList<string> Check(BuildTarget target)
+        {
+            string unable = Unable(target);
+            if (unable != null)
+            {
+                return new[] { unable };
+            }
+            IEnumerable<string> absent = ProjectPackages.Missing().Select(ProjectPackages.HowToAdd);
+            return absent.Concat(Settings(target).Select(setting => setting.Fault)).Where(fault => fault != null).ToArray();
+        }
+
+        /// <summary>
+        /// Makes every setting right, logs what it changed, and returns what is still wrong. Needs its packages.
+        /// </summary>
+        internal static IReadOnlyList<string> Apply(BuildTarget target)
+        {
+            if (Unable(target) == null)
+            {
+                foreach (ProjectSetting setting in Settings(target))
+                {
+                    Report(setting.Make());
+                }
+                AssetDatabase.SaveAssets();
+            }
+            return Check(target);
+        }
+
+        [InitializeOnLoadMethod]
+        private static void Resume()
+        {
+            BuildTarget target;
+            if (ProjectPackages.HasWaited(out target))
+            {
+                EditorApplication.delayCall += () => Start(target);
+            }
+        }
+
+        private static void Start(BuildTarget target)
+        {
+            ProjectOutcome outcome = Run(target);
+            if (Application.isBatchMode)
+            {
+                EditorApplication.Exit((int)outcome);
+            }
+        }
+
+        private static ProjectOutcome Run(BuildTarget target)
+        {
+            IReadOnlyList<string> missing = ProjectPackages.Missing();
+            if (missing.Count > 0 && Unable(target) == null)
+            {
+                return Application.isBatchMode ? ProjectPackages.Add(missing) : ProjectPackages.Ask(missing, target);
+            }
+            IReadOnlyList<string> faults = Apply(target);
+            foreach (string fault in faults)
+            {
+                Debug.LogError($"MUA-BUILD FAIL {fault}");
+            }
+            if (faults.Count == 0)
+            {
+                Debug.Log($"MUA: the project is set up for {Name(target)}.");
+            }
+            return faults.Count == 0 ? ProjectOutcome.Done : ProjectOutcome.Failed;
+        }
+
+        // Lazily: a setting may need what the one before it made.
+        private static IEnumerable<ProjectSetting> Settings(BuildTarget target)
+        {
+            bool isQuest = target == BuildTarget.Android;
+            IEnumerable<ProjectSetting> player = isQuest ? ProjectPlayer.Quest() : ProjectPlayer.PcLink();
+            return player
+                .Concat(ProjectGraphics.Settings(isQuest))
+                .Concat(ProjectXr.Settings(target))
+                .Concat(ProjectPlayer.Active(target));
+        }
+
+        private static string Unable(BuildTarget target)
+        {
+            bool isAble = BuildPipeline.IsBuildTargetSupported(BuildPipeline.GetBuildTargetGroup(target), target);
+            return isAble ? null : $"This editor cannot build for {Name(target)}: add '{Module(target)}' with Unity Hub";
+        }
+
+        private static string Module(BuildTarget target)
+        {
+            return target == BuildTarget.Android ? "Android Build Support" : "Windows Build Support";
+        }
+
+        private static string Name(BuildTarget target)
+        {
+            return target == BuildTarget.Android ? "Quest" : "PC Link";
+        }
+
+        private static void Report(string change)
+        {
+            if (change != null)
+            {
+                Debug.Log($"MUA set {change}");
+            }
+        }
+    }
+}

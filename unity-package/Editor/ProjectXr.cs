@@ -1,0 +1,158 @@
+using System;
+using System.Collections.Generic;
+using System.IO;
+using System.Linq;
+using UnityEditor;
+using UnityEngine;
+#if MUA_XR_MANAGEMENT && MUA_OPENXR
+using UnityEditor.XR.Management;
+using UnityEditor.XR.Management.Metadata;
+using UnityEditor.XR.OpenXR.Features;
+using UnityEngine.XR.Management;
+using UnityEngine.XR.OpenXR;
+using UnityEngine.XR.OpenXR.Features;
+#endif
+
+namespace Mua.Editor
+{
+    /// <summary>
+    /// OpenXR as the one way to a headset, both eyes in one pass, started with the player. Where its packages are absent
+    /// there is nothing to set, and ProjectPackages says so.
+    /// </summary>
+    internal static class ProjectXr
+    {
+#if MUA_XR_MANAGEMENT && MUA_OPENXR
+        private const string Loader = "UnityEngine.XR.OpenXR.OpenXRLoader";
+        private const string SettingsPath = "Assets/XR/XRGeneralSettingsPerBuildTarget.asset"; // the plug-in's own place
+        private const string MetaQuest = "com.unity.openxr.feature.metaquest";
+        private const string Touch = "com.unity.openxr.feature.input.oculustouch";
+        private const string TouchPlus = "com.unity.openxr.feature.input.metaquestplus";
+        private const string Absent = "absent";
+
+        public static IEnumerable<ProjectSetting> Settings(BuildTarget target)
+        {
+            BuildTargetGroup group = BuildPipeline.GetBuildTargetGroup(target);
+            yield return new ProjectSetting(
+                $"XR > Loader for {group}", Loader, () => FirstLoader(group), () => FirstLoader(group) == Loader,
+                () => Assign(group));
+            yield return new ProjectSetting(
+                $"XR > Initialize XR on startup for {group}", "on", () => Startup(group), () => Startup(group) == "on",
+                () => Start(group));
+            yield return new ProjectSetting(
+                $"OpenXR > Render mode for {group}", nameof(OpenXRSettings.RenderMode.SinglePassInstanced),
+                () => RenderMode(group),
+                () => RenderMode(group) == nameof(OpenXRSettings.RenderMode.SinglePassInstanced),
+                () => SinglePass(group));
+            string[] ids = target == BuildTarget.Android ? new[] { MetaQuest, Touch, TouchPlus } : new[] { Touch, TouchPlus };
+            foreach (string id in ids)
+            {
+                yield return new ProjectSetting(
+                    $"OpenXR > {id} for {group}", "on", () => State(group, id), () => State(group, id) == "on",
+                    () => Enable(group, id));
+            }
+        }
+
+        private static XRGeneralSettingsPerBuildTarget Find()
+        {
+            XRGeneralSettingsPerBuildTarget settings;
+            EditorBuildSettings.TryGetConfigObject(XRGeneralSettings.k_SettingsKey, out settings);
+            return settings;
+        }
+
+        private static XRManagerSettings Manager(BuildTargetGroup group)
+        {
+            XRGeneralSettingsPerBuildTarget settings = Find();
+            return settings == null ? null : settings.ManagerSettingsForBuildTarget(group);
+        }
+
+        // The first that starts is used; a second one is for where the first cannot.
+        private static string FirstLoader(BuildTargetGroup group)
+        {
+            XRManagerSettings manager = Manager(group);
+            XRLoader first = manager == null ? null : manager.activeLoaders.FirstOrDefault(each => each != null);
+            return first == null ? Absent : first.GetType().FullName;
+        }
+
+        private static void Assign(BuildTargetGroup group)
+        {
+            XRGeneralSettingsPerBuildTarget settings = Find();
+            if (settings == null)
+            {
+                settings = Create();
+            }
+            if (!settings.HasSettingsForBuildTarget(group))
+            {
+                settings.CreateDefaultSettingsForBuildTarget(group);
+            }
+            if (!settings.HasManagerSettingsForBuildTarget(group))
+            {
+                settings.CreateDefaultManagerSettingsForBuildTarget(group);
+            }
+            XRPackageMetadataStore.AssignLoader(settings.ManagerSettingsForBuildTarget(group), Loader, group);
+            EditorUtility.SetDirty(settings);
+        }
+
+        private static XRGeneralSettingsPerBuildTarget Create()
+        {
+            ProjectAssets.MakeFolder(Path.GetDirectoryName(SettingsPath));
+            var settings = ScriptableObject.CreateInstance<XRGeneralSettingsPerBuildTarget>();
+            AssetDatabase.CreateAsset(settings, SettingsPath);
+            EditorBuildSettings.AddConfigObject(XRGeneralSettings.k_SettingsKey, settings, true);
+            return settings;
+        }
+
+        private static string Startup(BuildTargetGroup group)
+        {
+            XRGeneralSettingsPerBuildTarget settings = Find();
+            XRGeneralSettings general = settings == null ? null : settings.SettingsForBuildTarget(group);
+            return general == null ? Absent : general.InitManagerOnStart ? "on" : "off";
+        }
+
+        private static void Start(BuildTargetGroup group)
+        {
+            XRGeneralSettings general = Find().SettingsForBuildTarget(group);
+            general.InitManagerOnStart = true;
+            EditorUtility.SetDirty(general);
+        }
+
+        private static string RenderMode(BuildTargetGroup group)
+        {
+            OpenXRSettings settings = OpenXRSettings.GetSettingsForBuildTargetGroup(group);
+            return settings == null ? Absent : settings.renderMode.ToString();
+        }
+
+        private static void SinglePass(BuildTargetGroup group) // which is multiview on a Quest
+        {
+            FeatureHelpers.RefreshFeatures(group);
+            OpenXRSettings settings = OpenXRSettings.GetSettingsForBuildTargetGroup(group);
+            if (settings != null)
+            {
+                settings.renderMode = OpenXRSettings.RenderMode.SinglePassInstanced;
+                EditorUtility.SetDirty(settings);
+            }
+        }
+
+        private static string State(BuildTargetGroup group, string id)
+        {
+            OpenXRFeature feature = FeatureHelpers.GetFeatureWithIdForBuildTarget(group, id);
+            return feature == null ? Absent : feature.enabled ? "on" : "off";
+        }
+
+        private static void Enable(BuildTargetGroup group, string id)
+        {
+            FeatureHelpers.RefreshFeatures(group);
+            OpenXRFeature feature = FeatureHelpers.GetFeatureWithIdForBuildTarget(group, id);
+            if (feature != null)
+            {
+                feature.enabled = true;
+                EditorUtility.SetDirty(feature);
+            }
+        }
+#else
+        public static IEnumerable<ProjectSetting> Settings(BuildTarget target)
+        {
+            return Array.Empty<ProjectSetting>();
+        }
+#endif
+    }
+}
