@@ -66,6 +66,8 @@ namespace Mua
                 return;
             }
             Current.hasChanged = true;
+            Current.draws.Clear(); // they may hold the avatar's buffers
+            Current.builtIn.Clear();
             if (Current.avatars.Count == 0)
             {
                 Current.Dispose();
@@ -125,7 +127,7 @@ namespace Mua
 
         /// <summary>
         /// Appends what one camera needs of all avatars: decoding and posing what moved since it was last drawn, then one
-        /// sort for the eyes. Whether there is anything to draw.
+        /// sort for the eyes. Whether there is anything to draw; splats are projected in perspective only.
         /// </summary>
         public bool Record(CommandBuffer commands, Camera camera, AvatarEyes eyes)
         {
@@ -143,12 +145,31 @@ namespace Mua
             {
                 avatars[i].Record(commands);
             }
-            if (splats.SplatCount > 0)
+            if (splats.SplatCount > 0 && !camera.orthographic)
             {
                 splats.Sort(commands, eyes);
                 draws.Add(splatDraw.Bind(splats));
             }
             return draws.Count > 0;
+        }
+
+        /// <summary>
+        /// Whether the camera draws the layer of an avatar; all avatars are drawn together then. Previews of assets show none.
+        /// </summary>
+        public bool IsSeen(Camera camera)
+        {
+            if (camera.cameraType == CameraType.Preview)
+            {
+                return false;
+            }
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                if ((camera.cullingMask & (1 << avatars[i].gameObject.layer)) != 0)
+                {
+                    return true;
+                }
+            }
+            return false;
         }
 
         public void Dispose()
@@ -216,19 +237,6 @@ namespace Mua
                 splats.Dispose();
                 splats = null;
             }
-        }
-
-        /// <summary>Whether the camera draws the layer of an avatar; all avatars are drawn together then.</summary>
-        private bool IsSeen(Camera camera)
-        {
-            for (int i = 0; i < avatars.Count; i++)
-            {
-                if ((camera.cullingMask & (1 << avatars[i].gameObject.layer)) != 0)
-                {
-                    return true;
-                }
-            }
-            return false;
         }
     }
 }
