@@ -31,8 +31,7 @@ class Assembly:
     def references(self) -> list[str]:
         """By name; the engine's own come with every assembly that does not forbid it."""
         engine = [] if self.definition.get("noEngineReferences") else ["UnityEngine"]
-        editor = ["UnityEditor"] if self.definition.get("includePlatforms") == ["Editor"] else []
-        return [*engine, *editor, *self.definition.get("references", [])]
+        return [*engine, *self.definition.get("references", [])]
 
     def defines(self, platform: str, *, packages: bool) -> tuple[str, ...]:
         """Symbols on a platform; `packages`: whether those that are optional are installed."""
@@ -75,7 +74,10 @@ class Compiler:
 
     def _own(self, assembly: Assembly) -> Path:
         symbols = assembly.defines(self._platform, packages=self._packages)
-        references = list(dict.fromkeys(path for name in assembly.references for path in self._closed(name)))
+        names = assembly.references
+        if self._platform == "editor" and "UnityEngine" in names:
+            names = [*names, "UnityEditor"]  # in the editor it comes with the engine
+        references = list(dict.fromkeys(path for name in names for path in self._closed(name)))
         return self._csharp.build(
             assembly.sources(), library=True, name=assembly.name, references=references, defines=symbols
         )
