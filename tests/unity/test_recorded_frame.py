@@ -46,7 +46,7 @@ VISIBLE_WORD = 7  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
 FRAME = (  # what a frame is made of, without the components around it
     *("AvatarFrame", "SplatFrame", "AvatarBuffers", "LayerBuffers", "BranchBuffers", "BandBuffers", "StoredBuffer"),
-    *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources", "AvatarDraw"),
+    *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources", "AvatarDraw", "AvatarStages"),
 )
 PLACES = (  # Unity's position, then rotation (x, y, z, w)
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),

@@ -40,11 +40,15 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def story(csharp: CSharp, program: Path, folder: Path) -> Story:
-    def tell(name: str, *, files: tuple[str, ...] = ("persistent/avatars/first", "persistent/avatars/second")) -> Told:
+    def tell(
+        name: str,
+        *told_player: str,
+        files: tuple[str, ...] = ("persistent/avatars/first", "persistent/avatars/second"),
+    ) -> Told:
         for seed, file in enumerate(files):
             put(folder / f"{file}.muaavatar", seed)
         told: Told = {"log": []}
-        said = csharp.run(program, KERNELS, name, folder, folder / "persistent", folder / "streaming")
+        said = csharp.run(program, KERNELS, name, folder, folder / "persistent", folder / "streaming", *told_player)
         for line in said.splitlines():
             key, value = line.split("\t", 1)
             told.setdefault(key, []).append(value)
@@ -234,18 +238,15 @@ def test_where_all_avatars_fail_the_player_rests(story: Story, folder: Path) -> 
     assert len(told["log"]) == 2
 
 
+def test_the_player_begins_with_the_avatar_it_is_told(story: Story) -> None:
+    assert story("Goes", "-muaAvatar", "second")["state"] == ["Ready second"]
+    told = story("Goes", "-muaAvatar", "third")
+    assert told["state"] == ["Ready first"]
+    assert "No avatar is called third." in told["panel"][0]
+
+
 def test_the_page_of_buttons_and_the_readme_name_the_same_actions(story: Story) -> None:
     page, readme = story("Scene", files=())["help"][0], (SAMPLE / "README.md").read_text()
-    for action in (
-        "walk",
-        "turn",
-        "zoom",
-        "scrub",
-        "play, pause",
-        "next clip",
-        "previous clip",
-        "skeleton",
-        "back to the start",
-    ):
+    for action in ("walk", "turn", "zoom", "scrub", "play, pause", "next clip", "previous clip", "back to the start"):
         assert action in page
         assert action in readme

@@ -2,7 +2,6 @@ using System;
 using System.Runtime.InteropServices;
 using Mua.Format;
 using Mua.Motion;
-using Unity.Profiling;
 using UnityEngine;
 using UnityEngine.Rendering;
 
@@ -17,10 +16,6 @@ namespace Mua
         private const int Channels = 23;
         private const int GeometryStart = 0, AppearanceStart = 11;
         private const int Corners = 8;
-
-        private static readonly ProfilerMarker CoarseMarker = new ProfilerMarker("MUA coarse mesh");
-        private static readonly ProfilerMarker TextureMarker = new ProfilerMarker("MUA texture");
-        private static readonly ProfilerMarker PoseMarker = new ProfilerMarker("MUA pose");
 
         private readonly MlpMatmul mlpMatmul;
         private readonly BlendSubbands blendSubbands;
@@ -204,16 +199,16 @@ namespace Mua
 
         private void Coarse(CommandBuffer commands)
         {
-            commands.BeginSample(CoarseMarker);
+            commands.BeginSample(AvatarStages.CoarseMesh);
             GraphicsBuffer coefficients = Mlp(commands, Avatar.CoarseMlp);
             mlpMatmul.Transposed(commands, Avatar.Mesh, coefficients, Mesh);
-            commands.EndSample(CoarseMarker);
+            commands.EndSample(AvatarStages.CoarseMesh);
         }
 
         /// <summary>Coefficients, LL, then level by level to the whole texture; its valid texels go to `texelChannels`.</summary>
         private void Branch(CommandBuffer commands, BranchBuffers branch, int firstChannel)
         {
-            commands.BeginSample(TextureMarker);
+            commands.BeginSample(AvatarStages.Texture);
             GraphicsBuffer alpha = Mlp(commands, branch.Mlp);
             int levels = Avatar.Avatar.Wavelet.Levels, size = Avatar.Avatar.Texels.Size >> levels;
             blendSubbands.Low(commands, branch, alpha, size, textures[levels % 2]);
@@ -235,15 +230,15 @@ namespace Mua
                 size *= 2;
             }
             inverseDwt.AddStatic(commands, Avatar, branch, size, textures[0], texelChannels, firstChannel);
-            commands.EndSample(TextureMarker);
+            commands.EndSample(AvatarStages.Texture);
         }
 
         private void Pose(CommandBuffer commands)
         {
-            commands.BeginSample(PoseMarker);
+            commands.BeginSample(AvatarStages.Pose);
             dqSkinning.BlendVertices(commands, Avatar, Joints, VertexDq);
             dqSkinning.SkinSplats(commands, Avatar, VertexDq, Mesh, texelChannels, Splats, FirstSplat);
-            commands.EndSample(PoseMarker);
+            commands.EndSample(AvatarStages.Pose);
         }
 
         private static int Widest(LayerBuffers[] mlp)

@@ -1,6 +1,5 @@
 using System;
 using System.Collections.Generic;
-using Unity.Profiling;
 using UnityEngine;
 using UnityEngine.Rendering;
 
@@ -14,9 +13,6 @@ namespace Mua
     {
         private const int DigitBits = 8, KeyBits = 16;
         private const int ArgumentWords = 8;
-
-        private static readonly ProfilerMarker ProjectMarker = new ProfilerMarker("MUA project");
-        private static readonly ProfilerMarker SortMarker = new ProfilerMarker("MUA sort");
 
         private readonly SplatProject splatProject;
         private readonly SplatSort splatSort;
@@ -98,12 +94,12 @@ namespace Mua
         {
             Eyes = eyes;
             Project(commands, eyes);
-            commands.BeginSample(SortMarker);
+            commands.BeginSample(AvatarStages.Sort);
             for (int pass = 0; pass < KeyBits / DigitBits; pass++)
             {
                 SortDigit(commands, DigitBits * pass, pass % 2);
             }
-            commands.EndSample(SortMarker);
+            commands.EndSample(AvatarStages.Sort);
         }
 
         public void Dispose()
@@ -138,11 +134,11 @@ namespace Mua
                 low = Vector3.Min(low, avatar.Low);
                 high = Vector3.Max(high, avatar.High);
             }
-            commands.BeginSample(ProjectMarker);
+            commands.BeginSample(AvatarStages.Project);
             splatProject.Project(commands, this, eyes, low, high);
             splatProject.ScanGroups(commands, this, eyes.Instances);
             splatProject.Compact(commands, this, orders[0], keys[0]);
-            commands.EndSample(ProjectMarker);
+            commands.EndSample(AvatarStages.Project);
         }
 
         /// <summary>One pass of the sort, from buffers `source` of the two pairs to the others.</summary>

@@ -1,3 +1,4 @@
+using System;
 using System.Collections;
 using UnityEngine;
 
@@ -58,7 +59,19 @@ namespace Mua.Samples.VrPlayer
             }
             else
             {
+                FindAsked();
                 Show();
+            }
+        }
+
+        /// <summary>Begins with the avatar that mua-deploy asks for.</summary>
+        private void FindAsked()
+        {
+            string[] words = Environment.GetCommandLineArgs();
+            int at = Math.Max(Array.IndexOf(words, "-muaAvatar"), Array.IndexOf(words, "-muaBench"));
+            if (at >= 0 && at + 1 < words.Length && !shelf.Find(words[at + 1]))
+            {
+                message = "No avatar is called " + words[at + 1] + ".";
             }
         }
 

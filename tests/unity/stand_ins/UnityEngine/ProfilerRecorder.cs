@@ -45,6 +45,12 @@ namespace Unity.Profiling
     }
 }
 
+namespace Unity.Profiling.LowLevel
+{
+    [Flags]
+    public enum MarkerFlags : ushort { Default = 0, Script = 2, Warning = 16, Counter = 128, SampleGPU = 256 }
+}
+
 namespace StandIns
 {
     /// <summary>What the profiler measured of a marker, nanoseconds by frame. Not part of Unity's API.</summary>
