@@ -40,7 +40,7 @@ def test_entry_points_have_the_same_names(stem: str) -> None:
 
 def test_no_property_is_looked_up_in_the_frame_path() -> None:
     """PropertyToID takes a string: only a static field may call it."""
-    for path in RUNTIME.rglob("*.cs"):
+    for path in set(RUNTIME.rglob("*.cs")) - set((RUNTIME / "SelfTest").glob("*.cs")):
         for line in path.read_text().splitlines():
             assert "PropertyToID" not in line or "static readonly int" in line, f"{path.name}: {line.strip()}"
 

@@ -137,6 +137,12 @@ namespace Mua
         /// <summary>The decoder; null until the avatar is ready.</summary>
         internal AvatarFrame Decoded { get; private set; }
 
+        /// <summary>Whether it shows the file or the imported avatar of that name, without an ending.</summary>
+        internal bool Shows(string stem)
+        {
+            return avatar != null ? avatar.name == stem : System.IO.Path.GetFileNameWithoutExtension(file) == stem;
+        }
+
         /// <summary>Shows another imported avatar; the present one goes at once.</summary>
         public void Load(AvatarAsset asset)
         {

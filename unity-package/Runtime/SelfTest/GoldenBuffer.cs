@@ -8,8 +8,8 @@ namespace Mua.SelfTest
     {
         public string name = "";
         public string element = "";
-        public int count;
-        public int offset;
+        public int count = 0;
+        public int offset = 0;
 
         /// <summary>Of one element, in 4 bytes each; 0 where the type is not known.</summary>
         public int Words

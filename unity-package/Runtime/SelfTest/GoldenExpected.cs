@@ -9,13 +9,13 @@ namespace Mua.SelfTest
     {
         public string buffer = "";
         public string kind = "";
-        public int first;
-        public int length;
-        public int period;
-        public int count;
-        public int offset;
-        public double absolute;
-        public double relative;
+        public int first = 0;
+        public int length = 0;
+        public int period = 0;
+        public int count = 0;
+        public int offset = 0;
+        public double absolute = 0;
+        public double relative = 0;
 
         /// <summary>Values in a word; 0 where the kind is not known.</summary>
         public int PerWord => kind == "half" ? 2 : kind == "uint" || kind == "float" ? 1 : 0;

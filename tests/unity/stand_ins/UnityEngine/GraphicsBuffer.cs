@@ -79,10 +79,14 @@ namespace UnityEngine
             StandIns.Recorder.Uploaded(this, data, managedBufferStartIndex * element, graphicsBufferStartIndex * element, count * element);
         }
 
-        /// <summary>Stops the device in Unity; here nothing was computed, so there is nothing to read.</summary>
+        /// <summary>Stops the device in Unity.</summary>
         public void GetData(Array data)
         {
-            throw new NotSupportedException("stand-in: nothing runs before the recording is replayed; use AsyncGPUReadback");
+            CheckUsable("GetData");
+            byte[] content = StandIns.Readbacks.Of(this);
+            if (Buffer.ByteLength(data) > content.Length)
+                throw new ArgumentException("GetData(): Accessing " + Buffer.ByteLength(data) + " bytes of " + content.Length);
+            Buffer.BlockCopy(content, 0, data, 0, Buffer.ByteLength(data));
         }
 
         internal void CheckUsable(string use)

@@ -1,0 +1,231 @@
+"""The package's self-test, run by mono over stand-ins that read back what its recording makes on Vulkan."""
+
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from replay import replay
+
+from mua.deploy import self_test
+from mua.deploy.player import answers
+from mua.gpu import Device
+
+sys.path.append(str(ROOT / "tests" / "parity"))
+
+import gen_golden
+from golden import read_golden
+from mutations import FAULTS, Fault
+
+STAND_INS = Path(__file__).parent / "stand_ins"
+KERNELS = ROOT / "ComputeShaders"
+RUN = "0123abcd"
+SELF_TEST = ("-muaSelfTest", "-muaRun", RUN)
+CASES = len(read_golden())
+CAUGHT = {  # by kernel, a fault that its golden cases show
+    "mlp_matmul": "ReLU lost",
+    "blend_subbands": "LL reads the first coefficients",
+    "inverse_dwt": "swapped bands",
+    "dq_skinning": "scale not exponentiated",
+    "splat_project": "key inverted",
+    "splat_sort": "unstable split",
+}
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What the program printed: values by name, messages of the log by kind."""
+
+    said: dict[str, list[str]]
+
+    @property
+    def cases(self) -> list[self_test.Case]:
+        """As mua-deploy reads them from the log."""
+        return self_test.collect(answers(self.said["Log"], self_test.MARK, RUN))
+
+    @property
+    def failed(self) -> dict[str, str]:
+        return {f"{case.kernel}/{case.name}": case.what for case in self.cases if case.what is not None}
+
+
+Story = Callable[..., Ran]
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "SelfTest"]
+    return csharp.build(
+        [*sources, PROGRAMS / "SelfTestProgram.cs"], name="SelfTestProgram", references=[engine, file, motion]
+    )
+
+
+@pytest.fixture
+def streaming(tmp_path: Path) -> Path:
+    """StreamingAssets of a player."""
+    folder = tmp_path / "streaming"
+    shutil.copytree(gen_golden.GOLDEN, folder / "MuaGolden", ignore=shutil.ignore_patterns("*.md"))
+    return folder
+
+
+@pytest.fixture
+def story(csharp: CSharp, program: Path, streaming: Path) -> Story:
+    def tell(
+        name: str = "Plays", *words: str, kernels: Path = KERNELS, recording: object = "-", answered: object = "-"
+    ) -> Ran:
+        said: dict[str, list[str]] = {"Log": []}
+        printed = csharp.run(program, kernels, streaming, recording, answered, name, *(words or SELF_TEST))
+        for line in printed.splitlines():
+            key, _, value = line.partition("\t")
+            said.setdefault(key, []).append(value)
+        assert (said["alive"], said["requests"]) == (["0"], ["0"]), said
+        return Ran(said)
+
+    return tell
+
+
+def answer(device: Device, recording: Path) -> Path:
+    """The folder of what the buffers hold that a recorded run read."""
+    folder = recording.parent / "answers"
+    folder.mkdir()
+    for label, words in replay(device, recording).kept.items():
+        (folder / f"{label}.bin").write_bytes(words.tobytes())
+    return folder
+
+
+@pytest.mark.parametrize("name", ["Plays", "PlaysFromPackage", "WaitsForNothing", "WaitsInEditor"])
+def test_every_case_passes(device: Device, story: Story, tmp_path: Path, name: str) -> None:
+    recording = tmp_path / "recorded"
+    story(name, recording=recording)
+    ran = story(name, answered=answer(device, recording))
+    assert ran.failed == {}
+    assert len(ran.cases) == CASES
+    assert ran.said["Log"][-1] == f"MUA-SELFTEST {RUN} PASS {CASES}/{CASES}"
+    assert ran.said.get("exit", ["0"]) == ["0"]
+
+
+@pytest.mark.parametrize("kernel", CAUGHT)
+def test_a_fault_of_a_kernel_fails_its_cases(
+    device: Device, story: Story, tmp_path: Path, kernel: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fault: Fault = next(fault for fault in FAULTS[kernel] if fault.breaks == CAUGHT[kernel])
+    shaders = shutil.copytree(KERNELS, tmp_path / "shaders")
+    broken = shaders / (fault.file or f"{kernel}.compute")
+    broken.write_text(broken.read_text().replace(fault.original, fault.replacement))
+    monkeypatch.setenv("MUA_SHADERS", str(shaders))
+    recording = tmp_path / "recorded"
+    story(recording=recording)
+    ran = story(answered=answer(device, recording))
+    assert {name.split("/")[0] for name in ran.failed} == {kernel}
+    assert all("wanted" in what for what in ran.failed.values())
+    assert ran.said["exit"] == ["1"]
+
+
+def test_a_case_is_named_by_entry_point_and_content(story: Story) -> None:
+    names = [f"{case.kernel}/{case.name}" for case in story().cases]
+    assert len(set(names)) == CASES
+    assert {"mlp_matmul/MlpMatmul-f16-ReLU", "inverse_dwt/InverseDwt-bior4.4"} < set(names)
+
+
+def test_the_player_tests_every_kernel_that_has_golden_files(story: Story) -> None:
+    assert {case.kernel for case in story().cases} == set(gen_golden.CASES)
+
+
+def test_a_device_is_described_in_a_line(story: Story) -> None:
+    described = story().said["Log"][0]
+    assert described.startswith("MUA device: stand-in; ")
+    assert "Vulkan" in described
+
+
+@pytest.mark.parametrize("name", ["IsStuck", "IsBroken"])
+def test_a_buffer_that_cannot_be_read_fails_its_case(story: Story, name: str) -> None:
+    failed = story(name).failed
+    assert len(failed) == CASES
+    assert {"read back" in what for what in failed.values()} == {True}
+
+
+def test_a_device_without_compute_fails_once(story: Story) -> None:
+    assert story("LacksCompute").failed == {"device/compute": "stand-in (Vulkan) has no compute shaders"}
+
+
+def test_a_package_without_resources_fails_once(story: Story) -> None:
+    assert list(story("LacksResources").failed) == ["device/resources"]
+
+
+def test_a_kernel_that_is_missing_fails_its_cases(story: Story) -> None:
+    failed = story("LacksKernel").failed
+    missing = {what for name, what in failed.items() if name.startswith("splat_sort/")}
+    assert missing == {
+        "splat_sort.compute is missing from AvatarResources; reimport the packages com.mua.kernels and com.mua.avatar."
+    }
+
+
+@pytest.mark.parametrize("name", ["Plays", "PlaysFromPackage"])
+def test_a_golden_file_that_is_missing_fails_once(story: Story, streaming: Path, name: str) -> None:
+    (streaming / "MuaGolden" / "dq_skinning.bin").unlink()
+    (streaming / "MuaGolden" / "splat_sort.json").unlink()
+    ran = story(name)
+    assert {case for case in ran.failed if case.endswith("/golden")} == {"dq_skinning/golden", "splat_sort/golden"}
+    assert "dq_skinning.bin" in ran.failed["dq_skinning/golden"]
+    assert {case.kernel for case in ran.cases} == set(gen_golden.CASES)
+
+
+def damage(document: dict[str, Any], *keys: str | int, value: object) -> None:
+    """Put a value where the keys lead."""
+    place: Any = document
+    for key in keys[:-1]:
+        place = place[key]
+    place[keys[-1]] = value
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "told"),
+    [
+        (("kernel",), "another.compute", "holds no cases of splat_sort.compute"),
+        (("cases",), [], "holds no cases"),
+        (("cases", 0, "entry"), "", "its entry is not as"),
+        (("cases", 0, "groups"), [1, 0, 1], "its groups is not as"),
+        (("cases", 0, "groups"), [1, 1 << 16, 1], "its groups is not as"),
+        (("cases", 0, "constants", 0, "values"), [], "its constant shift is not as"),
+        (("cases", 0, "constants", 0, "scalar"), "bool", "its constant shift is not as"),
+        (("cases", 0, "buffers", 0, "element"), "uint3", "its buffer keys is not as"),
+        (("cases", 0, "buffers", 0, "count"), 0, "its buffer keys is not as"),
+        (("cases", 0, "buffers", 0, "count"), 2**31 - 1, "its buffer keys is not as"),
+        (("cases", 0, "buffers", 0, "offset"), -4, "its buffer keys is not as"),
+        (("cases", 0, "buffers", 0, "offset"), 2, "its buffer keys is not as"),
+        (("cases", 0, "expected"), [], "its expected is not as"),
+        (("cases", 0, "expected", 0, "buffer"), "nowhere", "its expected nowhere is not as"),
+        (("cases", 0, "expected", 0, "kind"), "double", "is not as"),
+        (("cases", 0, "expected", 0, "first"), 2**31 - 1, "is not as"),
+        (("cases", 0, "expected", 0, "period"), 0, "is not as"),
+        (("cases", 0, "expected", 0, "offset"), 2**31 - 4, "is not as"),
+    ],
+)
+def test_a_damaged_golden_file_fails_once(
+    story: Story, streaming: Path, keys: tuple[str | int, ...], value: object, told: str
+) -> None:
+    path = streaming / "MuaGolden" / "splat_sort.json"
+    document = json.loads(path.read_text())
+    damage(document, *keys, value=value)
+    path.write_text(json.dumps(document))
+    assert told in story().failed["splat_sort/golden"]
+
+
+def test_a_golden_file_that_is_cut_fails_once(story: Story, streaming: Path) -> None:
+    for name in ("mlp_matmul.json", "splat_sort.bin"):
+        path = streaming / "MuaGolden" / name
+        path.write_bytes(path.read_bytes()[:-8])
+    failed = story().failed
+    assert "mlp_matmul.json is no JSON" in failed["mlp_matmul/golden"]
+    assert "bytes of .bin" in failed["splat_sort/golden"]
+
+
+def test_a_player_without_arguments_tests_nothing(story: Story) -> None:
+    assert story("Plays", "-another").said["Log"] == []
