@@ -16,6 +16,18 @@ namespace Mua.Editor
             DemoScene.Create();
         }
 
+        [MenuItem(Root + "Set Up Project for Quest", false, Later)]
+        private static void SetUpQuest()
+        {
+            ProjectSetup.Quest();
+        }
+
+        [MenuItem(Root + "Set Up Project for PC Link", false, Later + 1)]
+        private static void SetUpPcLink()
+        {
+            ProjectSetup.PcLink();
+        }
+
         [MenuItem("GameObject/MUA Avatar", false, GameObjectOrder)]
         private static void CreateAvatar(MenuCommand command)
         {
