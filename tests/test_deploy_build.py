@@ -44,6 +44,24 @@ def test_writes_the_apk_into_the_project(tmp_path: Path) -> None:
         assert words in said
 
 
+def test_runs_again_where_unity_brought_packages(tmp_path: Path) -> None:
+    first = (
+        f'echo "MUA-BUILD AGAIN added com.unity.xr.openxr" > "$log"; echo half > "$apk"; touch "{tmp_path}/ran"; exit 3'
+    )
+    apk = build(
+        editor(fake_unity(tmp_path, f'[ -e "{tmp_path}/ran" ] || {{ {first}; }}; echo whole > "$apk"')),
+        project(tmp_path),
+    )
+    assert apk.read_text() == "whole\n"
+
+
+def test_gives_up_where_unity_always_asks_to_run_again(tmp_path: Path) -> None:
+    does = f'echo x >> "{tmp_path}/runs"; echo "MUA-BUILD AGAIN added a package" > "$log"; exit 3'
+    with pytest.raises(InputError, match=r"asked 3 times to be run again, log .*: added a package"):
+        build(editor(fake_unity(tmp_path, does)), project(tmp_path))
+    assert (tmp_path / "runs").read_text() == "x\n" * 3
+
+
 @pytest.mark.parametrize(
     ("does", "sentence"),
     [

@@ -10,6 +10,9 @@ from mua.errors import InputError
 
 METHOD = "Mua.Editor.Build.Quest"
 APK = Path("Build", "mua-player.apk")
+AGAIN = re.compile(r"^MUA-BUILD AGAIN (.+)", re.MULTILINE)
+AGAIN_CODE = 3  # of Unity's exit: packages or scripts were brought, which its next start compiles
+MOST_RUNS = 3  # one brings what is missing, one builds; one more where a package brings another
 
 # What tells most of a failed build comes first; of each kind the last line counts.
 ERRORS = tuple(
@@ -29,7 +32,7 @@ ERRORS = tuple(
 
 
 def build(editor: Editor, project: Path) -> Path:
-    """Build the APK of a Unity project into its Build folder and return its path.
+    """Build the APK of a Unity project into its Build folder and return its path; Unity runs again where it asks to.
 
     Errors: InputError with the log's last error; no older APK is left then.
     """
@@ -38,9 +41,16 @@ def build(editor: Editor, project: Path) -> Path:
     log = apk.with_suffix(".log")
     apk.parent.mkdir(parents=True, exist_ok=True)
     apk.unlink(missing_ok=True)
-    code = _run(editor, project.resolve(), apk, log)
+    for _ in range(MOST_RUNS):
+        code = _run(editor, project.resolve(), apk, log)
+        if code != AGAIN_CODE:
+            break
     if code != 0 or not apk.is_file():
         apk.unlink(missing_ok=True)
+        if code == AGAIN_CODE:
+            raise InputError(
+                f"{editor.program} asked {MOST_RUNS} times to be run again, log {log}: {_brought(_text(log))}"
+            )
         done = f"ended with exit code {code}" if code else "wrote no APK"
         raise InputError(f"{editor.program} {done}, log {log}: {last_error(_text(log))}")
     return apk
@@ -52,6 +62,11 @@ def last_error(log: str) -> str:
         if found := kind.findall(log):
             return one_line(found[-1])
     return "it names no error"
+
+
+def _brought(log: str) -> str:
+    found = AGAIN.findall(log)
+    return one_line(found[-1]) if found else "it does not say why"
 
 
 def _require_able(editor: Editor) -> None:
