@@ -13,7 +13,7 @@ import pytest
 import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
-from replay import Drawn, replay
+from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
 from test_recorded_frame import FRAME, MIRROR, STAND_INS
@@ -23,6 +23,7 @@ from mua.asset import write
 from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.gpu import Device
+from mua.gpu.reflect import Constant
 from mua.player.draw import SortedSplats, SplatRenderer, image_format
 
 SCREEN = (160, 200)
@@ -61,18 +62,27 @@ def frame_program(csharp: CSharp) -> Path:
     return csharp.build([*package, PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion])
 
 
-def record(csharp: CSharp, program: Path, device: Device, folder: Path, *, count: int, instances: int) -> Scene:
-    """One avatar where it stands, seen by `count` eyes."""
-    avatar = synthetic_avatar(1)
-    file, scenario = folder / "a.muaavatar", folder / "scenario.txt"
-    write(file, avatar, storage="f32")
-    centres = decode_clip_frame(avatar, avatar.clips[0], frame=round(FRAME_AT * 24), dtype=np.float64).centres
-    cameras = eyes(np.stack([centres.min(axis=0), centres.max(axis=0)]), count)
+def seen_by(cameras: tuple[Camera, ...], instances: int) -> list[str]:
+    """The steps of a scenario that set eyes: Unity's matrices."""
     lines = ["screen {} {} {} {}".format(*SCREEN, NEAR, instances)]
     for camera in cameras:
         numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
         lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
-    lines += [f"decode 0 {FRAME_AT + 1e-3!r} 0 0 0 0 0 0 1", "sort frame", *(f"draw {mode}" for mode in MODES), ""]
+    return lines
+
+
+def record(csharp: CSharp, program: Path, device: Device, folder: Path, *, count: int, instances: int) -> Scene:
+    """The upper part of one avatar, seen close by `count` eyes after a frame in which all of it was seen."""
+    avatar = synthetic_avatar(1)
+    file, scenario = folder / "a.muaavatar", folder / "scenario.txt"
+    write(file, avatar, storage="f32")
+    centres = decode_clip_frame(avatar, avatar.clips[0], frame=round(FRAME_AT * 24), dtype=np.float64).centres
+    box = np.stack([centres.min(axis=0), centres.max(axis=0)])
+    upper = np.stack([box.mean(axis=0), (box[0] + 3 * box[1]) / 4])
+    cameras = eyes(upper, count)
+    lines = [f"decode 0 {FRAME_AT + 1e-3!r} 0 0 0 0 0 0 1"]
+    lines += [*seen_by(eyes(box, count), instances), "sort all"]
+    lines += [*seen_by(cameras, instances), "sort upper", *(f"draw {mode}" for mode in MODES), ""]
     scenario.write_text("\n".join(lines))
     csharp.run(program, ROOT / "ComputeShaders", folder / "recording", scenario, file)
     drawn = dict(zip(MODES, replay(device, folder / "recording").draws, strict=True))
@@ -168,13 +178,13 @@ def test_one_eye_is_as_the_player_draws_it(painter: Painter, mono: Scene, mode: 
 
 
 def test_counts_of_draws(mono: Scene, instanced: Scene) -> None:
-    """A direct draw covers all splats; the engine itself doubles it where both eyes are drawn by instances."""
+    """A direct draw covers all splats, also those out of sight; the engine doubles it for both eyes by instances."""
     for scene, instances in ((mono, 1), (instanced, 2)):
         indirect, direct = scene.drawn["indirect"], scene.drawn["direct"]
         assert (indirect.indirect, direct.indirect) == (True, False)
         assert indirect.arguments[1] == instances
         assert direct.arguments == (6 * len(direct.buffers["splats"]) // 16, 1)
-        assert 0 < indirect.arguments[0] <= direct.arguments[0]
+        assert 0 < indirect.arguments[0] < direct.arguments[0]
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -196,6 +206,15 @@ def test_each_view_of_a_multiview_pass_draws_its_eye(painter: Painter, both: Sce
 def test_each_pass_of_its_own_draws_its_eye(painter: Painter, both: Scene, eye: int) -> None:
     found = painter.unity(both.drawn["indirect"], unity_StereoEyeIndex=eye)
     agree(found, painter.player(both)[eye])
+
+
+def test_matrices_point_up_with_the_depth_of_the_device(both: Scene) -> None:
+    """Only target.hlsl turns rows: the surfaces are drawn by the same matrices."""
+    matrices = Constant("view_projection", 0, "float", (2, 4, 4), (64, 4, 16), used=True)
+    found = value("draw", matrices, *both.drawn["indirect"].constants["view_projection"])
+    reversed_depth = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -0.5, 0.5], [0, 0, 0, 1]])
+    for matrix, camera in zip(found, both.cameras, strict=True):
+        np.testing.assert_allclose(matrix, reversed_depth @ camera.projection @ camera.view, rtol=1e-5, atol=1e-6)
 
 
 def test_the_eyes_differ(painter: Painter, both: Scene) -> None:
