@@ -144,11 +144,16 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 avatars[i].Record(commands);
+                avatars[i].AddOpaque(draws, eyes);
             }
             if (splats.SplatCount > 0 && !camera.orthographic)
             {
                 splats.Sort(commands, eyes);
                 draws.Add(splatDraw.Bind(splats));
+            }
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                avatars[i].AddOverlay(draws, eyes);
             }
             return draws.Count > 0;
         }
