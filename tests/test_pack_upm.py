@@ -79,7 +79,7 @@ def test_pages_link_to_nothing_that_is_not_there(tarball: bytes) -> None:
 
 def test_a_link_becomes_its_text() -> None:
     page = b"![a shot](images/a.png) [the page](../b.md#c) [out](https://host/x) [here](#part)"
-    assert pack_upm._unlinked(page) == b"a shot the page [out](https://host/x) [here](#part)"
+    assert pack_upm.unlinked(page) == b"a shot the page [out](https://host/x) [here](#part)"
 
 
 Change = Callable[[dict[str, bytes]], object]

@@ -41,7 +41,7 @@ def contents() -> dict[str, bytes]:
     kernels = {path: content for path, content in _files(KERNELS).items() if path.split(".meta")[0] != "package.json"}
     found |= {f"{FOLDER}/{path}": content for path, content in kernels.items()}
     found[f"{FOLDER}.meta"] = gen_meta.meta(NAME, FOLDER, folder=True).encode()
-    found[GUIDE_IN_PACKAGE] = _unlinked(GUIDE.read_bytes())
+    found[GUIDE_IN_PACKAGE] = unlinked(GUIDE.read_bytes())
     return dict(sorted(found.items()))
 
 
@@ -56,11 +56,11 @@ def _packed(path: str, content: bytes) -> bytes:
         del manifest["dependencies"][FOLDED[FOLDER]]
         return (json.dumps(manifest, indent=2) + "\n").encode()
     if path.endswith(".md"):
-        return _unlinked(content)
+        return unlinked(content)
     return content.replace(SEPARATE.encode(), TOGETHER.encode()) if path.endswith(SHADERS) else content
 
 
-def _unlinked(page: bytes) -> bytes:
+def unlinked(page: bytes) -> bytes:
     """A page whose links into the repository, which lead nowhere from a tarball, are plain text."""
     return LINK.sub(rb"\1", page)
 
@@ -80,18 +80,20 @@ def faults(tarball: bytes, source: str) -> list[str]:
     """What is wrong with a tarball, one sentence each; `source` names it."""
     try:
         with tarfile.open(fileobj=io.BytesIO(tarball), mode="r:gz") as archive:
-            members = archive.getmembers()
-            found = [f"{source}: {fault}" for fault in _member_faults(members)]
-            if found:
-                return found
-            files = {}
-            for member in members:
-                opened = archive.extractfile(member)
-                assert opened is not None  # they are all plain files
-                files[member.name.removeprefix(PREFIX)] = opened.read()
+            found = list(_member_faults(archive.getmembers()))
+        if not found:
+            files = read(tarball)
+            found = [*_content_faults(files), *_rule_faults(files)]
     except (tarfile.TarError, OSError, EOFError) as error:
-        return [f"{source}: {error}, expected a gzip-compressed tarball"]
-    return [f"{source}: {fault}" for fault in (*_content_faults(files), *_rule_faults(files))]
+        found = [f"{error}, expected a gzip-compressed tarball"]
+    return [f"{source}: {fault}" for fault in found]
+
+
+def read(tarball: bytes) -> dict[str, bytes]:
+    """Path in the package and bytes of every plain file of a tarball."""
+    with tarfile.open(fileobj=io.BytesIO(tarball), mode="r:gz") as archive:
+        opened = {member.name: archive.extractfile(member) for member in archive.getmembers() if member.isreg()}
+        return {name.removeprefix(PREFIX): file.read() for name, file in opened.items() if file is not None}
 
 
 def _member_faults(members: list[tarfile.TarInfo]) -> Iterator[str]:
