@@ -18,14 +18,15 @@ from synthetic_student import (
     samples,
 )
 
-from mua.student import train as training
+from mua.student import source as sources
 from mua.student.checkpoint import Checkpoints
 from mua.student.model import Bands, Branch, Student, build_mlp
 from mua.student.optimise import Progress
 from mua.student.regress import INPUT_FLOOR, regress, squared_error, unfold_last_layer, whitening
 from mua.student.settings import Settings
+from mua.student.source import hold
 from mua.student.targets import channel_weights, joint_targets
-from mua.student.train import best_coefficients, hold, train
+from mua.student.train import best_coefficients, train
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
 CPU = torch.device("cpu")
@@ -198,7 +199,7 @@ def test_large_sources_are_read_batch_by_batch(monkeypatch: pytest.MonkeyPatch) 
 
     rows = torch.tensor([4, 2])
     held = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
-    monkeypatch.setattr(training, "HELD_BYTES", 0)
+    monkeypatch.setattr(sources, "HELD_BYTES", 0)
     streamed = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
     assert all(torch.equal(a, b) for a, b in zip(held, streamed, strict=True))
     assert asked == [(APPEARANCE, FRAMES), (slice(12, 14), 2)]

@@ -15,7 +15,7 @@ from mua.bake.report import table
 from mua.cli.failure import refusing
 from mua.errors import InputError
 from mua.motion.joint_names import read_mapping
-from mua.student.settings import preset
+from mua.student.settings import preset, with_recipe
 
 
 def main(
@@ -36,6 +36,9 @@ def main(
     uv: Annotated[
         Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
     ] = "auto",
+    recipe: Annotated[
+        str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
+    ] = "closed-form",
     storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
     device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
@@ -45,7 +48,7 @@ def main(
 
     A run that was interrupted goes on where it stopped when the same command is given again.
     """
-    settings = replace(preset(preset_name), seed=seed)
+    settings = with_recipe(replace(preset(preset_name), seed=seed), recipe)
     settings = replace(settings, frames=settings.frames if frames is None else frames)
     settings = replace(settings, texels=settings.texels if texels is None else texels)
     order = Order(

@@ -48,11 +48,13 @@ def finetune(
     schedule: Schedule,
     stage: str,
     run: Run,
+    basis_rate: float = BASIS_RATE,
+    weight_decay: float = WEIGHT_DECAY,
 ) -> None:
     """Train bases and MLP together on the paper's loss over weighted subbands."""
 
     def loss() -> Tensor:
-        batch = torch.randperm(len(inputs), generator=run.generator)[: schedule.batch]
+        batch = draw_frames(len(inputs), schedule, run)
         ll, d3, d2 = (band.to(run.device) for band in bands(batch))
         scale = weights[:, None, None]
         return subband_loss(branch(inputs[batch.to(inputs.device)]), Bands(ll * scale, d3 * scale, d2 * scale))
@@ -60,8 +62,13 @@ def finetune(
     mlp = list(branch.mlp.parameters())
     bases = [branch.ll_basis, branch.d3.h, branch.d3.w, branch.d2.h, branch.d2.w]
     groups: list[dict[str, object]] = [
-        {"params": mlp, "weight_decay": WEIGHT_DECAY},
-        {"params": bases, "weight_decay": 0.0, "lr": BASIS_RATE},
+        {"params": mlp, "weight_decay": weight_decay},
+        {"params": bases, "weight_decay": 0.0, "lr": basis_rate},
     ]
     with weighted(branch, weights):
         optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
+
+
+def draw_frames(count: int, schedule: Schedule, run: Run) -> Tensor:
+    """The indices [B] of a step's frames out of `count`, each at most once."""
+    return torch.randperm(count, generator=run.generator)[: schedule.batch]

@@ -99,6 +99,14 @@ class Branch(nn.Module):
         parts = flat.split([self.channels * rank for rank in sizes], dim=1)
         return Alphas(*(part.unflatten(1, (self.channels, rank)) for part, rank in zip(parts, sizes, strict=True)))
 
+    @torch.no_grad()
+    def silence(self, channels: Tensor) -> None:
+        """Take the blendshapes of some channels [C], bool; no gradient reaches them; they stay at their mean."""
+        self.ll_basis[channels] = 0
+        for detail in (self.d3, self.d2):
+            detail.h[:, channels] = 0
+            detail.w[:, channels] = 0
+
     def synthesize(self, alphas: Alphas) -> Bands:
         """The subbands of given coefficients."""
         ll = torch.bmm(alphas.ll.transpose(0, 1), self.ll_basis.flatten(2))  # [C, F, n n]

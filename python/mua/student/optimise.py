@@ -56,7 +56,8 @@ def optimise(
     first = _restore(module, optimizer, stage=stage, run=run)
     started = time.monotonic()
     for step in range(first, schedule.steps):
-        rate = schedule.rate * 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
+        fall = 0.5 * (1 + math.cos(math.pi * step / schedule.steps)) if schedule.falls else 1.0
+        rate = schedule.rate * fall
         for group, factor in zip(optimizer.param_groups, relative, strict=True):
             group["lr"] = rate * factor
         optimizer.zero_grad()

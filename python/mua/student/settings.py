@@ -1,6 +1,7 @@
 """What a distillation may vary: three presets, each a point between minutes on a laptop and the paper's own setting."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 from mua.errors import InputError
 
@@ -20,11 +21,12 @@ class Ranks:
 
 @dataclass(frozen=True)
 class Schedule:
-    """One run of Adam with a learning rate that falls to zero along a cosine."""
+    """One run of Adam."""
 
     steps: int
     batch: int  # frames per step
     rate: float  # learning rate of the first step
+    falls: bool = True  # to zero along a cosine, or stays
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ class Settings:
     regression: Schedule
     finetune: Schedule
     seed: int = 0
+    start: Literal["closed form", "random"] = "closed form"
 
 
 PRESETS = {
@@ -85,3 +88,23 @@ def preset(name: str) -> Settings:
     if name not in PRESETS:
         raise InputError(f"preset: {name!r} is unknown, expected one of {', '.join(PRESETS)}")
     return PRESETS[name]
+
+
+RECIPES = ("closed-form", "paper")
+
+
+def with_recipe(settings: Settings, name: str) -> Settings:
+    """The same student trained another way; "paper" is the paper's own: a random start, then Adam for a million steps.
+
+    Raises InputError for a recipe that is not in RECIPES. Source: paper, Implementation Details.
+    """
+    if name not in RECIPES:
+        raise InputError(f"recipe: {name!r} is unknown, expected one of {', '.join(RECIPES)}")
+    if name != "paper":
+        return settings
+    return replace(
+        settings,
+        start="random",
+        regression=Schedule(steps=2_000_000, batch=8, rate=1e-4, falls=False),
+        finetune=Schedule(steps=1_000_000, batch=1, rate=1e-4, falls=False),
+    )

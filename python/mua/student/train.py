@@ -1,7 +1,6 @@
 """Distillation of training frames into a student: closed-form start, regression, fine-tuning (design, section 8.1)."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
@@ -9,18 +8,16 @@ from torch import Tensor
 
 from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
+from mua.student.descend import descend_branch, descend_coarse
 from mua.student.factorize import blendshapes, separable_blendshapes
 from mua.student.finetune import finetune
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
 from mua.student.regress import regress, squared_error, unfold_last_layer
 from mua.student.settings import Settings
+from mua.student.source import Source, hold
 from mua.student.targets import channel_weights, joint_targets, still_channels
 from mua.texture.channels import APPEARANCE, GEOMETRY
-
-HELD_BYTES = 2 << 30  # a branch's subbands up to this size are kept in memory, larger ones are read batch by batch
-
-Source = Callable[[slice, Tensor], Bands]  # the subbands of channels and rows of the training frames
 
 
 @dataclass(frozen=True)
@@ -49,23 +46,16 @@ def train(
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device)
     student.to(device)
     inputs = student.normalize(samples.descriptors.to(device))
-    fit_coarse(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run)
+    random = settings.start == "random"
+    start, fit = (descend_coarse, descend_branch) if random else (fit_coarse, fit_branch)
+    start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run)
     for name, branch, channels in zip(
         ("geometry", "appearance"), student.branches, (GEOMETRY, APPEARANCE), strict=True
     ):
         source = hold(samples.subbands, channels, frames=len(samples), size=student.size)
-        fit_branch(branch, inputs, source, channels=channels, settings=settings, name=name, run=run)
+        fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run)
     student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
     student.requires_grad_(False).eval()
-
-
-def hold(subbands: Source, channels: slice, *, frames: int, size: int) -> Source:
-    """A source of `channels` alone, counted from 0, read once into memory where they fit in HELD_BYTES."""
-    values = (size // 4) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
-    if frames * values * (channels.stop - channels.start) * 4 > HELD_BYTES:
-        return lambda part, rows: subbands(slice(channels.start + part.start, channels.start + part.stop), rows)
-    held = Bands(*subbands(channels, torch.arange(frames)))
-    return lambda part, rows: Bands(*(band[rows] for band in held.of(part)))
 
 
 def fit_branch(
@@ -172,10 +162,7 @@ def hold_still(
     still: Tensor,  # [C] bool
 ) -> None:
     """Take blendshapes and coefficients from channels; no gradient reaches either then, and they stay at their mean."""
-    branch.ll_basis[still] = 0
-    for detail in (branch.d3, branch.d2):
-        detail.h[:, still] = 0
-        detail.w[:, still] = 0
+    branch.silence(still)
     for level in branch.split(flat):
         level[:, still] = 0
 

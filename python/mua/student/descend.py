@@ -1,0 +1,98 @@
+"""The paper's own recipe: a random start, then Adam on the loss alone. It is the yardstick for the closed-form start.
+
+The paper gives the optimiser, its rate, batch and steps (Implementation Details), not the start: here bases begin as
+noise of a tenth of their channel's spread, MLPs as torch makes them. Channels are weighted as in the other recipe, so
+that both descend the same loss.
+"""
+
+import math
+
+import torch
+from torch import Tensor, nn
+
+from mua.student.coarse import mesh_pca
+from mua.student.finetune import draw_frames, finetune, weighted
+from mua.student.model import Branch, Coarse, linear_layers
+from mua.student.optimise import Run, optimise
+from mua.student.settings import Settings
+from mua.student.source import Source
+from mua.student.targets import channel_weights, still_channels
+
+BASIS_START = 0.1  # of a channel's spread
+
+
+def descend_coarse(
+    coarse: Coarse,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    meshes: Tensor,  # [F, V, 3] canonical vertices, metres
+    *,
+    settings: Settings,
+    run: Run,
+) -> None:
+    """Set the PCA of `coarse` and train F_temp on the L1 error of its coefficients (paper, Eq. L_coarse)."""
+    pca = mesh_pca(meshes, settings.components, generator=run.generator)
+    coarse.mean.copy_(pca.mean)
+    coarse.basis.copy_(pca.basis)
+    start_mlp(coarse.mlp, run.generator)
+
+    def loss() -> Tensor:
+        batch = draw_frames(len(inputs), settings.regression, run).to(inputs.device)
+        return (coarse.mlp(inputs[batch]) - pca.coefficients[batch]).abs().sum(1).mean()
+
+    groups: list[dict[str, object]] = [{"params": list(coarse.mlp.parameters()), "weight_decay": 0.0}]
+    optimise(coarse.mlp, loss, schedule=settings.regression, parameters=groups, stage="coarse mesh", run=run)
+
+
+def descend_branch(
+    branch: Branch,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    source: Source,  # of the branch's channels, counted from 0
+    *,
+    channels: slice,  # which of the 23 these are
+    settings: Settings,
+    name: str,
+    run: Run,
+) -> None:
+    """Train bases and MLP from noise on the paper's loss; the means are those of the training frames."""
+    variance = set_means(branch, source, frames=len(inputs)).to(run.device)
+    weights = channel_weights(variance, channels)
+    start_mlp(branch.mlp, run.generator)
+    with weighted(branch, weights), torch.no_grad():
+        branch.ll_basis.copy_(BASIS_START * torch.randn(branch.ll_basis.shape, generator=run.generator))
+        for detail in (branch.d3, branch.d2):
+            for factor in (detail.h, detail.w):
+                factor.copy_(math.sqrt(BASIS_START) * torch.randn(factor.shape, generator=run.generator))
+    branch.silence(still_channels(variance, channels))
+    finetune(
+        branch,
+        inputs,
+        lambda rows: source(slice(0, branch.channels), rows),
+        weights=weights,
+        schedule=settings.finetune,
+        stage=f"{name} descent",
+        run=run,
+        basis_rate=1.0,
+        weight_decay=0.0,
+    )
+
+
+@torch.no_grad()
+def set_means(branch: Branch, source: Source, *, frames: int) -> Tensor:
+    """Set the mean subbands of `branch`, channel by channel; returns the texel variance [C] about them."""
+    energy = []
+    for channel in range(branch.channels):
+        ll, d3, d2 = source(slice(channel, channel + 1), torch.arange(frames))
+        branch.ll_mean[channel] = ll[:, 0].mean(0)
+        branch.d3.mean[:, channel], branch.d2.mean[:, channel] = d3[:, :, 0].mean(0), d2[:, :, 0].mean(0)
+        energy.append(torch.stack([(band - band.mean(0)).square().sum() for band in (ll, d3, d2)]).sum())
+    texels = (16 * branch.ll_mean.shape[-1]) ** 2
+    return torch.stack(energy) / (frames * texels)
+
+
+@torch.no_grad()
+def start_mlp(mlp: nn.Module, generator: torch.Generator) -> None:
+    """Draw what torch starts a linear layer with, uniform within 1 / sqrt(inputs), from the run's generator."""
+    for layer in linear_layers(mlp):
+        reach = 1 / math.sqrt(layer.in_features)
+        for parameter in (layer.weight, layer.bias):
+            parameter.copy_(reach * (2 * torch.rand(parameter.shape, generator=generator) - 1))
