@@ -104,6 +104,10 @@ class UnityDraw:
         for name, slot in slots.items():
             assert drawn.strides[name] == slot.stride, f"{program}: {name} has stride {drawn.strides[name]}"
         self._buffers = {name: device.buffer(drawn.buffers[name], name=name) for name in slots}
+        self._indices = None
+        if drawn.indices is not None:
+            usage = wgpu.BufferUsage.INDEX
+            self._indices = device.wgpu.create_buffer_with_data(data=drawn.indices.tobytes(), usage=usage)
 
     def draw(self, render_pass: wgpu.GPURenderPassEncoder, **engine: Any) -> None:
         """Append the draw, with what the engine would set for its shaders."""
@@ -112,7 +116,11 @@ class UnityDraw:
         for name in constants.keys() - bound.keys() & self._drawn.constants.keys():
             bound[name] = value(self._label, constants[name], *self._drawn.constants[name])
         self._pipeline.bind(render_pass, self._buffers, **bound)
-        render_pass.draw(*self._arguments)
+        if self._indices is None:
+            render_pass.draw(*self._arguments)
+        else:
+            render_pass.set_index_buffer(self._indices, "uint32")
+            render_pass.draw_indexed(*self._arguments)
 
 
 def rows(*, turned: bool) -> Array:

@@ -3,7 +3,7 @@
 A recording is NAME.json, one event in a line, and NAME.bin, the uploaded bytes. Events: `buffer` (count, stride,
 target), `name`, `upload` (start in the buffer; offset in the binary, bytes), `dispatch` (shader, kernel, groups or
 indirect, buffers and constants bound by name then), `draw` (shader, pass, counts or indirect, what was bound), `keep`
-(a label for what a buffer holds), `release`. A draw is kept with what its buffers held, for who knows the target.
+(a label for what a buffer holds), `release`, `note`. A draw is kept with what its buffers held, for who knows the target.
 """
 
 import base64
@@ -30,11 +30,12 @@ class Drawn:
 
     shader: str
     pass_index: int
-    arguments: tuple[int, int]  # vertices, instances
+    arguments: tuple[int, int]  # vertices or indices, instances
     indirect: bool  # whether the device was to take them from a buffer
     buffers: dict[str, Array]  # by name, words
     strides: dict[str, int]  # by name, bytes of an element
     constants: dict[str, tuple[str, str]]  # by name, kind and content
+    indices: Array | None = None  # corners of triangles, where the draw is indexed
 
 
 @dataclass
@@ -105,12 +106,16 @@ class _Player:
                 buffers={name: self.buffers[number].read() for name, number in numbers.items()},
                 strides={name: self.strides[number] for name, number in numbers.items()},
                 constants={**event["constants"], **event.get("block_constants", {})},
+                indices=self.buffers[event["indices"]].read() if "indices" in event else None,
             )
         )
 
     def keep(self, event: dict[str, Any]) -> None:
         self.flush()
         self.result.kept[event["label"]] = self.buffers[event["buffer"]].read()
+
+    def note(self, event: dict[str, Any]) -> None:
+        """What the engine was at, which changes nothing."""
 
     def release(self, event: dict[str, Any]) -> None:
         self.flush()
@@ -147,5 +152,5 @@ def value(label: str, constant: Constant, kind: str, content: str) -> Any:
     if kind == "Vector" and len(constant.shape) == 1:
         values = values[:count]
     assert len(values) == count, f"{where} was set to {len(values)} values"
-    assert kind == "Matrix" or len(constant.shape) < 2, f"{where} has gaps between its rows"
+    assert kind == "Matrix" or len(constant.shape) < 2 or constant.shape[-1] == 4, f"{where} has gaps between its rows"
     return values.reshape(constant.shape) if constant.shape else values[0]

@@ -1,24 +1,55 @@
-"""The package's surfaces: the texel grid that mono builds is the desktop player's."""
+"""The package's surfaces: the texel grid that mono builds, and every pass of surface.shader, recorded and replayed.
+
+Against the desktop player's grid and its draws of the same buffers; shadows against the reference's posed template.
+"""
 
 import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
+from replay import Drawn, replay
+from shader_programs import VARIANTS, programs
+from synthetic_avatar import synthetic_avatar
+from test_recorded_frame import MIRROR, STAND_INS, place_of
 
+from mua import rotation
 from mua.arrays import Array
-from mua.asset import read
+from mua.asset import read, write
+from mua.asset.avatar import Avatar
+from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.decode import decode_clip_frame
+from mua.gpu import Device
+from mua.player.draw import image_format
+from mua.player.overlays import Overlays, PosedBuffers
 from mua.player.surface import build_surface
 
-GRID = [RUNTIME / f"{name}.cs" for name in ("TexelGrid", "TexelRest", "TexelCharts", "TexelSeams", "TexelHoles")]
 ASSET = os.environ.get("MUA_TEST_AVATAR", "")  # a real avatar file
+SCREEN = (160, 200)
+GAMMA = ("UNITY_COLORSPACE_GAMMA",)
+FRAME = 3  # of a clip of 24 Hz
+PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446)  # Unity's position, then rotation (x, y, z, w)
+PASSES = ("Geometry", "Mesh", "Skeleton", "ShadowCaster")
+VIEWS = PASSES[:3]
+LEAST_PSNR = 60.0  # dB; matrices are rounded to float32 on another way, and the depth of one of the two is reversed
+FEW_PIXELS = 3e-3  # of those covered, that a rounded edge may move
+MAP = 512  # pixels along a shadow map
+METRES = 4.0  # that it spans
 
 
 @pytest.fixture(scope="module")
-def grid_program(csharp: CSharp) -> Path:
-    file = csharp.build([RUNTIME / "Format"], library=True)
-    return csharp.build([*GRID, PROGRAMS / "SurfaceProgram.cs"], references=[file])
+def surface_program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "SurfaceProgram.cs"]
+    return csharp.build(sources, name="SurfaceProgram", references=[engine, file, motion])
 
 
 def arrays(path: Path) -> list[Array]:
@@ -33,15 +64,248 @@ def arrays(path: Path) -> list[Array]:
 def check_grid(csharp: CSharp, program: Path, file: Path, target: Path) -> None:
     rig = read(file).rig
     surface = build_surface(rig.mesh, rig.texels)
-    csharp.run(program, file, target)
+    csharp.run(program, "grid", file, target)
     for found, exact in zip(arrays(target), (surface.triangles, surface.ring_starts, surface.ring), strict=True):
         np.testing.assert_array_equal(found, exact.ravel().astype(np.int32))
 
 
-def test_the_grid_of_the_golden_file_is_the_desktop_players(csharp: CSharp, grid_program: Path, tmp_path: Path) -> None:
-    check_grid(csharp, grid_program, ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
+def test_the_grid_of_the_golden_file_is_the_desktop_players(
+    csharp: CSharp, surface_program: Path, tmp_path: Path
+) -> None:
+    check_grid(csharp, surface_program, ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
 
 
 @pytest.mark.skipif(not ASSET, reason="set MUA_TEST_AVATAR to an avatar file")
-def test_the_grid_of_a_real_avatar_is_the_desktop_players(csharp: CSharp, grid_program: Path, tmp_path: Path) -> None:
-    check_grid(csharp, grid_program, Path(ASSET), tmp_path / "grid")
+def test_the_grid_of_a_real_avatar_is_the_desktop_players(
+    csharp: CSharp, surface_program: Path, tmp_path: Path
+) -> None:
+    check_grid(csharp, surface_program, Path(ASSET), tmp_path / "grid")
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What mono recorded of the second of two avatars."""
+
+    avatar: Avatar
+    cameras: tuple[Camera, ...]
+    drawn: dict[str, Drawn]  # by pass
+    said: dict[str, list[int]]
+    first_splat: int
+
+
+@pytest.fixture(scope="module")
+def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factory: pytest.TempPathFactory) -> Scene:
+    folder = tmp_path_factory.mktemp("surface")
+    files = [folder / f"{index}.muaavatar" for index in range(2)]
+    for seed, file in enumerate(files):
+        write(file, synthetic_avatar(seed + 1), storage="f32")
+    first, avatar = (read(file) for file in files)
+    centres = rotation.dual_transform(place_of(PLACE), posed(avatar).centres)
+    bounds = np.stack([centres.min(axis=0), centres.max(axis=0)])
+    cameras = stereo(orbit(bounds, screen=SCREEN, azimuth=0.7, elevation=0.3), EYE_DISTANCE)
+    lines = ["screen {} {} {}".format(*SCREEN, NEAR)]
+    for camera in cameras:
+        numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+        lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    lines.append(f"decode {(FRAME + 0.02) / 24!r} " + " ".join(map(repr, PLACE)))
+    scenario = folder / "scenario.txt"
+    scenario.write_text("\n".join(lines))
+    said = csharp.run(surface_program, "draw", ROOT / "ComputeShaders", folder / "recording", scenario, *files)
+    draws = {PASSES[drawn.pass_index]: drawn for drawn in replay(device, folder / "recording").draws}
+    spoken = {words[0]: [int(word) for word in words[1:]] for words in map(str.split, said.splitlines())}
+    return Scene(avatar, cameras, draws, spoken, len(first.rig.texels.texels))
+
+
+def posed(avatar: Avatar) -> Any:
+    return decode_clip_frame(avatar, avatar.clips[0], frame=FRAME, dtype=np.float64)
+
+
+@pytest.fixture
+def painter(device: Device, tmp_path: Path, scene: Scene) -> "Painter":
+    return Painter(device, tmp_path, scene)
+
+
+class Painter:
+    """Draws the passes as Unity would and as the desktop player does."""
+
+    def __init__(self, device: Device, folder: Path, scene: Scene) -> None:
+        self.device, self.folder, self.scene, self.format = device, folder, scene, image_format(device)
+        self.passes = {program.name: program for program in programs(RUNTIME / "Shaders" / "surface.shader")}
+
+    def unity(
+        self,
+        name: str,
+        *,
+        variant: str = "mono",
+        space: tuple[str, ...] = GAMMA,
+        turned: bool = False,
+        plane: float | None = None,  # depth on the device, over the left half of the target
+        **engine: Any,
+    ) -> Array:
+        """[H, W, 4] of one eye, rows as the target stores them."""
+        drawn = self.scene.drawn[name]
+        if variant == "instanced":
+            drawn = replace(drawn, arguments=(drawn.arguments[0], 2))  # as the engine multiplies it
+        defines = (*VARIANTS[variant], *space)
+        draw = UnityDraw(self.device, drawn, self.passes[name], self.folder, defines, self.format)
+        target = Target(self.device, self.format, SCREEN, 0.0, self.folder)
+        given = {"unity_StereoEyeIndex": 0, "_ProjectionParams": rows(turned=turned), **engine}
+        return target.image(lambda render_pass: draw.draw(render_pass, **given), half(plane))
+
+    def player(self, name: str, eye: int, *, plane: float | None = None) -> Array:
+        """[H, W, 4] of one eye."""
+        scene = self.scene
+        splats, vertex_dq, mesh = (
+            self.device.buffer(scene.drawn[owner].buffers[name], name=name)
+            for owner, name in (("Geometry", "splats"), ("Mesh", "vertex_dq"), ("Mesh", "mesh"))
+        )
+        buffers = PosedBuffers(splats, vertex_dq, mesh, first_splat=scene.first_splat)
+        overlays = Overlays(self.device, scene.avatar, buffers, color=self.format, depth=DEPTH_FORMAT)
+        clip, camera = scene.avatar.clips[0], scene.cameras[eye]
+        overlays.pose(clip.rotations[FRAME], clip.translation[FRAME], ground=0.0)
+        if name == "Skeleton":  # whose joints stand where the avatar's own space has them
+            camera = replace(camera, view=camera.view @ rigid(PLACE))
+        draws: dict[str, Callable[[wgpu.GPURenderPassEncoder, Camera], None]] = {
+            "Geometry": overlays.draw_geometry,
+            "Mesh": overlays.draw_template,
+            "Skeleton": overlays.draw_skeleton,
+        }
+        target = Target(self.device, self.format, SCREEN, 1.0, self.folder)
+        return target.image(lambda render_pass: draws[name](render_pass, camera), half(plane))
+
+
+def half(plane: float | None) -> tuple[float, tuple[int, int, int, int]] | None:
+    """A depth over the left half of the target."""
+    return None if plane is None else (plane, (0, 0, SCREEN[0] // 2, SCREEN[1]))
+
+
+def rigid(place: tuple[float, ...]) -> Array:
+    """The matrix [4, 4] of a Unity position and rotation in the kernels' world."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = rotation.dual_transform(place_of(place), np.zeros(3))
+    matrix[:3, :3] = (rotation.dual_transform(place_of(place), np.eye(3)) - matrix[:3, 3]).T
+    return matrix
+
+
+def agree(found: Array, expected: Array) -> None:
+    """Over the pixels that both cover; a rounded edge may move a few."""
+    covered = (found[..., 3] > 0) | (expected[..., 3] > 0)
+    apart = np.abs(found - expected).max(axis=-1) > 1e-2
+    assert np.mean(covered) > 0.01
+    assert np.mean(apart[covered]) < FEW_PIXELS
+    error = np.mean(np.square(found - expected)[covered & ~apart])
+    assert -10 * np.log10(max(error, 1e-12)) > LEAST_PSNR
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["back buffer", "texture"])
+@pytest.mark.parametrize("name", VIEWS)
+def test_each_view_is_as_the_player_draws_it(painter: Painter, name: str, turned: bool) -> None:
+    found = painter.unity(name, turned=turned)
+    agree(found[::-1] if turned else found, painter.player(name, 0))
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+@pytest.mark.parametrize("name", VIEWS)
+def test_each_stereo_mode_draws_its_eye(painter: Painter, name: str, eye: int) -> None:
+    expected = painter.player(name, eye)
+    agree(painter.unity(name, variant="instanced", replayed_layer=eye), expected)
+    agree(painter.unity(name, variant="multiview", replayed_view=eye), expected)
+    agree(painter.unity(name, unity_StereoEyeIndex=eye), expected)
+    with pytest.raises(AssertionError):
+        agree(painter.unity(name, unity_StereoEyeIndex=1 - eye), expected)
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_depth_hides_surfaces_but_no_bones(painter: Painter, name: str) -> None:
+    """A plane through the avatar; the player's depth is not reversed, so the two share no mistake of it."""
+    camera = painter.scene.cameras[0]
+    centres = rotation.dual_transform(place_of(PLACE), posed(painter.scene.avatar).centres)
+    distance = -(centres @ camera.view[2, :3] + camera.view[2, 3]).mean()
+    row = camera.projection[2]
+    depth = (row[3] - row[2] * distance) / distance  # -1 to 1, away from the eye
+    free, expected = painter.player(name, 0), painter.player(name, 0, plane=(1 + depth) / 2)
+    agree(painter.unity(name, plane=(1 - depth) / 2), expected)
+    assert np.array_equal(free, expected) == (name == "Skeleton")
+
+
+@pytest.mark.parametrize("name", ["Geometry", "Mesh"])
+def test_a_linear_project_is_given_light(painter: Painter, name: str) -> None:
+    srgb = painter.player(name, 0)
+    light = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    agree(painter.unity(name, space=()), np.dstack([light[..., :3], srgb[..., 3]]))
+
+
+def light_from(axis: int, span: float, middle: float = 0) -> Array:
+    """Unity's world to the clip space of a light along an axis; depth runs from 1 to 0 over a span about its middle."""
+    across, up = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.zeros((4, 4))
+    matrix[0, across] = matrix[1, up] = 2 / METRES
+    matrix[2, axis], matrix[2, 3] = -1 / span, 0.5 + middle / span
+    matrix[3, 3] = 1
+    return matrix
+
+
+def shadow_depths(painter: Painter, matrix: Array) -> Array:
+    """[MAP, MAP] depth of the vertices that the shadow pass draws as points; 0 where there is none."""
+    program, drawn = painter.passes["ShadowCaster"], painter.scene.drawn["ShadowCaster"]
+    text = program.text + "\nfloat4 DepthFrag(float4 at : SV_Position) : SV_Target { return float4(at.z, 0, 0, 1); }\n"
+    path = replace(program, text=text).write(painter.folder)
+    states: dict[str, Any] = {
+        "color_format": "rgba32float",
+        "depth_format": DEPTH_FORMAT,
+        "blend": False,
+        "topology": "point-list",
+    }
+    states |= {"depth_write": True, "depth_compare": "greater-equal"}
+    pipeline = painter.device.pipeline(path, program.vertex, "DepthFrag", **states)
+    names = {slot.name for stage in pipeline.stages for slot in stage.buffers}
+    buffers = {name: painter.device.buffer(drawn.buffers[name], name=name) for name in names}
+
+    def draw(render_pass: wgpu.GPURenderPassEncoder) -> None:
+        pipeline.bind(render_pass, buffers, unity_MatrixVP=matrix)
+        render_pass.draw(len(painter.scene.avatar.rig.mesh.vertices))
+
+    target = Target(painter.device, "rgba32float", (MAP, MAP), 0.0, painter.folder)
+    return np.asarray(target.image(draw)[..., 0])
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_shadows_are_cast_by_the_posed_template_in_unitys_world(painter: Painter, axis: int) -> None:
+    """A light along each axis: its depths are a coordinate of every vertex, its pixels the two others."""
+    world = rotation.dual_transform(place_of(PLACE), posed(painter.scene.avatar).mesh) * [-1, 1, 1]
+    clip = np.column_stack([world, np.ones(len(world))]) @ light_from(axis, METRES).T
+    column, row = ((clip[:, :2] * [1, -1] + 1) / 2 * MAP).astype(int).T
+    depths = shadow_depths(painter, light_from(axis, METRES))
+    assert len(world) // 2 < np.count_nonzero(depths) <= len(world)
+    nearest = np.array([clip[(column == c) & (row == r), 2].max() for c, r in zip(column, row, strict=True)])
+    np.testing.assert_allclose(depths[row, column], nearest, atol=2e-6)  # float32 of a few operations on metres
+
+
+def test_what_lies_before_a_lights_volume_still_casts_a_shadow(painter: Painter) -> None:
+    world = rotation.dual_transform(place_of(PLACE), posed(painter.scene.avatar).mesh) * [-1, 1, 1]
+    span, middle = 0.5, world[:, 1].mean()  # metres; the avatar reaches farther to both sides
+    depth = 0.5 - (world[:, 1] - middle) / span
+    depths = shadow_depths(painter, light_from(1, span, middle))
+    assert np.any(depth > 1)
+    assert np.count_nonzero(depths == 1) == np.count_nonzero(depth > 1)
+
+
+def test_draws_of_indices(scene: Scene) -> None:
+    faces = scene.avatar.rig.mesh.faces.ravel()
+    surface = build_surface(scene.avatar.rig.mesh, scene.avatar.rig.texels)
+    for name in ("Mesh", "ShadowCaster"):
+        np.testing.assert_array_equal(scene.drawn[name].indices, faces)
+        assert scene.drawn[name].arguments == (faces.size, 1)
+    np.testing.assert_array_equal(scene.drawn["Geometry"].indices, surface.triangles.ravel())
+    assert scene.drawn["Skeleton"].arguments == (6 * 2 * (2 + 3), 1)  # two bones, three joints, and their outlines
+
+
+def test_a_view_costs_nothing_until_it_is_wanted(scene: Scene) -> None:
+    assert scene.said["idle"] == [0, 0, 0]  # buffers, draws for the engine, draws for cameras
+    assert scene.said["first"][0] >= 2  # the grid may still be under way
+    assert scene.said["made"][0] == scene.said["again"][0] == 6  # ring, its starts, two of indices, rest, strokes
+
+
+def test_frames_allocate_nothing_and_leave_nothing_behind(scene: Scene) -> None:
+    assert scene.said["allocated"] == [0]
+    assert scene.said["alive"] == [0]

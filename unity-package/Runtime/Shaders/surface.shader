@@ -6,6 +6,7 @@ Shader "Hidden/MUA/Surface"
     SubShader
     {
         Tags { "Queue" = "Transparent" "RenderType" = "Opaque" "IgnoreProjector" = "True" }
+        Blend Off
         Cull Off
 
         HLSLINCLUDE
