@@ -1,7 +1,7 @@
 """Every assembly of the package compiles against the stand-ins, with just its own references, as Unity compiles it."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,13 @@ STAND_INS = Path(__file__).parent / "stand_ins"
 UNITY_6 = ("UNITY_6000_0_OR_NEWER", "UNITY_2022_3_OR_NEWER")
 EDITOR = (*UNITY_6, "UNITY_EDITOR", "UNITY_EDITOR_WIN", "UNITY_STANDALONE_WIN")
 PLAYERS = {"editor": EDITOR, "quest": (*UNITY_6, "UNITY_ANDROID"), "pc": (*UNITY_6, "UNITY_STANDALONE_WIN")}
+
+# Assemblies of each optional package, by the symbol that says that it is there.
+OPTIONAL = {
+    "MUA_URP": "Unity.RenderPipelines.",
+    "MUA_XR_MANAGEMENT": "Unity.XR.Management",
+    "MUA_OPENXR": "Unity.XR.OpenXR",
+}
 
 
 @dataclass(frozen=True)
@@ -31,7 +38,8 @@ class Assembly:
     def references(self) -> list[str]:
         """By name; the engine's own come with every assembly that does not forbid it."""
         engine = [] if self.definition.get("noEngineReferences") else ["UnityEngine"]
-        return [*engine, *self.definition.get("references", [])]
+        compiled = [name.removesuffix(".dll") for name in self.definition.get("precompiledReferences", [])]
+        return [*engine, *self.definition.get("references", []), *compiled]
 
     def defines(self, platform: str, *, packages: bool) -> tuple[str, ...]:
         """Symbols on a platform; `packages`: whether those that are optional are installed."""
@@ -55,16 +63,21 @@ def assemblies() -> dict[str, Assembly]:
 class Compiler:
     """Compiles assemblies and what they refer to."""
 
-    def __init__(self, csharp: CSharp, platform: str, *, packages: bool) -> None:
-        self._csharp, self._platform, self._packages = csharp, platform, packages
+    def __init__(self, csharp: CSharp, platform: str, *, packages: bool, without: Collection[str] = ()) -> None:
+        self._csharp, self._platform, self._packages, self._without = csharp, platform, packages, without
         self._known, self._built = assemblies(), dict[str, Path]()
 
     def has(self, assembly: Assembly) -> bool:
         """Whether Unity compiles an assembly here."""
         only = assembly.definition.get("includePlatforms", [])
         wanted = set(assembly.definition.get("defineConstraints", [])) - {"UNITY_INCLUDE_TESTS"}
-        defined = set(assembly.defines(self._platform, packages=self._packages))
+        defined = set(self.defines(assembly))
         return wanted <= defined and (only != ["Editor"] or self._platform == "editor")
+
+    def defines(self, assembly: Assembly) -> list[str]:
+        """Symbols that an assembly is compiled with."""
+        symbols = assembly.defines(self._platform, packages=self._packages)
+        return [symbol for symbol in symbols if symbol not in self._without]
 
     def built(self, name: str) -> Path:
         """The .dll of an assembly or of a folder of stand-ins; what is neither is no reference that Unity knows."""
@@ -73,7 +86,7 @@ class Compiler:
         return self._built[name]
 
     def _own(self, assembly: Assembly) -> Path:
-        symbols = assembly.defines(self._platform, packages=self._packages)
+        symbols = self.defines(assembly)
         names = assembly.references
         if self._platform == "editor" and "UnityEngine" in names:
             names = [*names, "UnityEditor"]  # in the editor it comes with the engine
@@ -94,6 +107,8 @@ class Compiler:
         known = self._known.get(name)
         if known is None and not self._packages and name not in ("UnityEngine", "UnityEditor"):
             return
+        if any(name.startswith(OPTIONAL[symbol]) for symbol in self._without):
+            return
         yield self.built(name)
 
 
@@ -104,6 +119,15 @@ def test_an_assembly_compiles(csharp: CSharp, assembly: Assembly, platform: str,
     compiler = Compiler(csharp, platform, packages=packages)
     if compiler.has(assembly):
         assert compiler.built(assembly.name).name == f"{assembly.name}.dll"
+
+
+@pytest.mark.parametrize(
+    "without",
+    [("MUA_URP",), ("MUA_OPENXR",), ("MUA_XR_MANAGEMENT", "MUA_OPENXR")],
+    ids=lambda symbols: " ".join(symbols),
+)
+def test_the_editor_compiles_without_some_packages(csharp: CSharp, without: tuple[str, ...]) -> None:
+    assert Compiler(csharp, "editor", packages=True, without=without).built("Mua.Avatar.Editor").exists()
 
 
 def test_no_source_is_outside_an_assembly() -> None:

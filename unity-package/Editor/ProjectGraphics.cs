@@ -28,7 +28,7 @@ namespace Mua.Editor
         public static IEnumerable<ProjectSetting> Settings(bool isQuest)
         {
             yield return new ProjectSetting(PipelineName, Universal, PipelineType, IsPipelineRight, TakePipeline);
-            if (isQuest && GraphicsSettings.defaultRenderPipeline == null)
+            if (isQuest && GraphicsSettings.defaultRenderPipeline == null && !TakesUrp())
             {
                 yield return ProjectSetting.Of(
                     "Quality > Anti-aliasing", 0, MostSamples, samples => QualitySettings.ForEach(

@@ -41,7 +41,7 @@ namespace UnityEditor.XR.Management.Metadata
     {
         public static bool AssignLoader(XRManagerSettings settings, string loaderTypeName, BuildTargetGroup buildTargetGroup)
         {
-            Type type = AppDomain.CurrentDomain.GetAssemblies().Select(each => each.GetType(loaderTypeName)).First(each => each != null);
+            Type type = Type.GetType(loaderTypeName + ", Unity.XR.OpenXR");
             if (!settings.activeLoaders.Any(each => each.GetType() == type))
                 settings.TryAddLoader((XRLoader)ScriptableObject.CreateInstance(type));
             return true;

@@ -7,7 +7,11 @@ namespace UnityEditor
     {
         public static void Refresh() { }
         public static void SaveAssets() { }
-        public static void CreateAsset(UnityEngine.Object asset, string path) { StandIns.Project.Assets[path] = asset; }
+        public static void CreateAsset(UnityEngine.Object asset, string path)
+        {
+            asset.name = System.IO.Path.GetFileNameWithoutExtension(path);
+            StandIns.Project.Assets[path] = asset;
+        }
         public static void AddObjectToAsset(UnityEngine.Object objectToAdd, string path) { StandIns.Project.Assets[path + "#" + objectToAdd.name] = objectToAdd; }
         public static string GetAssetPath(UnityEngine.Object assetObject)
         {

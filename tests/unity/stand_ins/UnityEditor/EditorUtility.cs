@@ -11,7 +11,7 @@ namespace UnityEditor
             StandIns.Dialogs.Shown.Add(message);
             return StandIns.Dialogs.Answer;
         }
-        public static void SetDirty(UnityEngine.Object target) { }
+        public static void SetDirty(UnityEngine.Object target) { StandIns.Dialogs.Dirtied++; }
     }
 }
 
@@ -22,5 +22,6 @@ namespace StandIns
     {
         public static readonly List<string> Shown = new List<string>();
         public static bool Answer = true;
+        public static int Dirtied; // objects that were marked to be saved
     }
 }

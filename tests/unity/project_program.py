@@ -1,0 +1,39 @@
+"""The program that sets projects up and builds players in stand-ins of the editor, and what it tells."""
+
+from pathlib import Path
+
+from csharp import PROGRAMS, CSharp
+from test_compiles import Compiler, assemblies
+
+Told = dict[str, list[str]]
+PACKAGES = ("Unity.RenderPipelines.", "Unity.XR.Management", "Unity.XR.OpenXR")
+
+
+class ProjectProgram:
+    """Runs stories of programs/ProjectProgram.cs, with or without the optional packages, with or without the sample."""
+
+    def __init__(self, csharp: CSharp) -> None:
+        self._csharp = csharp
+        self._built: dict[tuple[bool, bool], Path] = {}
+
+    def tell(self, story: str, *arguments: object, packages: bool = True, sample: bool = True) -> Told:
+        """Lines by their first word."""
+        told: Told = {}
+        for line in self._csharp.run(self._program(packages, sample), story, *arguments).splitlines():
+            key, value = line.split("\t", 1)
+            told.setdefault(key, []).append(value)
+        return told
+
+    def _program(self, packages: bool, sample: bool) -> Path:
+        if (packages, sample) not in self._built:
+            compiler = Compiler(self._csharp, "editor", packages=packages)
+            editor = assemblies()["Mua.Avatar.Editor"]
+            wanted = ("Mua.", "UnityE", *(PACKAGES if packages else ()))
+            names = [name for name in editor.references if name.startswith(wanted)]
+            self._built[packages, sample] = self._csharp.build(
+                [PROGRAMS / "ProjectProgram.cs"],
+                name="Mua.Avatar.Editor.Tests",  # which may see the package's internals
+                references=[compiler.built(name) for name in [*names, "UnityEditor", editor.name]],
+                defines=[*compiler.defines(editor), *(["SAMPLE"] if sample else [])],
+            )
+        return self._built[packages, sample]

@@ -1,0 +1,123 @@
+"""Set-up of a project in stand-ins of the editor: what it changes, what it leaves alone, and what it says."""
+
+import re
+
+import pytest
+from csharp import CSharp
+from project_program import ProjectProgram
+
+XR = "com.unity.xr.management com.unity.xr.openxr"
+URP = "com.unity.render-pipelines.universal"
+PLATFORMS = {"Quest": "Android", "PcLink": "Standalone"}
+COUNT = {"Quest": 28, "PcLink": 11}  # settings of each platform in a project with URP and OpenXR
+FAULT = re.compile(r"(.+?) is (.+), expected (.+)")
+CHANGE = re.compile(r"Log MUA set (.+?): (.+) -> (.+)")
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> ProjectProgram:
+    return ProjectProgram(csharp)
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_a_new_project_is_made_right_once(program: ProjectProgram, platform: str) -> None:
+    told = program.tell("SetsUp", platform)
+    assert len(told["log"]) == COUNT[platform]
+    assert all(map(CHANGE.fullmatch, told["log"]))
+    assert all(map(FAULT.fullmatch, told["before"]))
+    assert "after" not in told
+    assert (told["changed again"], told["dirtied again"]) == (["0"], ["0"])
+    assert "again" not in told
+
+
+def test_quest_gets_what_the_headset_needs(program: ProjectProgram) -> None:
+    changes = [CHANGE.fullmatch(line) for line in program.tell("SetsUp", "Quest")["log"]]
+    made = {change[1]: change[3] for change in changes if change}
+    assert made["Player > Graphics APIs for Android"] == "Vulkan"
+    assert made["Player > Scripting backend"] == "IL2CPP"
+    assert made["Player > Target architectures"] == "ARM64"
+    assert made["Player > Minimum API level"] == "AndroidApiLevel29"
+    assert made["Player > Application entry point"] == "GameActivity"
+    assert made["Player > Package name"] == "com.mua.player"
+    assert made["XR > Loader for Android"] == "UnityEngine.XR.OpenXR.OpenXRLoader"
+    assert made["OpenXR > Render mode for Android"] == "SinglePassInstanced"
+    assert made["OpenXR > com.unity.openxr.feature.metaquest for Android"] == "on"
+    assert made["Pipeline > MSAA"] == "1"
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_each_setting_that_is_broken_is_named_and_mended(program: ProjectProgram, platform: str) -> None:
+    told = program.tell("NamesWhatIsBroken", platform)
+    made = {change[1] for line in program.tell("SetsUp", platform)["log"] if (change := CHANGE.fullmatch(line))}
+    faults = [FAULT.fullmatch(line) for line in told["fault"]]
+    named = {fault[1] for fault in faults if fault}
+    assert named == made
+    assert set(told["left"]) == {"0"}
+
+
+@pytest.mark.parametrize(
+    ("own", "pipeline"),
+    [("nothing", "own"), ("Assets/Skin.mat", "built-in"), ("Assets/Samples/MUA Avatar/A.mat", "own")],
+)
+def test_what_is_right_another_way_is_left_alone(program: ProjectProgram, own: str, pipeline: str) -> None:
+    told = program.tell("KeepsWhatIsRight", own)
+    assert "after" not in told
+    assert told["identifier"] == ["org.example.own"]
+    assert told["sdk"] == ["AndroidApiLevel32 AndroidApiLevel34"]
+    assert told["stripping"] == ["Minimal"]
+    assert told["pipeline"] == [pipeline]  # a project with materials of its own keeps the pipeline that they are for
+
+
+def test_another_render_pipeline_is_named_and_kept(program: ProjectProgram) -> None:
+    told = program.tell("KeepsWhatIsRight", "pipeline")
+    assert told["after"] == ["Graphics > Render pipeline is OtherPipeline, expected UniversalRenderPipelineAsset"]
+
+
+def test_an_editor_without_the_module_is_told_how_to_get_it(program: ProjectProgram) -> None:
+    told = program.tell("LacksModule")
+    assert told["fault"] == ["This editor cannot build for Quest: add 'Android Build Support' with Unity Hub"]
+    assert told["exit"] == ["exit 1"]
+    assert told["log"] == [
+        "Error MUA-BUILD FAIL This editor cannot build for PC Link: add 'Windows Build Support' with Unity Hub"
+    ]
+
+
+def test_the_menu_switches_the_platform_and_batch_mode_asks_for_it(program: ProjectProgram) -> None:
+    menu = program.tell("HasOtherPlatform", "menu")
+    assert (menu["platform"], menu["exit"]) == (["Android"], ["none"])
+    assert menu["log"][-1] == "Log MUA: the project is set up for Quest."
+    batch = program.tell("HasOtherPlatform", "batch")
+    assert (batch["platform"], batch["exit"]) == (["StandaloneLinux64"], ["exit 1"])
+    assert batch["log"][-1].endswith("expected Android: start Unity with -buildTarget Android")
+
+
+@pytest.mark.parametrize(("own", "asked"), [("nothing", f"{XR} {URP}"), ("Assets/Skin.mat", XR)])
+def test_batch_mode_adds_packages_and_asks_to_be_run_again(program: ProjectProgram, own: str, asked: str) -> None:
+    told = program.tell("LacksPackages", "batch", "no", "", own, packages=False)
+    assert (told["asked"], told["exit"]) == ([asked], ["exit 3"])
+    assert told["log"] == [f"Log MUA-BUILD AGAIN added {asked.replace(' ', ', ')}"]
+    assert "Package com.unity.xr.openxr is absent or too old" in "".join(told["fault"])
+
+
+def test_packages_that_cannot_be_added_fail_with_the_reason(program: ProjectProgram) -> None:
+    told = program.tell("LacksPackages", "batch", "no", "no network", "Assets/Skin.mat", packages=False)
+    assert told["exit"] == ["exit 1"]
+    assert told["log"] == [f"Error MUA-BUILD FAIL Packages {XR.replace(' ', ', ')} could not be added: no network"]
+
+
+def test_the_menu_asks_before_it_adds_packages(program: ProjectProgram) -> None:
+    refused = program.tell("LacksPackages", "menu", "no", "", "nothing", packages=False)
+    assert (refused["asked"], refused["exit"], refused["resumes"]) == ([""], ["none"], ["0"])
+    assert len(refused["log"]) == 3
+    assert all("install it by name in the Package Manager" in line for line in refused["log"])
+    agreed = program.tell("LacksPackages", "menu", "yes", "", "nothing", packages=False)
+    assert (agreed["asked"], agreed["resumes"]) == ([f"{XR} {URP}"], ["0"])
+    assert "log" not in agreed
+    failed = program.tell("LacksPackages", "menu", "yes", "no network", "nothing", packages=False)
+    assert failed["log"][0].endswith("could not be added: no network")
+
+
+def test_the_menu_goes_on_once_packages_are_there(program: ProjectProgram) -> None:
+    told = program.tell("GoesOnAfterReload")
+    assert "fault" not in told
+    assert told["resumes"] == ["0"]
