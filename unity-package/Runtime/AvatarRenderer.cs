@@ -43,7 +43,10 @@ namespace Mua
         private double seconds; // in the clip
         private double shown = double.NaN; // of those, what the pose is of
         private bool hasMoved; // since the last Record
-        private bool isStale; // the inspector has changed a field
+        private bool isEdited; // the inspector has changed a field
+        private AvatarAsset loaded; // as avatar, file and clip were when they took effect
+        private string loadedFile = "";
+        private string loadedClip = "";
         private bool isPlaced;
         private bool isScaleReported;
         private string refusal; // why there is no room for the avatar beside the others
@@ -212,14 +215,14 @@ namespace Mua
 
         private void OnValidate()
         {
-            isStale = isActiveAndEnabled; // nothing may be made or given back here
+            isEdited = isActiveAndEnabled; // nothing may be made or given back here
         }
 
         private void Update()
         {
-            if (isStale)
+            if (isEdited)
             {
-                Reload();
+                Revise();
             }
             if (refusal != null)
             {
@@ -241,10 +244,32 @@ namespace Mua
             }
         }
 
+        /// <summary>Has what the inspector changed take effect.</summary>
+        private void Revise()
+        {
+            isEdited = false;
+            if (avatar != loaded || file != loadedFile)
+            {
+                Reload();
+            }
+            else if (State == AvatarState.Ready)
+            {
+                Message = "";
+                if (clip != loadedClip)
+                {
+                    ChooseClip();
+                }
+                BindRig();
+                AvatarWorld.Refresh();
+            }
+        }
+
         private void Reload()
         {
             Release();
-            isStale = false;
+            isEdited = false;
+            loaded = avatar;
+            loadedFile = file;
             State = AvatarState.Empty;
             Message = "";
             if (!isActiveAndEnabled || (avatar == null && string.IsNullOrEmpty(file)))
@@ -304,15 +329,21 @@ namespace Mua
                 clips[i] = new ClipSampler(content.Clips[i], content.Skeleton.JointCount, content.Encoding.Rate);
                 names[i] = clips[i].Name;
             }
+            ChooseClip();
+            AvatarWorld.Add(this);
+            loader = null;
+            State = AvatarState.Ready;
+            BindRig();
+        }
+
+        private void ChooseClip()
+        {
+            loadedClip = clip;
             ClipIndex = string.IsNullOrEmpty(clip) ? 0 : Array.IndexOf(names, clip);
             if (!string.IsNullOrEmpty(clip) && Array.IndexOf(names, clip) < 0)
             {
                 Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", names) + ".");
             }
-            AvatarWorld.Add(this);
-            loader = null;
-            State = AvatarState.Ready;
-            BindRig();
         }
 
         private void BindRig()
