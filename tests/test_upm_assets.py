@@ -118,7 +118,7 @@ CASES: dict[str, tuple[bool, Break, str]] = {
     "hidden folder": (
         True,
         lambda root: put(root / "Runtime/Old~/Frame.cs", "namespace Mua { class Frame { } }"),
-        "Runtime/Old~: hidden from Unity, expected Samples~ and Documentation~ at the top only",
+        "Runtime/Old~: hidden from Unity, expected only Samples~, Documentation~, Tests/Golden~",
     ),
     # references
     "reference to nothing": (

@@ -1,8 +1,8 @@
 """Fold com.mua.avatar and its kernels into one tarball that Unity's "Install package from tarball" takes.
 
 The kernels become com.mua.avatar/ComputeShaders, byte for byte and with the GUIDs that they have; shaders include them
-from there, and the dependency goes. The same checkout gives the same bytes. --check holds a tarball, or what would be
-packed where none is given, to the checkout and to Unity's rules.
+from there, and the dependency goes. Golden files and the guide come along. The same checkout gives the same bytes.
+--check holds a tarball, or what would be packed where none is given, to the checkout and to Unity's rules.
 """
 
 import argparse
@@ -25,6 +25,10 @@ PACKAGE, KERNELS = ROOT / "unity-package", ROOT / "ComputeShaders"
 GUIDE = ROOT / "docs" / "unity.md"
 GUIDE_IN_PACKAGE = "Documentation~/com.mua.avatar.md"  # where Unity's "View documentation" looks
 
+GOLDEN = (ROOT / "tests" / "parity" / "golden", ROOT / "tests" / "golden")
+TESTS = "Tests"
+GOLDEN_IN_PACKAGE = f"{TESTS}/Golden~"  # where Runtime/SelfTest/GoldenFolder.cs looks first
+
 PREFIX = "package/"  # that of npm's tarballs
 FOLDER = KERNELS.name
 NAME = "com.mua.avatar"
@@ -40,7 +44,11 @@ def contents() -> dict[str, bytes]:
     found = {path: _packed(path, content) for path, content in _files(PACKAGE).items()}
     kernels = {path: content for path, content in _files(KERNELS).items() if path.split(".meta")[0] != "package.json"}
     found |= {f"{FOLDER}/{path}": content for path, content in kernels.items()}
-    found[f"{FOLDER}.meta"] = gen_meta.meta(NAME, FOLDER, folder=True).encode()
+    for folder in GOLDEN:
+        golden = {path: content for path, content in _files(folder).items() if not path.endswith(".md")}
+        found |= {f"{GOLDEN_IN_PACKAGE}/{path}": content for path, content in golden.items()}
+    for folded in (FOLDER, TESTS):
+        found[f"{folded}.meta"] = gen_meta.meta(NAME, folded, folder=True).encode()
     found[GUIDE_IN_PACKAGE] = unlinked(GUIDE.read_bytes())
     return dict(sorted(found.items()))
 

@@ -10,6 +10,7 @@ from upm_package import FOLDED, GUID, Package, is_imported, needs_meta
 LONGEST_PATH = 140  # Windows takes 260: a project and its Library/PackageCache take some 110, .meta takes 5
 NAMES = re.compile(r"[A-Za-z0-9 ._~+-]+")
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECASE)  # devices of Windows
+HIDDEN = ("Samples~", "Documentation~", "Tests/Golden~")
 LEFT_BY_SYSTEMS = ("Thumbs.db", "desktop.ini", "Desktop.ini")
 
 YAML = (".asset", ".mat", ".prefab", ".unity", ".controller", ".anim", ".lighting", ".renderTexture")
@@ -137,8 +138,7 @@ def include_faults(packages: Sequence[Package]) -> Iterator[str]:
 def hidden_faults(package: Package) -> Iterator[str]:
     """Folders that end in ~ are those that Unity's layout has: another is a slip."""
     for path in package.entries:
-        hidden = path.name.endswith("~")
-        if hidden and (path.name not in ("Samples~", "Documentation~") or len(path.parts) > 1):
-            yield f"{package.where(path)}: hidden from Unity, expected Samples~ and Documentation~ at the top only"
+        if path.name.endswith("~") and path.as_posix() not in HIDDEN:
+            yield f"{package.where(path)}: hidden from Unity, expected only {', '.join(HIDDEN)}"
         if path.name.startswith(".") and path.name != ".DS_Store" and is_imported(path.parent):
             yield f"{package.where(path)}: hidden from Unity, expected only what belongs to the package"
