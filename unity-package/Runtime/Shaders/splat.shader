@@ -1,6 +1,6 @@
 // The draw of sorted splats for one or two eyes: splat_draw.hlsl of com.mua.kernels with the buffers that
-// Runtime/Kernels/SplatDraw.cs binds. Both passes draw the same: SplatsDirect where the device takes no counts from a
-// buffer, and so draws all splats, of which the visible ones stand first in order.
+// Runtime/Kernels/SplatDraw.cs binds. Both passes draw the same: Direct is for a device that takes no counts from
+// a buffer, and so draws all splats, of which the visible ones stand first in order.
 Shader "Hidden/MUA/Splat"
 {
     SubShader
@@ -69,7 +69,7 @@ Shader "Hidden/MUA/Splat"
 
         Pass
         {
-            Name "Splats"
+            Name "Indirect"
 
             HLSLPROGRAM
             #pragma target 4.5
@@ -80,7 +80,7 @@ Shader "Hidden/MUA/Splat"
 
         Pass
         {
-            Name "SplatsDirect"
+            Name "Direct"
 
             HLSLPROGRAM
             #pragma target 4.5
