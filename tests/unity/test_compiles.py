@@ -22,6 +22,8 @@ OPTIONAL = {
     "MUA_OPENXR": "Unity.XR.OpenXR",
 }
 
+ALWAYS = ("UnityEngine", "UnityEditor", "UnityEngine.TestRunner", "UnityEditor.TestRunner", "nunit.framework")
+
 
 @dataclass(frozen=True)
 class Assembly:
@@ -105,7 +107,7 @@ class Compiler:
     def _closed(self, name: str) -> Iterator[Path]:
         """A reference; optional ones are absent where their package is not installed."""
         known = self._known.get(name)
-        if known is None and not self._packages and name not in ("UnityEngine", "UnityEditor"):
+        if known is None and not self._packages and name not in ALWAYS:
             return
         if any(name.startswith(OPTIONAL[symbol]) for symbol in self._without):
             return

@@ -7,7 +7,7 @@ namespace Mua.Editor
     internal static class Menus
     {
         private const string Root = "MUA/";
-        private const int First = 1, Later = 20; // a gap of more than ten draws a line between groups
+        private const int First = 1, Later = 20, Last = 40; // a gap of more than ten draws a line between groups
         private const int GameObjectOrder = 10; // among the kinds of objects
 
         [MenuItem(Root + "Create Demo Scene", false, First)]
@@ -26,6 +26,12 @@ namespace Mua.Editor
         private static void SetUpPcLink()
         {
             ProjectSetup.PcLink();
+        }
+
+        [MenuItem(Root + "Run Self-Test", false, Last)]
+        private static void RunSelfTest()
+        {
+            SelfTestCommand.Execute();
         }
 
         [MenuItem("GameObject/MUA Avatar", false, GameObjectOrder)]

@@ -76,7 +76,7 @@ namespace Mua
 
         private static void WaitsInEditor()
         {
-            var run = new SelfTestRun("0123abcd", streaming + "/" + GoldenReader.Folder, true);
+            var run = new SelfTestRun("0123abcd", streaming + "/" + GoldenFolder.Name, true);
             IEnumerator steps = run.Run();
             while (steps.MoveNext())
             {

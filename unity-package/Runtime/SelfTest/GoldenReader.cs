@@ -1,7 +1,6 @@
 using System;
 using System.Collections;
 using System.IO;
-using UnityEngine;
 using UnityEngine.Networking;
 
 namespace Mua.SelfTest
@@ -9,18 +8,12 @@ namespace Mua.SelfTest
     /// <summary>Reads the golden files of a folder, or of one inside an Android package, whose path is a URL.</summary>
     internal sealed class GoldenReader
     {
-        /// <summary>In StreamingAssets; the editor puts it into players (Editor/SelfTestData.cs).</summary>
-        public const string Folder = "MuaGolden";
-
         private readonly string folder;
 
         public GoldenReader(string folder)
         {
             this.folder = folder;
         }
-
-        /// <summary>Where a player holds its golden files.</summary>
-        public static string InPlayer => Application.streamingAssetsPath + "/" + Folder;
 
         /// <summary>What the last Read found; null where Problem says why.</summary>
         public GoldenFile File { get; private set; }

@@ -36,7 +36,7 @@ namespace Mua.SelfTest
             bool isRight = true;
             if (line.IsSelfTest)
             {
-                var test = new SelfTestRun(line.Run, GoldenReader.InPlayer, false);
+                var test = new SelfTestRun(line.Run, GoldenFolder.InPlayer, false);
                 yield return test.Run();
                 isRight = test.HasPassed;
             }

@@ -1,4 +1,5 @@
-// Stand-in. Source: Unity 6000.0, Modules/PackageManager: Client.cs, Request.cs, Error.cs; PackageSample.cs. A test answers.
+// Stand-in. Source: Unity 6000.0, Modules/PackageManager: Client.cs, Request.cs, Error.cs; PackageSample.cs,
+// PackageInfo. A test answers.
 using System;
 using System.Collections.Generic;
 
@@ -7,6 +8,16 @@ namespace UnityEditor.PackageManager
     public enum StatusCode { InProgress, Success, Failure }
 
     public class Error { public string message { get; set; } }
+
+    public sealed class PackageInfo
+    {
+        public string resolvedPath { get; internal set; }
+
+        public static PackageInfo FindForAssembly(System.Reflection.Assembly assembly)
+        {
+            return StandIns.Packages.Folder == null ? null : new PackageInfo { resolvedPath = StandIns.Packages.Folder };
+        }
+    }
 
     public static class Client
     {
@@ -67,6 +78,7 @@ namespace StandIns
         public static readonly List<string> Samples = new List<string> { "VR Player" };
         public static int Polls = 2; // until a request is done
         public static string Refusal;
+        public static string Folder; // of the package; null where scripts are in no package
         public static bool Imported;
     }
 }

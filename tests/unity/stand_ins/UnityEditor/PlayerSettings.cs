@@ -50,6 +50,7 @@ namespace UnityEditor
         {
             kept["stripping " + buildTarget.TargetName] = level;
         }
+        public static string applicationIdentifier { get { return GetApplicationIdentifier(UnityEditor.Build.NamedBuildTarget.Android); } }
         public static string GetApplicationIdentifier(NamedBuildTarget buildTarget)
         {
             return Get("identifier " + buildTarget.TargetName, "com.DefaultCompany.Avatars");
