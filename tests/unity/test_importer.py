@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from csharp import PROGRAMS, CSharp
+from csharp import PROGRAMS, ROOT, CSharp
 from malformed import DAMAGED, MALFORMED, malformed
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
@@ -27,18 +27,21 @@ Story = Callable[..., Told]
 @pytest.fixture(scope="module")
 def program(csharp: CSharp) -> Path:
     """Named as the assembly that may see the package's internals."""
-    compiler = Compiler(csharp, "editor", packages=False)
-    editor = assemblies()["Mua.Avatar.Editor"]
-    names = [name for name in editor.references if name in assemblies() or name.startswith("UnityE")]
-    references = [compiler.built(name) for name in [*names, editor.name]]
-    return csharp.build([PROGRAMS / "ImporterProgram.cs"], name="Mua.Avatar.Editor.Tests", references=references)
+    compiler, known = Compiler(csharp, "editor", packages=False), assemblies()
+    package = [name for name in known["Mua.Avatar.Editor"].references if name in known]
+    references = [compiler.built(name) for name in ("UnityEngine", "UnityEditor", *package, "Mua.Avatar.Editor")]
+    return csharp.build(
+        [PROGRAMS / "shared" / "PackageResources.cs", PROGRAMS / "ImporterProgram.cs"],
+        name="Mua.Avatar.Editor.Tests",
+        references=references,
+    )
 
 
 @pytest.fixture
 def story(csharp: CSharp, program: Path) -> Story:
     def tell(name: str, *files: Path) -> Told:
         told: Told = {"log": [], "dialog": [], "undo": [], "saved": [], "object": []}
-        for line in csharp.run(program, name, *files).splitlines():
+        for line in csharp.run(program, ROOT / "ComputeShaders", name, *files).splitlines():
             key, *values = line.split("\t")
             told.setdefault(key, []).append(values)
         return told
@@ -178,6 +181,31 @@ def test_the_selected_avatar_comes_first(story: Story, sound: Path, tmp_path: Pa
     other = tmp_path / "Other.muaavatar"
     write(other, synthetic_avatar(2), storage="f16")
     assert story("Selects", sound, other)["found"] == [["Other"]]
+
+
+def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) -> None:
+    """A chosen clip plays from what is loaded already."""
+    avatar = synthetic_avatar()
+    path = tmp_path / "a.muaavatar"
+    write(path, replace(avatar, clips=(avatar.clips[0], replace(avatar.clips[0], name="nod"))), storage="f16")
+    told = story("Scrubs", path)
+    last = len(avatar.clips[0]) - 1
+    first, chosen, scrubbed, failed = (line for [line] in told["gui"])
+    assert first == f"popup wave of wave, nod; slider 0 of 0 to {last}"
+    assert chosen == first
+    assert told["clip"] == [["1", "True"]]
+    assert scrubbed == f"popup nod of wave, nod; slider 0 of 0 to {last}"
+    assert told["frame"] == [["3"]]
+    assert failed.startswith("property nod; Error ")
+    assert told["alive"] == [["0"]]
+
+
+def test_a_file_that_changes_is_shown_anew(story: Story, sound: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.muaavatar"
+    write(other, replace(synthetic_avatar(), name="another"), storage="f16")
+    told = story("Reimports", sound, other)
+    assert told["name"] == [["synthetic"], ["another"]]
+    assert told["alive"] == [["0"]]
 
 
 def test_the_menu_is_complete(story: Story) -> None:

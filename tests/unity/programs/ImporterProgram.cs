@@ -1,5 +1,5 @@
-// Runs the assembly Mua.Avatar.Editor over the stand-ins. Arguments: the story, files. It prints what
-// tests/unity/test_importer.py asks about.
+// Runs the assembly Mua.Avatar.Editor over the stand-ins. Arguments: the folder of the kernels, the story, files. It prints
+// what tests/unity/test_importer.py asks about.
 using System;
 using System.Collections.Generic;
 using System.Globalization;
@@ -23,8 +23,9 @@ namespace Mua.Editor
         {
             CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
             Machine.Playing(false);
-            files = arguments.Skip(1).ToArray();
-            typeof(ImporterProgram).GetMethod(arguments[0], Hidden).Invoke(null, null);
+            PackageResources.Place(arguments[0]);
+            files = arguments.Skip(2).ToArray();
+            typeof(ImporterProgram).GetMethod(arguments[1], Hidden).Invoke(null, null);
             foreach (KeyValuePair<LogType, string> line in StandIns.Console.Lines)
             {
                 Say("log", line.Key, line.Value);
@@ -115,6 +116,45 @@ namespace Mua.Editor
             Say("found", AvatarObject.Find().name);
         }
 
+        /// <summary>The inspector of a component: another clip, then a frame of it.</summary>
+        private static void Scrubs()
+        {
+            Place(files);
+            AvatarRenderer shown = AvatarObject.Create(AvatarObject.Find(), null, Vector3.zero).GetComponent<AvatarRenderer>();
+            var inspector = Inspectors.Open<AvatarRendererEditor>(shown);
+            AvatarFrame decoded = shown.Decoded;
+            Show(inspector);
+            Gui.Answers["Clip"] = 1;
+            Show(inspector);
+            Messages.Send(shown, "OnValidate");
+            PlayerLoop.Frame(1);
+            Say("clip", shown.ClipIndex, decoded == shown.Decoded);
+            Gui.Answers["Frame"] = 3;
+            Show(inspector);
+            PlayerLoop.Frame(1);
+            Say("frame", shown.Frame);
+            shown.Load("nowhere.muaavatar");
+            Show(inspector);
+            UnityEngine.Object.DestroyImmediate(shown.gameObject);
+            Say("alive", Recorder.AliveCount);
+        }
+
+        /// <summary>The first file's place is taken by the second one.</summary>
+        private static void Reimports()
+        {
+            Place(files);
+            AvatarAsset asset = AvatarObject.Find();
+            AvatarRenderer shown = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
+            Say("name", shown.AvatarName);
+            FieldInfo content = typeof(AvatarAsset).GetField("content", BindingFlags.Instance | BindingFlags.NonPublic);
+            content.SetValue(asset, File.ReadAllBytes(files[1])); // as Unity fills the object that it has
+            object[] paths = { new[] { "Assets/other.txt", AssetDatabase.GetAssetPath(asset) }, null, null, null };
+            typeof(AvatarReimport).GetMethod("OnPostprocessAllAssets", Hidden).Invoke(null, paths);
+            Say("name", shown.AvatarName);
+            UnityEngine.Object.DestroyImmediate(shown.gameObject);
+            Say("alive", Recorder.AliveCount);
+        }
+
         private static void Menus()
         {
             foreach (MenuItem item in Items().Keys)
@@ -129,6 +169,13 @@ namespace Mua.Editor
             {
                 Project.Assets["Assets/" + Path.GetFileName(path)] = new Import(new AvatarImporter(), path).Main;
             }
+        }
+
+        private static void Show(UnityEditor.Editor inspector)
+        {
+            Gui.Lines.Clear();
+            inspector.OnInspectorGUI();
+            Say("gui", string.Join("; ", Gui.Lines));
         }
 
         private static Dictionary<MenuItem, MethodInfo> Items()
