@@ -73,9 +73,8 @@ class Detail(nn.Module):
 
     def forward(self, alpha: Tensor) -> Tensor:
         """Subbands [F, 3, C, n, n] of coefficients [F, C, R]."""
-        flat = torch.bmm(alpha.transpose(0, 1), outer_products(self.h, self.w))  # [C, F, 3 n n]
-        size = self.mean.shape[-1]
-        return flat.unflatten(2, (3, size, size)).permute(1, 2, 0, 3, 4) + self.mean
+        weighted = alpha[:, None, :, :, None] * self.h  # [F, 3, C, R, n]
+        return weighted.transpose(-1, -2) @ self.w + self.mean
 
 
 class Branch(nn.Module):
