@@ -75,7 +75,7 @@ namespace Mua
             int made = Recorder.Made;
             surface.CastShadow(All, new Bounds(), 0); // before there is a pose
             Collect(surface, AvatarViews.Splats);
-            Say("idle", Recorder.Made - made, Recorder.Draws, Draws.Count);
+            Say("idle", Recorder.Made - made, Recorder.Renders, Draws.Count);
             Follow(arguments[3], frame);
             Graphics.ExecuteCommandBuffer(Commands);
             Commands.Clear();

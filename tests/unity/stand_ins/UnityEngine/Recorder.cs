@@ -101,6 +101,7 @@ namespace StandIns
         public static int Made { get; private set; }
         public static int Dispatches { get; private set; }
         public static int Draws { get; private set; }
+        public static int Renders { get; private set; }
         public static long UploadedBytes { get; private set; }
         public static bool IsOn { get { return lines != null; } }
         public static int AliveCount { get { return Alive.Count; } }
@@ -207,12 +208,18 @@ namespace StandIns
         {
             indices.CheckUsable("RenderPrimitivesIndexed");
             bool isShadow = parameters.shadowCastingMode == UnityEngine.Rendering.ShadowCastingMode.ShadowsOnly;
-            Drawn(parameters.material, parameters.matProps, isShadow ? 3 : 0, count, instances, null, indices);
+            Renders++;
+            WriteDraw(parameters.material, parameters.matProps, isShadow ? 3 : 0, count, instances, null, indices);
         }
 
         internal static void Drawn(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments, GraphicsBuffer indices)
         {
             Draws++;
+            WriteDraw(material, properties, pass, vertices, instances, arguments, indices);
+        }
+
+        private static void WriteDraw(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments, GraphicsBuffer indices)
+        {
             if (lines == null)
                 return;
             string counts = arguments == null ? "\"vertices\": " + vertices + ", \"instances\": " + instances : "\"indirect\": [" + arguments.Id + ", " + vertices + "]";
