@@ -139,12 +139,17 @@ namespace Mua.Editor
 
         private static void BringsSample(string[] arguments)
         {
-            Packages.Imported = arguments[3] == "imported";
-            if (arguments[3] == "absent")
+            Packages.Imported = arguments[0] == "imported";
+            if (arguments[0] == "absent")
             {
                 Packages.Samples.Clear();
             }
-            Builds(arguments);
+            Builds(arguments.Skip(1).ToArray());
+        }
+
+        private static void BuildsForOther(string[] arguments)
+        {
+            Say("ended", Build.Run(BuildTarget.Android, new[] { "-muaOutput", arguments[0] }));
         }
 
         private static void RunsFromCommandLine(string[] arguments)

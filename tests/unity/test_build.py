@@ -1,0 +1,149 @@
+"""The batch build in stand-ins of the editor: what it writes, what it says, and what it leaves behind."""
+
+import re
+from pathlib import Path
+
+import pytest
+from csharp import CSharp
+from project_program import ProjectProgram, Told
+
+from mua.deploy.build import AGAIN, ERRORS
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> ProjectProgram:
+    return ProjectProgram(csharp)
+
+
+def said(told: Told) -> str:
+    """What mua-deploy reads: the last line of the log, without its kind."""
+    return told["log"][-1].split(" ", 1)[1]
+
+
+def assert_project_is_left(told: Told) -> None:
+    assert (told["identifier"], told["bundle"], told["player"]) == (["org.example.own"], ["True"], ["False"])
+
+
+def test_writes_the_apk_under_its_name_at_last(program: ProjectProgram, tmp_path: Path) -> None:
+    apk = tmp_path / "Build" / "mua-player.apk"
+    told = program.tell("Builds", "Quest", "succeeds", "-muaOutput", apk)
+    assert told["ended"] == ["Done"]
+    assert [path.name for path in apk.parent.iterdir()] == ["mua-player.apk"]
+    assert apk.read_text() == "whole"
+    assert told["location"] == [str(apk.with_name("mua-player.part.apk"))]
+    assert (told["scene"], told["scenes"]) == (["Assets/MUA/Player.unity"], ["Assets/MUA/Player.unity"])
+    assert (told["built as"], told["built as player"], told["options"]) == (["com.mua.player"], ["True"], ["None"])
+    assert re.fullmatch(rf"MUA-BUILD OK {re.escape(str(apk))}, 0\.0 MB, \d+ s", said(told))
+    assert_project_is_left(told)
+
+
+def test_a_development_build_is_asked_for(program: ProjectProgram, tmp_path: Path) -> None:
+    told = program.tell("Builds", "Quest", "succeeds", "-muaDevelopment", "-muaOutput", tmp_path / "a.apk")
+    assert (told["ended"], told["options"]) == (["Done"], ["Development"])
+
+
+@pytest.mark.parametrize(
+    ("does", "sentence"),
+    [
+        ("fails", "Unity's build ended as Failed with 7 errors: see the lines above"),
+        ("throws", "InvalidOperationException: out of disk"),
+    ],
+)
+def test_a_build_that_fails_leaves_nothing(program: ProjectProgram, tmp_path: Path, does: str, sentence: str) -> None:
+    apk = tmp_path / "mua-player.apk"
+    apk.write_text("old")
+    told = program.tell("Builds", "Quest", does, "-muaOutput", apk)
+    assert told["ended"] == ["Failed"]
+    assert said(told) == f"MUA-BUILD FAIL {sentence}"
+    assert ERRORS[0].findall("\n".join(told["log"])) == [sentence]
+    assert not list(tmp_path.iterdir())
+    assert_project_is_left(told)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ([], "the command line has no -muaOutput PATH, expected where to write the player"),
+        (["-muaOutput"], "the command line has no -muaOutput PATH, expected where to write the player"),
+        (["-muaOutput", "-quit"], "the command line has no -muaOutput PATH, expected where to write the player"),
+        (["-muaOutput", "{}/player.aab"], "-muaOutput is {}/player.aab, expected a file name that ends in .apk"),
+        (["-muaOutput", "{}/taken.apk"], "-muaOutput is {}/taken.apk, which is a folder, expected a file name"),
+        (["-muaOutput", "{}/file/player.apk"], "-muaOutput is {}/file/player.apk, which cannot be written: "),
+    ],
+)
+def test_refuses_an_output_that_is_none(
+    program: ProjectProgram, tmp_path: Path, words: list[str], sentence: str
+) -> None:
+    (tmp_path / "taken.apk").mkdir()
+    (tmp_path / "file").write_text("in the way")
+    told = program.tell("Builds", "Quest", "succeeds", *(word.format(tmp_path) for word in words))
+    assert told["ended"] == ["Failed"]
+    assert said(told).startswith(f"MUA-BUILD FAIL {sentence.format(tmp_path)}")
+    assert "location" not in told
+
+
+def test_windows_gets_a_folder(program: ProjectProgram, tmp_path: Path) -> None:
+    folder = tmp_path / "Player"
+    folder.mkdir()
+    (folder / "mua-player.exe").write_text("old")
+    (folder / "old.dll").write_text("old")
+    told = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", folder)
+    assert told["ended"] == ["Done"]
+    assert [path.name for path in tmp_path.iterdir()] == ["Player"]
+    assert [path.name for path in folder.iterdir()] == ["mua-player.exe"]
+    told = program.tell("Builds", "PcLink", "fails", "-muaOutput", folder)
+    assert told["ended"] == ["Failed"]
+    assert not list(tmp_path.iterdir())
+
+
+def test_windows_never_deletes_what_is_not_the_player(program: ProjectProgram, tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("mine")
+    told = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", tmp_path)
+    assert said(told) == (
+        f"MUA-BUILD FAIL -muaOutput is {tmp_path}, which holds something else than the player, "
+        "expected a new folder's name"
+    )
+    assert (tmp_path / "thesis.txt").read_text() == "mine"
+
+
+def test_brings_the_sample_and_packages_in_one_run(program: ProjectProgram, tmp_path: Path) -> None:
+    words = ("Quest", "succeeds", "-muaOutput", tmp_path / "a.apk")
+    told = program.tell("Builds", *words, sample=False)
+    assert (told["ended"], told["imported"]) == (["Again"], ["True"])
+    assert AGAIN.findall(said(told)) == ["imported the sample VR Player"]
+    told = program.tell("Builds", *words, sample=False, packages=False)
+    assert (told["ended"], told["imported"]) == (["Again"], ["True"])
+    assert "com.unity.xr.openxr" in AGAIN.findall(said(told))[0]
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("state", "sentence"),
+    [
+        ("absent", "package com.mua.avatar has no sample 'VR Player': install it anew"),
+        (
+            "imported",
+            "the sample 'VR Player' in Assets/Samples/MUA Avatar/0.1.0/VR Player has no "
+            "Mua.Samples.VrPlayer.Editor.PlayerScene: delete that folder and run again",
+        ),
+    ],
+)
+def test_says_what_is_wrong_with_the_sample(program: ProjectProgram, tmp_path: Path, state: str, sentence: str) -> None:
+    output = ("-muaOutput", tmp_path / "a.apk")
+    told = program.tell("BringsSample", state, "Quest", "succeeds", *output, sample=False)
+    assert (told["ended"], said(told)) == (["Failed"], f"MUA-BUILD FAIL {sentence}")
+
+
+def test_a_project_that_cannot_be_set_up_is_not_built(program: ProjectProgram, tmp_path: Path) -> None:
+    told = program.tell("BuildsForOther", tmp_path / "a.apk")
+    assert told["ended"] == ["Failed"]
+    assert said(told) == (
+        "MUA-BUILD FAIL Build > Platform is StandaloneLinux64, expected Android: start Unity with -buildTarget Android"
+    )
+    assert "location" not in told
+
+
+def test_ends_the_editor_with_the_outcome(program: ProjectProgram) -> None:
+    told = program.tell("RunsFromCommandLine")
+    assert told["exit"] == ["exit 1"]
+    assert said(told).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
