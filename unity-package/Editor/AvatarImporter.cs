@@ -10,7 +10,7 @@ namespace Mua.Editor
     /// Makes an AvatarAsset of a `.muaavatar` file. Of a file that is not sound, or cannot be read, it makes one that says
     /// why, and logs an import error.
     /// </summary>
-    [ScriptedImporter(Version, Extension)]
+    [ScriptedImporter(Version, Extension, AllowCaching = true)]
     internal sealed class AvatarImporter : ScriptedImporter
     {
         /// <summary>Of file names, without a dot.</summary>
