@@ -9,11 +9,10 @@ namespace Mua.Editor
         [InitializeOnLoadMethod]
         private static void Register()
         {
-            DragAndDrop.SceneDropHandler handler = Drop;
 #if UNITY_6000_3_OR_NEWER
-            DragAndDrop.AddDropHandlerV2(handler);
+            DragAndDrop.AddDropHandlerV2(Drop);
 #else
-            DragAndDrop.AddDropHandler(handler);
+            DragAndDrop.AddDropHandler(Drop);
 #endif
         }
 
