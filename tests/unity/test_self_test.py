@@ -11,9 +11,12 @@ from typing import Any
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from replay import replay
+from synthetic_avatar import synthetic_avatar
 
-from mua.deploy import self_test
+from mua.asset import write
+from mua.deploy import bench, self_test
 from mua.deploy.player import answers
+from mua.errors import InputError
 from mua.gpu import Device
 
 sys.path.append(str(ROOT / "tests" / "parity"))
@@ -27,6 +30,9 @@ KERNELS = ROOT / "ComputeShaders"
 RUN = "0123abcd"
 SELF_TEST = ("-muaSelfTest", "-muaRun", RUN)
 CASES = len(read_golden())
+SECONDS, RATE = 3, 72  # of a bench, and frames a second of the program's player loop
+BENCH = ("-muaBench", "first", "-muaSeconds", str(SECONDS), "-muaRun", RUN)
+VRAPI = "I/VrApi (1): FPS=72/72,Stale=0,App=4.5ms"
 CAUGHT = {  # by kernel, a fault that its golden cases show
     "mlp_matmul": "ReLU lost",
     "blend_subbands": "LL reads the first coefficients",
@@ -63,15 +69,21 @@ def program(csharp: CSharp) -> Path:
     motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
     sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "SelfTest"]
     return csharp.build(
-        [*sources, PROGRAMS / "SelfTestProgram.cs"], name="SelfTestProgram", references=[engine, file, motion]
+        [*sources, PROGRAMS / "shared", PROGRAMS / "SelfTestProgram.cs"],
+        name="SelfTestProgram",
+        references=[engine, file, motion],
     )
 
 
 @pytest.fixture
 def streaming(tmp_path: Path) -> Path:
-    """StreamingAssets of a player."""
+    """StreamingAssets of a player, and its files beside them: avatars of a bench."""
     folder = tmp_path / "streaming"
     shutil.copytree(gen_golden.GOLDEN, folder / "MuaGolden", ignore=shutil.ignore_patterns("*.md"))
+    (folder / "avatars").mkdir()
+    write(folder / "avatars" / "first.muaavatar", synthetic_avatar(1), storage="f16")
+    write(folder / "avatars" / "second.muaavatar", synthetic_avatar(2), storage="f16")
+    (folder / "avatars" / "damaged.muaavatar").write_bytes(b"damaged")
     return folder
 
 
@@ -229,3 +241,63 @@ def test_a_golden_file_that_is_cut_fails_once(story: Story, streaming: Path) -> 
 
 def test_a_player_without_arguments_tests_nothing(story: Story) -> None:
     assert story("Plays", "-another").said["Log"] == []
+
+
+@pytest.mark.parametrize("name", ["Plays", "HasScene"])
+def test_a_bench_says_when_samples_count(story: Story, name: str) -> None:
+    ran = story(name, *BENCH)
+    lines = [line for said in ran.said["Log"] for line in (VRAPI, said)]
+    assert len(bench.collect(lines, RUN)) == 1
+    assert ran.said["Log"][-2:] == [f"MUA-BENCH {RUN} START first", f"MUA-BENCH {RUN} END"]
+    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["0"])
+
+
+def test_a_bench_measures_every_frame(story: Story, streaming: Path) -> None:
+    story("IsTimed", *BENCH)
+    report = json.loads((streaming / "bench.json").read_text())
+    assert report["avatar"] == "first"
+    assert abs(len(report["frames"]) - SECONDS * RATE) <= 1
+    assert report["frames"] == pytest.approx([1000 / RATE] * len(report["frames"]), rel=1e-3)
+    assert set(report["gpu"]) == {4.5}
+    assert [stage["name"] for stage in report["stages"]] == ["MUA sort"]
+    assert set(report["stages"][0]["gpu"]) == {2}
+
+
+def test_a_device_without_timings_leaves_them_out(story: Story, streaming: Path) -> None:
+    story("Plays", *BENCH)
+    report = json.loads((streaming / "bench.json").read_text())
+    assert (report["gpu"], report["stages"]) == ([], [])
+
+
+def test_a_bench_takes_the_avatar_of_the_scene_alone(story: Story) -> None:
+    ran = story("HasScene", *BENCH)
+    assert ran.said["shown"] == ["2"]
+    assert ran.said["on"] == ["True False 1"]
+
+
+def failure(ran: Ran) -> str:
+    """What mua-deploy tells of a bench that failed."""
+    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["1"])
+    with pytest.raises(InputError) as raised:
+        bench.collect(ran.said["Log"], RUN)
+    return str(raised.value)
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "1e9", "soon"])
+def test_a_bench_of_no_time_fails(story: Story, seconds: str) -> None:
+    told = failure(story("Plays", "-muaBench", "first", "-muaSeconds", seconds, "-muaRun", RUN))
+    assert f"-muaSeconds is {seconds}, expected a number" in told
+
+
+def test_a_bench_without_seconds_fails(story: Story) -> None:
+    assert "-muaSeconds is missing" in failure(story("Plays", "-muaBench", "first", "-muaRun", RUN))
+
+
+@pytest.mark.parametrize("avatar", ["nowhere", "damaged"])
+def test_a_bench_of_no_avatar_fails(story: Story, avatar: str) -> None:
+    assert "cannot measure: " in failure(story("Plays", "-muaBench", avatar, *BENCH[2:]))
+
+
+def test_a_bench_fails_that_loses_its_avatar(story: Story) -> None:
+    told = failure(story("LosesAvatar", "-muaBench", "first", "-muaSeconds", "60", "-muaRun", RUN))
+    assert told == "the player cannot measure: the scene has destroyed the avatar first"

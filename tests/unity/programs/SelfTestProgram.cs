@@ -1,4 +1,4 @@
-// Runs the self-test in the stand-ins' player loop. Arguments: the folder of the kernels, StreamingAssets, a recording to
+// Runs the self-test or a bench in the stand-ins' player loop. Arguments: the folder of the kernels, StreamingAssets, a recording to
 // write or "-", the folder of its answers or "-", the story, words of the command line. It prints the log.
 using System;
 using System.Collections;
@@ -6,6 +6,7 @@ using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
 using System.Reflection;
+using System.Threading;
 using Mua.SelfTest;
 using StandIns;
 using UnityEngine;
@@ -20,12 +21,12 @@ namespace Mua
         private static AvatarResources resources;
         private static string streaming;
         private static string[] words;
+        private static int gone; // frame in which the avatar is destroyed; 0 is none
 
         public static int Main(string[] arguments)
         {
             CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
-            resources = MakeResources(arguments[0]);
-            Machine.Place("MuaAvatarResources", resources);
+            resources = PackageResources.Place(arguments[0]);
             streaming = arguments[1];
             Machine.Paths(streaming, streaming);
             Readbacks.Folder = arguments[3] == "-" ? null : arguments[3];
@@ -35,6 +36,10 @@ namespace Mua
                 Recorder.Start(arguments[2]);
             }
             typeof(SelfTestProgram).GetMethod(arguments[4], BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
+            foreach (AvatarRenderer shown in Shown())
+            {
+                UnityEngine.Object.DestroyImmediate(shown.gameObject);
+            }
             Say("alive", Recorder.AliveCount);
             Say("requests", Requests.Open);
             if (arguments[2] != "-")
@@ -56,10 +61,19 @@ namespace Mua
             {
                 PlayerLoop.Frame(Step);
                 frames++;
+                if (Array.Exists(Shown(), shown => shown.State == AvatarState.Loading))
+                {
+                    Thread.Sleep(1); // another thread reads
+                }
+                if (frames == gone)
+                {
+                    UnityEngine.Object.DestroyImmediate(Shown()[0].gameObject);
+                }
             }
             Say("frames", frames);
             Say("over", run == null);
             Say("exit", Machine.ExitCode);
+            Say("shown", Shown().Length);
         }
 
         private static void PlaysFromPackage()
@@ -110,32 +124,43 @@ namespace Mua
 
         private static void LacksKernel()
         {
-            Set("splatSort", null);
+            const BindingFlags field = BindingFlags.Instance | BindingFlags.NonPublic;
+            typeof(AvatarResources).GetField("splatSort", field).SetValue(resources, null);
             Plays();
         }
 
-        private static AvatarResources MakeResources(string folder)
+        private static void LosesAvatar()
         {
-            resources = ScriptableObject.CreateInstance<AvatarResources>();
-            foreach (string stem in GoldenFile.Stems)
-            {
-                string[] parts = stem.Split('_');
-                string field = parts[0] + char.ToUpperInvariant(parts[1][0]) + parts[1].Substring(1);
-                Set(field, Recorder.Compute(Path.Combine(folder, stem + ".compute")));
-            }
-            foreach (FieldInfo field in typeof(AvatarResources).GetFields(BindingFlags.Instance | BindingFlags.NonPublic))
-            {
-                if (field.FieldType == typeof(Shader))
-                {
-                    field.SetValue(resources, Recorder.Drawing(field.Name));
-                }
-            }
-            return resources;
+            gone = 1000; // frames
+            Plays();
         }
 
-        private static void Set(string field, UnityEngine.Object value)
+        private static void IsTimed()
         {
-            typeof(AvatarResources).GetField(field, BindingFlags.Instance | BindingFlags.NonPublic).SetValue(resources, value);
+            Timings.Gpu = 4.5;
+            Markers.Measure("MUA sort", 2000000);
+            Plays();
+        }
+
+        /// <summary>A scene that shows the avatars of the bench and another.</summary>
+        private static void HasScene()
+        {
+            AvatarRenderer first = Show("first"), second = Show("second");
+            first.Speed = 3;
+            Plays();
+            Say("on", first.enabled + " " + second.enabled + " " + first.Speed);
+        }
+
+        private static AvatarRenderer Show(string stem)
+        {
+            AvatarRenderer shown = new GameObject(stem).AddComponent<AvatarRenderer>();
+            shown.Load("avatars/" + stem + ".muaavatar");
+            return shown;
+        }
+
+        private static AvatarRenderer[] Shown()
+        {
+            return UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None);
         }
 
         private static void Say(string name, object value)
