@@ -1,9 +1,10 @@
 """Replays on a device what the stand-ins recorded of the Unity package: its buffers, uploads and dispatches, in order.
 
 A recording is NAME.json, one event in a line, and NAME.bin, the uploaded bytes. Events: `buffer` (count, stride,
-target), `name`, `upload` (start in the buffer; offset in the binary, bytes), `dispatch` (shader, kernel, groups or
-indirect, buffers and constants bound by name then), `draw` (shader, pass, counts or indirect, what was bound), `keep`
-(a label for what a buffer holds), `release`, `note`. A draw is kept with what its buffers held, for who knows the target.
+target), `name`, `upload` (start in the buffer; offset in the binary, bytes), `copy` (source), `dispatch` (shader,
+kernel, groups or indirect, buffers and constants bound by name then), `draw` (shader, pass, counts or indirect, what was
+bound), `keep` (a label for what a buffer holds), `release`, `note`. A draw is kept with what its buffers held, for who
+knows the target.
 """
 
 import base64
@@ -19,7 +20,7 @@ from mua.gpu import Buffer, Commands, Device
 from mua.gpu.kernel import Kernel
 from mua.gpu.reflect import Constant
 
-INDIRECT_ARGUMENTS = 256  # GraphicsBuffer.Target
+INDIRECT_ARGUMENTS, STRUCTURED = 256, 16  # GraphicsBuffer.Target
 KINDS = {"Int": np.int32, "Float": np.float32, "Vector": np.float32, "Matrix": np.float32}
 SCALARS = {"Int": ("uint", "int"), "Float": ("float",), "Vector": ("float",), "Matrix": ("float",)}
 
@@ -51,6 +52,7 @@ class _Player:
     def __init__(self, device: Device, content: bytes) -> None:
         self.device, self.content, self.result = device, content, Replayed()
         self.buffers: dict[int, Buffer] = {}
+        self.targets: dict[int, int] = {}
         self.strides: dict[int, int] = {}
         self.commands: Commands | None = None
 
@@ -64,7 +66,8 @@ class _Player:
         size, indirect = event["count"] * event["stride"], bool(event["target"] & INDIRECT_ARGUMENTS)
         garbage = np.full(-(-size // 4), 0x7FC12345, np.uint32)  # Unity clears nothing; as a float it is no number
         self.buffers[event["buffer"]] = self.device.buffer(garbage, name=str(event["buffer"]), indirect=indirect)
-        self.strides[event["buffer"]] = event["stride"]
+        self.strides[event["buffer"]], self.targets[event["buffer"]] = event["stride"], event["target"]
+        assert not (indirect and event["target"] & STRUCTURED), "Direct3D 11 refuses structured arguments"
 
     def name(self, event: dict[str, Any]) -> None:
         self.buffers[event["buffer"]].name = event["name"]
@@ -73,6 +76,10 @@ class _Player:
         self.flush()
         data = np.frombuffer(self.content, np.uint8, event["bytes"], event["offset"])
         self.buffers[event["buffer"]].write(data, event["start"])
+
+    def copy(self, event: dict[str, Any]) -> None:
+        self.flush()
+        self.buffers[event["buffer"]].write(self.buffers[event["source"]].read())
 
     def dispatch(self, event: dict[str, Any]) -> None:
         kernel = self.device.kernel(event["shader"], event["kernel"])
@@ -125,6 +132,7 @@ class _Player:
         """The buffer of a name; Unity asks for the stride of the shader's elements."""
         assert name in event["buffers"], f"{kernel.name}: the buffer {name} was never set"
         number = event["buffers"][name]
+        assert self.targets[number] & STRUCTURED, f"{kernel.name}: {name} is no structured buffer"
         assert self.strides[number] == stride, f"{kernel.name}: {name} has stride {self.strides[number]}, not {stride}"
         return self.buffers[number]
 

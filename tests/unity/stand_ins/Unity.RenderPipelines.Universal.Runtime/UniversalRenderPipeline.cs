@@ -60,6 +60,9 @@ namespace StandIns
         /// <summary>Cameras that turn out to have nothing to render, after they began.</summary>
         public readonly HashSet<Camera> Culled = new HashSet<Camera>();
 
+        /// <summary>Between the recording of a graph and its execution.</summary>
+        public Action BeforeExecute;
+
         public bool HasColor = true;
         public float RenderScale = 1;
         public bool UsesDynamicScale;
@@ -108,12 +111,14 @@ namespace StandIns
                 if (renderer == null || camera.cameraType == CameraType.SceneView)
                     renderer = asset.scriptableRenderer;
                 Record(renderer, camera);
+                if (BeforeExecute != null)
+                    BeforeExecute();
                 graph.Execute(commands);
                 renderer.Finish();
-                if (Recorder.IsOn)
-                    Recorder.Note("submit " + camera.name);
                 Graphics.ExecuteCommandBuffer(commands);
                 commands.Clear();
+                if (Recorder.IsOn)
+                    Recorder.Note("submit " + camera.name);
             }
             Pipelines.End(camera);
         }

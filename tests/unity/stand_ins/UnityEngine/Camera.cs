@@ -14,6 +14,9 @@ namespace UnityEngine
 
         public static CameraCallback onPreCull, onPreRender, onPostRender;
 
+        /// <summary>Not Unity's API.</summary>
+        public int AttachedBuffers { get { return Buffers.Count; } }
+
         internal readonly List<Rendering.CommandBuffer> Buffers = new List<Rendering.CommandBuffer>();
         private Matrix4x4 projection = Matrix4x4.Perspective(60, 4f / 3, 0.3f, 1000);
         private Matrix4x4? view;
@@ -54,7 +57,10 @@ namespace UnityEngine
         public Matrix4x4 GetStereoViewMatrix(StereoscopicEye eye) { return StandIns.Eyes.View(this, (int)eye); }
         public Matrix4x4 GetStereoProjectionMatrix(StereoscopicEye eye) { return StandIns.Eyes.Projection(this, (int)eye); }
         public void AddCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.Add(buffer); }
-        public void RemoveCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) { Buffers.RemoveAll(held => held == buffer); }
+        public void RemoveCommandBuffer(Rendering.CameraEvent evt, Rendering.CommandBuffer buffer) 
+        {
+            while (Buffers.Remove(buffer)) { }
+        }
         public void Render()
         {
             if (StandIns.Pipelines.Render != null)
@@ -78,6 +84,8 @@ namespace UnityEngine
             for (int i = 0; i < Buffers.Count; i++)
                 Graphics.ExecuteCommandBuffer(Buffers[i]);
             Graphics.InstanceMultiplier = 1;
+            if (StandIns.Recorder.IsOn)
+                StandIns.Recorder.Note("submit " + name);
             if (onPostRender != null)
                 onPostRender(this);
         }

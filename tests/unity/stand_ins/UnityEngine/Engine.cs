@@ -191,6 +191,7 @@ namespace StandIns
         public static void Platform(RuntimePlatform platform) { Application.platform = platform; }
         public static void Playing(bool playing) { Application.isPlaying = playing; }
         public static void ComputeShaders(bool supported) { SystemInfo.supportsComputeShaders = supported; }
+        public static void IndirectArguments(bool supported) { SystemInfo.supportsIndirectArgumentsBuffer = supported; }
         public static void ComputeBuffers(int most) { SystemInfo.maxComputeBufferInputsCompute = most; }
         public static void BufferSize(long most) { SystemInfo.maxGraphicsBufferSize = most; }
         public static void GpuRecorder(bool supported) { SystemInfo.supportsGpuRecorder = supported; }

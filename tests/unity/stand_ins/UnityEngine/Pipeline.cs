@@ -106,7 +106,13 @@ namespace StandIns
             IsWorn = UnityEngine.XR.XRSettings.isDeviceActive = false;
         }
 
-        /// <summary>Where an eye is; between the two where nobody says.</summary>
+        public static void Resolution(int width, int height)
+        {
+            UnityEngine.XR.XRSettings.eyeTextureWidth = width;
+            UnityEngine.XR.XRSettings.eyeTextureHeight = height;
+        }
+
+        /// <summary>Where an eye is; half the eyes' distance from the camera where nobody says.</summary>
         public static void Look(int eye, Matrix4x4 view) { Views[eye] = view; }
 
         public static Matrix4x4 View(Camera camera, int eye)

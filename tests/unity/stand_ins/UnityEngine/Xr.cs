@@ -5,12 +5,17 @@ namespace UnityEngine.XR
     {
         public enum StereoRenderingMode { MultiPass, SinglePass, SinglePassInstanced, SinglePassMultiview }
 
-        static XRSettings() { renderViewportScale = eyeTextureResolutionScale = 1; }
+        static XRSettings()
+        {
+            renderViewportScale = eyeTextureResolutionScale = 1;
+            eyeTextureWidth = 1680;
+            eyeTextureHeight = 1760;
+        }
 
         public static bool enabled { get { return isDeviceActive; } }
         public static bool isDeviceActive { get; internal set; }
-        public static int eyeTextureWidth { get { return 1680; } }
-        public static int eyeTextureHeight { get { return 1760; } }
+        public static int eyeTextureWidth { get; internal set; }
+        public static int eyeTextureHeight { get; internal set; }
         public static float eyeTextureResolutionScale { get; set; }
         public static float renderViewportScale { get; set; }
         public static StereoRenderingMode stereoRenderingMode { get; internal set; }

@@ -1,0 +1,349 @@
+"""Cameras of the built-in pipeline and of URP, in every stereo mode: what reaches the device, in which order.
+
+Over stand-ins that call the package as the pipelines do and record what it appends; not yet verified in the editor.
+"""
+
+import base64
+import functools
+import itertools
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from replay import Drawn, replay
+from synthetic_avatar import synthetic_avatar
+from test_recorded_frame import MIRROR, STAND_INS
+
+from mua.arrays import Array
+from mua.asset import write
+from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.decode import decode_clip_frame
+from mua.gpu import Device
+from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
+from mua.render import render_premultiplied
+
+sys.path.append(str(ROOT / "tests" / "parity"))
+
+from test_frame import FRAME_ORDER, LEAST_PSNR, psnr
+
+WINDOW = (640, 480)  # pixels of the stand-ins' cameras
+EYE = (256, 192)  # of a headset's textures
+MOVED = 1  # the clip's frame in the recording's frame "moved"
+DECODED = FRAME_ORDER[: FRAME_ORDER.index("SplatProject")]
+SORTED = FRAME_ORDER[len(DECODED) :]
+TARGETS = "color ReadWrite, depth ReadWrite"
+Event = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A pipeline and how it draws eyes."""
+
+    pipeline: str  # builtin | urp
+    stereo: str  # XRSettings.StereoRenderingMode, or None
+    passes: int  # over a camera
+    eyes: int  # that a pass is given
+    instances: int  # that the device writes for an indirect draw
+    multiplier: int  # of instances of direct draws, by the engine
+
+    @property
+    def screen(self) -> tuple[int, int]:
+        return WINDOW if self.stereo == "None" else EYE
+
+    def pass_over(self, camera: str, *, decodes: bool) -> list[str]:
+        """What one pass over a camera appends."""
+        compute, draw = [*(["decode"] if decodes else []), "sort"], f"draw x{self.multiplier}"
+        if self.pipeline == "urp":
+            foveated = "" if self.stereo == "None" else ", foveated"
+            return ["MUA compute", *compute, f"MUA draw: {TARGETS}{foveated}", draw, f"submit {camera}"]
+        return [*compute, draw, f"submit {camera}"]
+
+    def camera(self, name: str, *, decodes: bool = False) -> list[str]:
+        """What a camera appends; only its first pass decodes."""
+        return [step for i in range(self.passes) for step in self.pass_over(name, decodes=decodes and i == 0)]
+
+    def unseen(self, name: str) -> list[str]:
+        """A camera that shows no avatar."""
+        return [f"submit {name}"] * self.passes
+
+
+MODES = [
+    Mode("builtin", "None", 1, 1, 1, 1),
+    Mode("builtin", "SinglePassInstanced", 1, 2, 2, 2),
+    Mode("builtin", "SinglePassMultiview", 1, 2, 1, 1),
+    Mode("builtin", "MultiPass", 2, 2, 1, 1),
+    Mode("urp", "None", 1, 1, 1, 1),
+    Mode("urp", "SinglePassInstanced", 1, 2, 2, 2),
+    Mode("urp", "SinglePassMultiview", 1, 2, 1, 1),
+    Mode("urp", "MultiPass", 2, 1, 1, 1),
+]
+
+
+def label(mode: Mode) -> str:
+    return f"{mode.pipeline} {mode.stereo}"
+
+
+def cameras() -> tuple[Camera, Camera]:
+    avatar = synthetic_avatar(1)
+    centres = decode_clip_frame(avatar, avatar.clips[0], frame=MOVED, dtype=np.float64).centres
+    box = np.stack([centres.min(axis=0), centres.max(axis=0)])
+    left, right = stereo(orbit(box, screen=EYE, azimuth=0.7, elevation=0.3), EYE_DISTANCE)
+    return left, right
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A run of the program in one mode."""
+
+    mode: Mode
+    path: Path
+    said: dict[str, list[str]]
+    events: list[Event]
+
+    def frames(self, name: str) -> list[list[Event]]:
+        """The events of each frame of that name."""
+        found: list[list[Event]] = []
+        current: list[Event] | None = None
+        for event in self.events:
+            text = event.get("text")
+            if text == f"frame {name}":
+                current = []
+                found.append(current)
+            elif text == "end":
+                current = None
+            elif current is not None:
+                current.append(event)
+        assert found, name
+        return found
+
+    def steps(self, name: str) -> list[str]:
+        """Those of a frame in words: notes, draws, and runs of kernels as decode or sort."""
+        (frame,) = self.frames(name)
+        return [step for step, _ in itertools.groupby(filter(None, map(step_of, frame)))]
+
+    def constants(self, name: str, kernel: str, constant: str) -> list[Array]:
+        """What a kernel was given, each time in a frame."""
+        (frame,) = self.frames(name)
+        dispatches = [event for event in frame if event.get("kernel") == kernel]
+        return [content(*event["constants"][constant]) for event in dispatches]
+
+
+def step_of(event: Event) -> str:
+    if event["event"] == "dispatch":
+        return "decode" if event["kernel"] in DECODED else "sort"
+    if event["event"] == "draw":
+        return f"draw x{event['multiplier']}"
+    return str(event["text"]) if event["event"] == "note" else ""
+
+
+def content(kind: str, encoded: str) -> Array:
+    return np.frombuffer(base64.b64decode(encoded), np.int32 if kind == "Int" else np.float32)
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    core, universal = (f"Unity.RenderPipelines.{name}.Runtime" for name in ("Core", "Universal"))
+    core_file = csharp.build([STAND_INS / core], library=True, name=core, references=[engine])
+    pipeline = [engine, core_file]
+    pipeline.append(csharp.build([STAND_INS / universal], library=True, name=universal, references=pipeline))
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "Urp"]
+    return csharp.build(
+        [*package, PROGRAMS / "shared", PROGRAMS / "PipelineProgram.cs"], references=[*pipeline, file, motion]
+    )
+
+
+@pytest.fixture(scope="module")
+def record(csharp: CSharp, program: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[Mode], Recorded]:
+    """Runs a mode, once for all tests."""
+
+    @functools.cache
+    def run(mode: Mode) -> Recorded:
+        folder = tmp_path_factory.mktemp("pipeline")
+        write(folder / "avatar.muaavatar", synthetic_avatar(1), storage="f16")
+        lines = ["screen {} {} {}".format(*EYE, NEAR)]
+        for camera in cameras():
+            numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+            lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+        (folder / "eyes.txt").write_text("\n".join(lines))
+        given = (mode.pipeline, mode.stereo, folder / "eyes.txt", folder / "avatar.muaavatar")
+        said: dict[str, list[str]] = {"log": []}
+        for line in csharp.run(program, ROOT / "ComputeShaders", folder / "recording", *given).splitlines():
+            name, value = line.split("\t")
+            said.setdefault(name, []).append(value)
+        events = [json.loads(line) for line in (folder / "recording.json").read_text().splitlines()]
+        return Recorded(mode, folder / "recording", said, events)
+
+    return run
+
+
+@pytest.fixture(params=MODES, ids=label)
+def recorded(request: pytest.FixtureRequest, record: Callable[[Mode], Recorded]) -> Recorded:
+    return record(request.param)
+
+
+@pytest.fixture(params=[mode for mode in MODES if mode.pipeline == "urp"], ids=label)
+def universal(request: pytest.FixtureRequest, record: Callable[[Mode], Recorded]) -> Recorded:
+    return record(request.param)
+
+
+@pytest.fixture(params=[mode for mode in MODES if mode.pipeline == "builtin"], ids=label)
+def builtin(request: pytest.FixtureRequest, record: Callable[[Mode], Recorded]) -> Recorded:
+    return record(request.param)
+
+
+def test_a_frame_decodes_sorts_and_draws_for_a_camera(recorded: Recorded) -> None:
+    mode = recorded.mode
+    assert recorded.steps("moved") == mode.camera("main", decodes=True)
+    (frame,) = recorded.frames("moved")
+    kernels = [event["kernel"] for event in frame if event["event"] == "dispatch"]
+    assert kernels == [*DECODED, *SORTED * mode.passes]
+
+
+def test_what_stands_still_is_only_sorted(recorded: Recorded) -> None:
+    assert recorded.steps("still") == recorded.mode.camera("main")
+
+
+def test_opaque_views_are_drawn_before_splats_and_bones_after(recorded: Recorded) -> None:
+    (frame,) = recorded.frames("all views")
+    draws = [(event["shader"], event["pass"]) for event in frame if event["event"] == "draw"]
+    assert draws == [("surface", 0), ("surface", 1), ("splat", 0), ("surface", 2)] * recorded.mode.passes
+
+
+def test_the_device_is_told_of_eyes_instances_and_pixels(recorded: Recorded) -> None:
+    mode = recorded.mode
+    for kernel, constant, expected in (
+        ("SplatProject", "eyes", mode.eyes),
+        ("ScanCounts", "instances", mode.instances),
+    ):
+        assert [int(given[0]) for given in recorded.constants("moved", kernel, constant)] == [expected] * mode.passes
+    for given in recorded.constants("moved", "SplatProject", "screen"):
+        assert tuple(given[:2]) == mode.screen
+
+
+def test_each_pass_is_given_its_eyes(recorded: Recorded) -> None:
+    """In the kernels' right-handed world; a single eye stands in both places."""
+    mode, views = recorded.mode, [camera.view for camera in cameras()]
+    expected = [[0, 1]] if mode.eyes == 2 else [[eye, eye] for eye in range(mode.passes)]
+    if mode.passes == 2 and mode.eyes == 2:
+        expected = [[0, 1]] * 2  # the engine says which is drawn
+    given = recorded.constants("moved", "SplatProject", "view")
+    for found, eyes in zip(given, expected, strict=True):
+        for matrix, eye in zip(found.reshape(2, 4, 4), eyes, strict=True):
+            np.testing.assert_allclose(matrix.T, views[eye], atol=1e-6)
+
+
+def test_pixels_are_those_of_a_scaled_target(recorded: Recorded) -> None:
+    mode = recorded.mode
+    scale = 0.5 * (0.8 if label(mode) == "urp None" else 1)
+    for given in recorded.constants("scaled", "SplatProject", "screen"):
+        assert tuple(given[:2]) == tuple(np.ceil(np.multiply(mode.screen, scale)))
+
+
+def test_a_second_camera_sorts_after_the_first_has_drawn(recorded: Recorded) -> None:
+    mode = recorded.mode
+    assert recorded.steps("two") == [*mode.camera("main", decodes=True), *mode.camera("other")]
+
+
+def test_the_scene_view_and_reflections_see_avatars_by_one_eye(recorded: Recorded) -> None:
+    mode = recorded.mode
+    for name in ("scene view", "reflection"):
+        steps = recorded.steps(name)[len(mode.camera("main")) + 1 :]
+        mono = next(other for other in MODES if label(other) == f"{mode.pipeline} None")
+        assert steps == mono.camera("other")
+
+
+@pytest.mark.parametrize("name", ["preview", "other layers"])
+def test_cameras_that_show_no_avatar_cost_nothing(recorded: Recorded, name: str) -> None:
+    mode = recorded.mode
+    unseen = ["submit other"] if name == "preview" else mode.unseen("other")
+    assert recorded.steps(name)[len(mode.camera("main")) + 1 :] == unseen[:1]
+
+
+def test_an_orthographic_camera_draws_no_splats(recorded: Recorded) -> None:
+    steps = recorded.steps("orthographic")[len(recorded.mode.camera("main")) + 1 :]
+    assert not [step for step in steps if step.startswith(("sort", "draw"))]
+
+
+def test_overlay_cameras_and_other_renderers_draw_avatars(universal: Recorded) -> None:
+    mode = universal.mode
+    assert universal.steps("own renderer") == [*mode.camera("main", decodes=True), *mode.camera("other")]
+    passes = [mode.pass_over(name, decodes=False) for _ in range(mode.passes) for name in ("main", "other")]
+    expected = list(itertools.chain(*passes))
+    assert universal.steps("overlay") == [expected[0], "decode", *expected[1:]]
+
+
+def test_passes_of_a_camera_that_was_culled_are_not_drawn_by_the_next(universal: Recorded) -> None:
+    assert universal.steps("culled") == universal.mode.camera("other", decodes=True)
+
+
+def test_a_camera_of_depth_alone_draws_nothing(universal: Recorded) -> None:
+    assert not [step for step in universal.steps("depth only") if "draw" in step]
+
+
+def test_compatibility_mode_is_refused_once(universal: Recorded) -> None:
+    assert [step_of(event) for frame in universal.frames("compatibility") for event in frame] == [
+        f"submit {name}" for _ in range(2 * universal.mode.passes) for name in ("main", "other")
+    ]
+    (line,) = universal.said["log"]
+    assert "Compatibility Mode" in line
+
+
+def test_the_built_in_pipeline_logs_nothing(builtin: Recorded) -> None:
+    assert builtin.said["log"] == []
+
+
+def test_a_device_without_indirect_draws_is_told_how_many(recorded: Recorded) -> None:
+    """Of one eye: the engine multiplies them."""
+    (frame,) = recorded.frames("direct")
+    draws = [event for event in frame if event["event"] == "draw"]
+    assert len(draws) == recorded.mode.passes
+    for draw in draws:
+        assert (draw["instances"], draw["multiplier"]) == (1, recorded.mode.multiplier)
+
+
+def test_avatars_that_go_while_a_camera_is_rendered_are_not_drawn(recorded: Recorded) -> None:
+    for name in ("destroyed", "empty"):
+        (frame,) = recorded.frames(name)
+        assert not [event for event in frame if event["event"] == "draw"]
+    assert recorded.steps("empty") == recorded.mode.unseen("main")[:1]
+    assert (recorded.said["alive"], recorded.said["attached"]) == (["0"], ["0"])
+
+
+def test_frames_allocate_nothing(recorded: Recorded) -> None:
+    assert recorded.said["allocated"] == ["0"]
+
+
+@pytest.mark.parametrize("stereo_mode", ["SinglePassInstanced", "MultiPass"])
+def test_the_picture_is_that_of_the_cpu_rasteriser(
+    record: Callable[[Mode], Recorded], device: Device, stereo_mode: str
+) -> None:
+    """Of every eye of URP's frame "moved", by what its draws were bound to."""
+    mode = next(mode for mode in MODES if (mode.pipeline, mode.stereo) == ("urp", stereo_mode))
+    recorded, avatar = record(mode), synthetic_avatar(1)
+    exact = decode_clip_frame(avatar, avatar.clips[0], frame=MOVED, dtype=np.float64)
+    (frame,) = recorded.frames("moved")
+    before = itertools.takewhile(lambda event: event is not frame[0], recorded.events)
+    first = sum(event["event"] == "draw" for event in before)
+    for index, drawn in enumerate(replay(device, recorded.path).draws[first : first + mode.passes]):
+        seen = cameras() if mode.eyes == 2 else (cameras()[index],)
+        assert drawn.arguments[1] == mode.instances
+        image = draw_image(device, SplatRenderer(device, image_format(device)), uploaded(device, drawn), seen)
+        for found, camera in zip(np.split(image, mode.eyes, axis=1), seen, strict=True):
+            assert psnr(found, render_premultiplied(exact, camera)) > LEAST_PSNR
+
+
+def uploaded(device: Device, drawn: Drawn) -> SortedSplats:
+    """What a draw was bound to, for the desktop player's."""
+    words = np.array([drawn.arguments[0], 1, 0, 0], np.uint32)
+    held = {name: device.buffer(drawn.buffers[name], name=name) for name in ("splats", "ellipses", "colors", "order")}
+    arguments = device.buffer(words, name="arguments", indirect=True)
+    return SortedSplats(count=len(drawn.buffers["splats"]) // 16, arguments=arguments, **held)
