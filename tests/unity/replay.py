@@ -2,9 +2,9 @@
 
 A recording is NAME.json, one event in a line, and NAME.bin, the uploaded bytes. Events: `buffer` (count, stride,
 target), `name`, `upload` (start in the buffer; offset in the binary, bytes), `copy` (source), `dispatch` (shader,
-kernel, groups or indirect, buffers and constants bound by name then), `draw` (shader, pass, counts or indirect, what was
-bound), `keep` (a label for what a buffer holds), `release`, `note`. A draw is kept with what its buffers held, for who
-knows the target.
+kernel, groups or indirect, buffers and constants bound by name then), `draw` (shader, pass, counts or indirect, what
+was bound), `keep` (a label for what a buffer holds), `release`, `note`. A draw is kept with what its buffers held, for
+who knows the target.
 """
 
 import base64

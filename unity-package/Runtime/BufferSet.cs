@@ -21,11 +21,22 @@ namespace Mua
             return Add(GraphicsBuffer.Target.Index, name, count, sizeof(uint));
         }
 
-        /// <summary>Words that a kernel writes and that draws and dispatches take their counts from.</summary>
+        /// <summary>Words that kernels write and read, and that are copied to others.</summary>
+        public GraphicsBuffer Copied(string name, int count)
+        {
+            return Add(
+                GraphicsBuffer.Target.Structured | GraphicsBuffer.Target.CopySource, name, count, sizeof(uint));
+        }
+
+        /// <summary>
+        /// Words that are copied from others and that draws and dispatches take their counts from. No kernel binds them:
+        /// Direct3D 11 refuses one buffer to be both structured and of arguments.
+        /// </summary>
         public GraphicsBuffer Arguments(string name, int count)
         {
             return Add(
-                GraphicsBuffer.Target.Structured | GraphicsBuffer.Target.IndirectArguments, name, count, sizeof(uint));
+                GraphicsBuffer.Target.IndirectArguments | GraphicsBuffer.Target.CopyDestination, name, count,
+                sizeof(uint));
         }
 
         public void Dispose()

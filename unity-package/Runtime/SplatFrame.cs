@@ -75,6 +75,9 @@ namespace Mua
         /// <summary>[8] of the draw, of the sort's dispatches, and how many splats are visible.</summary>
         public GraphicsBuffer Arguments { get; private set; }
 
+        /// <summary>Arguments once more, for the draw and the dispatches themselves.</summary>
+        public GraphicsBuffer IndirectArguments { get; private set; }
+
         /// <summary>[M] the visible splats, back to front: two passes of the sort end where they began.</summary>
         public GraphicsBuffer Order => orders[0];
 
@@ -115,7 +118,8 @@ namespace Mua
             Flags = buffers.Structured("flags", SplatCount, sizeof(uint));
             int groups = Kernel.Groups(SplatCount, SplatProject.Projected);
             GroupCounts = buffers.Structured("group_counts", groups, sizeof(uint));
-            Arguments = buffers.Arguments("arguments", ArgumentWords);
+            Arguments = buffers.Copied("arguments", ArgumentWords);
+            IndirectArguments = buffers.Arguments("indirect arguments", ArgumentWords);
             for (int i = 0; i < 2; i++)
             {
                 keys[i] = buffers.Structured("keys", SplatCount, sizeof(uint));
@@ -137,6 +141,7 @@ namespace Mua
             commands.BeginSample(AvatarStages.Project);
             splatProject.Project(commands, this, eyes, low, high);
             splatProject.ScanGroups(commands, this, eyes.Instances);
+            commands.CopyBuffer(Arguments, IndirectArguments);
             splatProject.Compact(commands, this, orders[0], keys[0]);
             commands.EndSample(AvatarStages.Project);
         }

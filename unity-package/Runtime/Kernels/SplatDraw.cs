@@ -55,7 +55,7 @@ namespace Mua
             Properties.SetInteger(EyeCount, frame.Eyes.Count);
             Properties.SetBuffer(VisibleArguments, frame.Arguments);
             return Indirect
-                ? AvatarDraw.Indirect(Material, IndirectPass, Properties, frame.Arguments)
+                ? AvatarDraw.Indirect(Material, IndirectPass, Properties, frame.IndirectArguments)
                 : AvatarDraw.Direct(Material, DirectPass, Properties, VerticesPerSplat * frame.SplatCount);
         }
 

@@ -41,7 +41,7 @@ namespace Mua
             countDigits.Set(commands, Arguments, frame.Arguments);
             countDigits.Set(commands, DigitCounts, frame.DigitCounts);
             countDigits.Set(commands, Shift, shift);
-            countDigits.DispatchIndirect(commands, frame.Arguments, SortArguments);
+            countDigits.DispatchIndirect(commands, frame.IndirectArguments, SortArguments);
         }
 
         public void Scan(CommandBuffer commands, SplatFrame frame)
@@ -64,7 +64,7 @@ namespace Mua
             scatterDigits.Set(commands, SortedKeys, sortedKeys);
             scatterDigits.Set(commands, SortedValues, sortedValues);
             scatterDigits.Set(commands, Shift, shift);
-            scatterDigits.DispatchIndirect(commands, frame.Arguments, SortArguments);
+            scatterDigits.DispatchIndirect(commands, frame.IndirectArguments, SortArguments);
         }
     }
 }

@@ -22,7 +22,7 @@ namespace UnityEngine.Rendering
 {
     public sealed class CommandBuffer : IDisposable
     {
-        private enum Kind { Constant, Buffer, Upload, Dispatch, Draw, Multiplier, Note }
+        private enum Kind { Constant, Buffer, Upload, Copy, Dispatch, Draw, Multiplier, Note }
 
         private struct Command
         {
@@ -30,7 +30,7 @@ namespace UnityEngine.Rendering
             public ComputeShader Shader;
             public int Kernel, Name, X, Y, Z, Start;
             public StandIns.Value Value;
-            public GraphicsBuffer Buffer, Indices;
+            public GraphicsBuffer Buffer, Indices, Source;
             public string Text;
             public Material Material;
             public MaterialPropertyBlock Properties;
@@ -123,6 +123,16 @@ namespace UnityEngine.Rendering
             StandIns.Bytes.Copy(data, managedBufferStartIndex * element, payload, start, bytes);
             Append(new Command { Kind = Kind.Upload, Buffer = buffer, X = graphicsBufferStartIndex * element, Y = bytes, Start = start });
         }
+        public void CopyBuffer(GraphicsBuffer source, GraphicsBuffer dest)
+        {
+            if ((source.target & GraphicsBuffer.Target.CopySource) == 0)
+                throw new ArgumentException("source must have been created with the CopySource target");
+            if ((dest.target & GraphicsBuffer.Target.CopyDestination) == 0)
+                throw new ArgumentException("dest must have been created with the CopyDestination target");
+            if ((long)source.count * source.stride != (long)dest.count * dest.stride)
+                throw new ArgumentException("source and dest must be of one size");
+            Append(new Command { Kind = Kind.Copy, Source = source, Buffer = dest });
+        }
         public void DrawProcedural(Matrix4x4 matrix, Material material, int shaderPass, MeshTopology topology, int vertexCount)
         {
             DrawProcedural(matrix, material, shaderPass, topology, vertexCount, 1, null);
@@ -176,6 +186,7 @@ namespace UnityEngine.Rendering
                 case Kind.Upload: StandIns.Recorder.Uploaded(command.Buffer, payload, command.Start, command.X, command.Y); break;
                 case Kind.Multiplier: Graphics.InstanceMultiplier = (uint)command.X; break;
                 case Kind.Note: StandIns.Recorder.Note(command.Text); break;
+                case Kind.Copy: StandIns.Recorder.Copied(command.Source, command.Buffer); break;
                 case Kind.Draw: StandIns.Recorder.Drawn(command.Material, command.Properties, command.Kernel, command.X, command.Y, command.Buffer, command.Indices); break;
                 default: StandIns.Recorder.Dispatched(command.Shader, command.Kernel, command.X, command.Y, command.Z, command.Buffer, command.X); break;
             }

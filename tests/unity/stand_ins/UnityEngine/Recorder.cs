@@ -191,6 +191,14 @@ namespace StandIns
             binary.Write(content, 0, bytes);
         }
 
+        internal static void Copied(GraphicsBuffer source, GraphicsBuffer target)
+        {
+            source.CheckUsable("CopyBuffer");
+            target.CheckUsable("CopyBuffer");
+            if (lines != null)
+                Line("{\"event\": \"copy\", \"source\": " + source.Id + ", \"buffer\": " + target.Id + "}");
+        }
+
         internal static void Dispatched(ComputeShader shader, int kernel, int x, int y, int z, GraphicsBuffer arguments, int offset)
         {
             Dispatches++;
