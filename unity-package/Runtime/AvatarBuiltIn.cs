@@ -55,10 +55,12 @@ namespace Mua
             {
                 return;
             }
+            draw.BeginSample(AvatarStages.Draw);
             for (int i = 0; i < world.Draws.Count; i++)
             {
                 world.Draws[i].Append(draw);
             }
+            draw.EndSample(AvatarStages.Draw);
             rendered.AddCommandBuffer(Moment, draw);
             camera = rendered;
         }

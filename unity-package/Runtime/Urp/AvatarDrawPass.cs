@@ -66,10 +66,12 @@ namespace Mua
                 return;
             }
             IReadOnlyList<AvatarDraw> draws = data.World.Draws;
+            context.cmd.BeginSample(AvatarStages.Draw);
             for (int i = 0; i < draws.Count; i++)
             {
                 Append(draws[i], context.cmd);
             }
+            context.cmd.EndSample(AvatarStages.Draw);
         }
 
         /// <summary>AvatarDraw.Append, which has no command buffer in common with this one.</summary>

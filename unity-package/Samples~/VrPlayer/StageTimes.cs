@@ -19,7 +19,8 @@ namespace Mua.Samples.VrPlayer
         private readonly string[] markers = new string[Stages.Length];
         private readonly ProfilerRecorder[] recorders = new ProfilerRecorder[Stages.Length];
         private readonly FrameTiming[] whole = new FrameTiming[1];
-        private readonly ProfilerRecorderOptions options = ProfilerRecorderOptions.Default;
+        private readonly ProfilerRecorderOptions options =
+            ProfilerRecorderOptions.Default | ProfilerRecorderOptions.StartImmediately;
 
         public StageTimes()
         {
@@ -46,7 +47,7 @@ namespace Mua.Samples.VrPlayer
                 if (!recorders[i].Valid)
                 {
                     recorders[i].Dispose();
-                    recorders[i] = ProfilerRecorder.StartNew(ProfilerCategory.Render, markers[i], Frames, options);
+                    recorders[i] = new ProfilerRecorder(markers[i], Frames, options);
                 }
             }
         }

@@ -11,8 +11,6 @@ namespace UnityEngine.Rendering
     {
         public void BeginSample(Unity.Profiling.ProfilerMarker marker) { Wrapped.BeginSample(marker); }
         public void EndSample(Unity.Profiling.ProfilerMarker marker) { Wrapped.EndSample(marker); }
-        public void BeginSample(Unity.Profiling.ProfilerMarker marker) { Wrapped.BeginSample(marker); }
-        public void EndSample(Unity.Profiling.ProfilerMarker marker) { Wrapped.EndSample(marker); }
         public void DrawProcedural(Matrix4x4 matrix, Material material, int shaderPass, MeshTopology topology, int vertexCount, int instanceCount, MaterialPropertyBlock properties)
         {
             Wrapped.DrawProcedural(matrix, material, shaderPass, topology, vertexCount, instanceCount, properties);

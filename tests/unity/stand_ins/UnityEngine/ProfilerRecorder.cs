@@ -27,10 +27,15 @@ namespace Unity.Profiling
     {
         private string name;
 
-        public static ProfilerRecorder StartNew(ProfilerCategory category, string statName, int capacity = 1, ProfilerRecorderOptions options = ProfilerRecorderOptions.Default)
+        public ProfilerRecorder(string statName, int capacity = 1, ProfilerRecorderOptions options = ProfilerRecorderOptions.Default)
         {
             StandIns.Markers.Open++;
-            return new ProfilerRecorder { name = statName };
+            name = statName;
+        }
+
+        public static ProfilerRecorder StartNew(ProfilerCategory category, string statName, int capacity = 1, ProfilerRecorderOptions options = ProfilerRecorderOptions.Default)
+        {
+            return new ProfilerRecorder(statName, capacity, options);
         }
 
         public bool Valid { get { return name != null && StandIns.Markers.Samples.ContainsKey(name); } }
