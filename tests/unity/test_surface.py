@@ -11,13 +11,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+import synthetic_avatar as module
 import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from replay import Drawn, replay
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
+from test_player_surface import cube
 from test_recorded_frame import MIRROR, STAND_INS, place_of
+from tube import tube
 
 from mua import rotation
 from mua.arrays import Array
@@ -29,6 +32,10 @@ from mua.gpu import Device
 from mua.player.draw import image_format
 from mua.player.overlays import Overlays, PosedBuffers
 from mua.player.surface import build_surface
+from mua.rig.character import Mesh
+from mua.rig.charts import find_charts
+from mua.rig.rig import Rig
+from mua.rig.texel_map import build_texel_map
 
 ASSET = os.environ.get("MUA_TEST_AVATAR", "")  # a real avatar file
 SCREEN = (160, 200)
@@ -73,6 +80,34 @@ def test_the_grid_of_the_golden_file_is_the_desktop_players(
     csharp: CSharp, surface_program: Path, tmp_path: Path
 ) -> None:
     check_grid(csharp, surface_program, ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
+
+
+@pytest.mark.parametrize(
+    "mesh", [cube(), cube(mirrored=3), tube().mesh], ids=["six charts", "three mirrored", "one seam and two openings"]
+)
+@pytest.mark.parametrize("speck", [1.0, 0.01], ids=["whole", "a chart without texels"])
+def test_the_grid_over_other_charts_is_the_desktop_players(
+    csharp: CSharp,
+    surface_program: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    mesh: Mesh,
+    speck: float,
+) -> None:
+    """Moved at random a little, so that no two texels are equally near to a seam."""
+    rng = np.random.default_rng(5)
+    uv = mesh.uv + rng.uniform(-1e-3, 1e-3, mesh.uv.shape)
+    first = mesh.uv_faces[find_charts(mesh.uv_faces, mesh.uv[mesh.uv_faces]) == 0]
+    uv[first.ravel()] = uv[first[0, 0]] + speck * (uv[first.ravel()] - uv[first[0, 0]])
+    vertices = mesh.vertices + rng.uniform(-1e-3, 1e-3, mesh.vertices.shape)
+    made = replace(mesh, vertices=vertices, uv=uv)
+    rig, count = module.synthetic_rig(), len(vertices)
+    weights = np.eye(1, 8, dtype=np.float32).repeat(count, axis=0)
+    texels = build_texel_map(made, module.SIZE)
+    other = Rig(rig.skeleton, made, np.zeros((count, 8), np.int32), weights, texels)
+    monkeypatch.setattr(module, "synthetic_rig", lambda: other)
+    write(tmp_path / "avatar.muaavatar", synthetic_avatar(), storage="f32")
+    check_grid(csharp, surface_program, tmp_path / "avatar.muaavatar", tmp_path / "grid")
 
 
 @pytest.mark.skipif(not ASSET, reason="set MUA_TEST_AVATAR to an avatar file")
