@@ -45,6 +45,12 @@ def test_quest_gets_what_the_headset_needs(program: ProjectProgram) -> None:
     assert made["Pipeline > MSAA"] == "1"
 
 
+def test_xr_settings_that_the_editor_lost_are_taken_and_an_optional_feature_enabled(program: ProjectProgram) -> None:
+    told = program.tell("FindsLostSettings")
+    assert (told["found"], "after" in told) == (["True"], False)
+    assert "Log MUA set OpenXR > com.unity.openxr.feature.meta-display-utilities for Android: off -> on" in told["log"]
+
+
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_each_setting_that_is_broken_is_named_and_mended(program: ProjectProgram, platform: str) -> None:
     told = program.tell("NamesWhatIsBroken", platform)

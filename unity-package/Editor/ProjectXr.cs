@@ -27,6 +27,7 @@ namespace Mua.Editor
         private const string MetaQuest = "com.unity.openxr.feature.metaquest";
         private const string Touch = "com.unity.openxr.feature.input.oculustouch";
         private const string TouchPlus = "com.unity.openxr.feature.input.metaquestplus";
+        private const string DisplayRate = "com.unity.openxr.feature.meta-display-utilities"; // of com.unity.xr.meta-openxr
         private const string Absent = "absent";
 
         public static IEnumerable<ProjectSetting> Settings(BuildTarget target)
@@ -46,17 +47,33 @@ namespace Mua.Editor
             string[] ids = target == BuildTarget.Android ? new[] { MetaQuest, Touch, TouchPlus } : new[] { Touch, TouchPlus };
             foreach (string id in ids)
             {
-                yield return new ProjectSetting(
-                    $"OpenXR > {id} for {group}", "on", () => State(group, id), () => State(group, id) == "on",
-                    () => Enable(group, id));
+                yield return Feature(group, id);
+            }
+            if (target == BuildTarget.Android && State(group, DisplayRate) != Absent)
+            {
+                yield return Feature(group, DisplayRate);
             }
         }
 
+        private static ProjectSetting Feature(BuildTargetGroup group, string id)
+        {
+            return new ProjectSetting(
+                $"OpenXR > {id} for {group}", "on", () => State(group, id), () => State(group, id) == "on",
+                () => Enable(group, id));
+        }
+
+        // The asset is the project's own, though the editor may have lost sight of it.
         private static XRGeneralSettingsPerBuildTarget Find()
         {
             XRGeneralSettingsPerBuildTarget settings;
-            EditorBuildSettings.TryGetConfigObject(XRGeneralSettings.k_SettingsKey, out settings);
-            return settings;
+            if (EditorBuildSettings.TryGetConfigObject(XRGeneralSettings.k_SettingsKey, out settings))
+            {
+                return settings;
+            }
+            return AssetDatabase.FindAssets("t:" + nameof(XRGeneralSettingsPerBuildTarget))
+                .Select(guid => AssetDatabase.GUIDToAssetPath(guid))
+                .Select(path => AssetDatabase.LoadAssetAtPath<XRGeneralSettingsPerBuildTarget>(path))
+                .FirstOrDefault(each => each != null);
         }
 
         private static XRManagerSettings Manager(BuildTargetGroup group)
@@ -80,6 +97,7 @@ namespace Mua.Editor
             {
                 settings = Create();
             }
+            EditorBuildSettings.AddConfigObject(XRGeneralSettings.k_SettingsKey, settings, true);
             if (!settings.HasSettingsForBuildTarget(group))
             {
                 settings.CreateDefaultSettingsForBuildTarget(group);
@@ -97,7 +115,6 @@ namespace Mua.Editor
             ProjectAssets.MakeFolder(Path.GetDirectoryName(SettingsPath));
             var settings = ScriptableObject.CreateInstance<XRGeneralSettingsPerBuildTarget>();
             AssetDatabase.CreateAsset(settings, SettingsPath);
-            EditorBuildSettings.AddConfigObject(XRGeneralSettings.k_SettingsKey, settings, true);
             return settings;
         }
 

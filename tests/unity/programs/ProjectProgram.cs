@@ -14,6 +14,7 @@ using UnityEngine;
 using UnityEngine.Rendering;
 #if MUA_OPENXR
 using UnityEditor.XR.Management;
+using UnityEditor.XR.OpenXR.Features;
 using UnityEngine.Rendering.Universal;
 using UnityEngine.XR.Management;
 using UnityEngine.XR.OpenXR;
@@ -62,6 +63,20 @@ namespace Mua.Editor
             Say("stripping", PlayerSettings.GetManagedStrippingLevel(NamedBuildTarget.Android));
             Say("pipeline", GraphicsSettings.defaultRenderPipeline == null ? "built-in" : "own");
         }
+
+#if MUA_OPENXR
+        private static void FindsLostSettings(string[] arguments)
+        {
+            EditorUserBuildSettings.SwitchActiveBuildTarget(BuildTargetGroup.Unknown, BuildTarget.Android);
+            var lost = ScriptableObject.CreateInstance<XRGeneralSettingsPerBuildTarget>();
+            AssetDatabase.CreateAsset(lost, "Assets/Own/Xr.asset");
+            FeatureHelpers.More.Add("com.unity.openxr.feature.meta-display-utilities");
+            Tell("after", ProjectSetup.Apply(BuildTarget.Android));
+            XRGeneralSettingsPerBuildTarget found;
+            EditorBuildSettings.TryGetConfigObject(XRGeneralSettings.k_SettingsKey, out found);
+            Say("found", ReferenceEquals(found, lost));
+        }
+#endif
 
         private static void NamesWhatIsBroken(string[] arguments)
         {

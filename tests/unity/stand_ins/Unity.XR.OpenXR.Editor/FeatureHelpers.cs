@@ -1,4 +1,6 @@
 // Stand-in. Source: com.unity.xr.openxr 1.18, FeatureHelpers.cs; features of Unity's own package that this one names.
+using System.Collections.Generic;
+using System.Linq;
 using UnityEngine;
 using UnityEngine.XR.OpenXR;
 using UnityEngine.XR.OpenXR.Features;
@@ -15,12 +17,14 @@ namespace UnityEditor.XR.OpenXR.Features
             "com.unity.openxr.feature.input.metaquestplus"
         };
 
+        public static readonly List<string> More = new List<string>(); // of other packages; a test's
+
         public static void RefreshFeatures(BuildTargetGroup group)
         {
             if (StandIns.OpenXR.Settings.ContainsKey(group))
                 return;
             StandIns.OpenXR.Settings[group] = ScriptableObject.CreateInstance<OpenXRSettings>();
-            foreach (string id in ids)
+            foreach (string id in ids.Concat(More))
                 StandIns.OpenXR.Features[group + " " + id] = ScriptableObject.CreateInstance<Feature>();
         }
         public static OpenXRFeature GetFeatureWithIdForBuildTarget(BuildTargetGroup buildTargetGroup, string featureId)
