@@ -31,8 +31,11 @@ namespace Mua.Tests
         [TearDown]
         public void ClearScene()
         {
-            Object.DestroyImmediate(place);
-            Object.DestroyImmediate(eye);
+            if (eye != null) // a test that is skipped has made none
+            {
+                Object.DestroyImmediate(place);
+                Object.DestroyImmediate(eye);
+            }
             Assert.AreEqual(null, AvatarWorld.Current);
         }
 
