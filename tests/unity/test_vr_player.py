@@ -162,6 +162,7 @@ def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
     assert told["left stick up"] == ["user 0.21 0.00 -2.20"]  # to where the head looks
     assert told["right drag"] == [""]  # a mouse does not turn a head that is tracked
     assert told["zoomed"] == ["0.35 1.80 -0.98 near 0.025"]  # half as far, at the same height
+    assert told["back"] == ["0.00 1.80 -2.20 looks 0.00 0.00 1.00"]  # wherever in the room the user stands
 
 
 def test_the_panel_says_what_is_shown_and_how_fast(story: Story) -> None:
@@ -208,11 +209,13 @@ def test_switching_gives_back_the_avatar_before(story: Story) -> None:
 
 
 def test_without_an_avatar_the_panel_says_where_to_put_one(story: Story, folder: Path) -> None:
+    (folder / "persistent" / "avatars").rmdir()
     told = story("Goes", files=())
     assert told["state"] == ["Empty "]
     said = told["panel"][0].replace("|", " ")
     assert "No avatar was found. Put files like hero.muaavatar in" in said
     assert str(folder / "persistent" / "avatars") in told["panel"][0].replace("|", "")
+    assert (folder / "persistent" / "avatars").is_dir()
     assert told["log"] == []
 
 

@@ -150,6 +150,8 @@ namespace Mua.Samples.VrPlayer
             Devices.Report(XRNode.RightHand, CommonUsages.primary2DAxis, Vector2.zero);
             Frames(1);
             Say("zoomed", Format(head.transform.position) + " near " + head.nearClipPlane.ToString("0.000"));
+            Button(XRNode.RightHand, CommonUsages.primary2DAxisClick, "right stick pressed");
+            Say("back", Format(head.transform.position) + " looks " + Format(head.transform.forward));
         }
 
         private static void Panel()

@@ -36,6 +36,7 @@ namespace Mua.Samples.VrPlayer
         {
             entries.Clear();
             Position = 0;
+            Directory.CreateDirectory(Folder); // for people who look for it
             AddFolder(Folder, SearchOption.TopDirectoryOnly);
             string streaming = Application.streamingAssetsPath;
             if (streaming.Contains("://"))

@@ -59,7 +59,9 @@ namespace Mua.Samples.VrPlayer
             SetZoom(zoom);
         }
 
-        /// <summary>Back to where it was made.</summary>
+        /// <summary>
+        /// Back to where it was made. A user with a headset stands there and looks ahead, wherever in the room that is.
+        /// </summary>
         public void Reset(bool isTracked)
         {
             SetZoom(1);
@@ -68,7 +70,18 @@ namespace Mua.Samples.VrPlayer
             {
                 pitch = 0;
                 head.transform.SetLocalPositionAndRotation(startHead, Quaternion.identity);
+                return;
             }
+            float yaw = Yaw(startRotation * Vector3.forward) - Yaw(head.transform.forward);
+            ground.RotateAround(head.transform.position, Vector3.up, yaw);
+            Vector3 away = head.transform.position - startPosition;
+            ground.position -= new Vector3(away.x, 0, away.z);
+        }
+
+        /// <summary>Degrees clockwise from +Z, seen from above.</summary>
+        private static float Yaw(Vector3 direction)
+        {
+            return Mathf.Atan2(direction.x, direction.z) * Mathf.Rad2Deg;
         }
 
         private void SetZoom(float zoom)
