@@ -45,6 +45,10 @@ CASES: dict[str, tuple[Break, str]] = {
         lambda root: edited(root / ASMDEF, includePlatforms=["Editor"]),
         f'{ASMDEF}: includePlatforms: ["Editor"], expected no editor only, outside Editor/',
     ),
+    "library": (
+        lambda root: edited(root / ASMDEF, precompiledReferences=["nunit.framework.dll"]),
+        f'{ASMDEF}: precompiledReferences: "nunit.framework.dll", expected nunit.framework.dll, and overrideReferences',
+    ),
     "reference of an assembly": (
         lambda root: edited(root / ASMDEF, references=["Mua.Gone"]),
         f'{ASMDEF}: references: "Mua.Gone" is no assembly of these packages, '

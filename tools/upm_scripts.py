@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from upm_package import Assembly, Package
 
 TEST_FRAMEWORK = "com.unity.test-framework"
+TEST_LIBRARY = "nunit.framework.dll"
 # Assemblies of Unity's packages that ours may refer to, and the package of each.
 UNITY = {
     "UnityEngine.TestRunner": TEST_FRAMEWORK,
@@ -112,6 +113,9 @@ def _shape(package: Package, assembly: Assembly) -> Iterator[str]:
         for platform in assembly.items(key):
             if platform not in PLATFORMS:
                 yield f"{where}: {key}: {json.dumps(platform)}, expected one of {', '.join(sorted(PLATFORMS))}"
+    for name in assembly.items("precompiledReferences"):
+        if name != TEST_LIBRARY or not definition.get("overrideReferences"):
+            yield f"{where}: precompiledReferences: {json.dumps(name)}, expected {TEST_LIBRARY}, and overrideReferences"
     in_editor = "Editor" in assembly.path.parts[:-1]
     if in_editor != (assembly.items("includePlatforms") == ["Editor"]):
         expected = '["Editor"] for what lies below Editor/' if in_editor else "no editor only, outside Editor/"
