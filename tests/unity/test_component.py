@@ -102,6 +102,22 @@ def test_an_avatar_stands_where_its_object_stands(story: Story) -> None:
     assert float(story("Plays", "first")["moved"][0]) == pytest.approx(5, abs=1e-4)
 
 
+def test_views_are_drawn_in_their_order(story: Story) -> None:
+    told = story("ShowsViews", "first")
+    assert told["order"] == ["surface 0", "surface 1", "splat 0", "surface 2"]
+    assert told["together"] == ["4 1"]  # draws of the camera, draws that wait for lights
+    assert told["shadow"] == ["0 1"]
+    assert told["nothing"] == ["0 0"]
+    assert told["log"] == []
+
+
+def test_splats_are_drawn_where_surfaces_cannot_be(story: Story) -> None:
+    told = story("LacksSurface", "first")
+    assert told["together"] == ["1 0"]
+    assert len(told["log"]) == 1
+    assert "Shadow: the surface shader is missing" in told["log"][0]
+
+
 def test_avatars_come_and_go(story: Story) -> None:
     told = story("Crowd", "first", "second")
     counts = [len(synthetic_avatar(seed).rig.texels.texels) for seed in (1, 2)]

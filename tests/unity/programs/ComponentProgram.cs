@@ -92,6 +92,42 @@ namespace Mua
             Say("state", first.State + " " + second.State);
         }
 
+        private static void ShowsViews()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.Views = (AvatarViews)31;
+            for (int i = 0; i < Patience && (i < 2 || AvatarWorld.Current.Draws.Count < 4); i++)
+            {
+                Frames(1);
+                Thread.Sleep(1);
+            }
+            foreach (AvatarDraw draw in AvatarWorld.Current.Draws)
+            {
+                Say("order", draw.Material.shader.name + " " + draw.Pass);
+            }
+            Say("together", Rendered());
+            shown.Views = AvatarViews.Shadow;
+            Say("shadow", Rendered());
+            shown.Views = AvatarViews.None;
+            Say("nothing", Rendered());
+        }
+
+        /// <summary>Draws of cameras and of lights in a frame.</summary>
+        private static string Rendered()
+        {
+            Frames(2);
+            int draws = Recorder.Draws, renders = Recorder.Renders;
+            Frames(1);
+            return (Recorder.Draws - draws) + " " + (Recorder.Renders - renders);
+        }
+
+        private static void LacksSurface()
+        {
+            Set("surface", null);
+            Show(files[0]);
+            Say("together", Rendered());
+        }
+
         private static void GoesMidUpload()
         {
             AvatarRenderer shown = Begin(files[0]);
