@@ -1,11 +1,13 @@
 """The batch build in stand-ins of the editor: what it writes, what it says, and what it leaves behind."""
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 from csharp import CSharp
 from project_program import ProjectProgram, Told
+from test_compiles import PACKAGE
 
 from mua.deploy.build import AGAIN, ERRORS
 
@@ -147,3 +149,17 @@ def test_ends_the_editor_with_the_outcome(program: ProjectProgram) -> None:
     told = program.tell("RunsFromCommandLine")
     assert told["exit"] == ["exit 1"]
     assert said(told).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
+
+
+def test_the_sample_has_what_the_build_looks_for() -> None:
+    source = (PACKAGE / "Editor" / "PlayerSample.cs").read_text()
+    name, kind, method = (
+        re.findall(rf'const string {word} = "(.+)"', source)[0] for word in ("Name", "SceneType", "SceneMethod")
+    )
+    sample = next(
+        each for each in json.loads((PACKAGE / "package.json").read_text())["samples"] if each["displayName"] == name
+    )
+    namespace, type_name = kind.rsplit(".", 1)
+    scene = (PACKAGE / sample["path"] / "Editor" / f"{type_name}.cs").read_text()
+    assert f"namespace {namespace}\n" in scene
+    assert f"public static void {method}(string path)" in scene

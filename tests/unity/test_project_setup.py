@@ -97,6 +97,13 @@ def test_the_menu_switches_the_platform_and_batch_mode_asks_for_it(program: Proj
     assert batch["log"][-1].endswith("expected Android: start Unity with -buildTarget Android")
 
 
+def test_the_menu_tells_what_is_wrong_and_changes_nothing(program: ProjectProgram) -> None:
+    assert program.tell("Tells")["log"] == [
+        "Log MUA: the project is set up for Quest.",
+        "Error MUA: Player > Color space is Gamma, expected Linear",
+    ]
+
+
 @pytest.mark.parametrize(("own", "asked"), [("nothing", f"{XR} {URP}"), ("Assets/Skin.mat", XR)])
 def test_batch_mode_adds_packages_and_asks_to_be_run_again(program: ProjectProgram, own: str, asked: str) -> None:
     told = program.tell("LacksPackages", "batch", "no", "", own, packages=False)

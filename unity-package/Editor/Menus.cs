@@ -28,6 +28,12 @@ namespace Mua.Editor
             ProjectSetup.PcLink();
         }
 
+        [MenuItem(Root + "Check Project", false, Later + 2)]
+        private static void CheckProject()
+        {
+            ProjectSetup.Tell();
+        }
+
         [MenuItem(Root + "Run Self-Test", false, Last)]
         private static void RunSelfTest()
         {

@@ -26,8 +26,7 @@ namespace Mua.Editor
         /// <summary>A sentence for each thing that is not as it should be for the platform that is active.</summary>
         public static IReadOnlyList<string> Check()
         {
-            bool isQuest = EditorUserBuildSettings.activeBuildTarget == BuildTarget.Android;
-            return Check(isQuest ? BuildTarget.Android : BuildTarget.StandaloneWindows64);
+            return Check(Nearest());
         }
 
         /// <summary>The same for Android, which is Quest, or StandaloneWindows64, which is PC Link. Changes nothing.</summary>
@@ -58,6 +57,12 @@ namespace Mua.Editor
             return Check(target);
         }
 
+        /// <summary>Logs what Check says of the platform that is active.</summary>
+        internal static void Tell()
+        {
+            Tell(Check(), Nearest());
+        }
+
         [InitializeOnLoadMethod]
         private static void Resume()
         {
@@ -79,21 +84,32 @@ namespace Mua.Editor
 
         private static ProjectOutcome Run(BuildTarget target)
         {
+            if (EditorApplication.isPlayingOrWillChangePlaymode)
+            {
+                Debug.LogError("MUA: a project cannot be set up while it plays: leave play mode first.");
+                return ProjectOutcome.Failed;
+            }
             IReadOnlyList<string> missing = ProjectPackages.Missing();
             if (missing.Count > 0 && Unable(target) == null)
             {
                 return Application.isBatchMode ? ProjectPackages.Add(missing) : ProjectPackages.Ask(missing, target);
             }
             IReadOnlyList<string> faults = Apply(target);
+            Tell(faults, target);
+            return faults.Count == 0 ? ProjectOutcome.Done : ProjectOutcome.Failed;
+        }
+
+        private static void Tell(IReadOnlyList<string> faults, BuildTarget target)
+        {
+            string mark = Application.isBatchMode ? "MUA-BUILD FAIL" : "MUA:";
             foreach (string fault in faults)
             {
-                Debug.LogError($"MUA-BUILD FAIL {fault}");
+                Debug.LogError($"{mark} {fault}");
             }
             if (faults.Count == 0)
             {
                 Debug.Log($"MUA: the project is set up for {Name(target)}.");
             }
-            return faults.Count == 0 ? ProjectOutcome.Done : ProjectOutcome.Failed;
         }
 
         // Lazily: a setting may need what the one before it made.
@@ -105,6 +121,12 @@ namespace Mua.Editor
                 .Concat(ProjectGraphics.Settings(isQuest))
                 .Concat(ProjectXr.Settings(target))
                 .Concat(ProjectPlayer.Active(target));
+        }
+
+        private static BuildTarget Nearest()
+        {
+            bool isQuest = EditorUserBuildSettings.activeBuildTarget == BuildTarget.Android;
+            return isQuest ? BuildTarget.Android : BuildTarget.StandaloneWindows64;
         }
 
         private static string Unable(BuildTarget target)

@@ -106,6 +106,17 @@ namespace Mua.Editor
             Say("platform", EditorUserBuildSettings.activeBuildTarget);
         }
 
+        private static void Tells(string[] arguments)
+        {
+            Process.IsBatchMode = false;
+            EditorUserBuildSettings.SwitchActiveBuildTarget(BuildTargetGroup.Unknown, BuildTarget.Android);
+            ProjectSetup.Apply(BuildTarget.Android);
+            StandIns.Console.Lines.Clear();
+            ProjectSetup.Tell();
+            PlayerSettings.colorSpace = ColorSpace.Gamma;
+            ProjectSetup.Tell();
+        }
+
         private static void LacksPackages(string[] arguments)
         {
             Process.IsBatchMode = arguments[0] == "batch";
