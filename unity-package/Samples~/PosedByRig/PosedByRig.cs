@@ -1,0 +1,60 @@
+using UnityEngine;
+
+namespace Mua.Samples.PosedByRig
+{
+    /// <summary>
+    /// Shows an avatar in the place of a rigged character: whatever moves the rig, an Animator, a script or physics, moves the
+    /// avatar. The joints are found by name.
+    /// </summary>
+    [RequireComponent(typeof(AvatarRenderer))]
+    public sealed class PosedByRig : MonoBehaviour
+    {
+        [SerializeField, Tooltip("Root of the character that the avatar was made from, with joints of the same names.")]
+        private Transform rig = null;
+
+        private AvatarRenderer avatar;
+        private Renderer[] hidden = new Renderer[0];
+
+        /// <summary>Root of the rigged character; set it while the component is disabled.</summary>
+        public Transform Rig
+        {
+            get => rig;
+            set => rig = value;
+        }
+
+        private void OnEnable()
+        {
+            avatar = GetComponent<AvatarRenderer>();
+            avatar.Rig = rig;
+            hidden = rig == null ? new Renderer[0] : rig.GetComponentsInChildren<Renderer>();
+            Show(false);
+        }
+
+        private void OnDisable()
+        {
+            avatar.Rig = null;
+            Show(true);
+        }
+
+        /// <summary>Before the avatar's own LateUpdate, which reads the joints.</summary>
+        private void LateUpdate()
+        {
+            if (rig != null)
+            {
+                transform.SetPositionAndRotation(rig.position, rig.rotation);
+            }
+        }
+
+        /// <summary>The rig's own meshes.</summary>
+        private void Show(bool isShown)
+        {
+            foreach (Renderer mesh in hidden)
+            {
+                if (mesh != null)
+                {
+                    mesh.enabled = isShown;
+                }
+            }
+        }
+    }
+}
