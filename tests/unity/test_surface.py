@@ -46,6 +46,7 @@ PASSES = ("Geometry", "Mesh", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 LEAST_PSNR = 60.0  # dB; matrices are rounded to float32 on another way, and the depth of one of the two is reversed
 FEW_PIXELS = 3e-3  # of those covered, that a rounded edge may move
+SPLAT_WORDS = 16
 MAP = 512  # pixels along a shadow map
 METRES = 4.0  # that it spans
 
@@ -187,14 +188,19 @@ class Painter:
         given = {"unity_StereoEyeIndex": 0, "_ProjectionParams": rows(turned=turned), **engine}
         return target.image(lambda render_pass: draw.draw(render_pass, **given), half(plane))
 
-    def player(self, name: str, eye: int, *, plane: float | None = None) -> Array:
-        """[H, W, 4] of one eye."""
+    def player(self, name: str, eye: int, *, plane: float | None = None, shared: bool = False) -> Array:
+        """[H, W, 4] of one eye; `shared`: with the other avatar's splats before its own."""
         scene = self.scene
+        first = 0 if shared else scene.first_splat
         splats, vertex_dq, mesh = (
-            self.device.buffer(scene.drawn[owner].buffers[name], name=name)
-            for owner, name in (("Geometry", "splats"), ("Mesh", "vertex_dq"), ("Mesh", "mesh"))
+            self.device.buffer(scene.drawn[owner].buffers[name][skipped:], name=name)
+            for owner, name, skipped in (
+                ("Geometry", "splats", SPLAT_WORDS * first),
+                ("Mesh", "vertex_dq", 0),
+                ("Mesh", "mesh", 0),
+            )
         )
-        buffers = PosedBuffers(splats, vertex_dq, mesh, first_splat=scene.first_splat)
+        buffers = PosedBuffers(splats, vertex_dq, mesh, first_splat=scene.first_splat - first)
         overlays = Overlays(self.device, scene.avatar, buffers, color=self.format, depth=DEPTH_FORMAT)
         clip, camera = scene.avatar.clips[0], scene.cameras[eye]
         overlays.pose(clip.rotations[FRAME], clip.translation[FRAME], ground=0.0)
@@ -237,6 +243,10 @@ def agree(found: Array, expected: Array) -> None:
 def test_each_view_is_as_the_player_draws_it(painter: Painter, name: str, turned: bool) -> None:
     found = painter.unity(name, turned=turned)
     agree(found[::-1] if turned else found, painter.player(name, 0))
+
+
+def test_the_player_draws_an_avatar_wherever_its_splats_begin(painter: Painter) -> None:
+    np.testing.assert_array_equal(painter.player("Geometry", 0, shared=True), painter.player("Geometry", 0))
 
 
 @pytest.mark.parametrize("eye", [0, 1])
