@@ -275,6 +275,12 @@ def test_a_bench_takes_the_avatar_of_the_scene_alone(story: Story) -> None:
     assert ran.said["on"] == ["True False 1"]
 
 
+@pytest.mark.parametrize("name", ["Plays", "LooksDown"])
+def test_a_bench_has_the_avatar_before_the_camera(story: Story, name: str) -> None:
+    middle = [float(word) for word in story(name, *BENCH).said["middle"][0].split()]
+    assert middle == pytest.approx([0, 0, 2], abs=0.3)  # the clip moves it
+
+
 def failure(ran: Ran) -> str:
     """What mua-deploy tells of a bench that failed."""
     assert (ran.said["over"], ran.said["exit"]) == (["True"], ["1"])

@@ -74,6 +74,12 @@ namespace Mua
             Say("over", run == null);
             Say("exit", Machine.ExitCode);
             Say("shown", Shown().Length);
+            Camera eye = UnityEngine.Object.FindFirstObjectByType<Camera>();
+            foreach (AvatarRenderer shown in eye == null ? new AvatarRenderer[0] : Shown())
+            {
+                Vector3 middle = eye.transform.InverseTransformPoint(shown.Bounds.center);
+                Say("middle", middle.x + " " + middle.y + " " + middle.z);
+            }
         }
 
         private static void PlaysFromPackage()
@@ -139,6 +145,13 @@ namespace Mua
         {
             Timings.Gpu = 4.5;
             Markers.Measure("MUA sort", 2000000);
+            Plays();
+        }
+
+        private static void LooksDown()
+        {
+            Transform eye = new GameObject("eye").AddComponent<Camera>().transform;
+            eye.SetPositionAndRotation(new Vector3(4, 1.6f, -1), Quaternion.Euler(80, 30, 0));
             Plays();
         }
 

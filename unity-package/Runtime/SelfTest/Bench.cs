@@ -15,7 +15,7 @@ namespace Mua.SelfTest
         private const float LoadSeconds = 45; // mua-deploy gives up after 60 without an answer
         private const float WarmSeconds = 2;
         private const float MostSeconds = 3600;
-        private const float Distance = 2; // metres from the camera to an avatar that no scene placed
+        private const float Distance = 2; // metres from the camera to the middle of the avatar
 
         private readonly RunLog log;
         private readonly string avatar;
@@ -55,6 +55,10 @@ namespace Mua.SelfTest
             while (IsLoading && Time.realtimeSinceStartup - begun < LoadSeconds)
             {
                 yield return null;
+            }
+            if (IsReady)
+            {
+                yield return Centre();
             }
             begun = Time.realtimeSinceStartup;
             while (IsReady && Time.realtimeSinceStartup - begun < WarmSeconds)
@@ -101,7 +105,7 @@ namespace Mua.SelfTest
             }
             if (shown == null)
             {
-                shown = Place();
+                shown = new GameObject("MUA bench").AddComponent<AvatarRenderer>();
                 shown.Load(AvatarPath);
             }
             shown.ClipIndex = 0;
@@ -109,23 +113,31 @@ namespace Mua.SelfTest
             shown.IsPlaying = true;
         }
 
-        /// <summary>A renderer on the ground in front of the camera, which it makes where there is none.</summary>
-        private static AvatarRenderer Place()
+        /// <summary>
+        /// Turns the avatar's face to the camera and brings its middle before it, wherever the headset lies: a coroutine, as
+        /// the box of another pose is there a frame later.
+        /// </summary>
+        private IEnumerator Centre()
+        {
+            Transform eye = Eye().transform;
+            Vector3 ahead = eye.forward, level = new Vector3(ahead.x, 0, ahead.z);
+            shown.transform.rotation = Quaternion.LookRotation(level.sqrMagnitude > 0 ? -level : Vector3.back);
+            yield return null;
+            yield return null;
+            if (IsReady)
+            {
+                shown.transform.position += eye.position + Distance * ahead - shown.Bounds.center;
+            }
+        }
+
+        private static Camera Eye()
         {
             Camera camera = Camera.main;
             if (camera == null)
             {
-                camera = new GameObject("MUA camera").AddComponent<Camera>();
-                camera.transform.position = new Vector3(0, 1, -Distance);
+                camera = UnityEngine.Object.FindFirstObjectByType<Camera>();
             }
-            Vector3 ahead = camera.transform.forward;
-            ahead.y = 0;
-            ahead = ahead.sqrMagnitude > 0 ? ahead.normalized : Vector3.forward;
-            Vector3 at = camera.transform.position + Distance * ahead;
-            at.y = 0;
-            var place = new GameObject("MUA bench");
-            place.transform.SetPositionAndRotation(at, Quaternion.LookRotation(-ahead));
-            return place.AddComponent<AvatarRenderer>();
+            return camera != null ? camera : new GameObject("MUA camera").AddComponent<Camera>();
         }
 
         private string Problem()

@@ -15,7 +15,7 @@ namespace Mua.SelfTest
             {
                 return null;
             }
-            var place = new GameObject("MUA run") { hideFlags = HideFlags.HideAndDontSave };
+            var place = new GameObject("MUA run");
             DontDestroyOnLoad(place);
             var run = place.AddComponent<PlayerRun>();
             run.StartCoroutine(run.Go(line));
