@@ -32,7 +32,7 @@ def test_writes_the_apk_under_its_name_at_last(program: ProjectProgram, tmp_path
     assert told["ended"] == ["Done"]
     assert [path.name for path in apk.parent.iterdir()] == ["mua-player.apk"]
     assert apk.read_text() == "whole"
-    assert told["location"] == [str(apk.with_name("mua-player.part.apk"))]
+    assert told["location"] == [str(apk.with_name("mua-player.apk.part") / "mua-player.apk")]
     assert (told["scene"], told["scenes"]) == (["Assets/MUA/Player.unity"], ["Assets/MUA/Player.unity"])
     assert (told["built as"], told["built as player"], told["options"]) == (["com.mua.player"], ["True"], ["None"])
     assert re.fullmatch(rf"MUA-BUILD OK {re.escape(str(apk))}, 0\.0 MB, \d+ s", said(told))
@@ -92,8 +92,8 @@ def test_windows_gets_a_folder(program: ProjectProgram, tmp_path: Path) -> None:
     told = program.tell("Builds", "PcLink", "succeeds", "-muaOutput", folder)
     assert told["ended"] == ["Done"]
     assert [path.name for path in tmp_path.iterdir()] == ["Player"]
-    assert [path.name for path in folder.iterdir()] == ["mua-player.exe"]
-    told = program.tell("Builds", "PcLink", "fails", "-muaOutput", folder)
+    assert {path.name for path in folder.iterdir()} == {"mua-player.exe", "mua-player.exe.symbols.zip"}
+    told = program.tell("Builds", "PcLink", "fails", "-muaOutput", f"{folder}/")
     assert told["ended"] == ["Failed"]
     assert not list(tmp_path.iterdir())
 

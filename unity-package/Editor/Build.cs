@@ -1,6 +1,7 @@
 using System;
 using System.Collections.Generic;
 using System.Diagnostics;
+using System.IO;
 using System.Linq;
 using UnityEditor;
 using UnityEditor.Build;
@@ -111,6 +112,7 @@ namespace Mua.Editor
             };
             try
             {
+                Directory.CreateDirectory(Path.GetDirectoryName(output.Unfinished));
                 Require(BuildAsPlayer(options).summary);
                 output.Finish();
             }

@@ -31,7 +31,8 @@ namespace Mua.Editor
             {
                 throw new BuildFailedException($"the command line has no {OutputWord} PATH, expected where to write the player");
             }
-            return new BuildArguments(Path.GetFullPath(output), Array.IndexOf(words, DevelopmentWord) >= 0);
+            string path = Path.GetFullPath(output).TrimEnd(Path.DirectorySeparatorChar, Path.AltDirectorySeparatorChar);
+            return new BuildArguments(path, Array.IndexOf(words, DevelopmentWord) >= 0);
         }
     }
 }

@@ -7,8 +7,8 @@ using UnityEditor.Build;
 namespace Mua.Editor
 {
     /// <summary>
-    /// Where a build goes: made under another name, and there under its own only when it is whole. Nothing older is left
-    /// from Prepare on, so that what is there is always this build's.
+    /// Where a build goes: made in a folder beside it, and moved under its own name only when it is whole. Nothing older is
+    /// left from Prepare on, so that what is there is always this build's.
     /// </summary>
     internal abstract class BuildOutput
     {
@@ -23,8 +23,10 @@ namespace Mua.Editor
         /// <summary>Of the whole build; a folder on Windows.</summary>
         public string Path { get; }
 
-        /// <summary>What Unity is to write.</summary>
+        /// <summary>What Unity is to write; other files that it leaves beside it go with Discard.</summary>
         public abstract string Unfinished { get; }
+
+        protected string Part => Path + ".part";
 
         /// <summary>Errors: BuildFailedException where the path is none for the platform.</summary>
         public static BuildOutput Of(BuildTarget target, string path)
@@ -42,7 +44,8 @@ namespace Mua.Editor
                 string trial = System.IO.Path.Combine(above, System.IO.Path.GetRandomFileName());
                 File.WriteAllBytes(trial, new byte[0]);
                 File.Delete(trial);
-                Clear();
+                Remove(Path);
+                Discard();
             }
             catch (Exception error) when (error is IOException || error is UnauthorizedAccessException)
             {
@@ -54,12 +57,25 @@ namespace Mua.Editor
         public abstract void Finish();
 
         /// <summary>Removes what is not whole.</summary>
-        public abstract void Discard();
+        public void Discard()
+        {
+            Remove(Part);
+        }
 
         /// <summary>Bytes of the whole build.</summary>
         public abstract long Size();
 
-        protected abstract void Clear();
+        private static void Remove(string path)
+        {
+            if (Directory.Exists(path))
+            {
+                Directory.Delete(path, true);
+            }
+            else
+            {
+                File.Delete(path);
+            }
+        }
 
         private sealed class Apk : BuildOutput
         {
@@ -75,27 +91,16 @@ namespace Mua.Editor
                 }
             }
 
-            public override string Unfinished => System.IO.Path.ChangeExtension(Path, ".part" + Extension);
+            public override string Unfinished => System.IO.Path.Combine(Part, System.IO.Path.GetFileName(Path));
 
             public override void Finish()
             {
                 File.Move(Unfinished, Path);
             }
 
-            public override void Discard()
-            {
-                File.Delete(Unfinished);
-            }
-
             public override long Size()
             {
                 return new FileInfo(Path).Length;
-            }
-
-            protected override void Clear()
-            {
-                File.Delete(Path);
-                Discard();
             }
         }
 
@@ -114,35 +119,14 @@ namespace Mua.Editor
 
             public override string Unfinished => System.IO.Path.Combine(Part, Program);
 
-            private string Part => Path + ".part";
-
             public override void Finish()
             {
                 Directory.Move(Part, Path);
             }
 
-            public override void Discard()
-            {
-                Remove(Part);
-            }
-
             public override long Size()
             {
                 return new DirectoryInfo(Path).EnumerateFiles("*", SearchOption.AllDirectories).Sum(file => file.Length);
-            }
-
-            protected override void Clear()
-            {
-                Remove(Path);
-                Remove(Part);
-            }
-
-            private static void Remove(string folder)
-            {
-                if (Directory.Exists(folder))
-                {
-                    Directory.Delete(folder, true);
-                }
             }
         }
     }

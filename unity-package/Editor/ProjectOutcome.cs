@@ -6,7 +6,7 @@ namespace Mua.Editor
         Done = 0,
         Failed = 1,
 
-        /// <summary>Packages or scripts were brought; the same command is to be run once more. 2 is Unity's own, for tests.</summary>
-        Again = 3,
+        /// <summary>Packages or scripts were brought; the same command is to be run once more.</summary>
+        Again = 3, // 2 is Unity's own, for tests
     }
 }

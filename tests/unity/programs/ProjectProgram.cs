@@ -190,8 +190,8 @@ namespace Mua.Editor
             Say("options", options.options);
             Say("built as", PlayerSettings.GetApplicationIdentifier(NamedBuildTarget.Android));
             Say("built as player", Build.IsOfPlayer);
-            Directory.CreateDirectory(Path.GetDirectoryName(options.locationPathName));
             File.WriteAllText(options.locationPathName, "whole");
+            File.WriteAllText(options.locationPathName + ".symbols.zip", "beside it");
             if (what == "throws")
             {
                 throw new InvalidOperationException("out of disk\nand more");
