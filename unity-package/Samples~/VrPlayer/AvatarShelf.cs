@@ -8,8 +8,8 @@ using UnityEngine.Networking;
 namespace Mua.Samples.VrPlayer
 {
     /// <summary>
-    /// The avatars that the player finds: files in the folder of avatars first, then those that came with the app, both by name,
-    /// then those of the scene.
+    /// The avatars that the player finds: files in the folder of avatars first, then those that came with the app, both by
+    /// name, then those of the scene.
     /// </summary>
     internal sealed class AvatarShelf
     {

@@ -77,7 +77,8 @@ namespace Mua.Samples.VrPlayer
         /// <summary>Pixels of the mouse with its right button held.</summary>
         private static Vector2 Drag()
         {
-            return Mouse.current != null && Mouse.current.rightButton.isPressed ? Mouse.current.delta.ReadValue() : Vector2.zero;
+            Mouse mouse = Mouse.current;
+            return mouse != null && mouse.rightButton.isPressed ? mouse.delta.ReadValue() : Vector2.zero;
         }
 #elif ENABLE_LEGACY_INPUT_MANAGER
         private static bool WentDown(KeyName key)

@@ -70,7 +70,7 @@ namespace Mua.Samples.VrPlayer
             return new Vector2(Beyond(value.x), Beyond(value.y));
         }
 
-        /// <summary>A stick's way beyond the dead zone, from -1 to 1; the axes apart, so that one does not bleed into the other.</summary>
+        /// <summary>An axis's way beyond the dead zone, -1 to 1; by itself, so that a turn does not bleed into the zoom.</summary>
         private static float Beyond(float value)
         {
             float way = Mathf.Max(0, Mathf.Abs(value) - DeadZone) / (1 - DeadZone);

@@ -57,7 +57,7 @@ namespace Mua.Samples.VrPlayer
             return this;
         }
 
-        /// <summary>A number that is not negative, to a number of digits behind the point; a dash where it is not known.</summary>
+        /// <summary>A number that is not negative, with so many digits behind the point; a dash where it is NaN.</summary>
         public PanelText Add(double value, int digits)
         {
             int scale = 1;

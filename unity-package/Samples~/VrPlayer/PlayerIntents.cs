@@ -2,7 +2,9 @@ using UnityEngine;
 
 namespace Mua.Samples.VrPlayer
 {
-    /// <summary>What the user asks for in one frame, whichever device said so. Amounts are of full speed, from -1 to 1.</summary>
+    /// <summary>
+    /// What the user asks for in one frame, whichever device said so. Amounts are of full speed, from -1 to 1.
+    /// </summary>
     internal struct PlayerIntents
     {
         /// <summary>Buttons and keys that went down in this frame.</summary>

@@ -21,7 +21,9 @@ namespace Mua.Samples.VrPlayer.Editor
         private static readonly Color Background = new Color(0.16f, 0.17f, 0.19f);
         private static readonly Color Ground = new Color(0.45f, 0.45f, 0.45f);
 
-        /// <summary>Writes the scene to a path in Assets, and opens it. Every imported avatar of the project is in it.</summary>
+        /// <summary>
+        /// Writes the scene to a path in Assets, and opens it. Every imported avatar of the project is in it.
+        /// </summary>
         public static void Create(string path)
         {
             Directory.CreateDirectory(Path.GetDirectoryName(path));
@@ -32,7 +34,7 @@ namespace Mua.Samples.VrPlayer.Editor
             AddUser(AddAvatar());
             if (!EditorSceneManager.SaveScene(scene, path))
             {
-                throw new InvalidOperationException("The scene could not be saved as " + path + "; a path in Assets was expected.");
+                throw new InvalidOperationException(path + ": the scene could not be saved; expected a path in Assets.");
             }
         }
 
