@@ -167,6 +167,7 @@ def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
 
 def test_the_panel_says_what_is_shown_and_how_fast(story: Story) -> None:
     told = story("Panel")
+    assert told["first"][0].startswith("72 fps   13.9 ms a frame")
     assert "|loading 0 %|" in told["first"][0]
     assert told["panel"][0].split("|") == [
         "72 fps   13.9 ms a frame   9.8 ms GPU",

@@ -18,7 +18,7 @@ namespace Mua.Samples.VrPlayer
         private readonly StageTimes times = new StageTimes();
         private readonly PanelText text = new PanelText();
         private string last = "";
-        private float elapsed = Interval; // seconds since the last text
+        private float elapsed; // seconds since the last text
         private int frames; // in these
 
         public StatusPanel(TextMesh target, AvatarRenderer shown, AvatarShelf shelf, HeadsetDisplay display)
@@ -35,7 +35,7 @@ namespace Mua.Samples.VrPlayer
             FrameTimingManager.CaptureFrameTimings();
             elapsed += seconds;
             frames++;
-            if (elapsed < Interval)
+            if (elapsed < Interval && last.Length > 0)
             {
                 return;
             }
