@@ -40,6 +40,23 @@ def distil(
 
     Raises InputError where the recording has another texture size than `settings`, or no training frame.
     """
+    student, samples = prepare(recording, settings)
+    train(
+        student,
+        samples,
+        settings=settings,
+        checkpoints=Checkpoints(directory, run_key((settings, recording.fingerprint()), [student.mean, student.scale])),
+        device=device,
+        report=_Reporter(report),
+    )
+    return student.cpu()
+
+
+def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]:
+    """A student that is not trained yet, its normalisation set, and what it is to be trained on.
+
+    Raises InputError where the recording has another texture size than `settings`, or no training frame.
+    """
     size = recording.rig.texels.size
     if size != settings.texels:
         raise InputError(f"recording {recording.directory}: has {size} texels along a side, expected {settings.texels}")
@@ -48,8 +65,7 @@ def distil(
         raise InputError(f"recording {recording.directory}: holds no training frame, expected at least one")
     skeleton = recording.rig.skeleton
     encoding = PoseEncoding(choose_joints(skeleton, training, moving_joints(recording.rig)), rate=recording.rate)
-    described = [describe(skeleton, encoding, c.rotations, c.translation)[c.recorded] for c in training if len(c)]
-    descriptors = np.concatenate(described)
+    descriptors = describe_frames(recording, encoding)
     student = Student(
         settings,
         encoding=encoding,
@@ -60,15 +76,15 @@ def distil(
     normal = normalization(descriptors)
     student.mean.copy_(torch.from_numpy(normal.mean))
     student.scale.copy_(torch.from_numpy(normal.scale))
-    train(
-        student,
-        _samples(recording, descriptors),
-        settings=settings,
-        checkpoints=Checkpoints(directory, run_key((settings, recording.fingerprint()), [student.mean, student.scale])),
-        device=device,
-        report=_Reporter(report),
-    )
-    return student.cpu()
+    return student, _samples(recording, descriptors)
+
+
+def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: bool = False) -> Array:
+    """Descriptors [F, k D] of the recorded frames of a kind, in the order of recording."""
+    clips = [clip for clip in recording.clips if clip.held_out == held_out and len(clip)]
+    skeleton = recording.rig.skeleton
+    described = [describe(skeleton, encoding, clip.rotations, clip.translation)[clip.recorded] for clip in clips]
+    return np.concatenate([np.zeros((0, encoding.width)), *described])
 
 
 def moving_joints(rig: Rig) -> Array:
