@@ -213,6 +213,7 @@ def test_the_menu_is_complete(story: Story) -> None:
         "MUA/Create Demo Scene",
         "MUA/Set Up Project for Quest",
         "MUA/Set Up Project for PC Link",
+        "MUA/Check Project",
         "MUA/Run Self-Test",
         "GameObject/MUA Avatar",
     }
