@@ -64,7 +64,7 @@ def document(stem: str, listed: list[Case]) -> tuple[str, bytes]:
         }
         for case in listed
     ]
-    return json.dumps({"kernel": f"{stem}.compute", "cases": found}, indent=1) + "\n", blob.content
+    return json.dumps({"kernel": f"{stem}.compute", "cases": found}, indent=1, allow_nan=False) + "\n", blob.content
 
 
 def generate() -> dict[Path, bytes]:

@@ -95,7 +95,7 @@ def test_the_menu_says_how_many_cases_passed(story: Story, answered: Callable[[S
     told = answered(story, "Menu")
     assert told["dialog"] == [f"{CASES} of {CASES} cases passed on stand-in."]
     assert told["Log"][-1] == f"MUA-SELFTEST editor PASS {CASES}/{CASES}"
-    assert story("Menu")["dialog"] == [f"0 of {CASES} cases passed on stand-in. The console says what failed."]
+    assert story("Menu")["dialog"] == [f"0 of {CASES} cases passed on stand-in; the console says what failed."]
 
 
 def test_the_menu_says_that_the_golden_files_are_missing(story: Story) -> None:

@@ -156,7 +156,7 @@ def test_a_device_is_described_in_a_line(story: Story) -> None:
     assert "Vulkan" in described
 
 
-@pytest.mark.parametrize("name", ["IsStuck", "IsBroken"])
+@pytest.mark.parametrize("name", ["IsStuck", "IsBroken", "IsBrokenAndWaits"])
 def test_a_buffer_that_cannot_be_read_fails_its_case(story: Story, name: str) -> None:
     failed = story(name).failed
     assert len(failed) == CASES

@@ -25,8 +25,8 @@ namespace Mua.Editor
             while (steps.MoveNext())
             {
             }
-            string sentence = test.Passed + " of " + test.Total + " cases passed on " + SystemInfo.graphicsDeviceName + ".";
-            EditorUtility.DisplayDialog(Title, test.HasPassed ? sentence : sentence + " The console says what failed.", "OK");
+            string sentence = test.Passed + " of " + test.Total + " cases passed on " + SystemInfo.graphicsDeviceName;
+            EditorUtility.DisplayDialog(Title, sentence + (test.HasPassed ? "." : "; the console says what failed."), "OK");
         }
     }
 }

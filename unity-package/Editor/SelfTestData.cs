@@ -5,7 +5,7 @@ using UnityEngine;
 
 namespace Mua.Editor
 {
-    /// <summary>Puts the golden files into builds of the player, which mua-deploy tests; into no other application.</summary>
+    /// <summary>Puts golden files into builds of the player, which mua-deploy tests; into no other application.</summary>
     internal sealed class SelfTestData : BuildPlayerProcessor
     {
         private static readonly string[] Endings = { ".json", ".bin" };

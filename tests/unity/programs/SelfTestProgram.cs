@@ -116,6 +116,12 @@ namespace Mua
             Plays();
         }
 
+        private static void IsBrokenAndWaits()
+        {
+            Machine.Readback(false);
+            IsBroken();
+        }
+
         private static void LacksCompute()
         {
             Machine.ComputeShaders(false);

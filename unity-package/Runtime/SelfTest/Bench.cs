@@ -39,8 +39,7 @@ namespace Mua.SelfTest
         public IEnumerator Run()
         {
             RunLog.SayDevice();
-            float length;
-            if (!float.TryParse(seconds, NumberStyles.Float, CultureInfo.InvariantCulture, out length)
+            if (!float.TryParse(seconds, NumberStyles.Float, CultureInfo.InvariantCulture, out float length)
                 || !(length > 0 && length <= MostSeconds))
             {
                 log.Say("FAIL -muaSeconds is " + (seconds ?? "missing") + ", expected a number up to " + MostSeconds);
@@ -79,9 +78,12 @@ namespace Mua.SelfTest
                     yield return null;
                     frames.Add();
                 }
-                log.Say(IsReady ? "END" : "FAIL " + Problem());
                 IsDone = IsReady;
-                Write(frames);
+                log.Say(IsDone ? "END" : "FAIL " + Problem());
+                if (IsDone)
+                {
+                    Write(frames);
+                }
             }
         }
 
@@ -92,7 +94,8 @@ namespace Mua.SelfTest
         /// <summary>The scene's own renderer of the avatar, or a new one; all others are switched off.</summary>
         private void Show()
         {
-            foreach (AvatarRenderer found in UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None))
+            var all = UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None);
+            foreach (AvatarRenderer found in all)
             {
                 if (shown == null && found.isActiveAndEnabled && found.Shows(avatar))
                 {
@@ -114,8 +117,8 @@ namespace Mua.SelfTest
         }
 
         /// <summary>
-        /// Turns the avatar's face to the camera and brings its middle before it, wherever the headset lies: a coroutine, as
-        /// the box of another pose is there a frame later.
+        /// Turns the avatar's face to the camera and brings its middle before it, wherever the headset lies: a coroutine,
+        /// as the box of another pose is there a frame later.
         /// </summary>
         private IEnumerator Centre()
         {

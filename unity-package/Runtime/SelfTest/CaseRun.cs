@@ -58,7 +58,8 @@ namespace Mua.SelfTest
             foreach (GoldenExpected part in golden.expected)
             {
                 Readback readback = readbacks[part.buffer];
-                string found = readback.Problem.Length > 0 ? part.buffer + " " + readback.Problem : Compare(part, readback.Words);
+                bool isRead = readback.Problem.Length == 0;
+                string found = isRead ? Compare(part, readback.Words) : part.buffer + " " + readback.Problem;
                 if (found.Length > 0)
                 {
                     return found;
@@ -135,7 +136,8 @@ namespace Mua.SelfTest
             }
             else if (values.Length == 4)
             {
-                kernel.Set(commands, id, new Vector4((float)values[0], (float)values[1], (float)values[2], (float)values[3]));
+                var vector = new Vector4((float)values[0], (float)values[1], (float)values[2], (float)values[3]);
+                kernel.Set(commands, id, vector);
             }
             else
             {

@@ -47,7 +47,7 @@ namespace Mua.SelfTest
             return Array.FindIndex(buffers, found => found.name == buffer);
         }
 
-        /// <summary>InvalidDataException unless the case can be run and all it speaks of lies in `size` bytes.</summary>
+        /// <summary>InvalidDataException unless the case can run and all it speaks of lies in `size` bytes.</summary>
         public void Check(int size)
         {
             Require(entry.Length > 0 && char.IsLetter(entry[0]), "entry");

@@ -53,7 +53,8 @@ namespace Mua.SelfTest
             }
             catch (InvalidDataException error)
             {
-                throw new InvalidDataException(stem + ".json with " + binary.Length + " bytes of .bin: " + error.Message);
+                throw new InvalidDataException(
+                    stem + ".json with " + binary.Length + " bytes of .bin: " + error.Message);
             }
             return file;
         }

@@ -7,7 +7,7 @@ using UnityEditor.PackageManager;
 
 namespace Mua.SelfTest
 {
-    /// <summary>Where the golden files lie: in StreamingAssets of a player; for the editor, in or beside the package.</summary>
+    /// <summary>Where golden files lie: in StreamingAssets of a player; for the editor, in or beside the package.</summary>
     internal static class GoldenFolder
     {
         /// <summary>In StreamingAssets; the editor puts it into players (Editor/SelfTestData.cs).</summary>
@@ -17,7 +17,7 @@ namespace Mua.SelfTest
 #if UNITY_EDITOR
         /// <summary>What is wrong where Find finds nothing.</summary>
         public const string Missing =
-            "com.mua.avatar came without golden files; install it from its tarball, or from a folder of the repository.";
+            "com.mua.avatar came without golden files; install it from its tarball or from a folder of the repository.";
 
         /// <summary>In a tarball all lie together; in the repository, kernels' and avatars' lie apart.</summary>
         private static readonly string[] Places = { "Tests/Golden~", "../tests/parity/golden", "../tests/golden" };

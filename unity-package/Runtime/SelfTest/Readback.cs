@@ -1,3 +1,4 @@
+using System;
 using UnityEngine;
 using UnityEngine.Rendering;
 
@@ -38,10 +39,24 @@ namespace Mua.SelfTest
             {
                 return true;
             }
+            try
+            {
+                Read();
+            }
+            catch (Exception error) // whatever the engine refuses, the case fails and the run goes on
+            {
+                Problem = "could not be read back: " + error.Message;
+            }
+            return words != null || Problem.Length > 0;
+        }
+
+        private void Read()
+        {
             if (!isAsync)
             {
-                words = new uint[Count];
-                buffer.GetData(words);
+                var found = new uint[Count];
+                buffer.GetData(found);
+                words = found;
             }
             else if (!request.done)
             {
@@ -53,10 +68,10 @@ namespace Mua.SelfTest
             }
             else
             {
-                words = new uint[Count];
-                request.GetData<uint>().CopyTo(words);
+                var found = new uint[Count];
+                request.GetData<uint>().CopyTo(found);
+                words = found;
             }
-            return words != null || Problem.Length > 0;
         }
 
         private int Count => buffer.count * (buffer.stride / sizeof(uint));

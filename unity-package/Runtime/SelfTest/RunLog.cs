@@ -27,8 +27,8 @@ namespace Mua.SelfTest
         public static string Device()
         {
             return OneLine(
-                SystemInfo.deviceModel + "; " + SystemInfo.operatingSystem + "; Unity " + Application.unityVersion + "; "
-                + SystemInfo.graphicsDeviceName + "; " + SystemInfo.graphicsDeviceType + "; "
+                SystemInfo.deviceModel + "; " + SystemInfo.operatingSystem + "; Unity " + Application.unityVersion
+                + "; " + SystemInfo.graphicsDeviceName + "; " + SystemInfo.graphicsDeviceType + "; "
                 + SystemInfo.graphicsDeviceVersion + "; " + SystemInfo.graphicsMemorySize + " MB; buffers of a kernel "
                 + SystemInfo.maxComputeBufferInputsCompute + ", of a vertex shader "
                 + SystemInfo.maxComputeBufferInputsVertex + "; threads of a group " + SystemInfo.maxComputeWorkGroupSize

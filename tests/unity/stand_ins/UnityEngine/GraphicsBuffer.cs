@@ -84,6 +84,8 @@ namespace UnityEngine
         {
             CheckUsable("GetData");
             byte[] content = StandIns.Readbacks.Of(this);
+            if (content == null)
+                throw new InvalidOperationException("stand-in: broken");
             if (Buffer.ByteLength(data) > content.Length)
                 throw new ArgumentException("GetData(): Accessing " + Buffer.ByteLength(data) + " bytes of " + content.Length);
             Buffer.BlockCopy(content, 0, data, 0, Buffer.ByteLength(data));
