@@ -40,6 +40,16 @@ def test_menus_exist(menu: str) -> None:
     assert menu.replace(" > ", "/") in menus()
 
 
+def test_every_menu_item_is_in_the_guide() -> None:
+    assert {path.replace("/", " > ") for path in menus()} == set(MENU.findall(GUIDE))
+
+
+def test_every_test_is_in_the_readme_beside_it() -> None:
+    folder = ROOT / "tests" / "unity"
+    named = set(re.findall(r"`(test_\w+\.py)`", (folder / "README.md").read_text()))
+    assert named == {path.name for path in folder.glob("test_*.py")}
+
+
 def test_fields_are_those_of_the_component() -> None:
     serialized = re.findall(r"private \w+ (\w+) = [^;]+;", RENDERER.split("private AvatarLoader")[0])
     assert FIELD.findall(section("The component")) == [name.capitalize() for name in serialized]
