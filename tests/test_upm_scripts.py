@@ -134,6 +134,16 @@ def test_finds_one_fault(packages: list[Path], change: Break, fault: str) -> Non
     assert faults_after(packages, change, metas=True) == [f"com.mua.test/{fault}"]
 
 
+def test_finds_assemblies_that_refer_to_each_other(packages: list[Path]) -> None:
+    third = '{"name": "Mua.Third", "rootNamespace": "Mua", "references": ["Mua.Test"]}'
+    put(packages[0] / "Third/Mua.Third.asmdef", third)
+    found = faults_after(packages, lambda root: edited(root / ASMDEF, references=["Mua.Third"]), metas=True)
+    assert found == [
+        "com.mua.test/Runtime/Mua.Test.asmdef: references: lead back to Mua.Test",
+        "com.mua.test/Third/Mua.Third.asmdef: references: lead back to Mua.Third",
+    ]
+
+
 def test_finds_two_assemblies_in_a_folder(packages: list[Path]) -> None:
     definition = '{"name": "Mua.Second", "rootNamespace": "Mua"}'
     found = faults_after(packages, lambda root: put(root / "Runtime/Mua.Second.asmdef", definition), metas=True)

@@ -85,14 +85,29 @@ def definition_faults(packages: Sequence[Package]) -> Iterator[str]:
             other = known.setdefault(assembly.name, where)
             if other != where:
                 yield f'{where}: name: "{assembly.name}" is also that of {other}'
+    every = [assembly for package in packages for assembly in package.assemblies]
     for package in packages:
         folders = [assembly.path.parent for assembly in package.assemblies]
         for assembly in package.assemblies:
             yield from _shape(package, assembly)
             yield from _references(package, assembly, set(known))
+            if assembly.name in reached(assembly, every):
+                yield f"{package.where(assembly.path)}: references: lead back to {assembly.name}"
             yield from _symbols(package, assembly)
             if folders.count(assembly.path.parent) > 1:
                 yield f"{package.where(assembly.path)}: not the only assembly definition of its folder"
+
+
+def reached(assembly: Assembly, every: Sequence[Assembly]) -> set[str]:
+    """Names of the assemblies that one refers to, and that those refer to."""
+    by_name = {each.name: each for each in every}
+    found: set[str] = set()
+    waiting = [assembly]
+    while waiting:
+        names = {str(name) for name in waiting.pop().items("references")} - found
+        found |= names
+        waiting += [by_name[name] for name in names if name in by_name]
+    return found
 
 
 def _unreadable(package: Package) -> Iterator[str]:
