@@ -15,13 +15,12 @@ namespace Mua
         private readonly CommandBuffer compute = new CommandBuffer { name = "MUA compute" };
         private readonly CommandBuffer draw = new CommandBuffer { name = "MUA draw" };
 
-        private Camera camera; // that `draw` is attached to
+        private Camera camera; // that `draw` is attached to, until another is rendered
 
         public AvatarBuiltIn(AvatarWorld world)
         {
             this.world = world;
             Camera.onPreRender += BeforeCamera;
-            Camera.onPostRender += AfterCamera;
         }
 
         /// <summary>Forgets what the camera that is being rendered was to draw.</summary>
@@ -33,7 +32,6 @@ namespace Mua
         public void Dispose()
         {
             Camera.onPreRender -= BeforeCamera;
-            Camera.onPostRender -= AfterCamera;
             Detach();
             compute.Dispose();
             draw.Dispose();
@@ -63,11 +61,6 @@ namespace Mua
             draw.EndSample(AvatarStages.Draw);
             rendered.AddCommandBuffer(Moment, draw);
             camera = rendered;
-        }
-
-        private void AfterCamera(Camera rendered)
-        {
-            Detach();
         }
 
         private void Detach()

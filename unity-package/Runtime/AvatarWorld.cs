@@ -13,6 +13,7 @@ namespace Mua
     {
         private const int BuffersOfKernel = 8;
         private const int BuffersOfVertex = 4;
+        private const string Universal = "UniversalRenderPipelineAsset"; // an optional package's; AvatarUrp draws there
 
         private static readonly HashSet<string> Reported = new HashSet<string>();
 
@@ -57,6 +58,11 @@ namespace Mua
             }
             Current.avatars.Add(avatar);
             Current.hasChanged = true;
+            RenderPipelineAsset pipeline = GraphicsSettings.currentRenderPipeline;
+            if (pipeline != null && pipeline.GetType().Name != Universal)
+            {
+                Report(pipeline.GetType().Name + " draws no avatars; URP and the built-in render pipeline do.", pipeline);
+            }
         }
 
         public static void Remove(AvatarRenderer avatar)

@@ -1,6 +1,6 @@
 // Draws avatars in a pipeline of stand-ins, and notes each frame in the recording. Arguments: the folder of the kernels, the
-// path of the recording, builtin | urp, XRSettings.StereoRenderingMode or None, a file with the eyes, avatars. Lines of the
-// file: `screen WIDTH HEIGHT NEAR`, then `eye VIEW[16] PROJECTION[16]` for each, Unity's matrices row by row.
+// path of the recording, builtin | urp, XRSettings.StereoRenderingMode or None, a file with the eyes, an avatar. Lines of
+// that file: `screen WIDTH HEIGHT NEAR`, then `eye VIEW[16] PROJECTION[16]` for each, Unity's matrices row by row.
 using System;
 using System.Collections.Generic;
 using System.Globalization;
@@ -14,6 +14,10 @@ using UnityEngine.XR;
 
 namespace Mua
 {
+    internal sealed class OtherPipelineAsset : RenderPipelineAsset
+    {
+    }
+
     internal static class PipelineProgram
     {
         private const int Patience = 4000; // frames, with a millisecond each, until loading must be over
@@ -23,6 +27,7 @@ namespace Mua
         private static readonly List<AvatarRenderer> Avatars = new List<AvatarRenderer>();
         private static Camera main;
         private static Universal universal;
+        private static string file;
         private static int frame;
 
         public static int Main(string[] arguments)
@@ -44,10 +49,8 @@ namespace Mua
                 AvatarUrp.Install(); // as in the editor
                 universal = new Universal();
             }
-            for (int i = 5; i < arguments.Length; i++)
-            {
-                Show(arguments[i]);
-            }
+            file = arguments[5];
+            Show();
             Tell();
             Say("alive", Recorder.AliveCount);
             Say("attached", main.AttachedBuffers);
@@ -91,7 +94,14 @@ namespace Mua
             }
             UnityEngine.Object.DestroyImmediate(other.gameObject);
             Direct();
+            DestroyOne();
             Destroy();
+            Pipelines.Use(ScriptableObject.CreateInstance<OtherPipelineAsset>());
+            Pipelines.Render = null;
+            Avatars.Clear();
+            Show();
+            Frame("other pipeline", true);
+            UnityEngine.Object.DestroyImmediate(Avatars[0].gameObject);
         }
 
         /// <summary>What only URP does with cameras.</summary>
@@ -168,6 +178,28 @@ namespace Mua
             Machine.IndirectArguments(true);
         }
 
+        /// <summary>One of two, when a camera was told to draw its buffers.</summary>
+        private static void DestroyOne()
+        {
+            Show();
+            Avatars[1].Views = AvatarViews.Mesh;
+            Frame("one of two", true);
+            Camera.onPreRender += EndSecond;
+            Frame("one destroyed", true);
+            Camera.onPreRender -= EndSecond;
+            EndSecond(null);
+            Frame("one left", false);
+        }
+
+        private static void EndSecond(Camera camera)
+        {
+            if (Avatars.Count > 1)
+            {
+                UnityEngine.Object.DestroyImmediate(Avatars[1].gameObject);
+                Avatars.RemoveAt(1);
+            }
+        }
+
         /// <summary>The avatars, when a camera has begun with them, or its passes are recorded.</summary>
         private static void Destroy()
         {
@@ -181,6 +213,8 @@ namespace Mua
                 RenderPipelineManager.beginCameraRendering += EndWith;
             }
             Frame("destroyed", true);
+            Camera.onPreRender -= EndWith;
+            RenderPipelineManager.beginCameraRendering -= EndWith;
             Frame("empty", false);
         }
 
@@ -218,7 +252,7 @@ namespace Mua
             Recorder.Note("end");
         }
 
-        private static void Show(string file)
+        private static void Show()
         {
             AvatarRenderer avatar = new GameObject("avatar").AddComponent<AvatarRenderer>();
             avatar.IsPlaying = false;

@@ -42,10 +42,8 @@ namespace Mua
 
         private static void Execute(Data data, UnsafeGraphContext context)
         {
-            if (ReferenceEquals(data.World, AvatarWorld.Current))
-            {
-                data.World.Record(CommandBufferHelpers.GetNativeCommandBuffer(context.cmd), data.Camera, data.Eyes);
-            }
+            CommandBuffer commands = CommandBufferHelpers.GetNativeCommandBuffer(context.cmd);
+            data.World.Record(commands, data.Camera, data.Eyes); // nothing, where the world has gone meanwhile
         }
 
         /// <summary>

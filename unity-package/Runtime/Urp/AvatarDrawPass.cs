@@ -61,10 +61,6 @@ namespace Mua
 
         private static void Execute(Data data, RasterGraphContext context)
         {
-            if (!ReferenceEquals(data.World, AvatarWorld.Current))
-            {
-                return;
-            }
             IReadOnlyList<AvatarDraw> draws = data.World.Draws;
             context.cmd.BeginSample(AvatarStages.Draw);
             for (int i = 0; i < draws.Count; i++)

@@ -25,6 +25,19 @@ namespace UnityEngine.Rendering.Universal
 
         public void EnqueuePass(ScriptableRenderPass pass) { queue.Add(pass); }
 
+        /// <summary>By event, those of one event as they were enqueued.</summary>
+        internal void Sort()
+        {
+            for (int i = 1; i < queue.Count; i++)
+            {
+                ScriptableRenderPass pass = queue[i];
+                int at = i;
+                for (; at > 0 && queue[at - 1].renderPassEvent > pass.renderPassEvent; at--)
+                    queue[at] = queue[at - 1];
+                queue[at] = pass;
+            }
+        }
+
         internal void Record(RenderGraph graph, RenderPassEvent from, RenderPassEvent to)
         {
             for (int i = 0; i < queue.Count; i++)

@@ -139,6 +139,7 @@ namespace StandIns
             UniversalResourceData targets = renderer.Frame.GetOrCreate<UniversalResourceData>();
             targets.Accessible = true;
             targets.HasColor = HasColor;
+            renderer.Sort();
             renderer.Record(graph, RenderPassEvent.BeforeRendering, RenderPassEvent.BeforeRenderingShadows);
             graph.AddStep(start);
             renderer.Record(graph, RenderPassEvent.BeforeRenderingOpaques, RenderPassEvent.AfterRendering);

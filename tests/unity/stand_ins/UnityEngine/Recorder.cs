@@ -223,7 +223,20 @@ namespace StandIns
         internal static void Drawn(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments, GraphicsBuffer indices)
         {
             Draws++;
+            CheckUsable(material.Buffers);
+            if (properties != null)
+                CheckUsable(properties.Buffers);
+            if (arguments != null)
+                arguments.CheckUsable("the arguments of a draw");
+            if (indices != null)
+                indices.CheckUsable("the indices of a draw");
             WriteDraw(material, properties, pass, vertices, instances, arguments, indices);
+        }
+
+        private static void CheckUsable(Dictionary<int, GraphicsBuffer> buffers)
+        {
+            foreach (KeyValuePair<int, GraphicsBuffer> bound in buffers)
+                bound.Value.CheckUsable("a draw");
         }
 
         private static void WriteDraw(Material material, MaterialPropertyBlock properties, int pass, int vertices, int instances, GraphicsBuffer arguments, GraphicsBuffer indices)
