@@ -84,7 +84,8 @@ def test_an_editor_without_the_module_is_told_how_to_get_it(program: ProjectProg
     assert told["fault"] == ["This editor cannot build for Quest: add 'Android Build Support' with Unity Hub"]
     assert told["exit"] == ["exit 1"]
     assert told["log"] == [
-        "Error MUA-BUILD FAIL This editor cannot build for PC Link: add 'Windows Build Support' with Unity Hub"
+        "Error MUA-BUILD FAIL This editor cannot build for PC Link: add 'Windows Build Support' with Unity Hub",
+        "Error MUA-BUILD FAIL This editor cannot build for Quest: add 'Android Build Support' with Unity Hub",
     ]
 
 

@@ -66,21 +66,18 @@ namespace Mua.Editor
         {
             BuildArguments arguments = BuildArguments.Parse(words);
             BuildOutput output = BuildOutput.Of(target, arguments.Output);
+            Require(ProjectSetup.Unable(target));
             output.Prepare();
             ProjectOutcome brought = Bring();
             if (brought != ProjectOutcome.Done)
             {
                 return brought;
             }
-            IReadOnlyList<string> faults = ProjectSetup.Apply(target);
-            if (faults.Count > 0)
-            {
-                throw new BuildFailedException(string.Join("; ", faults));
-            }
+            Require(ProjectSetup.Apply(target).ToArray());
             var watch = Stopwatch.StartNew();
             Write(target, arguments, PlayerSample.CreateScene(), output);
-            Debug.Log(
-                $"MUA-BUILD OK {output.Path}, {output.Size() / Megabyte:0.0} MB, {watch.Elapsed.TotalSeconds:0} s");
+            Debug.Log(FormattableString.Invariant(
+                $"MUA-BUILD OK {output.Path}, {output.Size() / Megabyte:0.0} MB, {watch.Elapsed.TotalSeconds:0} s"));
             return ProjectOutcome.Done;
         }
 
@@ -143,6 +140,15 @@ namespace Mua.Editor
                 EditorUserBuildSettings.buildAppBundle = isBundle;
                 EditorUserBuildSettings.exportAsGoogleAndroidProject = isExport;
                 IsOfPlayer = false;
+            }
+        }
+
+        private static void Require(params string[] faults)
+        {
+            string all = string.Join("; ", faults.Where(fault => fault != null));
+            if (all.Length > 0)
+            {
+                throw new BuildFailedException(all);
             }
         }
 

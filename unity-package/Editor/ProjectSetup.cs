@@ -63,6 +63,13 @@ namespace Mua.Editor
             Tell(Check(), Nearest());
         }
 
+        /// <summary>Null, or why this editor cannot build for a platform.</summary>
+        internal static string Unable(BuildTarget target)
+        {
+            bool isAble = BuildPipeline.IsBuildTargetSupported(BuildPipeline.GetBuildTargetGroup(target), target);
+            return isAble ? null : $"This editor cannot build for {Name(target)}: add '{Module(target)}' with Unity Hub";
+        }
+
         [InitializeOnLoadMethod]
         private static void Resume()
         {
@@ -127,12 +134,6 @@ namespace Mua.Editor
         {
             bool isQuest = EditorUserBuildSettings.activeBuildTarget == BuildTarget.Android;
             return isQuest ? BuildTarget.Android : BuildTarget.StandaloneWindows64;
-        }
-
-        private static string Unable(BuildTarget target)
-        {
-            bool isAble = BuildPipeline.IsBuildTargetSupported(BuildPipeline.GetBuildTargetGroup(target), target);
-            return isAble ? null : $"This editor cannot build for {Name(target)}: add '{Module(target)}' with Unity Hub";
         }
 
         private static string Module(BuildTarget target)

@@ -97,6 +97,8 @@ namespace Mua.Editor
             StandIns.Builds.Modules.Clear();
             Tell("fault", ProjectSetup.Check(BuildTarget.Android));
             Exits(ProjectSetup.PcLink);
+            Flush();
+            Say("ended", Build.Run(BuildTarget.Android, new[] { "-muaOutput", "/nowhere.apk" }));
         }
 
         private static void HasOtherPlatform(string[] arguments)
