@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import upm_assemblies
 import upm_assets
 import upm_manifest
 import upm_scripts
@@ -20,11 +21,11 @@ def faults(folders: Sequence[Path]) -> list[str]:
     packages = [Package(folder) for folder in folders]
     versions = {package.name: str(package.manifest.get("version")) for package in packages}
     found = [*upm_assets.guid_faults(packages), *upm_assets.reference_faults(packages)]
-    found += [*upm_assets.include_faults(packages), *upm_scripts.definition_faults(packages)]
+    found += [*upm_assets.include_faults(packages), *upm_assemblies.faults(packages)]
     for package in packages:
         found += [*upm_manifest.faults(package, versions), *upm_manifest.page_faults(package)]
         found += [*upm_assets.path_faults(package), *upm_assets.hidden_faults(package)]
-        found += [*upm_assets.meta_faults(package), *upm_scripts.source_faults(package)]
+        found += [*upm_assets.meta_faults(package), *upm_scripts.faults(package)]
     return sorted(found)
 
 

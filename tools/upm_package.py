@@ -70,7 +70,7 @@ class Package:
 
     @cached_property
     def assemblies(self) -> Sequence["Assembly"]:
-        """Assembly definitions that are JSON objects; the others are faults of `upm_scripts`."""
+        """Assembly definitions that are JSON objects; the others are faults of `upm_assemblies`."""
         found = []
         for path in self.files(".asmdef"):
             try:
