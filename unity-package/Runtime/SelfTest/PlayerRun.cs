@@ -23,7 +23,7 @@ namespace Mua.SelfTest
         }
 
         [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.AfterSceneLoad)]
-        private static void Begin()
+        private static void BeginOnLoad()
         {
             if (!Application.isEditor)
             {
