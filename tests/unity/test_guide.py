@@ -17,6 +17,7 @@ FIELD = re.compile(r"^\| ([A-Z]\w+) \| ", re.MULTILINE)
 MEMBER = re.compile(r"avatar\.([A-Z]\w+)")
 METHOD = re.compile(r"Mua\.Editor\.(\w+)\.(\w+)")
 WORD = re.compile(r"(?<!\w)(-mua[A-Z]\w+|MUA-[A-Z]+(?: [A-Z]+)?)")
+MARKER = re.compile(r"`(MUA [a-z ]+)`")
 FILE = re.compile(r"`(?:tests/unity/)?((?:tests|tools|docs)/[\w/]+\.\w+|test_\w+\.py)`")
 
 
@@ -68,6 +69,11 @@ def test_methods_of_the_command_line_exist(type_name: str, method: str) -> None:
 @pytest.mark.parametrize("word", sorted(set(WORD.findall(GUIDE))))
 def test_words_of_command_line_and_log_exist(word: str) -> None:
     assert word in CODE
+
+
+@pytest.mark.parametrize("marker", sorted(set(MARKER.findall(GUIDE))))
+def test_markers_exist(marker: str) -> None:
+    assert f'"{marker}"' in CODE
 
 
 @pytest.mark.parametrize("name", sorted(set(FILE.findall(GUIDE))))
