@@ -1,4 +1,4 @@
-// Stand-in. Source: Unity's Graphics repository, com.unity.render-pipelines.core 17.0, Runtime/Utilities/ContextContainer.cs.
+// Stand-in. Source: Unity's Graphics repository, com.unity.render-pipelines.core 17.0, Runtime/Common/ContextContainer.cs.
 using System;
 using System.Collections.Generic;
 
