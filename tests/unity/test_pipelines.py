@@ -212,8 +212,10 @@ def test_what_stands_still_is_only_sorted(recorded: Recorded) -> None:
 
 def test_opaque_views_are_drawn_before_splats_and_bones_after(recorded: Recorded) -> None:
     (frame,) = recorded.frames("all views")
-    draws = [(event["shader"], event["pass"]) for event in frame if event["event"] == "draw"]
-    assert draws == [("surface", 0), ("surface", 1), ("splat", 0), ("surface", 2)] * recorded.mode.passes
+    draws = [event for event in frame if event["event"] == "draw"]
+    order = [("surface", 0), ("surface", 1), ("splat", 0), ("surface", 2)]
+    assert [(event["shader"], event["pass"]) for event in draws] == order * recorded.mode.passes
+    assert ["indices" in event for event in draws] == [True, True, False, False] * recorded.mode.passes
 
 
 def test_the_device_is_told_of_eyes_instances_and_pixels(recorded: Recorded) -> None:
@@ -252,8 +254,9 @@ def test_a_second_camera_sorts_after_the_first_has_drawn(recorded: Recorded) -> 
 
 
 def test_the_scene_view_and_reflections_see_avatars_by_one_eye(recorded: Recorded) -> None:
+    """URP draws the scene view by its default renderer, whatever the camera says."""
     mode = recorded.mode
-    for name in ("scene view", "reflection"):
+    for name in ("scene view", "reflection", *(["scene view with settings"] if mode.pipeline == "urp" else [])):
         steps = recorded.steps(name)[len(mode.camera("main")) + 1 :]
         mono = next(other for other in MODES if label(other) == f"{mode.pipeline} None")
         assert steps == mono.camera("other")
@@ -281,6 +284,7 @@ def test_overlay_cameras_and_other_renderers_draw_avatars(universal: Recorded) -
 
 def test_passes_of_a_camera_that_was_culled_are_not_drawn_by_the_next(universal: Recorded) -> None:
     assert universal.steps("culled") == universal.mode.camera("other", decodes=True)
+    assert universal.steps("culled before another") == universal.mode.unseen("other")[:1]
 
 
 def test_a_camera_of_depth_alone_draws_nothing(universal: Recorded) -> None:

@@ -110,9 +110,15 @@ namespace Mua
             UniversalAdditionalCameraData settings = other.gameObject.AddComponent<UniversalAdditionalCameraData>();
             settings.Own = new ScriptableRenderer();
             Frame("own renderer", true);
+            other.cameraType = CameraType.SceneView;
+            Frame("scene view with settings", true);
+            other.cameraType = CameraType.Game;
             settings.Own = null;
             universal.Culled.Add(main);
             Frame("culled", true);
+            other.cullingMask = ~1;
+            Frame("culled before another", true);
+            other.cullingMask = -1;
             universal.Culled.Clear();
             settings.renderType = CameraRenderType.Overlay;
             main.gameObject.AddComponent<UniversalAdditionalCameraData>().cameraStack.Add(other);
