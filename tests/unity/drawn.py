@@ -123,6 +123,7 @@ class UnityDraw:
             render_pass.draw_indexed(*self._arguments)
 
 
-def rows(*, turned: bool) -> Array:
-    """_ProjectionParams of a target that the engine turns upside down, or not."""
-    return np.array([-1 if turned else 1, 0, 0, 0], np.float32)
+def rows(*, turned: bool) -> dict[str, Array]:
+    """The engine's projections for a target that it turns upside down, or not; of their other values none is read."""
+    projection = np.diag([1.7, -2.3 if turned else 2.3, 0, 0])
+    return {"glstate_matrix_projection": projection, "unity_StereoMatrixP": np.stack([projection, projection])}

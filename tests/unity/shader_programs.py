@@ -9,7 +9,8 @@ from csharp import RUNTIME
 SHADERS = sorted(RUNTIME.rglob("*.shader"))
 STAND_IN = Path(__file__).parent / "stand_ins" / "shader"
 ENGINE = frozenset(  # what a program is given by Unity, or in its place by a test
-    {"_ProjectionParams", "unity_MatrixVP", "unity_StereoEyeIndex", "replayed_layer", "replayed_view"}
+    {"glstate_matrix_projection", "unity_StereoMatrixP", "unity_MatrixVP", "unity_StereoEyeIndex"}
+    | {"replayed_layer", "replayed_view"}
 )
 KERNELS_PACKAGE = "Packages/com.mua.kernels/"  # whose files the compilers find by their names
 VARIANTS = {"mono": (), "instanced": ("STEREO_INSTANCING_ON",), "multiview": ("STEREO_MULTIVIEW_ON",)}

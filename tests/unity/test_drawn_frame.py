@@ -132,7 +132,7 @@ class Painter:
         draw = UnityDraw(self.device, drawn, self.passes[drawn.pass_index], self.folder, defines, self.format)
         target = Target(self.device, self.format, SCREEN, 0.0, self.folder)
         half = None if plane is None else (plane, (0, 0, SCREEN[0] // 2, SCREEN[1]))
-        given = {"unity_StereoEyeIndex": 0, "_ProjectionParams": rows(turned=turned), **engine}
+        given = {"unity_StereoEyeIndex": 0, **rows(turned=turned), **engine}
         return target.image(lambda render_pass: draw.draw(render_pass, **given), half)
 
     def player(

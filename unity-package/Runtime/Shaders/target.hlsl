@@ -4,8 +4,9 @@
 // first row of pixels at clip y = 1. Where the first row of a texture is its upper one (Direct3D, Metal, and Vulkan,
 // which Unity drives like them) Unity draws render textures upside down, so that their rows agree with OpenGL's, and
 // negates the second row of its projections for that. The back buffer is not turned, nor are a headset's textures where
-// the pipeline draws straight into them. Only the engine knows which of these is bound: it tells in _ProjectionParams.x,
-// -1 where it negates and 1 where not, and nothing else in the package decides it.
+// the pipeline draws straight into them. Only the engine knows which of these is bound, and the projection by which it
+// draws everything else tells: nothing else in the package decides it. (_ProjectionParams.x should say the same, but URP
+// 17.0 sets it apart from the matrix, as of the back buffer also where a camera draws straight into a texture.)
 //
 // Depth comes by the matrices as GL.GetGPUProjectionMatrix leaves it: 0..w, reversed or not, and -w..w on OpenGL.
 
@@ -33,7 +34,7 @@ uint boundEye(uint eyeCount)
 // A clip position whose y points up, as this target takes it.
 float4 targetPosition(float4 clip)
 {
-    return float4(clip.x, clip.y * _ProjectionParams.x, clip.zw);
+    return float4(clip.x, UNITY_MATRIX_P[1][1] < 0 ? -clip.y : clip.y, clip.zw);
 }
 
 // A point of the package's right-handed world in the map of the light whose shadows are drawn: Unity's world mirrors x,

@@ -7,12 +7,19 @@
 #ifndef STAND_IN_UNITY_CG
 #define STAND_IN_UNITY_CG
 
-float4 _ProjectionParams; // x: -1 where the engine turns the target upside down
-
 float4x4 unity_MatrixVP; // world to clip of what is drawn: of a light, where its shadows are
 #define UNITY_MATRIX_VP unity_MatrixVP
 #define UNITY_REVERSED_Z 1 // as on Vulkan, Direct3D and Metal
 #define UNITY_NEAR_CLIP_VALUE (1.0)
+
+// Eye to clip of what is drawn, its second row negated where the engine turns the target upside down.
+#if defined(STEREO_INSTANCING_ON) || defined(STEREO_MULTIVIEW_ON)
+float4x4 unity_StereoMatrixP[2];
+#define UNITY_MATRIX_P unity_StereoMatrixP[unity_StereoEyeIndex]
+#else
+float4x4 glstate_matrix_projection;
+#define UNITY_MATRIX_P glstate_matrix_projection
+#endif
 
 #if defined(STEREO_INSTANCING_ON)
 
