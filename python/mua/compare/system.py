@@ -1,0 +1,104 @@
+"""What a compared system is: trained on a recording within a budget, it gives textures, and says what it costs.
+
+All systems share the coarse mesh of our student, so that what they draw differs by the texture alone. The systems
+themselves are listed in `mua.compare.systems`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import torch
+from torch import Tensor
+
+from mua.motion.encoding import PoseEncoding
+from mua.rig.rig import Rig
+from mua.student.model import Bands, Coarse, Student, lowpass_texels
+from mua.student.optimise import Report
+from mua.student.settings import Settings
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """What the shape of every system follows from."""
+
+    settings: Settings  # of our student; the other systems are scaled with it
+    encoding: PoseEncoding
+    vertices: int
+    texels: Tensor  # [N] the valid texels as row * size + col
+    wavelet: str
+
+
+@dataclass(frozen=True)
+class Budget:
+    """How long each system may learn, everything included; a budget in steps gives the same bytes each time."""
+
+    seconds: float | None = None  # wall-clock
+    steps: int | None = None  # of Adam
+    closed_form: bool = True  # where a system has such a start; without it, all systems start from noise
+    batch: int = 16  # frames per step
+    rate: float = 1e-3  # of Adam, from noise; a closed-form start is descended from more slowly
+
+
+@dataclass(frozen=True)
+class Motion:
+    """F frames as the systems see them."""
+
+    descriptors: Tensor  # [F, k D] as `mua.motion.descriptor` makes them
+    canonical: Tensor  # [F, V, 3] the coarse mesh before posing, metres
+    posed: Tensor  # [F, V, 3] posed, relative to the root joint and its heading, metres
+
+    def __len__(self) -> int:
+        return len(self.descriptors)
+
+    def of(self, rows: Tensor) -> "Motion":
+        """Some of the frames."""
+        return Motion(self.descriptors[rows], self.canonical[rows], self.posed[rows])
+
+
+@dataclass(frozen=True)
+class TrainingFrames:
+    """The training frames of a recording (`mua.compare.motion.training_frames`)."""
+
+    rig: Rig
+    sizes: Sizes
+    student: Student  # its normalisation set and its coarse mesh trained; the textures of all systems lie on that mesh
+    motion: Motion
+    bands: Callable[[slice, Tensor], Bands]  # absolute subbands of channels and rows
+    mean: Bands  # [1, ...] of the training frames
+    mean_texture: Tensor  # [N, 23] of the training frames
+    weights: Tensor  # [23] of the channels in every system's loss (`mua.student.targets.channel_weights`)
+
+    def __len__(self) -> int:
+        return len(self.motion)
+
+    def textures(self, rows: Tensor) -> Tensor:
+        """The recorded textures [F, N, 23]: what the recorded subbands hold, the two finest levels at their mean."""
+        bands = self.bands(slice(0, 23), rows)
+        moved = Bands(*(band - mean for band, mean in zip(bands, self.mean, strict=True)))
+        return self.mean_texture + lowpass_texels(moved, self.sizes.wavelet, self.sizes.texels).transpose(1, 2)
+
+
+class System(Protocol):
+    """One row of a table."""
+
+    name: str
+    parameters: int  # learnt numbers, those of the coarse mesh included
+    flops: int  # of one frame, a multiply-add as two; posing and drawing excluded, as in `mua.asset.count`
+
+    def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
+        """Learn the training frames; what was learnt before is forgotten."""
+
+    def textures(self, motion: Motion) -> Tensor:
+        """Raw channels [F, N, 23] at the valid texels."""
+
+
+def coarse_parameters(coarse: Coarse) -> int:
+    """Learnt numbers of the mesh that all systems share."""
+    return sum(tensor.numel() for tensor in coarse.state_dict().values())
+
+
+def coarse_flops(coarse: Coarse) -> int:
+    """Operations of the mesh that all systems share: F_temp, then the basis."""
+    weights = sum(tensor.numel() for tensor in coarse.mlp.parameters() if tensor.dim() > 1)
+    return 2 * (weights + coarse.basis.numel())
