@@ -2,28 +2,55 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from mua.errors import InputError
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside `path` that replaces it when the block ends without an error.
 
-    The temporary keeps the suffix of `path`, because image writers choose their format by it.
+    The temporary keeps the suffix of `path`, because image writers choose their format by it. Raises InputError where
+    the system refuses to write: no room, no such place, no permission.
     """
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
-    path.parent.mkdir(parents=True, exist_ok=True)
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
         with temporary.open("rb+") as written:
             os.fsync(written.fileno())
         temporary.replace(path)
+    except OSError as error:
+        if error.strerror is None or not _concerns(error, path, temporary):
+            raise
+        kept = "; what it held before is kept" if path.is_file() else ""
+        raise InputError(f"{path}: cannot be written ({error.strerror}){kept}") from error
     finally:
-        temporary.unlink(missing_ok=True)
+        _remove(temporary)
 
 
 def write_bytes(path: Path, content: bytes) -> None:
     """Write `content` to `path`, all of it or none."""
     with replacing(path) as temporary:
         temporary.write_bytes(content)
+
+
+def remove_leftovers(directory: Path, suffix: str) -> None:
+    """Remove what killed writers left of files with `suffix`; nobody else may be writing there."""
+    for path in directory.glob(f".*.part{suffix}"):
+        _remove(path)
+
+
+def _concerns(error: OSError, path: Path, temporary: Path) -> bool:
+    """Whether an error is about writing `path`: failed writes name no file, others the file or a directory above it."""
+    if error.filename is None:
+        return True
+    named = Path(os.fsdecode(error.filename))
+    return named == temporary or named in (path, *path.parents)
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):  # where there is no such directory, nothing was left; a full disk still deletes
+        path.unlink()

@@ -34,7 +34,7 @@ def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glsla
     if cached.is_file():
         return cached.read_bytes()
     code = _compiled(chosen, path, entry, stage, defines)
-    with suppress(OSError):  # a home that cannot be written to costs time, not the picture
+    with suppress(InputError):  # a home that cannot be written to costs time, not the picture
         files.write_bytes(cached, code)
     return code
 

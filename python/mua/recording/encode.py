@@ -116,4 +116,6 @@ def load_reference(path: Path, header: Header) -> Reference:
     for name, shape in shapes.items():
         if arrays[name].shape != shape:
             raise InputError(f"{path}: {name} has shape {arrays[name].shape}, expected {shape}")
+        if not np.isfinite(arrays[name]).all():
+            raise InputError(f"{path}: {name} holds a value that is no number, expected finite ones")
     return Reference(arrays.pop("texture"), Dynamic(**arrays))

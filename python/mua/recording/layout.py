@@ -74,6 +74,7 @@ class Index:
     complete: list[str]  # clips that ended in this shard
     training_frames: int  # number of frames in the running sum, from the first shard to this one
     crc32: dict[str, int]  # of the shard's other files
+    rig: str = ""  # SHA-256 of the frames' rig; shards written before it was kept have none
 
     @property
     def poses(self) -> int:
@@ -110,6 +111,8 @@ def read_header(directory: Path) -> Header:
         value = getattr(header, field.name)
         if not isinstance(value, field.type):  # type: ignore[arg-type]
             raise InputError(f"{path}: {field.name} is {value!r}, expected {field.type}")
+    if header.texels <= 0 or header.texels % STEP:
+        raise InputError(f"{path}: texels is {header.texels}, expected a multiple of {STEP}")
     return header
 
 

@@ -1,6 +1,7 @@
 """Reading a recording: memory-mapped, so that it may be larger than memory."""
 
 import hashlib
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -65,6 +66,7 @@ class Subbands(NamedTuple):
 
 @dataclass(frozen=True)
 class _Shard:
+    directory: Path
     index: Index
     arrays: dict[str, Array]  # memory maps by name
 
@@ -94,6 +96,8 @@ class Recording:
         if indices:
             last = self.directory / SHARDS / shard_name(len(indices) - 1) / SUM
             self._sum = open_array(last, (self.header.valid_texels, CHANNELS), "<f8")
+            if not np.isfinite(self._sum).all():
+                raise not_finite(last, "the sum of all frames")
 
     def count(self, held_out: bool = False) -> int:
         """Number of frames with mesh and subbands."""
@@ -142,6 +146,10 @@ class Recording:
                 segment, frame = owners[row]
                 if held_out is None or segment.held_out == held_out:
                     texture = self.reference.texture + shard.arrays[whole_name(row)].astype(np.float32)
+                    if not np.isfinite(texture).all():
+                        raise not_finite(
+                            shard.directory / f"{whole_name(row)}.npy", f"frame {frame} of {segment.clip!r}"
+                        )
                     yield WholeFrame(by_name[segment.clip], frame, np.array(shard.arrays["meshes"][row]), texture)
 
     def fingerprint(self) -> str:
@@ -178,7 +186,21 @@ class Recording:
                 picked = np.empty((len(places), *rows.shape[1:]), np.float32)
             picked[here] = rows
         assert picked is not None
+        if not math.isfinite(picked.sum(dtype=np.float64)):  # one pass over what is at hand; a place is sought after
+            self._refuse(name, places, picked)
         return picked
+
+    def _refuse(self, name: str, places: Array, picked: Array) -> None:
+        """Raise InputError for the first frame of `picked` [F, ...] that holds a number that is none."""
+        finite = np.isfinite(picked).reshape(len(picked), -1).all(axis=1)
+        number, row = places[int(np.argmin(finite))]
+        shard = self._shards[number]
+        clip, frame = [(s.clip, frame) for s in shard.index.segments for frame in s.recorded][row]
+        raise not_finite(shard.directory / f"{name}.npy", f"frame {frame} of {clip!r}")
+
+
+def not_finite(path: Path, where: str) -> InputError:
+    return InputError(f"{path}: {where} holds a value that is no number, expected finite ones")
 
 
 def _open(directory: Path, number: int, index: Index, header: Header) -> _Shard:
@@ -187,7 +209,13 @@ def _open(directory: Path, number: int, index: Index, header: Header) -> _Shard:
     for row in index.whole_rows:
         expected[whole_name(row)] = ((header.valid_texels, CHANNELS), "<f2")
     shard = directory / SHARDS / shard_name(number)
-    return _Shard(index, {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()})
+    if index.rig not in ("", header.rig):
+        raise InputError(f"{shard / INDEX}: holds frames of another rig than {RIG} of the recording")
+    arrays = {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()}
+    for name in ("rotations", "translations"):
+        if name in arrays and not np.isfinite(arrays[name]).all():
+            raise not_finite(shard / f"{name}.npy", "a pose")
+    return _Shard(shard, index, arrays)
 
 
 def _places(indices: Sequence[Index], *, held_out: bool) -> Array:

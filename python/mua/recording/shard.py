@@ -74,7 +74,7 @@ class Shard:
         for name, array in {**self._arrays(), "sum": total}.items():
             np.save(self._part / f"{name}.npy", array, allow_pickle=False)
         crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(self._part.glob("*.npy"))}
-        index = Index(self._segments, self.complete, training_frames, crc)
+        index = Index(self._segments, self.complete, training_frames, crc, self._header.rig)
         (self._part / INDEX).write_bytes(to_json(index))
         for path in (*self._part.iterdir(), self._part):
             _sync(path)
