@@ -32,7 +32,12 @@ def program(csharp: CSharp) -> Path:
     engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
     file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
     motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "ComponentProgram.cs"]
+    sources = [
+        *sorted(RUNTIME.glob("*.cs")),
+        RUNTIME / "Kernels",
+        PROGRAMS / "shared",
+        PROGRAMS / "ComponentProgram.cs",
+    ]
     return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
 
 
@@ -104,7 +109,12 @@ def test_an_avatar_stands_where_its_object_stands(story: Story) -> None:
 
 def test_views_are_drawn_in_their_order(story: Story) -> None:
     told = story("ShowsViews", "first")
-    assert told["order"] == ["surface 0", "surface 1", "splat 0", "surface 2"]
+    assert told["order"] == [
+        "Hidden/MUA/Surface 0",
+        "Hidden/MUA/Surface 1",
+        "Hidden/MUA/Splat 0",
+        "Hidden/MUA/Surface 2",
+    ]
     assert told["together"] == ["4 1"]  # draws of the camera, draws that wait for lights
     assert told["shadow"] == ["0 1"]
     assert told["nothing"] == ["0 0"]

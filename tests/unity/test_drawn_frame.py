@@ -59,7 +59,9 @@ def frame_program(csharp: CSharp) -> Path:
     file = csharp.build([RUNTIME / "Format"], library=True)
     motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
     package = [*(RUNTIME / f"{name}.cs" for name in FRAME), RUNTIME / "Kernels"]
-    return csharp.build([*package, PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion])
+    return csharp.build(
+        [*package, PROGRAMS / "shared", PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion]
+    )
 
 
 def seen_by(cameras: tuple[Camera, ...], instances: int) -> list[str]:

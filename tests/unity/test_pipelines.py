@@ -32,6 +32,7 @@ sys.path.append(str(ROOT / "tests" / "parity"))
 
 from test_frame import FRAME_ORDER, LEAST_PSNR, psnr
 
+SPLAT, SURFACE = "Hidden/MUA/Splat", "Hidden/MUA/Surface"
 WINDOW = (640, 480)  # pixels of the stand-ins' cameras
 EYE = (256, 192)  # of a headset's textures
 MOVED = 1  # the clip's frame in the recording's frame "moved"
@@ -213,7 +214,7 @@ def test_what_stands_still_is_only_sorted(recorded: Recorded) -> None:
 def test_opaque_views_are_drawn_before_splats_and_bones_after(recorded: Recorded) -> None:
     (frame,) = recorded.frames("all views")
     draws = [event for event in frame if event["event"] == "draw"]
-    order = [("surface", 0), ("surface", 1), ("splat", 0), ("surface", 2)]
+    order = [(SURFACE, 0), (SURFACE, 1), (SPLAT, 0), (SURFACE, 2)]
     assert [(event["shader"], event["pass"]) for event in draws] == order * recorded.mode.passes
     assert ["indices" in event for event in draws] == [True, True, False, False] * recorded.mode.passes
 
@@ -333,10 +334,10 @@ def test_an_avatar_that_goes_takes_its_draws_along(recorded: Recorded) -> None:
     """A pass that follows draws the others again; using a disposed buffer would end the program."""
     draws = {name: recorded.draws(name) for name in ("one of two", "one destroyed", "one left")}
     passes = recorded.mode.passes
-    assert draws["one of two"] == ["surface", "splat"] * passes
-    assert draws["one left"] == ["splat"] * passes
+    assert draws["one of two"] == [SURFACE, SPLAT] * passes
+    assert draws["one left"] == [SPLAT] * passes
     if recorded.mode.pipeline == "builtin":
-        assert draws["one destroyed"] == ["splat"] * (passes - 1)
+        assert draws["one destroyed"] == [SPLAT] * (passes - 1)
 
 
 def test_frames_allocate_nothing(recorded: Recorded) -> None:

@@ -25,8 +25,7 @@ namespace Mua
         public static int Main(string[] arguments)
         {
             CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
-            resources = MakeResources(arguments[0]);
-            Machine.Place("MuaAvatarResources", resources);
+            resources = PackageResources.Place(arguments[0]);
             files = new List<string>(arguments).GetRange(2, arguments.Length - 2).ToArray();
             Make("camera").AddComponent<Camera>();
             MethodInfo story = typeof(ComponentProgram).GetMethod(arguments[1], BindingFlags.Static | BindingFlags.NonPublic);
@@ -345,25 +344,6 @@ namespace Mua
             var thing = new GameObject(name);
             Scene.Add(thing);
             return thing;
-        }
-
-        private static AvatarResources MakeResources(string folder)
-        {
-            resources = ScriptableObject.CreateInstance<AvatarResources>();
-            string[] stems = { "mlp_matmul", "blend_subbands", "inverse_dwt", "dq_skinning", "splat_project", "splat_sort" };
-            string[] fields = { "mlpMatmul", "blendSubbands", "inverseDwt", "dqSkinning", "splatProject", "splatSort" };
-            for (int i = 0; i < stems.Length; i++)
-            {
-                Set(fields[i], Recorder.Compute(Path.Combine(folder, stems[i] + ".compute")));
-            }
-            foreach (FieldInfo field in typeof(AvatarResources).GetFields(BindingFlags.Instance | BindingFlags.NonPublic))
-            {
-                if (field.FieldType == typeof(Shader))
-                {
-                    field.SetValue(resources, Recorder.Drawing(field.Name));
-                }
-            }
-            return resources;
         }
 
         private static void Set(string field, UnityEngine.Object value)

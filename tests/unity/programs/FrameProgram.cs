@@ -10,7 +10,6 @@ using System;
 using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
-using System.Reflection;
 using Mua.Format;
 using Mua.Motion;
 using StandIns;
@@ -68,7 +67,7 @@ namespace Mua
         {
             CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
             Recorder.Start(arguments[1]);
-            AvatarResources resources = Resources(arguments[0]);
+            AvatarResources resources = PackageResources.Place(arguments[0]);
             for (int i = 3; i < arguments.Length; i++)
             {
                 Actors.Add(new Actor(resources, arguments[i]));
@@ -182,22 +181,6 @@ namespace Mua
                 Execute(splats);
             }
             return GC.GetAllocatedBytesForCurrentThread() - before;
-        }
-
-        private static AvatarResources Resources(string folder)
-        {
-            AvatarResources resources = ScriptableObject.CreateInstance<AvatarResources>();
-            var files = new Dictionary<string, string>
-            {
-                { "mlpMatmul", "mlp_matmul" }, { "blendSubbands", "blend_subbands" }, { "inverseDwt", "inverse_dwt" },
-                { "dqSkinning", "dq_skinning" }, { "splatProject", "splat_project" }, { "splatSort", "splat_sort" },
-            };
-            foreach (KeyValuePair<string, string> file in files)
-            {
-                FieldInfo field = typeof(AvatarResources).GetField(file.Key, BindingFlags.Instance | BindingFlags.NonPublic);
-                field.SetValue(resources, Recorder.Compute(Path.Combine(folder, file.Value + ".compute")));
-            }
-            return resources;
         }
 
         private static DualQuaternion Place(string[] words)

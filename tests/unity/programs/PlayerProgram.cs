@@ -5,7 +5,6 @@ using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
 using System.Reflection;
-using System.Text.RegularExpressions;
 using System.Threading;
 using Mua.Samples.VrPlayer.Editor;
 using StandIns;
@@ -32,7 +31,7 @@ namespace Mua.Samples.VrPlayer
             CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
             Directory.SetCurrentDirectory(arguments[2]);
             Machine.Paths(arguments[4], arguments[3]);
-            Machine.Place("MuaAvatarResources", MakeResources(arguments[0]));
+            PackageResources.Place(arguments[0]);
             Machine.Place("LegacyRuntime.ttf", new Font { material = new Material(Shader.Find("GUI/Text Shader")) });
             typeof(PlayerProgram).GetMethod(arguments[1], BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
             foreach (string name in new[] { "User", "Avatar", "Panel", "Help", "Light", "Ground" })
@@ -398,24 +397,6 @@ namespace Mua.Samples.VrPlayer
         private static string Format(Vector3 v)
         {
             return (v.x + 0f).ToString("0.00") + " " + v.y.ToString("0.00") + " " + v.z.ToString("0.00");
-        }
-
-        private static AvatarResources MakeResources(string folder)
-        {
-            var resources = ScriptableObject.CreateInstance<AvatarResources>();
-            foreach (FieldInfo field in typeof(AvatarResources).GetFields(BindingFlags.Instance | BindingFlags.NonPublic))
-            {
-                string stem = Regex.Replace(field.Name, "[A-Z]", found => "_" + found.Value.ToLowerInvariant());
-                if (field.FieldType == typeof(Shader))
-                {
-                    field.SetValue(resources, Recorder.Drawing(field.Name));
-                }
-                else if (field.FieldType == typeof(ComputeShader))
-                {
-                    field.SetValue(resources, Recorder.Compute(Path.Combine(folder, stem + ".compute")));
-                }
-            }
-            return resources;
         }
 
         private static void Say(string name, object value)

@@ -6,7 +6,6 @@ using System;
 using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
-using System.Reflection;
 using System.Threading;
 using Mua.Format;
 using Mua.Motion;
@@ -58,7 +57,7 @@ namespace Mua
         private static void DrawAll(string[] arguments)
         {
             Recorder.Start(arguments[2]);
-            AvatarResources resources = Resources(arguments[1]);
+            AvatarResources resources = PackageResources.Place(arguments[1]);
             var buffers = new List<AvatarBuffers>();
             var frames = new List<AvatarFrame>();
             for (int i = 4; i < arguments.Length; i++)
@@ -161,25 +160,6 @@ namespace Mua
             var position = new Vector3(Number(words, 2), Number(words, 3), Number(words, 4));
             var rotation = new Quaternion(Number(words, 5), Number(words, 6), Number(words, 7), Number(words, 8));
             frame.Decode(Commands, rotations, translations, AvatarSpace.Place(position, rotation));
-        }
-
-        private static AvatarResources Resources(string folder)
-        {
-            AvatarResources resources = ScriptableObject.CreateInstance<AvatarResources>();
-            foreach (string name in new[]
-                { "mlpMatmul mlp_matmul", "blendSubbands blend_subbands", "inverseDwt inverse_dwt", "dqSkinning dq_skinning",
-                  "splatProject splat_project", "splatSort splat_sort" })
-            {
-                string[] pair = name.Split(' ');
-                Set(resources, pair[0], Recorder.Compute(Path.Combine(folder, pair[1] + ".compute")));
-            }
-            Set(resources, "surface", Recorder.Drawing("Hidden/MUA/Surface"));
-            return resources;
-        }
-
-        private static void Set(AvatarResources resources, string field, object value)
-        {
-            typeof(AvatarResources).GetField(field, BindingFlags.Instance | BindingFlags.NonPublic).SetValue(resources, value);
         }
 
         private static void Say(string what, params long[] numbers)

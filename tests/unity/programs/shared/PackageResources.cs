@@ -17,7 +17,8 @@ namespace Mua
             {
                 if (field.FieldType == typeof(Shader))
                 {
-                    field.SetValue(resources, Recorder.Drawing(field.Name));
+                    string name = char.ToUpperInvariant(field.Name[0]) + field.Name.Substring(1);
+                    field.SetValue(resources, Recorder.Drawing("Hidden/MUA/" + name));
                 }
                 else if (field.FieldType == typeof(ComputeShader))
                 {
