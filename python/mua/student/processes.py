@@ -1,0 +1,147 @@
+"""The processes that train one student together: who holds which frames, and how they come to agree.
+
+Data-parallel training as in Li et al. 2020, https://arxiv.org/abs/2006.15704, through torch's own
+DistributedDataParallel; `torchrun` starts the processes and says through the environment which one each is.
+"""
+
+import os
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import TypeVar
+
+import torch
+import torch.distributed as dist
+from torch import Tensor, nn
+from torch.nn.parallel import DistributedDataParallel
+
+from mua.errors import InputError
+
+TIMEOUT = timedelta(minutes=10)  # longer than any process computes between two exchanges
+LOST = ("gloo", "Gloo", "NCCL", "Connection closed", "Connection reset")  # what torch's errors say of a dead process
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Share:
+    """What one process computes of a batch that is drawn for all of them."""
+
+    rows: Tensor  # [B'] at least one
+    weight: float  # of their mean loss: its average over the processes is then the mean over the whole batch
+
+
+@dataclass(frozen=True)
+class Processes:
+    """One of `count` processes; alone, every method does nothing and costs nothing."""
+
+    rank: int
+    count: int
+
+    @property
+    def first(self) -> bool:
+        """Whether this is the one that writes and reports."""
+        return self.rank == 0
+
+    def place(self, device: torch.device) -> torch.device:
+        """The device of this process: of several GPUs each process takes its own.
+
+        Raises InputError where the machine has fewer GPUs than processes.
+        """
+        if self.count == 1 or device.type != "cuda":
+            return device
+        local, there = int(os.environ["LOCAL_RANK"]), torch.cuda.device_count()
+        if local >= there:
+            raise InputError(f"--nproc-per-node {os.environ['LOCAL_WORLD_SIZE']}: this machine has {there} GPUs")
+        torch.cuda.set_device(local)
+        return torch.device("cuda", local)
+
+    def held(self, frames: int) -> range:
+        """The frames that this process holds: every `count`-th; one of another's where there are too few frames."""
+        return range(self.rank % max(frames, 1), frames, self.count)
+
+    def share(
+        self,
+        rows: Tensor,  # [B] the whole batch, the same in all processes
+        *,
+        frames: int,  # that `rows` are drawn from
+    ) -> Share:
+        """The rows of a batch that this process holds; where it holds none, one that weighs nothing."""
+        if self.count == 1:
+            return Share(rows, 1.0)
+        own = rows[rows % self.count == self.rank]
+        weight = len(own) * self.count / len(rows)
+        return Share(own if len(own) else torch.full((1,), self.held(frames).start), weight)
+
+    def channels(self, count: int) -> range:
+        """Of `count` channels those that this process solves for; see `owner`."""
+        return range(self.rank, count, self.count)
+
+    def owner(self, channel: int) -> int:
+        """The rank that solves for a channel."""
+        return channel % self.count
+
+    def wrap(self, module: nn.Module) -> nn.Module:
+        """`module`, its gradients averaged over all processes; every process goes on from the first one's weights."""
+        if self.count == 1:
+            return module
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FutureWarning)  # torch 2.13 has another name for it, which 2.4 lacks
+            return DistributedDataParallel(module, broadcast_buffers=False)
+
+    @torch.no_grad()
+    def agree(self, *tensors: Tensor, source: int = 0) -> None:
+        """Give all processes what the one of rank `source` holds in `tensors`, of one shape everywhere, in place."""
+        if self.count == 1:
+            return
+        for tensor in tensors:
+            sent = tensor.detach().contiguous()
+            dist.broadcast(sent, src=source)
+            tensor.copy_(sent)
+
+    def told(self, value: T) -> T:
+        """What the first process holds in `value`, anything that pickles."""
+        if self.count == 1:
+            return value
+        kept = [value]
+        dist.broadcast_object_list(kept, src=0, device=torch.device("cpu"))
+        return kept[0]
+
+    def mean(self, value: Tensor) -> float:
+        """The average of a scalar over all processes."""
+        if self.count == 1:
+            return float(value.detach())
+        total = value.detach().to("cpu", copy=True)
+        dist.all_reduce(total)
+        return float(total) / self.count
+
+
+ALONE = Processes(0, 1)
+
+
+@contextmanager
+def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
+    """The processes that torchrun started together with this one; ALONE where it did not.
+
+    Within the block, a process that ends or falls silent for `timeout` raises an InputError in all others. Everything
+    between two exchanges is over in less.
+    """
+    count = int(os.environ.get("WORLD_SIZE", "1"))
+    if count == 1:
+        yield ALONE
+        return
+    rank = int(os.environ["RANK"])
+    backend = "cpu:gloo,cuda:nccl" if torch.cuda.is_available() and dist.is_nccl_available() else "gloo"
+    try:
+        dist.init_process_group(backend, timeout=timeout)
+        yield Processes(rank, count)
+        dist.destroy_process_group()  # not after an error: it may wait for the dead
+    except RuntimeError as error:
+        if not isinstance(error, dist.DistError) and not any(word in str(error) for word in LOST):
+            raise
+        raise InputError(
+            f"process {rank + 1} of {count}: another has ended or said nothing for {timeout.total_seconds():.0f} s; "
+            "start all again to go on from the last checkpoint"
+        ) from error
