@@ -21,6 +21,7 @@ from mua.gpu.kernel import Kernel
 from mua.gpu.reflect import Constant
 
 INDIRECT_ARGUMENTS, STRUCTURED = 256, 16  # GraphicsBuffer.Target
+MOST_GROUPS = 65535  # of a dispatch, along an axis
 KINDS = {"Int": np.int32, "Float": np.float32, "Vector": np.float32, "Matrix": np.float32}
 SCALARS = {"Int": ("uint", "int"), "Float": ("float",), "Vector": ("float",), "Matrix": ("float",)}
 
@@ -93,6 +94,8 @@ class _Player:
         }
         if "indirect" in event:
             number, offset = event["indirect"]
+            self._check_groups(kernel, number, offset)
+            self.commands = self.commands or self.device.commands()
             self.commands.dispatch_indirect(kernel, self.buffers[number], offset, bound, **constants)
         else:
             self.commands.dispatch(kernel, tuple(event["groups"]), bound, **constants)
@@ -127,6 +130,12 @@ class _Player:
     def release(self, event: dict[str, Any]) -> None:
         self.flush()
         del self.buffers[event["buffer"]]
+
+    def _check_groups(self, kernel: Kernel, number: int, offset: int) -> None:
+        """A device that is given garbage for counts may be busy for hours."""
+        self.flush()
+        groups = self.buffers[number].read()[offset // 4 :][:3]
+        assert groups.max() <= MOST_GROUPS, f"{kernel.name}: is dispatched in {groups} groups"
 
     def _bound(self, kernel: Kernel, event: dict[str, Any], name: str, stride: int) -> Buffer:
         """The buffer of a name; Unity asks for the stride of the shader's elements."""
