@@ -51,6 +51,7 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
         mean=mean,
         mean_texture=samples.mean_texture,
         weights=torch.cat([channel_weights(variance[part], part) for part in (GEOMETRY, APPEARANCE)]),
+        device=run.device,
     )
 
 

@@ -16,6 +16,9 @@ from mua.rig.rig import Rig
 from mua.student.model import Bands, Coarse, Student, lowpass_texels
 from mua.student.optimise import Report
 from mua.student.settings import Settings
+from mua.texture.channels import CHANNELS
+
+ALL = slice(0, CHANNELS)
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,9 @@ class Motion:
         """Some of the frames."""
         return Motion(self.descriptors[rows], self.canonical[rows], self.posed[rows])
 
+    def to(self, device: torch.device) -> "Motion":
+        return Motion(self.descriptors.to(device), self.canonical.to(device), self.posed.to(device))
+
 
 @dataclass(frozen=True)
 class TrainingFrames:
@@ -68,15 +74,27 @@ class TrainingFrames:
     mean: Bands  # [1, ...] of the training frames
     mean_texture: Tensor  # [N, 23] of the training frames
     weights: Tensor  # [23] of the channels in every system's loss (`mua.student.targets.channel_weights`)
+    device: torch.device  # that systems are trained on; what is above stays on the CPU
 
     def __len__(self) -> int:
         return len(self.motion)
 
+    def band_deviations(self, rows: Tensor, channels: slice = ALL) -> Bands:
+        """Weighted deviations of the subbands of some channels and frames from their mean."""
+        weights = self.weights[channels, None, None]
+        pairs = zip(self.bands(channels, rows), self.mean.of(channels), strict=True)
+        return Bands(*(weights * (band - mean) for band, mean in pairs))
+
+    def deviations(self, rows: Tensor, channels: slice = ALL) -> Tensor:
+        """Weighted deviations [F, C, N] of the recorded textures from their mean at the valid texels.
+
+        A recorded texture is what its subbands hold; the two finest levels stay at their mean.
+        """
+        return lowpass_texels(self.band_deviations(rows, channels), self.sizes.wavelet, self.sizes.texels)
+
     def textures(self, rows: Tensor) -> Tensor:
-        """The recorded textures [F, N, 23]: what the recorded subbands hold, the two finest levels at their mean."""
-        bands = self.bands(slice(0, 23), rows)
-        moved = Bands(*(band - mean for band, mean in zip(bands, self.mean, strict=True)))
-        return self.mean_texture + lowpass_texels(moved, self.sizes.wavelet, self.sizes.texels).transpose(1, 2)
+        """The recorded textures [F, N, 23] in raw channels."""
+        return self.mean_texture + (self.deviations(rows) / self.weights[:, None]).transpose(1, 2)
 
 
 class System(Protocol):

@@ -1,0 +1,57 @@
+"""Adam within a budget: the same loop, loss and fall of the learning rate for every compared system."""
+
+import math
+import time
+from collections.abc import Callable
+
+import torch
+from torch import Tensor
+
+from mua.compare.system import Budget
+from mua.errors import InputError
+from mua.student.optimise import Progress, Report
+
+Groups = list[dict[str, object]]  # of parameters, each with the learning rate `lr` that it starts from
+
+
+def descend(
+    loss: Callable[[Tensor], Tensor],  # of the rows of a batch
+    groups: Groups,
+    *,
+    frames: int,
+    budget: Budget,
+    started: float,  # on time.monotonic, when the budget began to run
+    stage: str,
+    generator: torch.Generator,
+    report: Report,
+) -> int:
+    """Run AdamW until the budget is spent, its rates falling to zero along a cosine of it; returns the steps taken.
+
+    Raises InputError for a budget without an end.
+    """
+    if budget.seconds is None and budget.steps is None:
+        raise InputError("budget: neither seconds nor steps are given, expected one of them")
+    optimizer = torch.optim.AdamW(groups, weight_decay=0.0)
+    rates = [float(group["lr"]) for group in optimizer.param_groups]
+    begun, step = time.monotonic(), 0
+    while (spent := _spent(budget, step, started)) < 1:
+        for group, rate in zip(optimizer.param_groups, rates, strict=True):
+            group["lr"] = rate * 0.5 * (1 + math.cos(math.pi * spent))
+        optimizer.zero_grad()
+        value = loss(torch.randperm(frames, generator=generator)[: budget.batch])
+        value.backward()
+        optimizer.step()
+        step += 1
+        total = budget.steps or max(round(step / max(_spent(budget, step, started), 1e-9)), step)
+        report(Progress(stage, step, total, float(value.detach()), step / max(time.monotonic() - begun, 1e-9)))
+    return step
+
+
+def _spent(budget: Budget, step: int, started: float) -> float:
+    """The share of the budget that is gone; whichever limit comes first counts."""
+    shares = [0.0]
+    if budget.seconds is not None:
+        shares.append((time.monotonic() - started) / budget.seconds if budget.seconds > 0 else 1.0)
+    if budget.steps is not None:
+        shares.append(step / budget.steps if budget.steps > 0 else 1.0)
+    return max(shares)

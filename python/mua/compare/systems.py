@@ -1,0 +1,26 @@
+"""Every system of the paper's tables that can be built from its description, by the name that a table calls it."""
+
+from collections.abc import Callable
+
+from mua.compare.bands import blendshapes_conv1d, conv_blendshapes, conv_conv, ours
+from mua.compare.full import LinearMap, SingleLevel, full_blendshapes, pca_only
+from mua.compare.network import Network, NetworkSystem
+from mua.compare.system import Sizes, System
+
+NETWORKS: dict[str, Callable[[Sizes], Network]] = {
+    "pca-only": pca_only,
+    "single-level": SingleLevel,
+    "2d-conv+2d-conv": conv_conv,
+    "2d-conv+blendshapes": conv_blendshapes,
+    "blendshapes+1d-conv": blendshapes_conv1d,
+    "full-blendshapes": full_blendshapes,
+    "linear": LinearMap,
+    "ours": ours,
+}
+
+
+def _system(name: str) -> Callable[[Sizes], System]:
+    return lambda sizes: NetworkSystem(name, sizes, NETWORKS[name])
+
+
+SYSTEMS: dict[str, Callable[[Sizes], System]] = {name: _system(name) for name in NETWORKS}
