@@ -12,7 +12,7 @@ namespace Mua
     internal sealed class AvatarWorld : IDisposable
     {
         private const int BuffersOfKernel = 8;
-        private const int BuffersOfVertex = 4;
+        private const int BuffersOfVertex = 5; // of a direct draw
         private const string Universal = "UniversalRenderPipelineAsset"; // an optional package's; AvatarUrp draws there
 
         private static readonly HashSet<string> Reported = new HashSet<string>();
