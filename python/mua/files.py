@@ -1,5 +1,6 @@
 """Atomic writes: a reader sees the old content or the new, never half of either."""
 
+import glob
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -25,8 +26,7 @@ def replacing(path: Path) -> Iterator[Path]:
     except OSError as error:
         if error.strerror is None or not _concerns(error, path, temporary):
             raise
-        kept = "; what it held before is kept" if path.is_file() else ""
-        raise InputError(f"{path}: cannot be written ({error.strerror}){kept}") from error
+        raise _refused(path, error) from error
     finally:
         _remove(temporary)
 
@@ -37,10 +37,29 @@ def write_bytes(path: Path, content: bytes) -> None:
         temporary.write_bytes(content)
 
 
-def remove_leftovers(directory: Path, suffix: str) -> None:
-    """Remove what killed writers left of files with `suffix`; nobody else may be writing there."""
-    for path in directory.glob(f".*.part{suffix}"):
-        _remove(path)
+def require_writable(path: Path) -> None:
+    """Make the directory of `path`; raises InputError, ahead of hours of work, where nothing could be written there."""
+    if path.is_dir():
+        raise InputError(f"{path}: is a directory, expected a file to write")
+    probe = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+    except OSError as error:
+        raise _refused(path, error) from error
+    finally:
+        _remove(probe)
+
+
+def remove_leftovers(path: Path) -> None:
+    """Remove what killed writers of `path` left beside it; nobody may be writing it."""
+    for left in path.parent.glob(f".{glob.escape(path.stem)}.*.part{glob.escape(path.suffix)}"):
+        _remove(left)
+
+
+def _refused(path: Path, error: OSError) -> InputError:
+    kept = "; what it held before is kept" if path.is_file() else ""
+    return InputError(f"{path}: cannot be written ({error.strerror}){kept}")
 
 
 def _concerns(error: OSError, path: Path, temporary: Path) -> bool:

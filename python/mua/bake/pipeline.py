@@ -4,29 +4,21 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Literal
 
 import torch
 
 from mua import __version__
-from mua.asset.avatar import Avatar
-from mua.asset.read import read
 from mua.asset.tensors import Storage
-from mua.asset.write import write
-from mua.bake import report
-from mua.bake.assemble import assemble
+from mua.bake.distillation import Baked, Distillation, Listener, finish, teach
 from mua.bake.plan import plan, split
+from mua.bake.report import STAND_IN
 from mua.bake.sources import RATE, load_character, load_clips
-from mua.contact_sheet import contact_sheet
-from mua.evaluate import Errors, evaluate
-from mua.files import replacing, write_bytes
+from mua.files import require_writable
 from mua.recording import PlannedClip, Recording, TeacherWriter, record
 from mua.rig.character import Character
-from mua.student.distil import distil
 from mua.student.settings import Settings
 from mua.teachers.simulated import SimulatedTeacher
-
-SHEET_FRAMES = 6
 
 
 @dataclass(frozen=True)
@@ -45,26 +37,6 @@ class Order:
     storage: Storage = "f16"
 
 
-class Listener(Protocol):
-    """Hears what a bake does; the command line shows it."""
-
-    def stage(self, name: str) -> None: ...
-
-    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
-
-    def note(self, sentence: str) -> None: ...
-
-
-@dataclass(frozen=True)
-class Baked:
-    """What a bake leaves."""
-
-    errors: Mapping[str, Errors]
-    output: Path
-    sheet: Path
-    figures: Path
-
-
 def bake(order: Order, listener: Listener) -> Baked:
     """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it."""
     listener.stage("character")
@@ -75,27 +47,19 @@ def bake(order: Order, listener: Listener) -> Baked:
     training, held = split(clips, order.hold_out)
     planned = plan(training, held, frames=order.settings.frames)
 
+    require_writable(order.output)
     recording = _record(order, character, planned, listener)
-    student = distil(recording, order.settings, device=order.device, directory=order.work / "student", report=listener)
-    listener.stage("avatar")
-    avatar = assemble(
-        student,
-        recording.rig,
+    distillation = Distillation(
+        output=order.output,
+        work=order.work,
+        settings=order.settings,
+        device=order.device,
         name=character.name,
-        encoding=student.encoding,
-        clips=[*held, *training],
-        notes=report.STAND_IN,
+        teacher=STAND_IN,
+        storage=order.storage,
     )
-    write(order.output, avatar, storage=order.storage)
-
-    listener.stage("evaluation")
-    avatar = read(order.output)  # what a user gets, not what was trained
-    errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
-    baked = Baked(errors, order.output, _beside(order, "_contact_sheet.png"), _beside(order, "_errors.md"))
-    _picture(baked, avatar, recording)
-    write_bytes(baked.figures, report.markdown(errors).encode())
-    write_bytes(_beside(order, "_errors.json"), report.as_json(errors).encode())
-    return baked
+    student = teach(distillation, recording, listener)
+    return finish(distillation, student, recording, listener)
 
 
 def _record(order: Order, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:
@@ -119,15 +83,3 @@ def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
         digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
         digest.update(clip.clip.rotations.tobytes() + clip.clip.translation.tobytes())
     return digest.hexdigest()[:12]
-
-
-def _picture(baked: Baked, avatar: Avatar, recording: Recording) -> None:
-    """Write the contact sheet, of held-out frames where there are any."""
-    frames = list(recording.whole_frames(held_out=True)) or list(recording.whole_frames(held_out=False))
-    step = max(len(frames) // SHEET_FRAMES, 1)
-    with replacing(baked.sheet) as temporary:
-        contact_sheet(avatar, frames[step // 2 :: step][:SHEET_FRAMES]).save(temporary)
-
-
-def _beside(order: Order, ending: str) -> Path:
-    return order.output.with_name(order.output.stem + ending)

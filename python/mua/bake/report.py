@@ -10,9 +10,10 @@ from mua.evaluate import MESH, PICTURES, UNITS, Errors
 from mua.texture.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"
+UNSAID = "the recording does not say whether its teacher is a capture or a simulation"
 LEGEND = (
     "Errors are root mean squares of whole vectors. Mean: the mean texture of the training frames. Best: the best "
-    f"coefficients for the learnt bases. Explained: of the variance about the mean. Note: {STAND_IN}."
+    "coefficients for the learnt bases. Explained: of the variance about the mean. Note: {teacher}."
 )
 BASELINES = ("mean", "best", "student")
 HEADINGS = ("frames", "attribute", "unit", "mean", "best", "student", "explained")
@@ -33,9 +34,9 @@ def percent(share: float) -> str:
     return "nothing varies" if math.isnan(share) else f"{100 * share:.1f} %"
 
 
-def table(groups: Mapping[str, Errors]) -> Table:
+def table(groups: Mapping[str, Errors], *, teacher: str) -> Table:
     """For the terminal."""
-    shown = Table(*HEADINGS, title="RMS error", caption=LEGEND)
+    shown = Table(*HEADINGS, title="RMS error", caption=LEGEND.format(teacher=teacher))
     last = ""
     for name, *cells in rows(groups):
         shown.add_row("" if name == last else name, *cells, end_section=cells[0] == MESH)
@@ -43,14 +44,14 @@ def table(groups: Mapping[str, Errors]) -> Table:
     return shown
 
 
-def markdown(groups: Mapping[str, Errors]) -> str:
+def markdown(groups: Mapping[str, Errors], *, teacher: str) -> str:
     """The table, and what the student misses split by cause, in shares of the variance about the mean texture."""
     lines = ["| " + " | ".join(HEADINGS) + " |", "|" + " --- |" * len(HEADINGS)]
     lines += ["| " + " | ".join(row) + " |" for row in rows(groups)]
     lines += ["", "| frames | attribute | D1 and D0 left out | bases too small | mispredicted |", "|" + " --- |" * 5]
     for name, errors in groups.items():
         lines += [f"| {name} | {attribute} | {' | '.join(missed(errors, attribute))} |" for attribute in ATTRIBUTES]
-    return "\n".join([*lines, "", LEGEND, ""])
+    return "\n".join([*lines, "", LEGEND.format(teacher=teacher), ""])
 
 
 def missed(errors: Errors, attribute: str) -> tuple[str, str, str]:
@@ -59,7 +60,7 @@ def missed(errors: Errors, attribute: str) -> tuple[str, str, str]:
     return percent(1 - bands), percent(bands - best), percent(best - student)
 
 
-def as_json(groups: Mapping[str, Errors]) -> str:
+def as_json(groups: Mapping[str, Errors], *, teacher: str) -> str:
     """Every figure, unrounded."""
     told = {
         name: {
@@ -70,4 +71,4 @@ def as_json(groups: Mapping[str, Errors]) -> str:
         }
         for name, errors in groups.items()
     }
-    return json.dumps({"teacher": STAND_IN, "groups": told}, indent=1)
+    return json.dumps({"teacher": teacher, "groups": told}, indent=1)

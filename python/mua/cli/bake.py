@@ -4,16 +4,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-import torch
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mua.asset.tensors import Storage
+from mua.bake.distillation import Baked
 from mua.bake.pipeline import Order, bake
-from mua.bake.report import table
+from mua.bake.report import STAND_IN, table
+from mua.cli.display import Display, choose_device
 from mua.cli.failure import refusing
-from mua.errors import InputError
 from mua.motion.joint_names import read_mapping
 from mua.student.settings import preset, with_recipe
 
@@ -61,53 +60,23 @@ def main(
         mapping=None if mapping is None else read_mapping(mapping),
         uv=uv,
         storage=storage,
-        device=_device(device),
+        device=choose_device(device),
     )
     console = Console()
     with Display(console) as display:
         baked = bake(order, display)
-    console.print(table(baked.errors))
+    show(console, baked, teacher=STAND_IN)
+
+
+def show(console: Console, baked: Baked, *, teacher: str) -> None:
+    """Print what a bake or a training ends with: the table of errors, and where everything is."""
+    if baked.errors:
+        console.print(table(baked.errors, teacher=teacher))
     for path in (baked.output, baked.sheet, baked.figures):
-        console.print(path, highlight=False)
+        if path is not None:
+            console.print(path, highlight=False, soft_wrap=True)
 
 
 def run() -> None:
     """Entry point of the command."""
     refusing(main)
-
-
-def _device(name: str) -> torch.device:
-    found = torch.cuda.is_available()
-    if name == "cuda" and not found:
-        raise InputError("--device cuda: torch finds no GPU here")
-    return torch.device("cuda" if found and name != "cpu" else "cpu")
-
-
-class Display:
-    """Shows a bake on the terminal: one bar for each stage."""
-
-    def __init__(self, console: Console) -> None:
-        self.console = console
-        columns = (TextColumn("{task.description:<23}"), BarColumn(12), TextColumn("{task.fields[detail]:<26}"))
-        self.progress = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console)
-        self.task: TaskID | None = None
-
-    def __enter__(self) -> "Display":
-        self.progress.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.progress.stop()
-
-    def stage(self, name: str) -> None:
-        """End the bar of the stage before and begin one."""
-        if self.task is not None:
-            self.progress.update(self.task, total=1, completed=1)
-        self.task = self.progress.add_task(name, total=None, detail="")
-
-    def step(self, done: int, total: int, *, detail: str = "") -> None:
-        if self.task is not None:
-            self.progress.update(self.task, completed=done, total=total, detail=detail)
-
-    def note(self, sentence: str) -> None:
-        self.console.print(f"  {sentence}", highlight=False)

@@ -57,7 +57,7 @@ class Shard:
         """Give the last pose its mesh and subbands."""
         if whole is not None:
             self._part.mkdir(exist_ok=True)
-            np.save(self._part / f"{whole_name(self.frames)}.npy", whole, allow_pickle=False)
+            self._save(whole_name(self.frames), whole)
             self._segments[-1].whole.append(index)
         self._segments[-1].recorded.append(index)
         self._meshes.append(mesh)
@@ -72,16 +72,25 @@ class Shard:
         """Write the hidden directory, sync it and rename it; raises InputError where another writer did so."""
         self._part.mkdir(exist_ok=True)
         for name, array in {**self._arrays(), "sum": total}.items():
-            np.save(self._part / f"{name}.npy", array, allow_pickle=False)
+            self._save(name, array)
         crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(self._part.glob("*.npy"))}
         index = Index(self._segments, self.complete, training_frames, crc, self._header.rig)
         (self._part / INDEX).write_bytes(to_json(index))
         for path in (*self._part.iterdir(), self._part):
-            _sync(path)
+            sync(path)
         if self._final.exists():
             raise InputError(f"{self._final} has appeared: another writer is at work on this recording")
         self._part.rename(self._final)
-        _sync(self._final.parent)
+        sync(self._final.parent)
+
+    def _save(self, name: str, array: Array) -> None:
+        path = self._part / f"{name}.npy"
+        try:
+            np.save(path, array, allow_pickle=False)
+        except OSError as error:
+            raise InputError(
+                f"{path}: cannot be written ({error.strerror or error}); earlier shards are kept"
+            ) from error
 
     def _arrays(self) -> dict[str, Array]:
         columns = {
@@ -95,7 +104,7 @@ class Shard:
         return {name: np.stack(columns[name]) for name in self._header.shapes(self.poses, self.frames)}
 
 
-def _sync(path: Path) -> None:
+def sync(path: Path) -> None:
     """Make a file's content, or a directory's names, survive a loss of power."""
     if path.is_dir() and os.name != "posix":  # only POSIX opens directories
         return

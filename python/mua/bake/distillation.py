@@ -1,0 +1,137 @@
+"""From a recording to a verified `.muaavatar`: all of mua-train, and the second half of a bake."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import torch
+
+from mua.asset.avatar import Avatar
+from mua.asset.read import read
+from mua.asset.tensors import Storage
+from mua.asset.write import write
+from mua.bake import report
+from mua.bake.assemble import assemble
+from mua.contact_sheet import contact_sheet
+from mua.evaluate import Errors, evaluate
+from mua.files import remove_leftovers, replacing, require_writable, write_bytes
+from mua.processes import ALONE, Processes
+from mua.recording import Recording
+from mua.student.distil import distil, distil_stage
+from mua.student.model import Student
+from mua.student.settings import Settings
+from mua.student.train import StageName
+
+SHEET_FRAMES = 6
+
+
+class Listener(Protocol):
+    """Hears what a bake or a training does; the command line shows it."""
+
+    def stage(self, name: str) -> None: ...
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
+
+    def note(self, sentence: str) -> None: ...
+
+
+@dataclass(frozen=True)
+class Distillation:
+    """What is to become of a recording."""
+
+    output: Path
+    work: Path  # for the checkpoints
+    settings: Settings
+    device: torch.device
+    name: str  # of the avatar
+    teacher: str  # what the teacher is; stands in the avatar and beside every figure
+    storage: Storage = "f16"
+    processes: Processes = ALONE  # that train together; the first of them writes
+
+    @property
+    def checkpoints(self) -> Path:
+        return self.work / "student"
+
+    def beside(self, ending: str) -> Path:
+        """A file that lies beside the output and is named after it."""
+        return self.output.with_name(self.output.stem + ending)
+
+
+@dataclass(frozen=True)
+class Baked:
+    """What a bake or a training leaves."""
+
+    errors: Mapping[str, Errors]  # by group of frames; none where the recording keeps no frame whole
+    output: Path
+    sheet: Path | None
+    figures: Path | None
+
+
+def teach(order: Distillation, recording: Recording, listener: Listener) -> Student:
+    """Train a student on `recording`; its stages are kept in the work directory, and the same order goes on from there.
+
+    Raises InputError where there is nothing to train on, or where checkpoints or the output cannot be written.
+    """
+    if order.processes.first:
+        require_writable(order.output)
+        remove_leftovers(order.output)
+    return distil(
+        recording,
+        order.settings,
+        device=order.device,
+        directory=order.checkpoints,
+        report=listener,
+        processes=order.processes,
+    )
+
+
+def teach_stage(order: Distillation, stage: StageName, recording: Recording, listener: Listener) -> None:
+    """Run one stage up to its checkpoints, which `teach` takes up.
+
+    Raises InputError as `teach` does, and where the stage starts from checkpoints that are not there.
+    """
+    distil_stage(
+        recording,
+        order.settings,
+        stage,
+        device=order.device,
+        directory=order.checkpoints,
+        report=listener,
+        processes=order.processes,
+    )
+
+
+def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
+    """Write the avatar, read it back, measure it and picture it."""
+    listener.stage("avatar")
+    held, training = ([c for c in recording.clips if len(c) and c.held_out == kind] for kind in (True, False))
+    avatar = assemble(
+        student,
+        recording.rig,
+        name=order.name,
+        encoding=student.encoding,
+        clips=[*held, *training],
+        notes=order.teacher,
+    )
+    write(order.output, avatar, storage=order.storage)
+
+    listener.stage("evaluation")
+    if not recording.whole_count:
+        listener.note("the recording keeps no frame whole, so there are neither errors nor a contact sheet")
+        return Baked({}, order.output, None, None)
+    avatar = read(order.output)  # what a user gets, not what was trained
+    errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
+    baked = Baked(errors, order.output, order.beside("_contact_sheet.png"), order.beside("_errors.md"))
+    _picture(order.beside("_contact_sheet.png"), avatar, recording)
+    write_bytes(order.beside("_errors.md"), report.markdown(errors, teacher=order.teacher).encode())
+    write_bytes(order.beside("_errors.json"), report.as_json(errors, teacher=order.teacher).encode())
+    return baked
+
+
+def _picture(path: Path, avatar: Avatar, recording: Recording) -> None:
+    """Write the contact sheet, of held-out frames where there are any."""
+    frames = list(recording.whole_frames(held_out=True)) or list(recording.whole_frames(held_out=False))
+    step = max(len(frames) // SHEET_FRAMES, 1)
+    with replacing(path) as temporary:
+        contact_sheet(avatar, frames[step // 2 :: step][:SHEET_FRAMES]).save(temporary)

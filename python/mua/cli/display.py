@@ -1,0 +1,65 @@
+"""What a long job shows while it runs: bars on a terminal, lines of text anywhere else."""
+
+import time
+
+import torch
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from mua.errors import InputError
+
+LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
+
+
+class Display:
+    """Shows the stages of a job; use it as a context manager."""
+
+    def __init__(self, console: Console) -> None:
+        self.console = console
+        columns = (TextColumn("{task.description:<23}"), BarColumn(12), TextColumn("{task.fields[detail]:<26}"))
+        self.progress = Progress(
+            *columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console, disable=not console.is_terminal
+        )
+        self.task: TaskID | None = None
+        self._told = 0.0
+
+    def __enter__(self) -> "Display":
+        self.progress.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.progress.stop()
+
+    def stage(self, name: str) -> None:
+        """End the bar of the stage before and begin one."""
+        if self.task is not None:
+            self.progress.update(self.task, total=1, completed=1)
+        self.task = self.progress.add_task(name, total=None, detail="")
+        if self.progress.disable:
+            self._say(name)
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        """Say how far the stage is."""
+        if self.task is None:
+            return
+        self.progress.update(self.task, completed=done, total=total, detail=detail)
+        if self.progress.disable and time.monotonic() - self._told >= LINE_SECONDS:
+            left = self.progress.tasks[-1].time_remaining
+            ending = "" if left is None else f", {left / 60:.0f} min left"
+            self._say(f"  {done} of {total}{', ' if detail else ''}{detail}{ending}")
+
+    def note(self, sentence: str) -> None:
+        self.console.print(f"  {sentence}", highlight=False)
+
+    def _say(self, line: str) -> None:
+        self._told = time.monotonic()
+        self.console.print(line, highlight=False, soft_wrap=True)
+        self.console.file.flush()  # who reads a log reads it now
+
+
+def choose_device(name: str) -> torch.device:
+    """What --device means; raises InputError where it names a GPU and there is none."""
+    found = torch.cuda.is_available()
+    if name == "cuda" and not found:
+        raise InputError("--device cuda: torch finds no GPU here")
+    return torch.device("cuda" if found and name != "cpu" else "cpu")

@@ -1,0 +1,78 @@
+"""mua-train: a recording becomes a verified `.muaavatar`."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+from rich.console import Console
+
+from mua.asset.tensors import Storage
+from mua.bake.distillation import Distillation, finish, teach, teach_stage
+from mua.bake.report import UNSAID
+from mua.cli.bake import show
+from mua.cli.display import Display, choose_device
+from mua.cli.failure import refusing
+from mua.processes import Processes, joined
+from mua.recording import Recording
+from mua.student.settings import preset, with_recipe
+from mua.student.train import StageName
+
+
+def main(
+    recording: Annotated[Path, typer.Argument(help="Directory that a TeacherWriter has written.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
+    preset_name: Annotated[str, typer.Option("--preset", help="tiny, preview or paper.")] = "preview",
+    recipe: Annotated[
+        str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
+    ] = "closed-form",
+    stage: Annotated[
+        StageName | None, typer.Option(help="Run this stage alone, up to its checkpoint; all if left out.")
+    ] = None,
+    storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
+    seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
+    device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
+    work: Annotated[Path | None, typer.Option(help="For checkpoints; beside the output if left out.")] = None,
+) -> None:
+    """Distil RECORDING into a .muaavatar, with a table of errors and a contact sheet beside it.
+
+    Texture size and frames are the recording's. A run that was interrupted goes on where it stopped when the same
+    command is given again. Under torchrun several processes train together.
+    """
+    settings = with_recipe(replace(preset(preset_name), seed=seed), recipe)
+    with joined() as processes:
+        opened = Recording(recording)
+        order = Distillation(
+            output=output,
+            work=output.with_suffix(".work") if work is None else work,
+            settings=replace(settings, texels=opened.rig.texels.size, frames=opened.count()),
+            device=processes.place(choose_device(device)),
+            name=output.stem,
+            teacher=UNSAID,
+            storage=storage,
+            processes=processes,
+        )
+        _carry_out(order, opened, stage, processes)
+
+
+def run() -> None:
+    """Entry point of the command."""
+    refusing(main)
+
+
+def _carry_out(order: Distillation, recording: Recording, stage: StageName | None, processes: Processes) -> None:
+    console = Console(quiet=not processes.first)
+    with Display(console) as display:
+        if stage is not None:
+            teach_stage(order, stage, recording, display)
+            console.print(f"checkpoints are in {order.checkpoints}", highlight=False, soft_wrap=True)
+            return
+        student = teach(order, recording, display)
+        if not processes.first:
+            return
+        baked = finish(order, student, recording, display)
+    show(console, baked, teacher=order.teacher)
+
+
+if __name__ == "__main__":  # for torchrun -m
+    run()
