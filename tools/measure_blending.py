@@ -12,13 +12,9 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.read import read
-from mua.camera import NEAR, Camera, orbit
-from mua.decode import Frame, decode_clip_frame
-from mua.kernels.dq_skinning import covariances
-from mua.kernels.splat_draw import splat_colors, splat_draw
-from mua.kernels.splat_project import splat_project
-from mua.kernels.splat_sort import splat_sort
-from mua.render import frame_bounds, to_bytes
+from mua.camera import orbit
+from mua.decode import decode_clip_frame
+from mua.render import frame_bounds, render_premultiplied, to_bytes
 
 FRAMES = 2  # of each clip
 SCREEN = (480, 720)
@@ -35,7 +31,7 @@ def main() -> None:
         index = int(part * (len(clip) - 1))
         frame = decode_clip_frame(avatar, clip, frame=index)
         camera = orbit(frame_bounds(frame), screen=SCREEN, azimuth=0.4)
-        blended, light = pictures(frame, camera)
+        blended, light = (render_premultiplied(frame, camera, encode=encode) for encode in (np.asarray, linear))
         for name, value in BACKGROUNDS.items():
             shown = over(blended, value), srgb(over(light, linear(np.array(value))))
             difference = np.subtract(*(to_bytes(image).astype(float)[blended[..., 3] > 0] for image in shown))
@@ -43,26 +39,6 @@ def main() -> None:
             sizes = np.abs(difference)
             row = (clip.name, index, name, f"{decibels:.1f}", f"{sizes.mean():.2f}", f"{np.percentile(sizes, 99):.0f}")
             print("| " + " | ".join(map(str, row)) + " |")
-
-
-def pictures(frame: Frame, camera: Camera) -> tuple[Array, Array]:
-    """Premultiplied [H, W, 4]: sRGB values blended, and light blended."""
-    splats, keys, ellipses = splat_project(
-        frame.centres,
-        covariances(frame.rotations, frame.scales),
-        frame.opacities,
-        camera.view[None],
-        camera.projection[None],
-        screen=camera.screen,
-        near=NEAR,
-        bounds=frame_bounds(frame),
-    )
-    colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], camera.position)
-    opacities, order = frame.opacities[splats], splat_sort(keys)
-    return (
-        splat_draw(ellipses[0], colors, opacities, order, screen=camera.screen),
-        splat_draw(ellipses[0], linear(colors), opacities, order, screen=camera.screen),
-    )
 
 
 def over(image: Array, background: Array | float) -> Array:

@@ -4,6 +4,8 @@ Colours are display-referred, as in 3D Gaussian Splatting: sRGB values are blend
 function before it is written as 8 bits.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from mua.arrays import Array
@@ -28,8 +30,13 @@ def render(
     return np.asarray(image[..., :3] + (1 - image[..., 3:]) * np.array(background))
 
 
-def render_premultiplied(frame: Frame, camera: Camera) -> Array:
-    """Premultiplied sRGB and alpha [H, W, 4], float64."""
+def render_premultiplied(
+    frame: Frame,
+    camera: Camera,
+    *,
+    encode: Callable[[Array], Array] = np.asarray,  # of the splats' sRGB [M, 3] to what is blended
+) -> Array:
+    """Premultiplied sRGB, or what `encode` makes of it, and alpha [H, W, 4], float64."""
     splats, keys, ellipses = splat_project(
         frame.centres,
         covariances(frame.rotations, frame.scales),
@@ -41,7 +48,7 @@ def render_premultiplied(frame: Frame, camera: Camera) -> Array:
         bounds=frame_bounds(frame),
     )
     colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], camera.position)
-    return splat_draw(ellipses[0], colors, frame.opacities[splats], splat_sort(keys), screen=camera.screen)
+    return splat_draw(ellipses[0], encode(colors), frame.opacities[splats], splat_sort(keys), screen=camera.screen)
 
 
 def frame_bounds(frame: Frame) -> Array:
