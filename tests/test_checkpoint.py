@@ -1,6 +1,7 @@
 """Checkpoints are whole, belong to one run, and are nothing where they are damaged."""
 
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 import torch
@@ -40,8 +41,8 @@ def test_a_failed_save_leaves_the_old_state(tmp_path: Path, monkeypatch: pytest.
     checkpoints = Checkpoints(tmp_path, "a")
     checkpoints.save("stage", {"step": 1})
 
-    def half(content: object, path: Path) -> None:
-        path.write_bytes(b"half")
+    def half(content: object, file: BinaryIO) -> None:
+        file.write(b"half")
         raise KeyboardInterrupt
 
     monkeypatch.setattr(torch, "save", half)

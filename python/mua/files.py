@@ -59,7 +59,9 @@ def remove_leftovers(path: Path) -> None:
 
 def _refused(path: Path, error: OSError) -> InputError:
     kept = "; what it held before is kept" if path.is_file() else ""
-    return InputError(f"{path}: cannot be written ({error.strerror}){kept}")
+    blocked = isinstance(error, FileExistsError | NotADirectoryError)
+    reason = f"{error.filename} is no directory" if blocked else error.strerror
+    return InputError(f"{path}: cannot be written ({reason}){kept}")
 
 
 def _concerns(error: OSError, path: Path, temporary: Path) -> bool:

@@ -8,10 +8,9 @@ import typer
 from rich.console import Console
 
 from mua.asset.tensors import Storage
-from mua.bake.distillation import Baked
 from mua.bake.pipeline import Order, bake
-from mua.bake.report import STAND_IN, table
-from mua.cli.display import Display, choose_device
+from mua.bake.report import STAND_IN
+from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
 from mua.motion.joint_names import read_mapping
 from mua.student.settings import preset, with_recipe
@@ -66,15 +65,6 @@ def main(
     with Display(console) as display:
         baked = bake(order, display)
     show(console, baked, teacher=STAND_IN)
-
-
-def show(console: Console, baked: Baked, *, teacher: str) -> None:
-    """Print what a bake or a training ends with: the table of errors, and where everything is."""
-    if baked.errors:
-        console.print(table(baked.errors, teacher=teacher))
-    for path in (baked.output, baked.sheet, baked.figures):
-        if path is not None:
-            console.print(path, highlight=False, soft_wrap=True)
 
 
 def run() -> None:

@@ -6,6 +6,8 @@ import torch
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from mua.bake.distillation import Baked
+from mua.bake.report import table
 from mua.errors import InputError
 
 LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
@@ -55,6 +57,15 @@ class Display:
         self._told = time.monotonic()
         self.console.print(line, highlight=False, soft_wrap=True)
         self.console.file.flush()  # who reads a log reads it now
+
+
+def show(console: Console, baked: Baked, *, teacher: str) -> None:
+    """Print what a bake or a training ends with: the table of errors, and where everything is."""
+    if baked.errors:
+        console.print(table(baked.errors, teacher=teacher))
+    for path in (baked.output, baked.sheet, baked.figures):
+        if path is not None:
+            console.print(path, highlight=False, soft_wrap=True)
 
 
 def choose_device(name: str) -> torch.device:

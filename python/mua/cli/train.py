@@ -10,8 +10,7 @@ from rich.console import Console
 from mua.asset.tensors import Storage
 from mua.bake.distillation import Distillation, finish, teach, teach_stage
 from mua.bake.report import UNSAID
-from mua.cli.bake import show
-from mua.cli.display import Display, choose_device
+from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
 from mua.processes import Processes, joined
 from mua.recording import Recording

@@ -1,5 +1,6 @@
 """The shard that a writer gathers, and how it reaches the disk: whole or not at all."""
 
+import io
 import os
 import zlib
 from pathlib import Path
@@ -85,12 +86,12 @@ class Shard:
 
     def _save(self, name: str, array: Array) -> None:
         path = self._part / f"{name}.npy"
+        content = io.BytesIO()  # np.save into a file itself overlooks that its last bytes found no room
+        np.save(content, array, allow_pickle=False)
         try:
-            np.save(path, array, allow_pickle=False)
+            path.write_bytes(content.getbuffer())
         except OSError as error:
-            raise InputError(
-                f"{path}: cannot be written ({error.strerror or error}); earlier shards are kept"
-            ) from error
+            raise InputError(f"{path}: cannot be written ({error.strerror}); earlier shards are kept") from error
 
     def _arrays(self) -> dict[str, Array]:
         columns = {

@@ -1,0 +1,257 @@
+"""mua-train on damaged recordings, in places where it cannot write, on full disks, and killed at any moment."""
+
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recordings import RATE, write
+from synthetic_avatar import synthetic_rig
+from trainings import STAGE_NAMES, mua_train, process, sentence
+
+from mua.arrays import Array
+from mua.recording import TeacherWriter
+
+EARLIER = b"an earlier result"
+
+
+@pytest.fixture
+def recording(written: Path, tmp_path: Path) -> Path:
+    """A copy that may be damaged."""
+    return Path(shutil.copytree(written, tmp_path / "recording"))
+
+
+@pytest.fixture(scope="module")
+def undisturbed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    output = tmp_path_factory.mktemp("undisturbed") / "a.muaavatar"
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        assert mua_train(monkeypatch, written, output) == 0
+    return output
+
+
+def change(path: Path, how: Callable[[Array], None]) -> None:
+    """Rewrite a .npy file with its array changed in place."""
+    array = np.load(path)
+    how(array)
+    np.save(path, array)
+
+
+def put(value: float, *at: int) -> Callable[[Array], None]:
+    def change_one(array: Array) -> None:
+        array[at + (0,) * (array.ndim - len(at))] = value
+
+    return change_one
+
+
+def without_shard(recording: Path) -> None:
+    shutil.rmtree(recording / "shards/00001")
+
+
+def cut(recording: Path) -> None:
+    path = recording / "shards/00001/d2.npy"
+    path.write_bytes(path.read_bytes()[:-2])
+
+
+def of_another_rig(recording: Path) -> None:
+    path = recording / "shards/00001/index.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"rig": "0" * 64}))
+
+
+def with_another_rig(recording: Path) -> None:
+    rig = dict(np.load(recording / "rig.npz"))
+    rig["vertices"] = rig["vertices"] + 1
+    np.savez(recording / "rig.npz", **rig)
+
+
+def of_odd_size(recording: Path) -> None:
+    path = recording / "recording.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"texels": 40}))
+
+
+def with_nan(name: str, *at: int, value: float = np.nan) -> Callable[[Path], None]:
+    return lambda recording: change(recording / "shards" / name, put(value, *at))
+
+
+def no_recording(recording: Path) -> None:
+    (recording / "recording.json").unlink()
+
+
+DAMAGES = {
+    "missing shard": (without_shard, "shard 00001 is missing"),
+    "cut file": (cut, "d2.npy is damaged or cut short"),
+    "shard of another rig": (of_another_rig, "00001/index.json: holds frames of another rig"),
+    "another rig": (with_another_rig, "rig.npz: is not the rig"),
+    "odd texture size": (of_odd_size, "texels is 40, expected a multiple of 16"),
+    "no recording": (no_recording, "not a recording"),
+    "nan in a mesh": (with_nan("00000/meshes.npy", 1), "00000/meshes.npy: frame 2 of 'walk'"),
+    "nan in LL": (with_nan("00001/ll.npy", 0), "00001/ll.npy: frame 8 of 'walk'"),
+    "nan in D2's last channel": (with_nan("00001/d2.npy", 3, 2, 22), "00001/d2.npy: frame 14 of 'walk'"),
+    "infinity in D3": (with_nan("00000/d3.npy", 3, value=np.inf), "00000/d3.npy: frame 6 of 'walk'"),
+    "nan in a pose": (with_nan("00000/rotations.npy", 2), "00000/rotations.npy: a pose"),
+    "nan in the sum": (with_nan("00006/sum.npy"), "00006/sum.npy: the sum"),
+    "nan in a whole frame": (with_nan("00000/whole_00000.npy"), "whole_00000.npy: frame 0 of 'walk'"),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_recording_ends_in_a_sentence(
+    recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], damage: str
+) -> None:
+    how, told = DAMAGES[damage]
+    how(recording)
+    output = recording.with_name("a.muaavatar")
+    output.write_bytes(EARLIER)
+    assert mua_train(monkeypatch, recording, output) == 1
+    assert told in sentence(capsys.readouterr().err)
+    assert not list(recording.parent.rglob("*.part*"))
+    if damage != "nan in a whole frame":  # which is read to measure the avatar that is there by then
+        assert output.read_bytes() == EARLIER
+
+
+def test_a_recording_without_training_frames_ends_in_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rig = synthetic_rig()
+    with TeacherWriter(tmp_path / "recording", rig, rate=RATE) as writer:
+        writer.start_clip("walk")
+        writer.add(rig.skeleton.bind_pose)
+    assert mua_train(monkeypatch, tmp_path / "recording", tmp_path / "a.muaavatar") == 1
+    assert "holds no training frame" in sentence(capsys.readouterr().err)
+
+
+def a_file(directory: Path) -> Path:
+    (directory / "file").write_bytes(EARLIER)
+    return directory / "file" / "a.muaavatar"
+
+
+def a_directory(directory: Path) -> Path:
+    (directory / "a.muaavatar").mkdir()
+    return directory / "a.muaavatar"
+
+
+def read_only(directory: Path) -> Path:
+    if os.geteuid() == 0:
+        pytest.skip("root may write anywhere; any other user runs this test")
+    (directory / "closed").mkdir(mode=0o500)
+    return directory / "closed" / "a.muaavatar"
+
+
+PLACES = {
+    "below a file": (a_file, "cannot be written ({parent} is no directory)"),
+    "a directory": (a_directory, "is a directory, expected a file to write"),
+    "read-only": (read_only, "cannot be written (Permission denied)"),
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_an_output_that_cannot_be_is_named_before_any_training(
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], place: str
+) -> None:
+    where, told = PLACES[place]
+    output = where(tmp_path)
+    assert mua_train(monkeypatch, written, output) == 1
+    captured = capsys.readouterr()
+    assert f"{output}: {told.format(parent=output.parent)}" in sentence(captured.err)
+    assert not set(captured.out.splitlines()) & set(STAGE_NAMES)
+
+
+@contextmanager
+def disk_of(size: int) -> Iterator[None]:
+    """Within the block the system refuses whatever lies beyond the first `size` bytes of any file."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("stage", ["coarse mesh", "geometry bases", "geometry fine-tuning"])
+def test_a_checkpoint_that_finds_no_room_costs_nothing_trained_before(
+    written: Path,
+    undisturbed: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    stage: str,
+) -> None:
+    room = (undisturbed.with_suffix(".work") / f"student/{stage}.pt").stat().st_size - 1
+    output = tmp_path / "a.muaavatar"
+    with disk_of(room):
+        assert mua_train(monkeypatch, written, output) == 1
+    captured = capsys.readouterr()
+    assert f"{stage}.pt: cannot be written (File too large)" in sentence(captured.err)
+    begun = [name for name in STAGE_NAMES if name in captured.out.splitlines()]
+    assert begun[-1] == stage
+    assert {path.name for path in tmp_path.rglob("*.pt")} == {f"{name}.pt" for name in begun[:-1]}
+    assert mua_train(monkeypatch, written, output) == 0
+    repeated = set(capsys.readouterr().out.splitlines()) & set(STAGE_NAMES)
+    assert repeated == set(STAGE_NAMES[len(begun) - 1 :])
+    assert output.read_bytes() == undisturbed.read_bytes()
+
+
+def test_an_avatar_that_finds_no_room_leaves_the_earlier_one_and_all_that_was_trained(
+    written: Path,
+    undisturbed: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    output = tmp_path / "a.muaavatar"
+    shutil.copytree(undisturbed.with_suffix(".work"), tmp_path / "a.work")
+    output.write_bytes(EARLIER)
+    with disk_of(undisturbed.stat().st_size - 1):
+        assert mua_train(monkeypatch, written, output) == 1
+    assert f"{output}: cannot be written (File too large); what it held" in sentence(capsys.readouterr().err)
+    assert output.read_bytes() == EARLIER
+    assert not list(tmp_path.rglob("*.part*"))
+    assert mua_train(monkeypatch, written, output) == 0
+    assert not set(capsys.readouterr().out.splitlines()) & set(STAGE_NAMES)
+    assert output.read_bytes() == undisturbed.read_bytes()
+
+
+def test_a_recording_that_finds_no_room_ends_in_a_sentence(written: Path, tmp_path: Path) -> None:
+    with (
+        disk_of((written / "shards/00006/sum.npy").stat().st_size - 1),
+        pytest.raises(ValueError, match=r"\.npy: cannot be written .*; earlier shards are kept"),
+    ):
+        write(tmp_path / "recording")
+
+
+def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, undisturbed: Path, tmp_path: Path) -> None:
+    """kill -9, three times at a random moment after a stage was announced; then a run that nothing disturbs."""
+    moment = random.Random(7)
+    output = tmp_path / "a.muaavatar"
+    for stage in ("coarse mesh", "geometry coefficients", "appearance fine-tuning"):
+        killed = subprocess.Popen(process(written, output), stdout=subprocess.PIPE, text=True)
+        assert killed.stdout is not None
+        for line in killed.stdout:
+            if line.strip() == stage:
+                time.sleep(moment.uniform(0, 0.05))
+                break
+        killed.send_signal(signal.SIGKILL)
+        killed.communicate()
+        assert killed.returncode == -signal.SIGKILL  # it had not ended by itself
+        assert not output.exists()
+    subprocess.run(process(written, output), check=True, stdout=subprocess.DEVNULL)
+    assert output.read_bytes() == undisturbed.read_bytes()
+    assert not list(tmp_path.rglob("*.part*"))
+
+
+@pytest.mark.parametrize("left", ["a.work/student/.coarse mesh.1.part.pt", ".a.1.part.muaavatar"])
+def test_removes_what_a_killed_run_left(
+    written: Path, undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, left: str
+) -> None:
+    shutil.copytree(undisturbed.with_suffix(".work"), tmp_path / "a.work")
+    (tmp_path / left).write_bytes(b"half")
+    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar") == 0
+    assert not (tmp_path / left).exists()

@@ -1,0 +1,58 @@
+"""mua-train in a test: a preset of a few steps, run within the test or as a process of its own."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mua.cli import train
+from mua.student import optimise
+from mua.student.settings import PRESETS, Ranks, Schedule
+
+SMALL = replace(
+    PRESETS["tiny"],
+    geometry=Ranks(4, 3, 2),
+    appearance=Ranks(4, 3, 2),
+    components=4,
+    hidden=16,
+    sweeps=1,
+    regression=Schedule(steps=40, batch=8, rate=1e-3),
+    finetune=Schedule(steps=20, batch=4, rate=1e-4),
+)
+STAGE_NAMES = (
+    "coarse mesh",
+    *("geometry bases", "geometry coefficients", "geometry fine-tuning"),
+    *("appearance bases", "appearance coefficients", "appearance fine-tuning"),
+)
+
+
+def arguments(recording: Path, output: Path) -> list[str]:
+    return [str(recording), "-o", str(output), "--preset", "small", "--storage", "f32", "--device", "cpu"]
+
+
+def process(recording: Path, output: Path) -> list[str]:
+    """The command line of a process that does the same as `mua_train`, and checkpoints as often."""
+    code = (
+        f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import mua.cli, trainings;"
+        "trainings.PRESETS['small'] = trainings.SMALL; trainings.optimise.CHECKPOINT_STEPS = 5; trainings.train.run()"
+    )
+    return [sys.executable, "-c", code, *arguments(recording, output)]
+
+
+def mua_train(monkeypatch: pytest.MonkeyPatch, recording: Path, output: Path, *more: str) -> int:
+    """Run the command in this process; its exit status."""
+    monkeypatch.setitem(PRESETS, "small", SMALL)
+    monkeypatch.setattr(optimise, "CHECKPOINT_STEPS", 5)
+    monkeypatch.setattr(sys, "argv", ["mua-train", *arguments(recording, output), *more])
+    try:
+        train.run()
+    except SystemExit as ended:
+        return int(ended.code or 0)
+    return 0
+
+
+def sentence(captured: str) -> str:
+    """The one error that a command printed."""
+    (line,) = [line for line in captured.splitlines() if line.startswith("error: ")]
+    return line
