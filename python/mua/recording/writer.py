@@ -101,6 +101,22 @@ class TeacherWriter:
         self._clip = ""
         self._read_shards()
 
+    @property
+    def has_reference(self) -> bool:
+        """Whether there is a texture that all others are stored as differences from."""
+        return self._reference is not None
+
+    def refer_to(self, texture: Array) -> None:
+        """Store all frames as differences from `texture` instead of the first one; comes before the first frame.
+
+        Raises InputError where there is another reference already.
+        """
+        values = valid_texture(texture, self._header, self._texels.texels)
+        if self._reference is None:
+            self._reference = self._keep_reference(values)
+        elif not np.array_equal(self._reference.texture, values):
+            raise InputError(f"{self.directory / REFERENCE}: is another texture than the one to refer to")
+
     def start_clip(self, name: str, *, held_out: bool = False) -> None:
         """Say which clip the next frames belong to; the clip before it is complete with that.
 

@@ -10,7 +10,8 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from mua.files import replacing
+from mua.files import remove_leftovers, replacing
+from mua.processes import ALONE, Processes
 
 
 @dataclass(frozen=True)
@@ -19,14 +20,28 @@ class Checkpoints:
 
     directory: Path
     key: str
+    processes: Processes = ALONE  # the first of them writes and reads, and tells the others
 
     def save(self, stage: str, state: dict[str, Any]) -> None:
-        """Replace what is kept of `stage`; a kill at any moment leaves the old state or the new."""
-        with replacing(self._path(stage)) as temporary:
-            torch.save({"key": self.key, "state": state}, temporary)
+        """Replace what is kept of `stage`; a kill at any moment leaves the old state or the new.
+
+        Raises InputError where it cannot be written; the old state is kept then too.
+        """
+        if not self.processes.first:
+            return
+        with replacing(self._path(stage)) as temporary, temporary.open("wb") as file:
+            try:
+                torch.save({"key": self.key, "state": state}, file)
+            except RuntimeError as error:  # of torch's archive, when the file below it refused to write
+                if isinstance(error.__context__, OSError):
+                    raise error.__context__ from None
+                raise
 
     def load(self, stage: str) -> dict[str, Any] | None:
         """What was kept of `stage`; None where there is nothing, or it is damaged or of another run."""
+        return self.processes.told(self._read(stage) if self.processes.first else None)
+
+    def _read(self, stage: str) -> dict[str, Any] | None:
         try:
             kept = torch.load(self._path(stage), map_location="cpu", weights_only=True)
         except (FileNotFoundError, RuntimeError, EOFError, pickle.UnpicklingError):
@@ -34,6 +49,16 @@ class Checkpoints:
         if not isinstance(kept, dict) or kept.get("key") != self.key:
             return None
         return dict(kept["state"])
+
+    def finished(self, stage: str) -> bool:
+        """Whether `stage` is kept and needs no further step."""
+        kept = self.load(stage)
+        return kept is not None and bool(kept.get("finished", True))
+
+    def remove_leftovers(self, stages: Iterable[str]) -> None:
+        """Remove what killed runs left half written of `stages`."""
+        for stage in stages:
+            remove_leftovers(self._path(stage))
 
     def _path(self, stage: str) -> Path:
         return self.directory / f"{stage}.pt"

@@ -46,6 +46,7 @@ def fit_coarse(
 ) -> None:
     """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
     pca = mesh_pca(meshes, settings.components, generator=run.generator)
+    run.processes.agree(pca.mean, pca.basis, pca.coefficients)
     coarse.mean.copy_(pca.mean)
     coarse.basis.copy_(pca.basis)
     mlp = regress(

@@ -10,6 +10,7 @@ import math
 import torch
 from torch import Tensor, nn
 
+from mua.processes import ALONE, Processes
 from mua.student.coarse import mesh_pca
 from mua.student.finetune import draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
@@ -31,13 +32,15 @@ def descend_coarse(
 ) -> None:
     """Set the PCA of `coarse` and train F_temp on the L1 error of its coefficients (paper, Eq. L_coarse)."""
     pca = mesh_pca(meshes, settings.components, generator=run.generator)
+    run.processes.agree(pca.mean, pca.basis, pca.coefficients)
     coarse.mean.copy_(pca.mean)
     coarse.basis.copy_(pca.basis)
     start_mlp(coarse.mlp, run.generator)
 
-    def loss() -> Tensor:
-        batch = draw_frames(len(inputs), settings.regression, run).to(inputs.device)
-        return (coarse.mlp(inputs[batch]) - pca.coefficients[batch]).abs().sum(1).mean()
+    def loss(model: nn.Module) -> Tensor:
+        share = run.processes.share(draw_frames(len(inputs), settings.regression, run), frames=len(inputs))
+        rows = share.rows.to(inputs.device)
+        return share.weight * (model(inputs[rows]) - pca.coefficients[rows]).abs().sum(1).mean()
 
     groups: list[dict[str, object]] = [{"params": list(coarse.mlp.parameters()), "weight_decay": 0.0}]
     optimise(coarse.mlp, loss, schedule=settings.regression, parameters=groups, stage="coarse mesh", run=run)
@@ -54,7 +57,7 @@ def descend_branch(
     run: Run,
 ) -> None:
     """Train bases and MLP from noise on the paper's loss; the means are those of the training frames."""
-    variance = set_means(branch, source, frames=len(inputs)).to(run.device)
+    variance = set_means(branch, source, frames=len(inputs), processes=run.processes).to(run.device)
     weights = channel_weights(variance, channels)
     start_mlp(branch.mlp, run.generator)
     with weighted(branch, weights), torch.no_grad():
@@ -77,14 +80,20 @@ def descend_branch(
 
 
 @torch.no_grad()
-def set_means(branch: Branch, source: Source, *, frames: int) -> Tensor:
+def set_means(branch: Branch, source: Source, *, frames: int, processes: Processes = ALONE) -> Tensor:
     """Set the mean subbands of `branch`, channel by channel; returns the texel variance [C] about them."""
     energy = []
     for channel in range(branch.channels):
+        if channel not in processes.channels(branch.channels):
+            energy.append(branch.ll_mean.new_empty(()))
+            continue
         ll, d3, d2 = source(slice(channel, channel + 1), torch.arange(frames))
         branch.ll_mean[channel] = ll[:, 0].mean(0)
         branch.d3.mean[:, channel], branch.d2.mean[:, channel] = d3[:, :, 0].mean(0), d2[:, :, 0].mean(0)
-        energy.append(torch.stack([(band - band.mean(0)).square().sum() for band in (ll, d3, d2)]).sum())
+        spread = torch.stack([(band - band.mean(0)).square().sum() for band in (ll, d3, d2)]).sum()
+        energy.append(spread.to(branch.ll_mean))
+    for channel, spread in enumerate(energy):
+        processes.agree(*branch.channel(channel), spread, source=processes.owner(channel))
     texels = (16 * branch.ll_mean.shape[-1]) ** 2
     return torch.stack(energy) / (frames * texels)
 

@@ -1,5 +1,8 @@
 """From a recording to a trained student: descriptors of its training frames, then `mua.student.train`."""
 
+import math
+import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -7,17 +10,21 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mua import __version__
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.descriptor import choose_joints, describe, normalization
 from mua.motion.encoding import PoseEncoding
+from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.rig.rig import Rig
 from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress
 from mua.student.settings import Settings
-from mua.student.train import Samples, train
+from mua.student.train import Samples, StageName, stages, train
+
+GPU_SECONDS = 1.0  # between two questions about the GPU
 
 
 class Listener(Protocol):
@@ -35,21 +42,61 @@ def distil(
     device: torch.device,
     directory: Path,  # of the checkpoints; a run that was killed goes on from them to the same bytes
     report: Listener,
+    processes: Processes = ALONE,  # that share the work
 ) -> Student:
     """Train a student on the training frames of `recording`; it comes back on the CPU, without gradients.
 
     Raises InputError where the recording has another texture size than `settings`, or no training frame.
     """
+    run = _Run(device, directory, report, processes)
+    return _train(recording, settings, run, only=None).cpu()
+
+
+def distil_stage(
+    recording: Recording,
+    settings: Settings,
+    stage: StageName,
+    *,
+    device: torch.device,
+    directory: Path,  # of the checkpoints
+    report: Listener,
+    processes: Processes = ALONE,
+) -> None:
+    """Run one stage of what `distil` does, up to the checkpoints that `distil` and later stages take up.
+
+    Raises InputError as `distil` does, and where an earlier stage's checkpoints are not in `directory`.
+    """
+    _train(recording, settings, _Run(device, directory, report, processes), only=stage)
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Where a training happens and who hears of it."""
+
+    device: torch.device
+    directory: Path
+    report: Listener
+    processes: Processes
+
+
+def _train(recording: Recording, settings: Settings, run: _Run, *, only: StageName | None) -> Student:
     student, samples = prepare(recording, settings)
+    checkpoints = Checkpoints(
+        run.directory, run_key((__version__, settings, recording.fingerprint()), [student.mean, student.scale])
+    )
+    if run.processes.first:
+        checkpoints.remove_leftovers(name for names in stages(settings).values() for name in names)
     train(
         student,
         samples,
         settings=settings,
-        checkpoints=Checkpoints(directory, run_key((settings, recording.fingerprint()), [student.mean, student.scale])),
-        device=device,
-        report=_Reporter(report),
+        checkpoints=checkpoints,
+        device=run.device,
+        report=_Reporter(run.report, run.device),
+        only=only,
+        processes=run.processes,
     )
-    return student.cpu()
+    return student
 
 
 def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]:
@@ -110,15 +157,33 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
 
 
 class _Reporter:
-    """Tells a listener of the stages and steps of a training."""
+    """Tells a listener of the stages and steps of a training, and how busy the GPU is."""
 
-    def __init__(self, listener: Listener) -> None:
-        self._listener = listener
+    def __init__(self, listener: Listener, device: torch.device) -> None:
+        self._listener, self._device = listener, device
         self._stage = ""
+        self._use, self._asked = "", -math.inf
 
     def __call__(self, progress: Progress) -> None:
         if progress.stage != self._stage:
             self._stage = progress.stage
             self._listener.stage(progress.stage)
         loss = "" if progress.loss is None else f"loss {progress.loss:.4f}, "
-        self._listener.step(progress.step, progress.steps, detail=f"{loss}{progress.rate:.1f} steps/s")
+        self._listener.step(progress.step, progress.steps, detail=f"{loss}{progress.rate:.1f} steps/s{self._gpu()}")
+
+    def _gpu(self) -> str:
+        """How busy the GPU was when last asked; asking takes longer than a step."""
+        if time.monotonic() - self._asked >= GPU_SECONDS:
+            self._use, self._asked = gpu_use(self._device), time.monotonic()
+        return self._use
+
+
+def gpu_use(device: torch.device) -> str:
+    """What the driver says of the GPU that trains, to follow other figures; nothing on a CPU."""
+    if device.type != "cuda":
+        return ""
+    taken = f"{torch.cuda.memory_allocated(device) / 1e9:.1f} GB"
+    try:
+        return f", GPU {torch.cuda.utilization(device)} %, {taken}"
+    except (ImportError, RuntimeError):  # without nvidia-ml-py, or where the driver does not tell
+        return f", GPU {taken}"

@@ -43,14 +43,18 @@ def truncated_svd(
     generator: torch.Generator,
 ) -> tuple[Tensor, Tensor, Tensor]:
     """The leading K = min(rank, F, P) singular triplets u [F, K], s [K], v [K, P], by subspace iteration."""
-    width = min(rank + OVERSAMPLING, *x.shape)
-    probe = torch.randn(x.shape[1], width, generator=generator).to(x)
+    probe = draw_probe(len(x), x.shape[1], rank, generator=generator).to(x)
     span = torch.linalg.qr(x @ probe).Q
     for _ in range(POWER_ITERATIONS):
         span = torch.linalg.qr(x @ torch.linalg.qr(x.T @ span).Q).Q
     u, s, v = torch.linalg.svd(span.T @ x, full_matrices=False)
     keep = min(rank, *x.shape)
     return span @ u[:, :keep], s[:keep], v[:keep]
+
+
+def draw_probe(frames: int, samples: int, rank: int, *, generator: torch.Generator) -> Tensor:
+    """What `truncated_svd` of [F, P] samples draws: the random directions [P, K] that its iteration starts from."""
+    return torch.randn(samples, min(rank + OVERSAMPLING, frames, samples), generator=generator)
 
 
 def blendshapes(
@@ -103,7 +107,7 @@ def start_from_modes(
     h = (u[mode, :, :, term] * root).transpose(0, 1)
     w = (v[mode, :, term, :] * root).transpose(0, 1)
     missing = rank - len(best)
-    coefficients = torch.nn.functional.one_hot(mode, len(modes)).T.to(modes)
+    coefficients = (torch.arange(len(modes), device=mode.device)[:, None] == mode).to(modes)
     return Factors(_pad(coefficients, 1, missing), _pad(h, 1, missing), _pad(w, 1, missing))
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from mua.student.model import Bands, Branch
 from mua.student.optimise import Run, optimise
@@ -53,11 +53,12 @@ def finetune(
 ) -> None:
     """Train bases and MLP together on the paper's loss over weighted subbands."""
 
-    def loss() -> Tensor:
-        batch = draw_frames(len(inputs), schedule, run)
-        ll, d3, d2 = (band.to(run.device) for band in bands(batch))
+    def loss(model: nn.Module) -> Tensor:
+        share = run.processes.share(draw_frames(len(inputs), schedule, run), frames=len(inputs))
+        ll, d3, d2 = (band.to(run.device) for band in bands(share.rows))
         scale = weights[:, None, None]
-        return subband_loss(branch(inputs[batch.to(inputs.device)]), Bands(ll * scale, d3 * scale, d2 * scale))
+        predicted = model(inputs[share.rows.to(inputs.device)])
+        return share.weight * subband_loss(predicted, Bands(ll * scale, d3 * scale, d2 * scale))
 
     mlp = list(branch.mlp.parameters())
     bases = [branch.ll_basis, branch.d3.h, branch.d3.w, branch.d2.h, branch.d2.w]

@@ -112,6 +112,13 @@ class Branch(nn.Module):
         ll = ll.transpose(0, 1).unflatten(2, self.ll_mean.shape[1:]) + self.ll_mean
         return Bands(ll, self.d3(alphas.d3), self.d2(alphas.d2))
 
+    def channel(self, channel: int) -> tuple[Tensor, ...]:
+        """Views of the means and bases of one channel."""
+        own = [self.ll_mean[channel], self.ll_basis[channel]]
+        for detail in (self.d3, self.d2):
+            own += [detail.mean[:, channel], detail.h[:, channel], detail.w[:, channel]]
+        return tuple(own)
+
     def forward(self, inputs: Tensor) -> Bands:
         """The subbands of normalised descriptors [F, k D]."""
         return self.synthesize(self.split(self.mlp(inputs)))

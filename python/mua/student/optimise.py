@@ -1,13 +1,15 @@
 """One resumable run of Adam: the loop that every trained stage of a distillation shares."""
 
+import hashlib
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor, nn
 
+from mua.processes import ALONE, Processes
 from mua.student.checkpoint import Checkpoints
 from mua.student.settings import Schedule
 
@@ -36,11 +38,17 @@ class Run:
     checkpoints: Checkpoints
     report: Report
     device: torch.device
+    processes: Processes = ALONE
+
+    def alone(self, stage: str) -> "Run":
+        """The same run with a generator of the stage's own: it draws the same numbers alone as after other stages."""
+        digest = hashlib.sha256(f"{self.generator.initial_seed()} {stage}".encode()).digest()
+        return replace(self, generator=torch.Generator().manual_seed(int.from_bytes(digest[:7], "little")))
 
 
 def optimise(
     module: nn.Module,
-    loss: Callable[[], Tensor],
+    loss: Callable[[nn.Module], Tensor],  # of what stands for `module` among the processes, over this one's share
     *,
     schedule: Schedule,
     parameters: list[dict[str, object]],
@@ -54,6 +62,7 @@ def optimise(
     relative = [float(group.pop("lr", 1.0)) for group in parameters]  # type: ignore[arg-type]
     optimizer = torch.optim.AdamW(parameters, lr=schedule.rate)
     first = _restore(module, optimizer, stage=stage, run=run)
+    model = run.processes.wrap(module)
     started = time.monotonic()
     for step in range(first, schedule.steps):
         fall = 0.5 * (1 + math.cos(math.pi * step / schedule.steps)) if schedule.falls else 1.0
@@ -61,14 +70,14 @@ def optimise(
         for group, factor in zip(optimizer.param_groups, relative, strict=True):
             group["lr"] = rate * factor
         optimizer.zero_grad()
-        value = loss()
+        value = loss(model)
         value.backward()
         optimizer.step()
         done = step + 1
         if done % CHECKPOINT_STEPS == 0 or done == schedule.steps:
-            _keep(module, optimizer, done, stage=stage, run=run)
+            _keep(module, optimizer, done, finished=done == schedule.steps, stage=stage, run=run)
         pace = (done - first) / max(time.monotonic() - started, 1e-9)
-        run.report(Progress(stage, done, schedule.steps, float(value.detach()), pace))
+        run.report(Progress(stage, done, schedule.steps, run.processes.mean(value), pace))
 
 
 def _restore(module: nn.Module, optimizer: torch.optim.Optimizer, *, stage: str, run: Run) -> int:
@@ -81,11 +90,14 @@ def _restore(module: nn.Module, optimizer: torch.optim.Optimizer, *, stage: str,
     return int(kept["step"])
 
 
-def _keep(module: nn.Module, optimizer: torch.optim.Optimizer, step: int, *, stage: str, run: Run) -> None:
+def _keep(
+    module: nn.Module, optimizer: torch.optim.Optimizer, step: int, *, finished: bool, stage: str, run: Run
+) -> None:
     state = {
         "module": module.state_dict(),
         "optimizer": optimizer.state_dict(),
         "generator": run.generator.get_state(),
         "step": step,
+        "finished": finished,
     }
     run.checkpoints.save(stage, state)

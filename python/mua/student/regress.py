@@ -55,6 +55,7 @@ def regress(
     into its first layer.
     """
     white = whitening(inputs)
+    run.processes.agree(white.mean, white.turn)
     z = (inputs - white.mean) @ white.turn
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
@@ -62,9 +63,11 @@ def regress(
     spread = z.std(0, correction=0)
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
 
-    def loss() -> Tensor:
+    def loss(model: nn.Module) -> Tensor:
         points = draw_around(z, spread, schedule.batch, generator=run.generator)
-        return criterion(mlp(points), smooth(points))
+        share = run.processes.share(torch.arange(schedule.batch), frames=schedule.batch)
+        own = points[share.rows.to(points.device)]
+        return share.weight * criterion(model(own), smooth(own))
 
     groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": WEIGHT_DECAY}]
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)

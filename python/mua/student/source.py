@@ -5,17 +5,62 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
+from mua.processes import ALONE, Processes
 from mua.student.model import Bands
 
 HELD_BYTES = 2 << 30  # a branch's subbands up to this size are kept in memory, larger ones are read batch by batch
+GPU_SHARE = 0.5  # of what is free on a GPU may be taken by subbands; the rest is for the factorisation
+READ_FRAMES = 64  # at once
+CPU = torch.device("cpu")
 
 Source = Callable[[slice, Tensor], Bands]  # the subbands of channels and rows of the training frames
 
 
-def hold(subbands: Source, channels: slice, *, frames: int, size: int) -> Source:
-    """A source of `channels` alone, counted from 0, read once into memory where they fit in HELD_BYTES."""
+def hold(
+    subbands: Source,
+    channels: slice,
+    *,
+    frames: int,
+    size: int,
+    device: torch.device = CPU,
+    processes: Processes = ALONE,
+) -> Source:
+    """A source of `channels` alone, counted from 0, read once into the memory of `device` where they fit.
+
+    Each of several processes holds its own frames and reads others. The values are the same wherever they come from.
+    """
+    own = processes.held(frames)
     values = (size // 4) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
-    if frames * values * (channels.stop - channels.start) * 4 > HELD_BYTES:
-        return lambda part, rows: subbands(slice(channels.start + part.start, channels.start + part.stop), rows)
-    held = Bands(*subbands(channels, torch.arange(frames)))
-    return lambda part, rows: Bands(*(band[rows] for band in held.of(part)))
+    held: Bands | None = None
+    if len(own) * values * (channels.stop - channels.start) * 4 <= room(device):
+        held = _read(subbands, channels, torch.tensor(own), device=device)
+
+    def source(part: slice, rows: Tensor) -> Bands:
+        if held is None or not all(row in own for row in rows.tolist()):
+            return subbands(slice(channels.start + part.start, channels.start + part.stop), rows)
+        places = ((rows - own.start) // own.step).to(device)
+        return Bands(*(band[places] for band in held.of(part)))
+
+    return source
+
+
+def room(device: torch.device) -> int:
+    """Bytes that a branch's subbands may take in the memory of `device`."""
+    if device.type != "cuda":
+        return HELD_BYTES
+    free, _ = torch.cuda.mem_get_info(device)
+    idle = torch.cuda.memory_reserved(device) - torch.cuda.memory_allocated(device)  # torch keeps what it freed
+    return int(GPU_SHARE * (free + idle))
+
+
+def _read(subbands: Source, channels: slice, frames: Tensor, *, device: torch.device) -> Bands:
+    """Frames of given numbers, some at a time, so that the processor's memory never has to hold what a GPU holds."""
+    held: Bands | None = None
+    for place, rows in enumerate(frames.split(READ_FRAMES)):
+        part = subbands(channels, rows)
+        if held is None:
+            held = Bands(*(torch.empty((len(frames), *band.shape[1:]), device=device) for band in part))
+        for band, own in zip(held, part, strict=True):
+            band[place * READ_FRAMES : place * READ_FRAMES + len(rows)] = own.to(device)
+    assert held is not None  # there is a training frame
+    return held

@@ -1,15 +1,19 @@
 """Distillation of training frames into a student: closed-form start, regression, fine-tuning (design, section 8.1)."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Literal, get_args
 
 import torch
 from torch import Tensor
 
+from mua.errors import InputError
+from mua.processes import ALONE, Processes
 from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
 from mua.student.descend import descend_branch, descend_coarse
-from mua.student.factorize import blendshapes, separable_blendshapes
+from mua.student.factorize import blendshapes, draw_probe, separable_blendshapes
 from mua.student.finetune import finetune
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
@@ -18,6 +22,10 @@ from mua.student.settings import Settings
 from mua.student.source import Source, hold
 from mua.student.targets import channel_weights, joint_targets, still_channels
 from mua.texture.channels import APPEARANCE, GEOMETRY
+
+StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
+STAGES: tuple[StageName, ...] = get_args(StageName)
+BRANCHES = ("geometry", "appearance")
 
 
 @dataclass(frozen=True)
@@ -41,21 +49,68 @@ def train(
     checkpoints: Checkpoints,
     device: torch.device,
     report: Report,
+    only: StageName | None = None,
+    processes: Processes = ALONE,
 ) -> None:
-    """Train `student` (its normalisation set) in place on `samples`; resumes from `checkpoints`."""
-    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device)
+    """Train `student` (its normalisation set) in place on `samples`; resumes from `checkpoints`.
+
+    Several `processes` share the work and end with the same student; the first of them reports and keeps checkpoints.
+    With `only` one stage is run up to its checkpoints, which any later run takes up; the student is then unfinished.
+    Raises InputError where the recipe has no such stage, or what it starts from is not there.
+    """
+    checkpoints = replace(checkpoints, processes=processes)
+    if only is not None:
+        require_earlier(only, settings, checkpoints)
+    if not processes.first:
+        report = _silent
+    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
     student.to(device)
     inputs = student.normalize(samples.descriptors.to(device))
     random = settings.start == "random"
-    start, fit = (descend_coarse, descend_branch) if random else (fit_coarse, fit_branch)
-    start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run)
-    for name, branch, channels in zip(
-        ("geometry", "appearance"), student.branches, (GEOMETRY, APPEARANCE), strict=True
-    ):
-        source = hold(samples.subbands, channels, frames=len(samples), size=student.size)
-        fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run)
+    start = descend_coarse if random else fit_coarse
+    fit = descend_branch if random else partial(fit_branch, until=only)
+    if only in (None, "coarse"):
+        start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
+    if only == "coarse":
+        return
+    for name, branch, channels in zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True):
+        source = hold(
+            samples.subbands, channels, frames=len(samples), size=student.size, device=device, processes=processes
+        )
+        fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
+        del source  # before the next branch looks for room
+    if only is not None:
+        return
     student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
     student.requires_grad_(False).eval()
+
+
+def _silent(_: Progress) -> None:
+    pass
+
+
+def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
+    """The stages of a recipe in order, and the names of the checkpoints that each ends in."""
+    if settings.start == "random":
+        return {"coarse": ("coarse mesh",), "fine-tuning": tuple(f"{name} descent" for name in BRANCHES)}
+    endings: dict[StageName, str] = {"bases": "bases", "regression": "coefficients", "fine-tuning": "fine-tuning"}
+    parts = {stage: tuple(f"{name} {ending}" for name in BRANCHES) for stage, ending in endings.items()}
+    return {"coarse": ("coarse mesh",), **parts}
+
+
+def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoints) -> None:
+    """Raises InputError where the recipe has no stage `only`, or a checkpoint that it starts from is not finished."""
+    needed = stages(settings)
+    if only not in needed:
+        raise InputError(f"--stage {only}: this recipe has no such stage, expected {' or '.join(needed)}")
+    for stage, names in needed.items():
+        if stage == only:
+            return
+        for name in names:
+            if stage != "coarse" and not checkpoints.finished(name):  # nothing that follows starts from the coarse mesh
+                raise InputError(
+                    f"--stage {only}: {checkpoints.directory} holds no finished {name!r}; run --stage {stage} first"
+                )
 
 
 def fit_branch(
@@ -67,24 +122,36 @@ def fit_branch(
     settings: Settings,
     name: str,
     run: Run,
+    until: StageName | None = None,
 ) -> None:
-    """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning."""
+    """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
+
+    Stops after the stage `until`.
+    """
+    stage = f"{name} bases"
     flat, variance = factorize_branch(
-        branch, source, frames=len(inputs), settings=settings, stage=f"{name} bases", run=run
+        branch, source, frames=len(inputs), settings=settings, stage=stage, run=run.alone(stage)
     )
+    if until == "bases":
+        return
     hold_still(branch, flat, still_channels(variance, channels))
     weights = channel_weights(variance, channels)
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
-    targets = joint_targets(branch, flat, weights, rank=rank, generator=run.generator)
+    stage = f"{name} coefficients"
+    own = run.alone(stage)
+    targets = joint_targets(branch, flat, weights, rank=rank, generator=own.generator)
+    run.processes.agree(targets.coordinates, targets.expand)
     mlp = regress(
         inputs,
         targets.coordinates,
         hidden=settings.hidden,
         criterion=squared_error,
         schedule=settings.regression,
-        stage=f"{name} coefficients",
-        run=run,
+        stage=stage,
+        run=own,
     )
+    if until == "regression":
+        return
     branch.mlp.load_state_dict(unfold_last_layer(mlp, targets.expand).state_dict())
     finetune(
         branch,
@@ -93,7 +160,7 @@ def fit_branch(
         weights=weights,
         schedule=settings.finetune,
         stage=f"{name} fine-tuning",
-        run=run,
+        run=run.alone(f"{name} fine-tuning"),
     )
 
 
@@ -116,17 +183,34 @@ def factorize_branch(
     started = time.monotonic()
     columns, variance = [], []
     for channel in range(branch.channels):
-        bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
-        alphas, energy = factorize_channel(branch, channel, bands, sweeps=settings.sweeps, generator=run.generator)
+        if channel not in run.processes.channels(branch.channels):
+            alphas, energy = pass_over_channel(branch, frames, generator=run.generator, device=run.device)
+        else:
+            bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
+            alphas, energy = factorize_channel(branch, channel, bands, sweeps=settings.sweeps, generator=run.generator)
         columns.append(alphas)
         variance.append(energy)
         done = channel + 1
         run.report(Progress(stage, done, branch.channels, None, done / (time.monotonic() - started)))
+    for channel, (alphas, energy) in enumerate(zip(columns, variance, strict=True)):
+        solved = (*branch.channel(channel), *alphas, energy)
+        run.processes.agree(*solved, source=run.processes.owner(channel))
     flat = Alphas(*(torch.stack(level, dim=1) for level in zip(*columns, strict=True))).flat()
     spread = torch.stack(variance) / (frames * settings.texels**2)
     state = {"branch": branch.state_dict(), "generator": run.generator.get_state(), "flat": flat, "variance": spread}
     run.checkpoints.save(stage, state)
     return flat, spread
+
+
+def pass_over_channel(
+    branch: Branch, frames: int, *, generator: torch.Generator, device: torch.device
+) -> tuple[Alphas, Tensor]:
+    """Room for a channel that another process solves for; draws what `factorize_channel` does: all stay alike."""
+    ranks, n = branch.ranks, branch.ll_mean.shape[-1]
+    for rank, samples in ((ranks.ll, n * n), (2 * ranks.d3, 3 * n * n), (2 * ranks.d2, 12 * n * n)):
+        draw_probe(frames, samples, rank, generator=generator)
+    room = (torch.empty(frames, rank, device=device) for rank in (ranks.ll, ranks.d3, ranks.d2))
+    return Alphas(*room), torch.empty((), device=device)
 
 
 def factorize_channel(

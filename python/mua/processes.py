@@ -6,7 +6,7 @@ DistributedDataParallel; `torchrun` starts the processes and says through the en
 
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import timedelta
@@ -20,6 +20,7 @@ from torch.nn.parallel import DistributedDataParallel
 from mua.errors import InputError
 
 TIMEOUT = timedelta(minutes=10)  # longer than any process computes between two exchanges
+PATIENCE = timedelta(days=7)  # for others to record their part; a process that ends is noticed at once
 LOST = ("gloo", "Gloo", "NCCL", "Connection closed", "Connection reset")  # what torch's errors say of a dead process
 
 T = TypeVar("T")
@@ -108,6 +109,17 @@ class Processes:
         kept = [value]
         dist.broadcast_object_list(kept, src=0, device=torch.device("cpu"))
         return kept[0]
+
+    def meeting(self) -> Callable[[], None]:
+        """A place to wait for each other for as long as it takes: a function that returns when all have called it."""
+        if self.count == 1:
+            return lambda: None
+        patient = dist.new_group(backend="gloo", timeout=PATIENCE)
+
+        def meet() -> None:
+            dist.barrier(patient)
+
+        return meet
 
     def mean(self, value: Tensor) -> float:
         """The average of a scalar over all processes."""

@@ -1,0 +1,143 @@
+"""Several processes train the student that one trains, and none waits for one that is gone."""
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import torch
+from synthetic_student import bands_of_frames
+from together import errors, start, trained
+
+from mua.processes import ALONE, Processes
+from mua.student.model import Bands
+from mua.student.source import hold
+from mua.texture.channels import GEOMETRY
+
+State = dict[str, torch.Tensor]
+Losses = dict[tuple[str, int], float | None]
+ROUNDING = 1e-4  # of losses and, in the Euclidean norm, of each tensor; see docs/training.md for what was measured
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What two processes made of both recipes."""
+    directory = tmp_path_factory.mktemp("pair")
+    assert errors(start("compare", directory), "compare", directory) == ["", ""]
+    return directory
+
+
+@pytest.fixture
+def one_thread() -> Iterator[None]:
+    """As the processes have: sums of other lengths turn directions that hold only rounding."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    yield
+    torch.set_num_threads(threads)
+
+
+def result(directory: Path, name: str, rank: int) -> tuple[State, Losses]:
+    state, losses = torch.load(directory / f"{name}.{rank}.pt")
+    return state, losses
+
+
+def identical(a: State, b: State) -> bool:
+    return all(torch.equal(a[name], b[name]) for name in a)
+
+
+def difference(a: State, b: State) -> float:
+    """The largest of any tensor, relative to its norm."""
+    pairs = [(a[name].double(), b[name].double()) for name in a]
+    return max(float((x - y).norm() / x.norm().clamp(min=1e-30)) for x, y in pairs)
+
+
+@pytest.mark.usefixtures("one_thread")
+@pytest.mark.parametrize("name", ["closed form", "paper"])
+def test_two_processes_train_the_student_of_one(pair: Path, tmp_path: Path, name: str) -> None:
+    alone, losses = trained(name, tmp_path)
+    state, together = result(pair, name, 0)
+    assert 0 < difference(alone.state_dict(), state) < ROUNDING  # zero would mean that nothing was shared
+    steps = {step: loss for step, loss in losses.items() if loss is not None}
+    assert len(steps) > 30
+    for step, loss in steps.items():
+        assert together[step] == pytest.approx(loss, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("name", ["closed form", "paper"])
+def test_both_processes_end_with_the_same_bytes(pair: Path, name: str) -> None:
+    assert identical(result(pair, name, 0)[0], result(pair, name, 1)[0])
+
+
+def test_only_the_first_process_reports(pair: Path) -> None:
+    assert result(pair, "closed form", 1)[1] == {}
+
+
+@pytest.mark.usefixtures("one_thread")
+def test_a_killed_process_ends_all_and_any_number_goes_on(pair: Path, tmp_path: Path) -> None:
+    killed = tmp_path / "killed"
+    first, _ = errors(start("killed", killed), "killed", killed)
+    assert first.startswith("error: process 1 of 2: another has ended")
+    assert first.count("\n") == 1
+    assert list((killed / "quick").glob("*.pt"))  # something to go on from
+    shutil.copytree(killed, tmp_path / "alone")
+
+    assert errors(start("resumed", killed), "resumed", killed) == ["", ""]
+    state, again = result(killed, "quick", 0)
+    undisturbed, losses = result(pair, "quick", 0)
+    assert len(again) < len(losses)
+    assert identical(state, undisturbed)
+
+    alone, _ = trained("quick", tmp_path / "alone" / "quick")
+    assert 0 < difference(undisturbed, alone.state_dict()) < ROUNDING
+
+
+def test_a_silent_process_is_not_waited_for(tmp_path: Path) -> None:
+    processes = start("silent", tmp_path)
+    processes[0].join(timeout=60)
+    processes[1].kill()
+    first, _ = errors(processes, "silent", tmp_path)
+    assert first.startswith("error: process 1 of 2: another has ended or said nothing for 3 s")
+    assert first.count("\n") == 1
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7])
+@pytest.mark.parametrize("rows", [[0], [4, 1], [3, 0, 4, 2, 1]])
+def test_shares_of_a_batch_average_to_the_whole(count: int, rows: list[int]) -> None:
+    values = torch.arange(5.0) ** 2
+    batch = torch.tensor(rows)
+    total = 0.0
+    for rank in range(count):
+        processes = Processes(rank, count)
+        share = processes.share(batch, frames=5)
+        assert set(share.rows.tolist()) <= set(processes.held(5))
+        total += share.weight * float(values[share.rows].mean())
+    assert total / count == pytest.approx(float(values[batch].mean()))
+
+
+@pytest.mark.parametrize("count", [2, 3, 70])
+def test_a_process_reads_no_frame_of_others_until_asked(count: int) -> None:
+    _, bands = bands_of_frames()
+    read: list[int] = []
+
+    def subbands(channels: slice, rows: torch.Tensor) -> Bands:
+        read.extend(rows.tolist())
+        return Bands(*(band[rows] for band in bands.of(channels)))
+
+    frames = len(bands.ll)
+    for rank in (0, 1, count - 1):
+        processes = Processes(rank, count)
+        read.clear()
+        source = hold(subbands, GEOMETRY, frames=frames, size=48, processes=processes)
+        own = processes.held(frames)
+        assert read == list(own)
+        for rows in (torch.tensor(own), torch.arange(frames)):
+            found = source(slice(2, 4), rows)
+            truth = bands.of(slice(2, 4))
+            assert all(torch.equal(a, b[rows]) for a, b in zip(found, truth, strict=True))
+        assert read == [*own, *range(frames)]
+
+
+def test_channels_are_solved_for_once() -> None:
+    solved = [channel for rank in range(3) for channel in Processes(rank, 3).channels(11)]
+    assert sorted(solved) == list(range(11))
+    assert all(channel in Processes(ALONE.rank, 1).channels(11) for channel in range(11))
