@@ -1,0 +1,63 @@
+"""Atomic writes: all or nothing, and a sentence where the system refuses."""
+
+import errno
+from pathlib import Path
+
+import pytest
+
+from mua.errors import InputError
+from mua.files import remove_leftovers, replacing, require_writable, write_bytes
+
+
+def test_replaces_the_whole_content_and_leaves_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "a.txt"
+    for content in (b"first", b"no"):
+        write_bytes(path, content)
+        assert path.read_bytes() == content
+    assert list(path.parent.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("kind", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()])
+def test_a_failed_write_keeps_the_old_content(tmp_path: Path, kind: BaseException) -> None:
+    path = tmp_path / "a.txt"
+    path.write_bytes(b"old")
+    with pytest.raises((InputError, KeyboardInterrupt)), replacing(path) as temporary:
+        temporary.write_bytes(b"half")
+        raise kind
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_full_disk_is_a_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    with pytest.raises(InputError, match=r"a\.txt: cannot be written \(No space left on device\)$"), replacing(path):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_an_error_about_another_file_stays_what_it_is(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError), replacing(tmp_path / "a.txt"):
+        (tmp_path / "other.txt").read_bytes()
+
+
+def test_a_file_in_the_place_of_the_directory_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    for write in (require_writable, lambda path: write_bytes(path, b"")):
+        with pytest.raises(InputError, match=r"file is no directory\)"):
+            write(tmp_path / "file" / "a.txt")
+
+
+def test_asking_whether_a_file_can_be_written_writes_none(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "a.txt"
+    require_writable(path)
+    assert list(path.parent.iterdir()) == []
+    path.write_bytes(b"old")
+    require_writable(path)
+    assert path.read_bytes() == b"old"
+
+
+def test_leftovers_of_this_file_alone_are_removed(tmp_path: Path) -> None:
+    kept = [tmp_path / name for name in ("a[1].txt", ".a1.7.part.txt", ".a[1].7.part.png", "b.7.part.txt")]
+    for path in (*kept, tmp_path / ".a[1].7.part.txt"):
+        path.touch()
+    remove_leftovers(tmp_path / "a[1].txt")
+    assert set(tmp_path.iterdir()) == set(kept)
