@@ -1,0 +1,158 @@
+"""Local coefficients: what a body part shows follows the joints near it more than those far off (design, section 8.7).
+
+The parts are the joints that the descriptor encodes, each with the samples of subbands and mesh that hang on it most.
+For the samples of a part, the descriptor's entries count the less the more joints lie between. Only the function that
+the coefficient MLPs are taught is made of parts: bases, MLP, file and player stay as they are.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from scipy.ndimage import distance_transform_edt
+from torch import Tensor
+
+from mua.arrays import Array
+from mua.motion.encoding import PoseEncoding
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+from mua.student.model import Branch
+from mua.student.targets import Targets
+
+LL_TEXELS = 16  # along a side of a sample of LL and D3
+D2_TEXELS = 8
+
+
+@dataclass(frozen=True)
+class Parts:
+    """P body parts: which part each sample belongs to, and how many joints lie between it and each descriptor entry."""
+
+    steps: Tensor  # [P, k D] int64
+    coarse: Tensor  # [n, n] int64, the part of each sample of LL and D3
+    fine: Tensor  # [2n, 2n] int64, of D2
+    vertices: Tensor  # [V] int64
+
+    def reach(self, fade: float) -> Tensor:
+        """[P, k D] what each entry of a descriptor is multiplied by before a part sees it; 1 for its own joint."""
+        return fade ** self.steps.float()
+
+
+@dataclass(frozen=True)
+class Locality:
+    """How the targets of a regression are made of parts: its sum over parts is what is taught."""
+
+    reach: Tensor  # [P, k D]
+    shares: Tensor  # [P, K, K]; coordinates @ shares[p] are the coordinates of part p's samples alone
+
+
+def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
+    """The parts of a character, one for each encoded joint that some sample hangs on."""
+    seen = [rig.skeleton.root, *encoding.joints]
+    steps = joint_steps(rig.skeleton, seen)
+    steps[:, 0] = np.minimum(steps[:, 0], 1)  # the root, where the body goes and how it leans, is near every part
+    weights = np.zeros((len(rig.mesh.vertices), len(seen)))
+    carrier = carriers(rig.skeleton, seen)
+    np.add.at(weights, (np.arange(len(weights))[:, None], carrier[rig.skin_indices]), rig.skin_weights)
+    texels = rig.texels
+    corners = weights[rig.mesh.faces[texels.triangles]]  # [N, 3, P]
+    image = np.zeros((texels.size**2, len(seen)))
+    image[texels.texels] = np.einsum("nvp,nv->np", corners, texels.barycentrics)
+    image = image.reshape(texels.size, texels.size, -1)
+    width = [0] * 9 + [column for column in range(1, len(seen)) for _ in range(6)]
+    return Parts(
+        steps=torch.from_numpy(steps[:, width * encoding.window]),
+        coarse=torch.from_numpy(sample_owners(image, LL_TEXELS)),
+        fine=torch.from_numpy(sample_owners(image, D2_TEXELS)),
+        vertices=torch.from_numpy(weights.argmax(1)),
+    )
+
+
+def joint_steps(skeleton: Skeleton, seen: list[int]) -> Array:
+    """Joints from one of `seen` to another along the skeleton, [n, n] int64; those not in `seen` are passed over.
+
+    What has none of `seen` above it hangs on the first of them.
+    """
+    steps = np.full((len(seen), len(seen)), len(seen))  # more than any way along the tree
+    np.fill_diagonal(steps, 0)
+    carrier = carriers(skeleton, seen)
+    for column, joint in enumerate(seen[1:], start=1):
+        parent = int(skeleton.parents[joint])
+        above = carrier[parent] if parent >= 0 else 0
+        steps[column, above] = steps[above, column] = 1
+    for via in range(len(seen)):  # Floyd and Warshall
+        steps = np.minimum(steps, steps[:, via, None] + steps[via])
+    return steps
+
+
+def carriers(skeleton: Skeleton, seen: list[int]) -> Array:
+    """For each joint [J] the column of the nearest of `seen` at or above it; the first where there is none."""
+    columns = np.zeros(len(skeleton.parents), dtype=np.int64)
+    for joint, parent in enumerate(skeleton.parents):  # parents come before children
+        columns[joint] = seen.index(joint) if joint in seen else columns[parent] if parent >= 0 else 0
+    return columns
+
+
+def sample_owners(
+    image: Array,  # [H, W, P] how much each valid texel hangs on each part, 0 elsewhere
+    block: int,  # texels along a side of a sample
+) -> Array:
+    """The part [H / block, W / block] int64 that most of a sample's texels hang on; an empty sample takes its neighbour's."""
+    rows, columns = image.shape[0] // block, image.shape[1] // block
+    held = image.reshape(rows, block, columns, block, -1).sum((1, 3))
+    owner, empty = held.argmax(-1), held.sum(-1) == 0
+    if empty.all():
+        return owner
+    nearest = distance_transform_edt(empty, return_distances=False, return_indices=True)
+    return owner[tuple(nearest)]
+
+
+@torch.no_grad()
+def texture_locality(
+    parts: Parts,
+    branch: Branch,
+    targets: Targets,
+    weights: Tensor,  # [C]
+    *,
+    fade: float,
+) -> Locality:
+    """How the joint coordinates of a branch are made of parts.
+
+    Coordinates stand for textures by orthonormal directions, so that those of a part's samples are the projection of
+    the texture that is left when all other samples are zero.
+    """
+    count, device = len(parts.steps), weights.device
+    shares = torch.zeros(count, len(targets.expand), len(targets.expand), device=device)
+    coarse, fine = parts.coarse.flatten().to(device), parts.fine.flatten().to(device)
+    alphas = branch.split(targets.expand)
+    for channel in range(branch.channels):
+        shapes = torch.einsum("kr,rij->kij", alphas.ll[:, channel], branch.ll_basis[channel])
+        _add_shares(shares, shapes.flatten(1) * weights[channel], coarse)
+        for detail, alpha, owner in ((branch.d3, alphas.d3, coarse), (branch.d2, alphas.d2, fine)):
+            h, w = detail.h[:, channel], detail.w[:, channel]
+            shapes = torch.einsum("kr,sri,srj->skij", alpha[:, channel], h, w)
+            for band in shapes.flatten(2):
+                _add_shares(shares, band * weights[channel], owner)
+    return Locality(parts.reach(fade).to(device), shares)
+
+
+def mesh_locality(
+    parts: Parts,
+    basis: Tensor,  # [K, V, 3] orthonormal
+    *,
+    fade: float,
+) -> Locality:
+    """How the PCA coefficients of the coarse mesh are made of parts."""
+    shares = torch.zeros(len(parts.steps), len(basis), len(basis), device=basis.device)
+    for axis in range(basis.shape[2]):
+        _add_shares(shares, basis[..., axis], parts.vertices.to(basis.device))
+    return Locality(parts.reach(fade).to(basis.device), shares)
+
+
+def _add_shares(
+    shares: Tensor,  # [P, K, K] added to
+    shapes: Tensor,  # [K, S] what each coordinate puts into S samples
+    owner: Tensor,  # [S]
+) -> None:
+    for part in owner.unique().tolist():
+        own = shapes[:, owner == part]
+        shares[part] += own @ own.T

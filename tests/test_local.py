@@ -1,0 +1,130 @@
+"""Local coefficients: parts follow the joints near them, and their sum is what the whole would be."""
+
+import numpy as np
+import pytest
+import torch
+from synthetic_avatar import synthetic_rig
+from synthetic_student import new_student
+
+from mua.motion.encoding import PoseEncoding
+from mua.rig.skeleton import Skeleton
+from mua.student.coarse import mesh_pca
+from mua.student.factorize import truncated_svd
+from mua.student.local import (
+    Parts,
+    body_parts,
+    carriers,
+    joint_steps,
+    mesh_locality,
+    sample_owners,
+    texture_locality,
+)
+from mua.student.model import Alphas
+from mua.student.targets import Targets
+
+# armature > hips > (spine > neck > head, thigh > shin)
+PARENTS = [-1, 0, 1, 2, 3, 1, 5]
+ARMATURE, HIPS, SPINE, NECK, HEAD, THIGH, SHIN = range(7)
+
+
+def skeleton() -> Skeleton:
+    count = len(PARENTS)
+    upright = np.tile([1.0, 0, 0, 0], (count, 1))
+    names = tuple(f"joint {joint}" for joint in range(count))
+    return Skeleton(names, np.array(PARENTS, np.int32), upright, np.zeros((count, 3)), root=HIPS)
+
+
+def test_steps_count_joints_along_the_skeleton() -> None:
+    seen = [HIPS, SPINE, NECK, HEAD, THIGH, SHIN]
+    expected = [
+        [0, 1, 2, 3, 1, 2],
+        [1, 0, 1, 2, 2, 3],
+        [2, 1, 0, 1, 3, 4],
+        [3, 2, 1, 0, 4, 5],
+        [1, 2, 3, 4, 0, 1],
+        [2, 3, 4, 5, 1, 0],
+    ]
+    assert joint_steps(skeleton(), seen).tolist() == expected
+
+
+def test_steps_pass_over_joints_that_are_not_encoded() -> None:
+    assert joint_steps(skeleton(), [HIPS, HEAD, SHIN]).tolist() == [[0, 1, 1], [1, 0, 2], [1, 2, 0]]
+
+
+def test_a_joint_that_is_not_encoded_is_carried_by_the_one_above_it() -> None:
+    assert carriers(skeleton(), [HIPS, SPINE, SHIN]).tolist() == [0, 0, 1, 1, 1, 0, 2]
+
+
+def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_step() -> None:
+    rig = synthetic_rig()
+    encoding = PoseEncoding(joints=tuple(j for j in range(len(rig.skeleton.names)) if j != rig.skeleton.root), rate=30)
+    parts = body_parts(rig, encoding)
+    seen = [rig.skeleton.root, *encoding.joints]
+    assert parts.steps.shape == (len(seen), encoding.width)
+    frame = encoding.width // encoding.window
+    for part in range(len(seen)):
+        for age in range(encoding.window):
+            entries = parts.reach(0.5)[part, age * frame : (age + 1) * frame]
+            assert torch.equal(entries[:9], torch.full((9,), 1.0 if part == 0 else 0.5))
+            for column in range(1, len(seen)):
+                own = entries[9 + 6 * (column - 1) :][:6]
+                assert torch.equal(own, torch.full((6,), 0.5 ** int(joint_steps(rig.skeleton, seen)[part, column])))
+
+
+def test_a_sample_belongs_to_the_part_that_most_of_its_texels_hang_on() -> None:
+    image = np.zeros((4, 6, 3))
+    image[0, 0, 2] = 1.0
+    image[:2, 1, 1] = 0.6  # together more than the one texel of part 2
+    image[2, 2, 2] = 1.0
+    owners = sample_owners(image, 2)
+    assert owners.tolist() == [[1, owners[0, 1], owners[0, 2]], [owners[1, 0], 2, 2]]
+    assert owners[1, 0] in (1, 2) and owners[0, 1] in (1, 2)
+
+
+def two_parts() -> Parts:
+    """A student whose texture's left half hangs on part 0 and right half on part 1."""
+    coarse = torch.zeros(3, 3, dtype=torch.int64)
+    coarse[:, 2:] = 1
+    fine = torch.zeros(6, 6, dtype=torch.int64)
+    fine[:, 4:] = 1
+    return Parts(torch.tensor([[0, 1], [1, 0]]), coarse, fine, torch.tensor([0, 0, 0, 1, 1, 1, 1]))
+
+
+def test_shares_of_the_parts_make_up_the_whole_texture() -> None:
+    branch = new_student().geometry
+    generator = torch.Generator().manual_seed(3)
+    with torch.no_grad():
+        for parameter in (branch.ll_basis, branch.d3.h, branch.d3.w, branch.d2.h, branch.d2.w):
+            parameter.normal_(0, 1, generator=generator)
+    weights = torch.rand(branch.channels, generator=generator) + 0.5
+    flat = torch.randn(40, branch.channels * branch.ranks.total, generator=generator)
+
+    def texture(alphas: Alphas) -> torch.Tensor:
+        bands = branch.synthesize(alphas)
+        return torch.cat([(band * weights[:, None, None]).flatten(1) for band in bands], dim=1)
+
+    # orthonormal textures, and the coefficients that stand for them
+    _, _, directions = truncated_svd(texture(branch.split(flat)), 8, generator=generator)
+    expand = torch.linalg.lstsq(texture(branch.split(torch.eye(flat.shape[1]))).T, directions.T).solution.T
+    expand = expand.detach()
+    found = texture_locality(two_parts(), branch, Targets(torch.zeros(0, 8), expand), weights, fade=0.5)
+    assert torch.allclose(found.shares.sum(0), torch.eye(8), atol=1e-3)
+    left = torch.cat(
+        [(two_parts().coarse == 0).expand(branch.channels, -1, -1).flatten()] * 4
+        + [(two_parts().fine == 0).expand(branch.channels, -1, -1).flatten()] * 3
+    )
+    expected = (directions * left) @ directions.T
+    assert torch.allclose(found.shares[0], expected, atol=1e-3)
+
+
+def test_shares_of_the_mesh_follow_its_vertices() -> None:
+    meshes = torch.randn(30, 7, 3, generator=torch.Generator().manual_seed(0))
+    basis = mesh_pca(meshes, 5, generator=torch.Generator().manual_seed(0)).basis
+    shares = mesh_locality(two_parts(), basis, fade=0.5).shares
+    assert torch.allclose(shares.sum(0), torch.eye(5), atol=1e-5)
+    assert torch.allclose(shares[1], torch.einsum("kvx,lvx->kl", basis[:, 3:], basis[:, 3:]), atol=1e-5)
+
+
+@pytest.mark.parametrize("fade", [1.0, 0.5])
+def test_reach_is_one_where_nothing_fades(fade: float) -> None:
+    assert torch.equal(two_parts().reach(fade), torch.tensor([[1, fade], [fade, 1]]))
