@@ -17,13 +17,18 @@ def test_replaces_the_whole_content_and_leaves_nothing_else(tmp_path: Path) -> N
     assert list(path.parent.iterdir()) == [path]
 
 
+def write_half(path: Path, error: BaseException) -> None:
+    with replacing(path) as temporary:
+        temporary.write_bytes(b"half")
+        raise error
+
+
 @pytest.mark.parametrize("kind", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()])
 def test_a_failed_write_keeps_the_old_content(tmp_path: Path, kind: BaseException) -> None:
     path = tmp_path / "a.txt"
     path.write_bytes(b"old")
-    with pytest.raises((InputError, KeyboardInterrupt)), replacing(path) as temporary:
-        temporary.write_bytes(b"half")
-        raise kind
+    with pytest.raises((InputError, KeyboardInterrupt)):
+        write_half(path, kind)
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
 
