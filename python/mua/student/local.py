@@ -55,7 +55,7 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     np.add.at(weights, (np.arange(len(weights))[:, None], carrier[rig.skin_indices]), rig.skin_weights)
     texels = rig.texels
     corners = weights[rig.mesh.faces[texels.triangles]]  # [N, 3, P]
-    image = np.zeros((texels.size**2, len(seen)))
+    image: Array = np.zeros((texels.size**2, len(seen)))
     image[texels.texels] = np.einsum("nvp,nv->np", corners, texels.barycentrics)
     image = image.reshape(texels.size, texels.size, -1)
     width = [0] * 9 + [column for column in range(1, len(seen)) for _ in range(6)]
@@ -96,7 +96,10 @@ def sample_owners(
     image: Array,  # [H, W, P] how much each valid texel hangs on each part, 0 elsewhere
     block: int,  # texels along a side of a sample
 ) -> Array:
-    """The part [H / block, W / block] int64 that most of a sample's texels hang on; an empty sample takes its neighbour's."""
+    """The part [H / block, W / block] int64 that most of a sample's texels hang on.
+
+    Where a sample has no valid texel, it is that of the nearest which has.
+    """
     rows, columns = image.shape[0] // block, image.shape[1] // block
     held = image.reshape(rows, block, columns, block, -1).sum((1, 3))
     owner, empty = held.argmax(-1), held.sum(-1) == 0
