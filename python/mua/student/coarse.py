@@ -6,6 +6,7 @@ import torch
 from torch import Tensor
 
 from mua.student.factorize import truncated_svd
+from mua.student.local import Parts, mesh_locality
 from mua.student.model import Coarse
 from mua.student.optimise import Run
 from mua.student.regress import absolute_error, regress
@@ -43,6 +44,7 @@ def fit_coarse(
     *,
     settings: Settings,
     run: Run,
+    parts: Parts | None = None,
 ) -> None:
     """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
     pca = mesh_pca(meshes, settings.components, generator=run.generator)
@@ -52,6 +54,7 @@ def fit_coarse(
     mlp = regress(
         inputs,
         pca.coefficients,
+        locality=None if parts is None else mesh_locality(parts, pca.basis, fade=settings.fade),
         hidden=settings.hidden,
         criterion=absolute_error,
         schedule=settings.regression,

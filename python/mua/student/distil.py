@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -19,6 +19,7 @@ from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.rig.rig import Rig
 from mua.student.checkpoint import Checkpoints, run_key
+from mua.student.local import body_parts
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress
 from mua.student.settings import Settings
@@ -123,7 +124,8 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     normal = normalization(descriptors)
     student.mean.copy_(torch.from_numpy(normal.mean))
     student.scale.copy_(torch.from_numpy(normal.scale))
-    return student, _samples(recording, descriptors)
+    parts = body_parts(recording.rig, encoding) if settings.fade < 1 else None
+    return student, replace(_samples(recording, descriptors), parts=parts)
 
 
 def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: bool = False) -> Array:

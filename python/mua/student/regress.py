@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor, nn
 
+from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Run, optimise
 from mua.student.settings import Schedule
-from mua.student.smoother import fit_smoother
+from mua.student.smoother import Sum, fit_smoother
 
 # Measured on held-out CMU walks and turns, see docs/accuracy.md.
 INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors when they are whitened
@@ -18,6 +19,8 @@ BLEND = 0.5  # points lie up to this far on the way from one frame to another
 NOISE = 0.3  # and up to this share of each direction's spread off it
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
 WEIGHT_DECAY = 1e-3
+POINTS = 1 << 15  # at which the function's values are computed, once
+POINTS_AT_ONCE = 1 << 10
 
 
 @dataclass(frozen=True)
@@ -48,26 +51,29 @@ def regress(
     schedule: Schedule,
     stage: str,
     run: Run,
+    locality: Locality | None = None,
 ) -> nn.Sequential:
     """An MLP from normalised descriptors to targets, taught the smooth function that goes through them.
 
     It learns the values of that function at points around the frames, on whitened descriptors; the whitening is folded
-    into its first layer.
+    into its first layer. With `locality` the function is a sum over body parts, each of the joints near it.
     """
     white = whitening(inputs)
     run.processes.agree(white.mean, white.turn)
     z = (inputs - white.mean) @ white.turn
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
-    smooth = fit_smoother(z, goal, generator=run.generator)
+    smooth = fit_local(inputs, z, goal, white, locality, generator=run.generator)
     spread = z.std(0, correction=0)
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
+    points = draw_around(z, spread, min(POINTS, schedule.steps * schedule.batch), generator=run.generator)
+    values = torch.cat([smooth(some) for some in points.split(POINTS_AT_ONCE)])
 
     def loss(model: nn.Module) -> Tensor:
-        points = draw_around(z, spread, schedule.batch, generator=run.generator)
-        share = run.processes.share(torch.arange(schedule.batch), frames=schedule.batch)
-        own = points[share.rows.to(points.device)]
-        return share.weight * criterion(model(own), smooth(own))
+        drawn = torch.randint(len(points), (schedule.batch,), generator=run.generator)
+        share = run.processes.share(drawn, frames=len(points))
+        own = share.rows.to(points.device)
+        return share.weight * criterion(model(points[own]), values[own])
 
     groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": WEIGHT_DECAY}]
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
@@ -78,6 +84,28 @@ def regress(
         last.weight.mul_(unit)
         last.bias.mul_(unit)
     return mlp
+
+
+def fit_local(
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    z: Tensor,  # [F, k D] whitened
+    goal: Tensor,  # [F, K]
+    white: Whitening,
+    locality: Locality | None,
+    *,
+    generator: torch.Generator,
+) -> Callable[[Tensor], Tensor]:
+    """The smooth function of z through `goal`; with `locality` a sum over parts, each as it sees the descriptor."""
+    if locality is None:
+        return fit_smoother(z, goal, generator=generator)
+    turns, smoothers = [], []
+    for reach, share in zip(locality.reach, locality.shares, strict=True):
+        own = whitening(inputs * reach)
+        turn = torch.linalg.solve(white.turn.double(), reach[:, None].double() * own.turn.double()).to(z)
+        one = fit_smoother(z @ turn, goal, generator=generator)
+        turns.append(turn)
+        smoothers.append(replace(one, values=one.values @ share))
+    return Sum(torch.stack(turns), tuple(smoothers))
 
 
 def draw_around(

@@ -50,5 +50,20 @@ def fit_smoother(
     return Smoother(centres, solved.to(targets), width)
 
 
+@dataclass(frozen=True)
+class Sum:
+    """f(x) = sum_p smoother_p(x @ turns[p])."""
+
+    turns: Tensor  # [P, D, D]
+    smoothers: tuple[Smoother, ...]
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """The function's values [F, K] at points [F, D]."""
+        kernels = [
+            _kernel(x @ turn, one.centres, one.width) for turn, one in zip(self.turns, self.smoothers, strict=True)
+        ]
+        return torch.cat(kernels, dim=1) @ torch.cat([one.values for one in self.smoothers])
+
+
 def _kernel(a: Tensor, b: Tensor, width: float) -> Tensor:
     return torch.exp(-torch.cdist(a, b).square() / width)

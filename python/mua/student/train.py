@@ -15,6 +15,7 @@ from mua.student.coarse import fit_coarse
 from mua.student.descend import descend_branch, descend_coarse
 from mua.student.factorize import blendshapes, draw_probe, separable_blendshapes
 from mua.student.finetune import finetune
+from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
 from mua.student.regress import regress, squared_error, unfold_last_layer
@@ -36,6 +37,7 @@ class Samples:
     meshes: Tensor  # [F, V, 3] canonical vertices, metres
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
+    parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
 
     def __len__(self) -> int:
         return len(self.descriptors)
@@ -67,8 +69,8 @@ def train(
     student.to(device)
     inputs = student.normalize(samples.descriptors.to(device))
     random = settings.start == "random"
-    start = descend_coarse if random else fit_coarse
-    fit = descend_branch if random else partial(fit_branch, until=only)
+    start = descend_coarse if random else partial(fit_coarse, parts=samples.parts)
+    fit = descend_branch if random else partial(fit_branch, parts=samples.parts, until=only)
     if only in (None, "coarse"):
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
     if only == "coarse":
@@ -122,6 +124,7 @@ def fit_branch(
     settings: Settings,
     name: str,
     run: Run,
+    parts: Parts | None = None,
     until: StageName | None = None,
 ) -> None:
     """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
@@ -141,9 +144,11 @@ def fit_branch(
     own = run.alone(stage)
     targets = joint_targets(branch, flat, weights, rank=rank, generator=own.generator)
     run.processes.agree(targets.coordinates, targets.expand)
+    local = None if parts is None else texture_locality(parts, branch, targets, weights, fade=settings.fade)
     mlp = regress(
         inputs,
         targets.coordinates,
+        locality=local,
         hidden=settings.hidden,
         criterion=squared_error,
         schedule=settings.regression,
