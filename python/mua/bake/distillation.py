@@ -1,6 +1,7 @@
 """From a recording to a verified `.muaavatar`: all of mua-train, and the second half of a bake."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -14,6 +15,7 @@ from mua.asset.write import write
 from mua.bake import report
 from mua.bake.assemble import assemble
 from mua.contact_sheet import contact_sheet
+from mua.errors import InputError
 from mua.evaluate import Errors, evaluate
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
 from mua.processes import ALONE, Processes
@@ -76,14 +78,15 @@ def teach(order: Distillation, recording: Recording, listener: Listener) -> Stud
     if order.processes.first:
         require_writable(order.output)
         remove_leftovers(order.output)
-    return distil(
-        recording,
-        order.settings,
-        device=order.device,
-        directory=order.checkpoints,
-        report=listener,
-        processes=order.processes,
-    )
+    with _within_memory(order):
+        return distil(
+            recording,
+            order.settings,
+            device=order.device,
+            directory=order.checkpoints,
+            report=listener,
+            processes=order.processes,
+        )
 
 
 def teach_stage(order: Distillation, stage: StageName, recording: Recording, listener: Listener) -> None:
@@ -91,15 +94,16 @@ def teach_stage(order: Distillation, stage: StageName, recording: Recording, lis
 
     Raises InputError as `teach` does, and where the stage starts from checkpoints that are not there.
     """
-    distil_stage(
-        recording,
-        order.settings,
-        stage,
-        device=order.device,
-        directory=order.checkpoints,
-        report=listener,
-        processes=order.processes,
-    )
+    with _within_memory(order):
+        distil_stage(
+            recording,
+            order.settings,
+            stage,
+            device=order.device,
+            directory=order.checkpoints,
+            report=listener,
+            processes=order.processes,
+        )
 
 
 def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
@@ -127,6 +131,18 @@ def finish(order: Distillation, student: Student, recording: Recording, listener
     write_bytes(order.beside("_errors.md"), report.markdown(errors, teacher=order.teacher).encode())
     write_bytes(order.beside("_errors.json"), report.as_json(errors, teacher=order.teacher).encode())
     return baked
+
+
+@contextmanager
+def _within_memory(order: Distillation) -> Iterator[None]:
+    """Say in a sentence that a GPU is too small."""
+    try:
+        yield
+    except torch.cuda.OutOfMemoryError as error:
+        raise InputError(
+            f"--device {order.device}: its memory is too small ({str(error).partition('. ')[0]}); what was trained is "
+            f"kept in {order.checkpoints}, --device cpu goes on from there"
+        ) from error
 
 
 def _picture(path: Path, avatar: Avatar, recording: Recording) -> None:
