@@ -137,8 +137,8 @@ ALONE = Processes(0, 1)
 def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
     """The processes that torchrun started together with this one; ALONE where it did not.
 
-    Within the block, a process that ends or falls silent for `timeout` raises an InputError in all others. Everything
-    between two exchanges is over in less.
+    Within the block, a process that ends or falls silent for `timeout` raises an InputError in all others; every
+    InputError says which process it is of.
     """
     count = int(os.environ.get("WORLD_SIZE", "1"))
     if count == 1:
@@ -150,6 +150,8 @@ def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
         dist.init_process_group(backend, timeout=timeout)
         yield Processes(rank, count)
         dist.destroy_process_group()  # not after an error: it may wait for the dead
+    except InputError as error:
+        raise InputError(f"process {rank + 1} of {count}: {error}") from error
     except RuntimeError as error:
         if not isinstance(error, dist.DistError) and not any(word in str(error) for word in LOST):
             raise
