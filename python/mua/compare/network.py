@@ -20,7 +20,7 @@ from mua.student.checkpoint import Checkpoints
 from mua.student.finetune import BASIS_RATE
 from mua.student.model import Coarse, linear_layers
 from mua.student.optimise import Report, Run
-from mua.student.regress import WEIGHT_DECAY
+from mua.student.settings import Generalisation
 from mua.texture.channels import CHANNELS
 
 FRAMES_AT_ONCE = 16
@@ -156,7 +156,11 @@ def parameter_groups(
 ) -> Groups:
     """Networks that decay and bases that do not, the latter at `basis_rate` times the rate."""
     return [
-        {"params": [p for mlp in mlps for p in mlp.parameters()], "lr": rate, "weight_decay": WEIGHT_DECAY},
+        {
+            "params": [p for mlp in mlps for p in mlp.parameters()],
+            "lr": rate,
+            "weight_decay": Generalisation.weight_decay,
+        },
         {"params": list(bases), "lr": basis_rate * rate},
     ]
 

@@ -54,11 +54,12 @@ def fit_coarse(
     mlp = regress(
         inputs,
         pca.coefficients,
-        locality=None if parts is None else mesh_locality(parts, pca.basis, fade=settings.fade),
+        locality=None if parts is None else mesh_locality(parts, pca.basis, fade=settings.generalisation.fade),
         hidden=settings.hidden,
         criterion=absolute_error,
         schedule=settings.regression,
         stage="coarse mesh",
         run=run,
+        generalisation=settings.generalisation,
     )
     coarse.mlp.load_state_dict(mlp.state_dict())

@@ -12,7 +12,7 @@ from torch import Tensor, nn
 
 from mua.processes import ALONE, Processes
 from mua.student.coarse import mesh_pca
-from mua.student.finetune import draw_frames, finetune, weighted
+from mua.student.finetune import Frames, draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
 from mua.student.optimise import Run, optimise
 from mua.student.settings import Settings
@@ -55,6 +55,7 @@ def descend_branch(
     settings: Settings,
     name: str,
     run: Run,
+    judges: Frames | None = None,  # that choose the best step
 ) -> None:
     """Train bases and MLP from noise on the paper's loss; the means are those of the training frames."""
     variance = set_means(branch, source, frames=len(inputs), processes=run.processes).to(run.device)
@@ -76,6 +77,7 @@ def descend_branch(
         run=run,
         basis_rate=1.0,
         weight_decay=0.0,
+        judges=judges,
     )
 
 

@@ -112,7 +112,8 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     if not recording.count():
         raise InputError(f"recording {recording.directory}: holds no training frame, expected at least one")
     skeleton = recording.rig.skeleton
-    encoding = PoseEncoding(choose_joints(skeleton, training, moving_joints(recording.rig)), rate=recording.rate)
+    joints = choose_joints(skeleton, training, moving_joints(recording.rig))
+    encoding = PoseEncoding(joints, rate=recording.rate, heading=settings.generalisation.heading)
     descriptors = describe_frames(recording, encoding)
     student = Student(
         settings,
@@ -124,7 +125,7 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     normal = normalization(descriptors)
     student.mean.copy_(torch.from_numpy(normal.mean))
     student.scale.copy_(torch.from_numpy(normal.scale))
-    parts = body_parts(recording.rig, encoding) if settings.fade < 1 else None
+    parts = body_parts(recording.rig, encoding) if settings.generalisation.fade < 1 else None
     return student, replace(_samples(recording, descriptors), parts=parts)
 
 
@@ -134,6 +135,12 @@ def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: b
     skeleton = recording.rig.skeleton
     described = [describe(skeleton, encoding, clip.rotations, clip.translation)[clip.recorded] for clip in clips]
     return np.concatenate([np.zeros((0, encoding.width)), *described])
+
+
+def clip_numbers(recording: Recording) -> Tensor:
+    """Which clip each training frame [F] is of, int64."""
+    lengths = [len(clip.recorded) for clip in recording.clips if not clip.held_out]
+    return torch.arange(len(lengths)).repeat_interleave(torch.tensor(lengths))
 
 
 def moving_joints(rig: Rig) -> Array:
@@ -155,6 +162,7 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
         meshes=torch.from_numpy(recording.meshes(np.arange(recording.count()))),
         subbands=subbands,
         mean_texture=torch.from_numpy(recording.mean_texture()).float(),
+        clips=clip_numbers(recording),
     )
 
 

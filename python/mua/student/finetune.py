@@ -2,16 +2,18 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
 
 from mua.student.model import Bands, Branch
 from mua.student.optimise import Run, optimise
-from mua.student.regress import WEIGHT_DECAY
-from mua.student.settings import Schedule
+from mua.student.selection import Selection
+from mua.student.settings import Generalisation, Schedule
 
 LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1
+FRAMES_AT_ONCE = 64  # whose loss is measured
 BASIS_RATE = 0.1  # learning rate of the bases relative to that of the MLP
 
 
@@ -19,6 +21,24 @@ def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
     """5 |LL| + |D3| + |D2|, L1 (paper, Eq. L_rec)."""
     ll, d3, d2 = ((a - b).abs().mean() for a, b in zip(predicted, truth, strict=True))
     return LL_WEIGHT * ll + d3 + d2
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Frames as a branch sees them."""
+
+    inputs: Tensor  # [F, k D] normalised descriptors
+    bands: Callable[[Tensor], Bands]  # the subbands of some of them
+
+
+@torch.no_grad()
+def mean_loss(branch: Branch, frames: Frames, weights: Tensor) -> float:
+    """The loss over all of `frames`; the branch is in the scale that it is trained in."""
+    scale, total = weights[:, None, None], 0.0
+    for rows in torch.arange(len(frames.inputs)).split(FRAMES_AT_ONCE):
+        truth = Bands(*(band.to(weights.device) * scale for band in frames.bands(rows)))
+        total += len(rows) * float(subband_loss(branch(frames.inputs[rows.to(frames.inputs.device)]), truth))
+    return total / len(frames.inputs)
 
 
 @contextmanager
@@ -49,9 +69,16 @@ def finetune(
     stage: str,
     run: Run,
     basis_rate: float = BASIS_RATE,
-    weight_decay: float = WEIGHT_DECAY,
+    weight_decay: float = Generalisation.weight_decay,
+    judges: Frames | None = None,
 ) -> None:
-    """Train bases and MLP together on the paper's loss over weighted subbands."""
+    """Train bases and MLP together on the paper's loss over weighted subbands.
+
+    With `judges` they end as they were at the step whose loss over those frames was the least.
+    """
+    selection = None
+    if judges is not None:
+        selection = Selection(lambda: run.processes.told(mean_loss(branch, judges, weights)))
 
     def loss(model: nn.Module) -> Tensor:
         share = run.processes.share(draw_frames(len(inputs), schedule, run), frames=len(inputs))
@@ -67,7 +94,7 @@ def finetune(
         {"params": bases, "weight_decay": 0.0, "lr": basis_rate},
     ]
     with weighted(branch, weights):
-        optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
+        optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run, selection=selection)
 
 
 def draw_frames(count: int, schedule: Schedule, run: Run) -> Tensor:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import torch
 from torch import Tensor, nn
@@ -10,17 +11,16 @@ from torch import Tensor, nn
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Run, optimise
-from mua.student.settings import Schedule
+from mua.student.settings import Generalisation, Schedule
 from mua.student.smoother import Sum, fit_smoother
 
 # Measured on held-out CMU walks and turns, see docs/accuracy.md.
 INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors when they are whitened
 BLEND = 0.5  # points lie up to this far on the way from one frame to another
-NOISE = 0.3  # and up to this share of each direction's spread off it
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
-WEIGHT_DECAY = 1e-3
 POINTS = 1 << 15  # at which the function's values are computed, once
 POINTS_AT_ONCE = 1 << 10
+GENERALISATION = Generalisation()
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,7 @@ def regress(
     stage: str,
     run: Run,
     locality: Locality | None = None,
+    generalisation: Generalisation = GENERALISATION,
 ) -> nn.Sequential:
     """An MLP from normalised descriptors to targets, taught the smooth function that goes through them.
 
@@ -63,19 +64,24 @@ def regress(
     z = (inputs - white.mean) @ white.turn
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
-    smooth = fit_local(inputs, z, goal, white, locality, generator=run.generator)
-    spread = z.std(0, correction=0)
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
-    points = draw_around(z, spread, min(POINTS, schedule.steps * schedule.batch), generator=run.generator)
-    values = torch.cat([smooth(some) for some in points.split(POINTS_AT_ONCE)])
+    count = min(POINTS, schedule.steps * schedule.batch)
+
+    @cache  # and not at all where a finished stage is taken up
+    def lesson() -> tuple[Tensor, Tensor]:
+        generator = run.alone(f"{stage} points").generator
+        smooth = fit_local(inputs, z, goal, white, locality, generator=generator)
+        points = draw_around(z, count, noise=generalisation.noise, generator=generator)
+        return points, torch.cat([smooth(some) for some in points.split(POINTS_AT_ONCE)])
 
     def loss(model: nn.Module) -> Tensor:
+        points, values = lesson()
         drawn = torch.randint(len(points), (schedule.batch,), generator=run.generator)
         share = run.processes.share(drawn, frames=len(points))
         own = share.rows.to(points.device)
         return share.weight * criterion(model(points[own]), values[own])
 
-    groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": WEIGHT_DECAY}]
+    groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": generalisation.weight_decay}]
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
     first, *_, last = linear_layers(mlp)
     with torch.no_grad():
@@ -110,16 +116,16 @@ def fit_local(
 
 def draw_around(
     z: Tensor,  # [F, D] whitened descriptors
-    spread: Tensor,  # [D] their standard deviation
     count: int,
     *,
+    noise: float,
     generator: torch.Generator,
 ) -> Tensor:
     """Random points [count, D] around the frames and between them."""
     one, other = torch.randint(len(z), (2, count), generator=generator).to(z.device)
     along, off = torch.rand(2, count, 1, generator=generator).to(z)
-    noise = torch.randn(count, z.shape[1], generator=generator).to(z)
-    return z[one] + BLEND * along * (z[other] - z[one]) + NOISE * off * spread * noise
+    drawn = torch.randn(count, z.shape[1], generator=generator).to(z)
+    return z[one] + BLEND * along * (z[other] - z[one]) + noise * off * z.std(0, correction=0) * drawn
 
 
 def seeded_mlp(inputs: int, hidden: int, outputs: int, *, run: Run) -> nn.Sequential:

@@ -5,10 +5,6 @@ from typing import Literal
 
 from mua.errors import InputError
 
-# What a joint counts for in the regression of a body part's texels, for each joint that lies between; 1: all alike.
-# Measured on clips left out of the training, see docs/training.md.
-FADE = 0.6
-
 
 @dataclass(frozen=True)
 class Ranks:
@@ -34,6 +30,17 @@ class Schedule:
 
 
 @dataclass(frozen=True)
+class Generalisation:
+    """What carries over to unseen motion; `tools/compare_options.py` measures it (docs/training.md)."""
+
+    fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
+    noise: float = 0.3  # of the inputs of the regression, up to this share of the spread of each of their directions
+    weight_decay: float = 1e-3  # of the MLPs
+    heading: bool = True  # whether the descriptor is turned back by the heading
+    validation: float = 0.0  # share of the training frames, whole clips, that only choose the best fine-tuning step
+
+
+@dataclass(frozen=True)
 class Settings:
     """Sizes and schedules of one distillation."""
 
@@ -46,7 +53,7 @@ class Settings:
     sweeps: int  # of alternating least squares
     regression: Schedule
     finetune: Schedule
-    fade: float = FADE
+    generalisation: Generalisation = Generalisation()
     seed: int = 0
     start: Literal["closed form", "random"] = "closed form"
 

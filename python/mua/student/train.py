@@ -14,11 +14,12 @@ from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
 from mua.student.descend import descend_branch, descend_coarse
 from mua.student.factorize import blendshapes, draw_probe, separable_blendshapes
-from mua.student.finetune import finetune
+from mua.student.finetune import Frames, finetune
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
 from mua.student.regress import regress, squared_error, unfold_last_layer
+from mua.student.selection import validation_rows
 from mua.student.settings import Settings
 from mua.student.source import Source, hold
 from mua.student.targets import channel_weights, joint_targets, still_channels
@@ -38,6 +39,17 @@ class Samples:
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
+    clips: Tensor | None = None  # [F] int64, the clip of each frame; without them, all are of one
+
+    def of(self, rows: Tensor) -> "Samples":
+        """Some of the frames; the mean texture stays that of all."""
+        return replace(
+            self,
+            descriptors=self.descriptors[rows],
+            meshes=self.meshes[rows],
+            subbands=lambda channels, some: self.subbands(channels, rows[some]),
+            clips=None if self.clips is None else self.clips[rows],
+        )
 
     def __len__(self) -> int:
         return len(self.descriptors)
@@ -67,6 +79,7 @@ def train(
         report = _silent
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
     student.to(device)
+    samples, unseen = set_apart(samples, settings.generalisation.validation, run=run.alone("selection"))
     inputs = student.normalize(samples.descriptors.to(device))
     random = settings.start == "random"
     start = descend_coarse if random else partial(fit_coarse, parts=samples.parts)
@@ -79,12 +92,34 @@ def train(
         source = hold(
             samples.subbands, channels, frames=len(samples), size=student.size, device=device, processes=processes
         )
-        fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
+        judges = None
+        if unseen is not None:
+            shown = hold(unseen.subbands, channels, frames=len(unseen), size=student.size, device=device)
+            judges = Frames(student.normalize(unseen.descriptors.to(device)), partial(shown, slice(0, branch.channels)))
+        fit(
+            branch,
+            inputs,
+            source,
+            channels=channels,
+            settings=settings,
+            name=name,
+            run=run.alone(name),
+            judges=judges,
+        )
         del source  # before the next branch looks for room
     if only is not None:
         return
     student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
     student.requires_grad_(False).eval()
+
+
+def set_apart(samples: Samples, share: float, *, run: Run) -> tuple[Samples, Samples | None]:
+    """The frames to train on, and those of whole clips, about a `share` of all, that choose the best step."""
+    if not share:
+        return samples, None
+    clips = torch.zeros(len(samples), dtype=torch.int64) if samples.clips is None else samples.clips
+    chosen = validation_rows(clips, share, generator=run.generator)
+    return samples.of((~chosen).nonzero()[:, 0]), samples.of(chosen.nonzero()[:, 0])
 
 
 def _silent(_: Progress) -> None:
@@ -125,6 +160,7 @@ def fit_branch(
     name: str,
     run: Run,
     parts: Parts | None = None,
+    judges: Frames | None = None,  # that choose the step of the fine-tuning
     until: StageName | None = None,
 ) -> None:
     """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
@@ -144,7 +180,9 @@ def fit_branch(
     own = run.alone(stage)
     targets = joint_targets(branch, flat, weights, rank=rank, generator=own.generator)
     run.processes.agree(targets.coordinates, targets.expand)
-    local = None if parts is None else texture_locality(parts, branch, targets, weights, fade=settings.fade)
+    local = (
+        None if parts is None else texture_locality(parts, branch, targets, weights, fade=settings.generalisation.fade)
+    )
     mlp = regress(
         inputs,
         targets.coordinates,
@@ -154,6 +192,7 @@ def fit_branch(
         schedule=settings.regression,
         stage=stage,
         run=own,
+        generalisation=settings.generalisation,
     )
     if until == "regression":
         return
@@ -166,6 +205,8 @@ def fit_branch(
         schedule=settings.finetune,
         stage=f"{name} fine-tuning",
         run=run.alone(f"{name} fine-tuning"),
+        weight_decay=settings.generalisation.weight_decay,
+        judges=judges,
     )
 
 
