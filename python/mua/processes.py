@@ -140,7 +140,7 @@ def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
     Within the block, a process that ends or falls silent for `timeout` raises an InputError in all others; every
     InputError says which process it is of.
     """
-    count = int(os.environ.get("WORLD_SIZE", "1"))
+    count = int(os.environ.get("WORLD_SIZE", "1")) if "RANK" in os.environ else 1
     if count == 1:
         yield ALONE
         return
