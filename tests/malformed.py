@@ -166,9 +166,9 @@ def without_checksum(content: bytes) -> bytes:
 
 
 def twice(content: bytes) -> bytes:
-    """Geometry is appearance, which is larger: tables and vectors claim more bytes than there are."""
-    at = root(content, "geometry")
-    return patch(at, "<I", pointed(content, root(content, "appearance")) - at, content)
+    """Appearance is geometry, which is larger: tables and vectors claim more bytes than there are."""
+    at = root(content, "appearance")
+    return patch(at, "<I", pointed(content, root(content, "geometry")) - at, content)
 
 
 DAMAGED: list[tuple[str, str, Callable[[bytes], bytes]]] = [

@@ -67,6 +67,15 @@ def test_i8_rounds_each_row_to_its_own_largest_value() -> None:
     assert np.abs(back - basis).max() > 0
 
 
+def test_i8_is_for_what_loses_nothing_by_it() -> None:
+    tree = parse_checked(encode(synthetic_avatar(), storage="i8"))
+    for part in (tree["coarse"], tree["geometry"], tree["appearance"]):
+        assert [layer["weight"]["type"] for layer in part["mlp"]] == ["F16", "F16", "I8"]
+    assert tree["geometry"]["static_offset"]["type"] == "F16"
+    assert tree["appearance"]["static_offset"]["type"] == "I8"
+    assert tree["coarse"]["basis"]["type"] == tree["geometry"]["ll_basis"]["type"] == "I8"
+
+
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
 def test_same_avatar_gives_same_bytes(storage: Storage) -> None:
     assert encode(synthetic_avatar(), storage=storage) == encode(synthetic_avatar(), storage=storage)

@@ -21,6 +21,7 @@ def write(path: Path, avatar: Avatar, *, storage: Storage = "f16") -> None:
     """Write `avatar` to `path`, atomically; what the reader would refuse is never written.
 
     `storage` is the element type of bases, static offset and MLP weights; positions, means of LL and biases stay f32.
+    In an i8 file bases and last layers are i8; what costs quality as i8 (docs/accuracy.md, Storage) is f16.
     Errors: InputError naming the field that a file cannot hold.
     """
     write_bytes(path, encode(avatar, storage=storage))
@@ -65,8 +66,8 @@ def _avatar(avatar: Avatar, storage: Storage) -> Tree:
             "rec_hi": avatar.wavelet.rec_hi,
         },
         "coarse": _coarse(avatar.coarse, storage),
-        "geometry": _branch(avatar.geometry, storage),
-        "appearance": _branch(avatar.appearance, storage),
+        "geometry": _branch(avatar.geometry, storage, static=_half(storage)),  # i8 moves texels visibly
+        "appearance": _branch(avatar.appearance, storage, static=storage),
         "clips": [_clip(clip, storage) for clip in avatar.clips],
         "bounds": pack(avatar.bounds),
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
@@ -108,7 +109,10 @@ def _template(rig: Rig) -> Tree:
 
 
 def _mlp(mlp: Mlp, storage: Storage) -> list[Tree]:
-    return [{"weight": pack(la.weight, storage, rows=len(la.weight)), "bias": pack(la.bias)} for la in mlp]
+    """An error in a hidden layer reaches every coefficient, so that i8 is for the last layer, the largest, alone."""
+    kinds = [*[_half(storage)] * (len(mlp) - 1), storage]
+    layers = zip(mlp, kinds, strict=True)
+    return [{"weight": pack(la.weight, kind, rows=len(la.weight)), "bias": pack(la.bias)} for la, kind in layers]
 
 
 def _coarse(coarse: Coarse, storage: Storage) -> Tree:
@@ -116,14 +120,14 @@ def _coarse(coarse: Coarse, storage: Storage) -> Tree:
     return {"mlp": _mlp(coarse.mlp, storage), "mean": pack(coarse.mean), "basis": basis}
 
 
-def _branch(branch: Branch, storage: Storage) -> Tree:
+def _branch(branch: Branch, storage: Storage, *, static: Storage) -> Tree:
     channels, rank = branch.ll_basis.shape[:2]
     return {
         "mlp": _mlp(branch.mlp, storage),
         "ll_mean": pack(branch.ll_mean),
         "ll_basis": pack(branch.ll_basis, storage, rows=channels * rank),
         "details": [_detail(band, storage) for band in branch.details],
-        "static_offset": pack(branch.static, storage, rows=channels),
+        "static_offset": pack(branch.static, static, rows=channels),
     }
 
 
