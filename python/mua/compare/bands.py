@@ -186,7 +186,8 @@ class BandNetwork(Network):
             levels = zip(self.details, (coarse, fine), strict=True)
             d3, d2 = (torch.cat([n(maps).unflatten(1, (3, -1)) for n in level], dim=2) for level, maps in levels)
         assert ll is not None, "no network gives LL"
-        assert d3 is not None and d2 is not None, "no network gives the details"  # noqa: PT018
+        assert d3 is not None, "no network gives D3"
+        assert d2 is not None, "no network gives D2"
         return Bands(ll, d3, d2)
 
     def flops(self) -> int:

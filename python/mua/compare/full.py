@@ -113,15 +113,7 @@ def start_from_components(
     for at, channel in enumerate(own):
         x = _channel(frames, rows, channel).to(run.device)
         basis.shapes[:kept, at] = (u / s).T @ x * spread[:, None]
-    mlp = regress(
-        normalize(frames.motion.descriptors[rows].to(run.device)),
-        u * s,
-        hidden=frames.sizes.settings.hidden,
-        criterion=squared_error,
-        schedule=frames.sizes.settings.regression,
-        stage="coefficients",
-        run=run,
-    )
+    mlp = _teach(frames, rows, u * s, normalize=normalize, run=run)
     expand = torch.zeros(kept, basis.rank, device=run.device)
     expand[:, :kept] = torch.diag(1 / spread)
     basis.mlp.load_state_dict(unfold_last_layer(mlp, expand).state_dict())
@@ -208,15 +200,7 @@ def start_from_quarter(
     unit = torch.ones(count, device=run.device)
     rank = min(settings.hidden, len(rows))
     targets = joint_targets(stand_in, flat, unit, rank=rank, generator=run.generator)
-    mlp = regress(
-        normalize(frames.motion.descriptors[rows].to(run.device)),
-        targets.coordinates,
-        hidden=settings.hidden,
-        criterion=squared_error,
-        schedule=settings.regression,
-        stage="coefficients",
-        run=run,
-    )
+    mlp = _teach(frames, rows, targets.coordinates, normalize=normalize, run=run)
     part.mlp.load_state_dict(unfold_last_layer(mlp, targets.expand).state_dict())
 
 
@@ -294,6 +278,28 @@ def sampled(frames: TrainingFrames) -> Tensor:
     """The rows that closed forms look at."""
     count = min(len(frames), SAMPLED)
     return torch.arange(count) * len(frames) // count
+
+
+@torch.enable_grad()
+def _teach(
+    frames: TrainingFrames,
+    rows: Tensor,
+    coordinates: Tensor,  # [F, K] of the rows
+    *,
+    normalize: Callable[[Tensor], Tensor],
+    run: Run,
+) -> nn.Sequential:
+    """An MLP to coordinates, taught as our student's are."""
+    settings = frames.sizes.settings
+    return regress(
+        normalize(frames.motion.descriptors[rows].to(run.device)),
+        coordinates,
+        hidden=settings.hidden,
+        criterion=squared_error,
+        schedule=settings.regression,
+        stage="coefficients",
+        run=run,
+    )
 
 
 def _channel(frames: TrainingFrames, rows: Tensor, channel: int) -> Tensor:
