@@ -1,16 +1,24 @@
 """Local coefficients: parts follow the joints near them, and their sum is what the whole would be."""
 
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
+import recordings
 import torch
 from synthetic_avatar import synthetic_rig
-from synthetic_student import new_student
+from synthetic_student import SETTINGS, new_student
 
 from mua.motion.encoding import PoseEncoding
+from mua.recording import Recording
 from mua.rig.skeleton import Skeleton
 from mua.student.coarse import mesh_pca
+from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
 from mua.student.local import (
+    Locality,
     Parts,
     body_parts,
     carriers,
@@ -20,6 +28,7 @@ from mua.student.local import (
     texture_locality,
 )
 from mua.student.model import Alphas
+from mua.student.regress import fit_local, whitening
 from mua.student.targets import Targets
 
 # armature > hips > (spine > neck > head, thigh > shin)
@@ -124,6 +133,79 @@ def test_shares_of_the_mesh_follow_its_vertices() -> None:
     shares = mesh_locality(two_parts(), basis, fade=0.5).shares
     assert torch.allclose(shares.sum(0), torch.eye(5), atol=1e-5)
     assert torch.allclose(shares[1], torch.einsum("kvx,lvx->kl", basis[:, 3:], basis[:, 3:]), atol=1e-5)
+
+
+def two_limbs(frames: int, *, seed: int, together: bool) -> tuple[torch.Tensor, torch.Tensor]:
+    """Descriptors of two limbs [F, 2 D] and what the texels of each show [F, 2], which depends on its own limb alone.
+
+    In training, one limb always does nearly what the other does.
+    """
+    generator = torch.Generator().manual_seed(seed)
+    one = torch.randn(frames, 3, generator=generator)
+    other = (
+        one + 0.2 * torch.randn(frames, 3, generator=generator)
+        if together
+        else torch.randn(frames, 3, generator=generator)
+    )
+    shown = [torch.sin(limb[:, 0]) + 0.5 * limb[:, 1] * limb[:, 2] for limb in (one, other)]
+    return torch.cat([one, other], dim=1), torch.stack(shown, dim=1)
+
+
+def limbs_apart(fade: float) -> Locality:
+    own = torch.tensor([1.0, 1, 1, fade, fade, fade])
+    shares = torch.zeros(2, 2, 2)
+    shares[0, 0, 0] = shares[1, 1, 1] = 1
+    return Locality(torch.stack([own, own.flip(0)]), shares)
+
+
+def smooth(inputs: torch.Tensor, shown: torch.Tensor, fade: float) -> Callable[[torch.Tensor], torch.Tensor]:
+    """What the MLP is taught of `inputs`, as a function of other inputs."""
+    white = whitening(inputs)
+    z = (inputs - white.mean) @ white.turn
+    found = fit_local(inputs, z, shown, white, limbs_apart(fade), generator=torch.Generator().manual_seed(0))
+    return lambda x: found((x - white.mean) @ white.turn)
+
+
+def test_a_far_joint_moves_a_part_the_less_the_more_it_fades() -> None:
+    inputs, shown = two_limbs(200, seed=1, together=True)
+    moved = inputs.clone()
+    moved[:, 3:] += 1
+    moves = []
+    for fade in (1.0, 0.5, 0.1, 0.0):
+        function = smooth(inputs, shown, fade)
+        moves.append(float((function(moved) - function(inputs))[:, 0].abs().mean()))
+    assert moves == sorted(moves, reverse=True)
+    assert moves[0] > 0.1
+    assert moves[-1] < 1e-5  # nothing but rounding
+
+
+def test_parts_that_do_not_fade_make_the_function_of_the_whole() -> None:
+    inputs, shown = two_limbs(100, seed=2, together=True)
+    white = whitening(inputs)
+    z = (inputs - white.mean) @ white.turn
+    whole = fit_local(inputs, z, shown, white, None, generator=torch.Generator().manual_seed(0))
+    assert torch.allclose(smooth(inputs, shown, 1.0)(inputs), whole(z), atol=1e-3)
+
+
+def test_local_parts_carry_over_to_limbs_that_move_apart() -> None:
+    inputs, shown = two_limbs(300, seed=3, together=True)
+    unseen, truth = two_limbs(200, seed=4, together=False)
+    errors = [float((smooth(inputs, shown, fade)(unseen) - truth).square().mean()) for fade in (1.0, 0.5)]
+    assert errors[1] < 0.8 * errors[0]
+
+
+def test_a_recording_is_prepared_with_its_parts_and_clips(tmp_path: Path) -> None:
+    recordings.write(tmp_path)
+    recording = Recording(tmp_path)
+    settings = replace(SETTINGS, texels=recording.rig.texels.size)
+    student, samples = prepare(recording, settings)
+    assert samples.parts is not None
+    assert samples.parts.steps.shape[1] == student.encoding.width
+    assert samples.parts.fine.shape == student.geometry.d2.mean.shape[-2:]
+    assert samples.clips is not None
+    assert samples.clips.tolist() == [0] * 12 + [1] * 11
+    alike = replace(settings, generalisation=replace(settings.generalisation, fade=1.0))
+    assert prepare(recording, alike)[1].parts is None
 
 
 @pytest.mark.parametrize("fade", [1.0, 0.5])

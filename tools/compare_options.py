@@ -1,0 +1,196 @@
+"""Train one student by each option for unseen motion on one recording and set their losses side by side.
+
+    python tools/compare_options.py RECORDING --preset tiny -o build/options
+
+Each option changes the default in one place. The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus appearance,
+in units of each attribute's spread) over all recorded frames; the shares are of the held-out variance about the
+training mean that the student explains. All options share the bases, which are not timed, but for those that train on
+fewer frames. Rows that OUTPUT/options.csv holds are kept, so that a comparison can be cut short and extended. Writes
+options.csv and options.md.
+"""
+
+import csv
+import tempfile
+import time
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import torch
+import typer
+from torch import Tensor
+
+import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua.files import replacing
+from mua.recording import Recording
+from mua.student.checkpoint import Checkpoints, run_key
+from mua.student.descend import set_means
+from mua.student.distil import describe_frames, prepare
+from mua.student.finetune import subband_loss
+from mua.student.model import Bands, Student
+from mua.student.optimise import Progress
+from mua.student.settings import Settings, preset
+from mua.student.targets import channel_weights
+from mua.student.train import BRANCHES, Samples, train
+from mua.texture.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
+
+CPU = torch.device("cpu")
+BATCH = 64  # frames of a measurement
+LONGER = 10  # times the steps of the fine-tuning
+
+OPTIONS: dict[str, dict[str, float]] = {
+    "default": {},
+    "all joints alike": {"fade": 1.0},
+    "fade 0.8": {"fade": 0.8},
+    "fade 0.4": {"fade": 0.4},
+    "no input noise": {"noise": 0.0},
+    "input noise 0.6": {"noise": 0.6},
+    "no weight decay": {"weight_decay": 0.0},
+    "weight decay 0.01": {"weight_decay": 1e-2},
+    "heading kept": {"heading": False},
+    "a tenth chooses the step": {"validation": 0.1},
+    f"{LONGER}x fine-tuning": {"longer": LONGER},
+    f"{LONGER}x, a tenth chooses": {"longer": LONGER, "validation": 0.1},
+}
+COLUMNS = ("option", "training loss", "held-out loss", *(f"{name}, %" for name in ATTRIBUTES), "mesh, %", "seconds")
+
+
+def main(
+    recording: Annotated[Path, typer.Argument(help="Recording with held-out clips.")],
+    preset_name: Annotated[str, typer.Option("--preset", help="Of the student.")] = "tiny",
+    only: Annotated[list[str], typer.Option(help="Option to measure, may be repeated; all if left out.")] = [],  # noqa: B006
+    output: Annotated[Path, typer.Option("--output", "-o", help="Directory of the tables.")] = Path("build/options"),
+) -> None:
+    """Measure what helps on motion that was not trained on."""
+    opened = Recording(recording)
+    settings = replace(preset(preset_name), texels=opened.rig.texels.size)
+    output.mkdir(parents=True, exist_ok=True)
+    rows = read_rows(output / "options.csv")
+    weights = loss_weights(opened, settings)
+    bases = Checkpoints(output / "bases", run_key((settings, opened.fingerprint()), [weights]))
+    for option in only or OPTIONS:
+        if option not in rows:
+            rows[option] = measure(opened, vary(settings, OPTIONS[option]), weights, bases=bases)
+            write_rows(output / "options.csv", rows)
+            print(option, *rows[option], flush=True)
+    text = as_markdown(rows)
+    (output / "options.md").write_text(text)
+    print(text)
+
+
+def vary(settings: Settings, change: dict[str, float]) -> Settings:
+    """Settings with some fields of their generalisation changed, and fine-tuned `longer` times as long."""
+    own = {name: value for name, value in change.items() if name != "longer"}
+    steps = int(settings.finetune.steps * change.get("longer", 1))
+    return replace(
+        settings,
+        generalisation=replace(settings.generalisation, **own),  # type: ignore[arg-type]
+        finetune=replace(settings.finetune, steps=steps),
+    )
+
+
+def loss_weights(recording: Recording, settings: Settings) -> Tensor:
+    """The weight [23] of each channel's error, the same for all options."""
+    student, samples = prepare(recording, settings)
+    weights = []
+    for branch, channels in zip(student.branches, (GEOMETRY, APPEARANCE), strict=True):
+
+        def source(part: slice, rows: Tensor, start: int = channels.start) -> Bands:
+            return samples.subbands(slice(start + part.start, start + part.stop), rows)
+
+        weights.append(channel_weights(set_means(branch, source, frames=len(samples)), channels))
+    return torch.cat(weights)
+
+
+def measure(recording: Recording, settings: Settings, weights: Tensor, *, bases: Checkpoints) -> list[float]:
+    """Train and judge one option: the figures of COLUMNS after the first."""
+    student, samples = prepare(recording, settings)
+    shares = not settings.generalisation.validation
+    with tempfile.TemporaryDirectory() as directory:
+        checkpoints = Checkpoints(Path(directory), "compare")
+        if shares:
+            if not bases.finished(f"{BRANCHES[-1]} bases"):
+                train(student, samples, settings=settings, checkpoints=bases, device=CPU, report=_silent, only="bases")
+            lend_bases(bases, checkpoints)
+        started = time.perf_counter()
+        train(student, samples, settings=settings, checkpoints=checkpoints, device=CPU, report=_silent)
+        seconds = time.perf_counter() - started
+    return [*judge(recording, student, samples, weights), seconds]
+
+
+def _silent(_: Progress) -> None:
+    pass
+
+
+def lend_bases(owner: Checkpoints, borrower: Checkpoints) -> None:
+    """Give one training the finished bases of another."""
+    for name in BRANCHES:
+        state = owner.load(f"{name} bases")
+        if state is not None:
+            borrower.save(f"{name} bases", state)
+
+
+@torch.no_grad()
+def judge(recording: Recording, student: Student, samples: Samples, weights: Tensor) -> list[float]:
+    """Losses over all training and held-out frames; explained shares of the latter by attribute, then of the mesh."""
+    held = torch.from_numpy(describe_frames(recording, student.encoding, held_out=True)).float()
+    scale = weights[:, None, None]
+    mean = [torch.cat([getattr(branch, name) for branch in student.branches]) for name in ("ll_mean",)]
+    mean += [torch.cat([getattr(branch, name).mean for branch in student.branches], dim=1) for name in ("d3", "d2")]
+    losses, missed, spread = [], torch.zeros(CHANNELS), torch.zeros(CHANNELS)
+    for kind, descriptors in ((False, samples.descriptors), (True, held)):
+        total = 0.0
+        for rows in torch.arange(len(descriptors)).split(BATCH):
+            truth, found = (
+                Bands(*recording.subbands(slice(0, CHANNELS), rows, held_out=kind)),
+                student.predict(descriptors[rows]),
+            )
+            for part in (GEOMETRY, APPEARANCE):
+                one, other = (Bands(*(band * scale for band in bands)).of(part) for bands in (found, truth))
+                total += len(rows) * float(subband_loss(one, other))
+            if kind:
+                missed += sum(by_channel(a - b) for a, b in zip(found, truth, strict=True))
+                spread += sum(by_channel(a - b) for a, b in zip(truth, mean, strict=True))
+        losses.append(total / max(len(descriptors), 1))
+    shares = [100 * (1 - float(missed[own].sum() / spread[own].sum())) for own in ATTRIBUTES.values()]
+    truth_mesh = torch.from_numpy(recording.meshes(np.arange(len(held)), held_out=True))
+    left = (student.mesh(held) - truth_mesh).square().sum() / (truth_mesh - samples.meshes.mean(0)).square().sum()
+    return [*losses, *shares, 100 * (1 - float(left))]
+
+
+def by_channel(band: Tensor) -> Tensor:
+    """Sum of squares [C] of a band [F, ..., C, n, n]."""
+    return band.square().movedim(-3, 0).flatten(1).sum(1)
+
+
+def read_rows(path: Path) -> dict[str, list[float]]:
+    if not path.exists():
+        return {}
+    with path.open(newline="") as file:
+        return {row[0]: [float(value) for value in row[1:]] for row in list(csv.reader(file))[1:]}
+
+
+def write_rows(path: Path, rows: dict[str, list[float]]) -> None:
+    with replacing(path) as temporary, temporary.open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(COLUMNS)
+        table.writerows((option, *values) for option, values in rows.items())
+
+
+def as_markdown(rows: dict[str, list[float]]) -> str:
+    """The table; losses to four digits, shares to a tenth."""
+
+    def line(cells: Iterable[str]) -> str:
+        return "| " + " | ".join(cells) + " |\n"
+
+    text = line(COLUMNS) + line(["---"] * len(COLUMNS))
+    for option in (name for name in OPTIONS if name in rows):
+        losses, shares, seconds = rows[option][:2], rows[option][2:-1], rows[option][-1]
+        text += line([option, *(f"{x:.3f}" for x in losses), *(f"{x:.1f}" for x in shares), f"{seconds:.0f}"])
+    return text
+
+
+if __name__ == "__main__":
+    typer.run(main)
