@@ -8,6 +8,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from mua.arrays import Array
 from mua.bounds import union
 from mua.camera import NEAR, Camera
 from mua.errors import InputError
@@ -38,7 +39,7 @@ class SplatFrame:
         self.splat_count = sum(counts)
         self._load_kernels(device)
         self._create_buffers(device)
-        self.avatars = tuple(
+        self.avatars: tuple[AvatarFrame, ...] = tuple(
             AvatarFrame(device, avatar, self.splats, first_splat=first)
             for avatar, first in zip(avatars, accumulate(counts, initial=0), strict=False)
         )
@@ -79,8 +80,12 @@ class SplatFrame:
         for i, shift in enumerate(DIGIT_SHIFTS):
             self._sort_digit(commands, shift, source=i % 2)
 
+    def box(self) -> Array:
+        """[2, 3] world box of what was decoded last, metres."""
+        return union(np.stack([avatar.bounds for avatar in self.avatars]))
+
     def _project(self, commands: Commands, cameras: Sequence[Camera]) -> None:
-        low, high = union(np.stack([avatar.bounds for avatar in self.avatars]))
+        low, high = self.box()
         pair = (cameras[0], cameras[-1])
         threads = (groups(self.splat_count, PROJECTED), 1, 1)
         commands.dispatch(

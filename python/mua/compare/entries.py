@@ -1,0 +1,168 @@
+"""What is compared: avatar files, trained systems and the mean texture, each as a row that can give a texture."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from mua.arrays import Array
+from mua.asset.count import flops, parameters
+from mua.asset.read import load
+from mua.bench.measure import measure
+from mua.bench.report import total_milliseconds
+from mua.compare.motion import motion_of, training_frames
+from mua.compare.system import Budget, System, TrainingFrames
+from mua.compare.systems import SYSTEMS
+from mua.errors import InputError
+from mua.gpu import Device
+from mua.player.buffers import AvatarBuffers
+from mua.player.splats import SplatFrame
+from mua.recording import Recording, WholeFrame
+from mua.rig.rig import Rig
+from mua.student.optimise import Report, Run
+from mua.student.settings import Settings
+
+FLOAT = 4  # bytes of a system's number; avatar files count as stored
+FPS_FRAMES = 5  # timed of each file
+MEAN = "mean texture"
+PLAYED = ", own mesh"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What an entry makes of a frame."""
+
+    texture: Array  # [N, 23] raw channels
+    mesh: Array | None = None  # [V, 3] canonical vertices, metres; None: the teacher's
+
+
+@dataclass(frozen=True)
+class Cost:
+    """The paper's right-hand columns; None where they do not apply."""
+
+    parameters: int | None = None
+    flops: int | None = None  # of a frame; posing and drawing excluded
+    bytes: int | None = None  # of the file, or 4 a parameter
+    fps: float | None = None  # of the player on this device; decoding, posing and drawing included
+    storage: str = ""  # f32, f16 or i8, of a file
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One row: how to make a frame, or the sentence that says why it cannot."""
+
+    name: str
+    picture: Callable[[WholeFrame], Picture] | None
+    cost: Cost = field(default_factory=Cost)
+    own_mesh: bool = False  # its pictures bring a mesh
+    failure: str = ""
+
+
+def mean_entry(recording: Recording) -> Entry:
+    """The mean texture of the training frames: what a system must beat."""
+    texture = recording.mean_texture().astype(np.float32)
+    cost = Cost(parameters=texture.size, flops=0, bytes=FLOAT * texture.size)
+    return Entry(MEAN, lambda _: Picture(texture), cost)
+
+
+def avatar_entries(device: Device, path: Path, rig: Rig, *, size: int, played: bool) -> list[Entry]:
+    """An avatar file on the teacher's mesh and, where `played`, on its own as a user sees it.
+
+    Errors: InputError where the file is broken, of another rig than the recording, or too large for the device.
+    """
+    buffers = AvatarBuffers(device, path)
+    _check_rig(path, buffers.avatar.rig, rig)
+    decoder = _Decoder(device, buffers)
+    avatar = buffers.avatar
+    cost = Cost(
+        parameters=sum(parameters(avatar).values()),
+        flops=sum(flops(avatar).values()),
+        bytes=path.stat().st_size,
+        fps=frames_per_second(device, path, size=size),
+        storage=load(path)["geometry"]["ll_basis"]["type"].lower(),
+    )
+    entries = [Entry(path.stem, lambda frame: Picture(decoder(frame).texture), cost)]
+    return [*entries, Entry(path.stem + PLAYED, decoder, cost, own_mesh=True)] if played else entries
+
+
+def system_entry(name: str, recording: Recording, frames: TrainingFrames, *, budget: Budget, report: Report) -> Entry:
+    """Train the system called `name`; one that fails becomes an entry with a sentence."""
+    try:
+        system = SYSTEMS[name](frames.sizes)
+        seed = frames.sizes.settings.seed
+        system.fit(frames, budget, torch.Generator().manual_seed(seed), report)
+    except Exception as error:  # whatever one system stumbles over, the others go on
+        return Entry(name, None, failure=sentence(error))
+    cost = Cost(parameters=system.parameters, flops=system.flops, bytes=FLOAT * system.parameters)
+    return Entry(name, lambda frame: Picture(system_texture(system, recording, frames, frame)), cost)
+
+
+def system_texture(system: System, recording: Recording, frames: TrainingFrames, frame: WholeFrame) -> Array:
+    """A trained system's texture [N, 23] of a frame."""
+    motion = motion_of(frame.clip, np.array([frame.index]), rig=recording.rig, student=frames.student)
+    with torch.no_grad():
+        return np.asarray(system.textures(motion)[0].cpu().numpy())
+
+
+def prepare_systems(recording: Recording, settings: Settings, *, run: Run) -> TrainingFrames:
+    """What all systems learn from (`mua.compare.motion.training_frames`)."""
+    return training_frames(recording, settings, run=run)
+
+
+def check_systems(names: list[str]) -> None:
+    """Errors: InputError for a name that is no system's."""
+    for name in names:
+        if name not in SYSTEMS:
+            raise InputError(f"--system {name}: expected one of {', '.join(SYSTEMS)}")
+
+
+def frames_per_second(device: Device, path: Path, *, size: int) -> float | None:
+    """Of the whole frame, inference and drawing as in the paper (Sec. Metrics); None where it cannot be timed."""
+    try:
+        measured = measure(device, path, frames=FPS_FRAMES, screen=(size, size), eyes=None)
+    except InputError:  # no timestamps, or no clip to play
+        return None
+    spent = total_milliseconds(measured) + measured.draw.median  # milliseconds
+    return 1000 / spent if spent > 0 else None
+
+
+def sentence(error: Exception) -> str:
+    """What went wrong, in one line."""
+    said = " ".join(str(error).split())
+    return said if isinstance(error, InputError) else f"{type(error).__name__}: {said}"
+
+
+class _Decoder:
+    """Textures and meshes of an avatar file as the player's kernels make them; the last frame is kept."""
+
+    def __init__(self, device: Device, buffers: AvatarBuffers) -> None:
+        self._device = device
+        (self._frame,) = SplatFrame(device, [buffers]).avatars
+        self._last: tuple[tuple[str, int], Picture] | None = None
+
+    def __call__(self, frame: WholeFrame) -> Picture:
+        key = (frame.clip.name, frame.index)
+        if self._last is None or self._last[0] != key:
+            self._last = (key, self._decode(frame))
+        return self._last[1]
+
+    def _decode(self, frame: WholeFrame) -> Picture:
+        window = self._frame.avatar.avatar.encoding.frames(frame.index)
+        commands = self._device.commands()
+        self._frame.decode(commands, frame.clip.rotations[window], frame.clip.translation[window])
+        commands.submit()
+        channels = self._frame.texel_channels.read(np.float32).reshape(-1, self._frame.splat_count)
+        return Picture(np.ascontiguousarray(channels.T), self._frame.mesh.read(np.float32).reshape(-1, 3))
+
+
+def _check_rig(path: Path, own: Rig, recorded: Rig) -> None:
+    pairs = (
+        ("texels", own.texels.texels, recorded.texels.texels),
+        ("triangles", own.mesh.faces, recorded.mesh.faces),
+        ("joints", np.array(own.skeleton.names), np.array(recorded.skeleton.names)),
+    )
+    for what, found, expected in pairs:
+        if not np.array_equal(found, expected):
+            raise InputError(f"{path}: its {what} are not those of the recording: it was distilled from another rig")

@@ -1,0 +1,82 @@
+"""Pictures of a recording's frames by the project's player: one rig, one camera, one mesh, any texture.
+
+The picture is square, its background black, its colours display-referred and clipped to 0..1. Cameras stand at equal
+angles about the vertical, face the root joint and follow it, at one distance for all frames of a recording.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.bounds import frame_boxes, root_positions, union
+from mua.camera import Camera, orbit
+from mua.errors import InputError
+from mua.gpu import Device
+from mua.motion.clip import Clip
+from mua.player.draw import SplatRenderer, draw_image, image_format
+from mua.player.textured import TexturedFrame
+from mua.recording import WholeFrame
+from mua.rig.rig import Rig
+
+FIRST_VIEW = np.radians(30)  # azimuth in the world, from +Z towards +X
+ELEVATION = np.radians(8)
+SMALLEST, LARGEST = 176, 8192  # pixels; MS-SSIM halves a picture four times and then needs 11
+MOST_VIEWS = 16
+
+
+class Studio:
+    """Draws textures on the frames of one recording."""
+
+    def __init__(
+        self,
+        device: Device,
+        rig: Rig,
+        frames: Sequence[WholeFrame],  # all that will be drawn: they set the distance of the cameras
+        *,
+        views: int,
+        size: int,  # pixels along a side
+    ) -> None:
+        """Errors: InputError where there are too few or many views or pixels, or the device has too little memory."""
+        if not SMALLEST <= size <= LARGEST:
+            raise InputError(f"--size {size}: expected {SMALLEST} to {LARGEST} pixels")
+        if not 1 <= views <= MOST_VIEWS:
+            raise InputError(f"--views {views}: expected 1 to {MOST_VIEWS}")
+        self._device, self._rig, self._screen = device, rig, (size, size)
+        self.azimuths = [float(FIRST_VIEW + turn) for turn in 2 * np.pi * np.arange(views) / views]
+        boxes = [frame_boxes(rig, _still(frame)) - root_positions(rig, _still(frame))[:, None] for frame in frames]
+        self._box = union(np.concatenate(boxes))
+        self._frame = TexturedFrame(device, rig)
+        self._renderer = SplatRenderer(device, image_format(device))
+
+    def cameras(self, frame: WholeFrame) -> list[Camera]:
+        """One for each view."""
+        (root,) = root_positions(self._rig, _still(frame))
+        box = self._box + root
+        return [orbit(box, screen=self._screen, azimuth=turn, elevation=float(ELEVATION)) for turn in self.azimuths]
+
+    def draw(
+        self,
+        frame: WholeFrame,  # whose pose and cameras
+        texture: Array,  # [N, 23] raw channels
+        *,
+        mesh: Array | None = None,  # [V, 3] canonical vertices, metres; the teacher's if left out
+    ) -> list[Array]:
+        """One picture [H, W, 3] float32 in 0..1 for each view."""
+        pictures = []
+        pose = frame.clip.pose(frame.index)
+        for index, camera in enumerate(self.cameras(frame)):
+            commands = self._device.commands()
+            if index == 0:
+                self._frame.pose(commands, frame.mesh if mesh is None else mesh, texture, pose)
+            self._frame.sort(commands, [camera])
+            commands.submit()
+            image = draw_image(self._device, self._renderer, self._frame.sorted, [camera])
+            pictures.append(np.clip(image[..., :3], 0, 1))  # premultiplied: over black as it stands
+        return pictures
+
+
+def _still(frame: WholeFrame) -> Clip:
+    """The frame as a clip of one."""
+    own = slice(frame.index, frame.index + 1)
+    return Clip(frame.clip.name, frame.clip.rate, frame.clip.rotations[own], frame.clip.translation[own])
