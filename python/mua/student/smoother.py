@@ -41,7 +41,12 @@ def fit_smoother(
     centres = x[chosen]
     distance = float(2 * (x - x.mean(0)).square().sum(1).mean())
     width = WIDTH * distance if distance > 0 else 1.0
-    values, vectors = torch.linalg.eigh(_kernel(centres, centres, width).double())
+    kernel = _kernel(centres, centres, width).double()
+    if len(centres) == len(x):  # no approximation
+        system = kernel + RIDGE * torch.eye(len(x), dtype=kernel.dtype, device=kernel.device)
+        solved = torch.cholesky_solve(targets.double(), torch.linalg.cholesky(system))
+        return Smoother(centres, solved.to(targets), width)
+    values, vectors = torch.linalg.eigh(kernel)
     kept = values > RANK_FLOOR * values[-1]
     features = vectors[:, kept] / values[kept].sqrt()
     seen = _kernel(x, centres, width).double() @ features
