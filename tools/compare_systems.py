@@ -7,6 +7,7 @@ draws pictures and takes the paper's metrics; this needs no GPU.
 """
 
 import argparse
+import time
 from dataclasses import replace
 from itertools import groupby, islice
 from pathlib import Path
@@ -16,12 +17,13 @@ import torch
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.compare.motion import motion_of, training_frames
-from mua.compare.network import Forgetful, NetworkSystem
+from mua.compare.network import NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
 from mua.compare.systems import SYSTEMS
 from mua.evaluate import Errors, Picture
 from mua.files import replacing
 from mua.recording import Recording
+from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.optimise import Run
 from mua.student.settings import preset
 from mua.texture.channels import ATTRIBUTES
@@ -35,6 +37,7 @@ def main() -> None:
     parser.add_argument("recording", type=Path)
     parser.add_argument("--preset", default="tiny")
     parser.add_argument("--seconds", type=float, default=40, help="of training, for each system")
+    parser.add_argument("--cpu", action="store_true", help="count the process's own seconds, not those of the clock")
     parser.add_argument("--systems", nargs="*", default=list(SYSTEMS), choices=list(SYSTEMS))
     parser.add_argument("--from-noise", action="store_true", help="no closed-form start for any system")
     parser.add_argument("--device", default="cpu", help="that the systems are trained on")
@@ -43,9 +46,11 @@ def main() -> None:
     recording = Recording(arguments.recording)
     settings = replace(preset(arguments.preset), texels=recording.rig.texels.size)
     generator = torch.Generator().manual_seed(settings.seed)
-    run = Run(generator, Forgetful(Path(), ""), lambda _: None, torch.device(arguments.device))
+    kept = Checkpoints(arguments.output.parent / "mesh", run_key((settings, recording.fingerprint()), []))
+    run = Run(generator, kept, lambda _: None, torch.device(arguments.device))
     frames = training_frames(recording, settings, run=run)
-    budget = Budget(seconds=arguments.seconds, closed_form=not arguments.from_noise)
+    clock = time.process_time if arguments.cpu else time.monotonic
+    budget = Budget(seconds=arguments.seconds, closed_form=not arguments.from_noise, clock=clock)
     rows = [heading()]
     for name in arguments.systems:
         system = SYSTEMS[name](frames.sizes)

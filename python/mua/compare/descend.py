@@ -20,7 +20,7 @@ def descend(
     *,
     frames: int,
     budget: Budget,
-    started: float,  # on time.monotonic, when the budget began to run
+    started: float,  # on the budget's clock
     stage: str,
     generator: torch.Generator,
     report: Report,
@@ -51,7 +51,7 @@ def _spent(budget: Budget, step: int, started: float) -> float:
     """The share of the budget that is gone; whichever limit comes first counts."""
     shares = [0.0]
     if budget.seconds is not None:
-        shares.append((time.monotonic() - started) / budget.seconds if budget.seconds > 0 else 1.0)
+        shares.append((budget.clock() - started) / budget.seconds if budget.seconds > 0 else 1.0)
     if budget.steps is not None:
         shares.append(step / budget.steps if budget.steps > 0 else 1.0)
     return max(shares)

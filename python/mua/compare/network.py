@@ -4,7 +4,6 @@ A network predicts deviations from the mean of the training frames in units in w
 (`mua.student.targets.channel_weights`); the mean texture is among its learnt numbers.
 """
 
-import time
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -85,7 +84,7 @@ class NetworkSystem:
         self._sizes, self._build = sizes, build
         self._network: Network | None = None
         self.steps = 0  # of Adam that the budget allowed
-        self.seconds = 0.0  # that training took
+        self.seconds = 0.0  # that training took, on the budget's clock
         with torch.device("meta"):
             network = build(sizes)
             coarse = Coarse(
@@ -102,10 +101,9 @@ class NetworkSystem:
 
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
         """Train a new network; the closed-form start, where the budget allows one, counts towards the seconds."""
-        started = time.monotonic()
+        started = budget.clock()
         network = self._build(frames.sizes)
         network.attach(frames, frames.device)
-        seconds = 0.0
 
         def told(progress: Any) -> None:
             report(replace(progress, stage=f"{self.name}: {progress.stage}"))
@@ -122,8 +120,7 @@ class NetworkSystem:
             generator=generator,
             report=told,
         )
-        seconds = time.monotonic() - started
-        self._network, self.seconds = network.eval(), seconds
+        self._network, self.seconds = network.eval(), budget.clock() - started
 
     @torch.no_grad()
     def textures(self, motion: Motion) -> Tensor:

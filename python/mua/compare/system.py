@@ -4,6 +4,7 @@ All systems share the coarse mesh of our student, so that what they draw differs
 themselves are listed in `mua.compare.systems`.
 """
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -36,11 +37,12 @@ class Sizes:
 class Budget:
     """How long each system may learn, everything included; a budget in steps gives the same bytes each time."""
 
-    seconds: float | None = None  # wall-clock
+    seconds: float | None = None  # of the clock
     steps: int | None = None  # of Adam
     closed_form: bool = True  # where a system has such a start; without it, all systems start from noise
     batch: int = 16  # frames per step
     rate: float = 1e-3  # of Adam, from noise; a closed-form start is descended from more slowly
+    clock: Callable[[], float] = time.monotonic  # or time.process_time, where others use the machine as well
 
 
 @dataclass(frozen=True)
