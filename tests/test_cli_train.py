@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -131,6 +132,7 @@ def test_without_a_terminal_stages_and_steps_are_lines(monkeypatch: pytest.Monke
     assert lines[1].startswith("  1 of 4, loss 0.5000, 2.0 steps/s")
     assert lines[2].startswith("  2 of 4, loss 0.4000, 2.0 steps/s, ")
     assert lines[2].endswith(" left")
+    assert re.fullmatch(r"  \d+\.\d s", lines[3])  # what the stage took
 
 
 @pytest.mark.parametrize("asked", [True, False])

@@ -23,7 +23,7 @@ class Display:
             *columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console, disable=not console.is_terminal
         )
         self.task: TaskID | None = None
-        self._told = 0.0
+        self._told = self._begun = 0.0
 
     def __enter__(self) -> "Display":
         self.progress.start()
@@ -31,12 +31,16 @@ class Display:
 
     def __exit__(self, *_: object) -> None:
         self.progress.stop()
+        if self.task is not None:
+            self._say_end()
 
     def stage(self, name: str) -> None:
         """End the bar of the stage before and begin one."""
         if self.task is not None:
             self.progress.update(self.task, total=1, completed=1)
+            self._say_end()
         self.task = self.progress.add_task(name, total=None, detail="")
+        self._begun = time.monotonic()
         if self.progress.disable:
             self._say(name)
 
@@ -52,6 +56,10 @@ class Display:
 
     def note(self, sentence: str) -> None:
         self.console.print(f"  {sentence}", highlight=False)
+
+    def _say_end(self) -> None:
+        if self.progress.disable:
+            self._say(f"  {time.monotonic() - self._begun:.1f} s")
 
     def _say(self, line: str) -> None:
         self._told = time.monotonic()
