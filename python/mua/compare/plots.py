@@ -160,19 +160,20 @@ def _strip(studio: Studio, frame: WholeFrame, results: Sequence[Result]) -> Arra
     kind = "held out" if frame.clip.held_out else "trained on"
     columns = []
     for name, picture in pictures.items():
-        title = f"{name}: {frame.clip.name}, frame {frame.index} ({kind})" if name == "teacher" else name
         marked = _cut(_marked(to_bytes(picture), worst), figure)
         height = CELL * marked.shape[0] // max(marked.shape[:2])
         width = max(CELL * marked.shape[1] // max(marked.shape[:2]), CELL // 2)
         shown_map = to_bytes(magma(np.clip(maps[name] / SHOWN_FLIP, 0, 1))[..., :3]) if name in maps else None
         rows = [
-            _caption(title, width),
+            _caption(name, width),
             _fit(marked, width, height),
             _fit(_cut(to_bytes(picture), worst), width, width),
             _fit(_cut(shown_map, figure), width, height) if shown_map is not None else _blank(width, height),
         ]
         columns.append(np.pad(np.vstack(rows), ((0, 0), (0, 2), (0, 0)), constant_values=255))
-    return np.hstack(columns)
+    strip = np.hstack(columns)
+    about = f"{frame.clip.name}, frame {frame.index} ({kind}); below: the marked square, FLIP from 0 to {SHOWN_FLIP}"
+    return np.vstack([_caption(about, strip.shape[1]), strip])
 
 
 Box = tuple[slice, slice]  # rows, columns
