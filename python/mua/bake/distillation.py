@@ -1,5 +1,6 @@
 """From a recording to a verified `.muaavatar`: all of mua-train, and the second half of a bake."""
 
+import itertools
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -147,7 +148,9 @@ def _within_memory(order: Distillation) -> Iterator[None]:
 
 def _picture(path: Path, avatar: Avatar, recording: Recording) -> None:
     """Write the contact sheet, of held-out frames where there are any."""
-    frames = list(recording.whole_frames(held_out=True)) or list(recording.whole_frames(held_out=False))
-    step = max(len(frames) // SHEET_FRAMES, 1)
+    unseen = sum(1 for _ in recording.whole_frames(held_out=True))
+    step = max((unseen or recording.whole_count) // SHEET_FRAMES, 1)
+    frames = recording.whole_frames(held_out=unseen > 0)  # one at a time: hundreds would not fit into memory
+    chosen = itertools.islice(frames, step // 2, step // 2 + step * SHEET_FRAMES, step)
     with replacing(path) as temporary:
-        contact_sheet(avatar, frames[step // 2 :: step][:SHEET_FRAMES]).save(temporary)
+        contact_sheet(avatar, chosen).save(temporary)
