@@ -16,7 +16,9 @@ from mua.texture.channels import GEOMETRY
 
 State = dict[str, torch.Tensor]
 Losses = dict[tuple[str, int], float | None]
-ROUNDING = 1e-4  # of losses and, in the Euclidean norm, of each tensor; see docs/training.md for what was measured
+# Of losses and, in the Euclidean norm, of each tensor. A batch's sum in another order differs by some 1e-7; every step
+# of Adam, which divides by the gradient's own size, lets that grow. docs/training.md has what was measured.
+ROUNDING = 1e-3
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +63,12 @@ def test_two_processes_train_the_student_of_one(pair: Path, tmp_path: Path, name
     assert len(steps) > 30
     for step, loss in steps.items():
         assert together[step] == pytest.approx(loss, rel=ROUNDING)
+    for kept in (pair / name).glob("* bases.pt"):
+        assert kept.stat().st_size > 1000
+        ours, theirs = (torch.load(path)["state"] for path in (kept, tmp_path / kept.name))
+        assert torch.equal(ours["flat"], theirs["flat"])  # channels are solved for in one process each: no sum is split
+        names = [name for name in ours["branch"] if not name.startswith("mlp")]  # which comes to be later
+        assert all(torch.equal(ours["branch"][name], theirs["branch"][name]) for name in names)
 
 
 @pytest.mark.parametrize("name", ["closed form", "paper"])

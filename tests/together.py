@@ -36,7 +36,7 @@ PAPER = replace(
     finetune=Schedule(steps=12, batch=1, rate=1e-3, falls=False),
 )
 RECIPES: dict[str, Settings] = {
-    "closed form": replace(SETTINGS, regression=replace(SETTINGS.regression, steps=60, batch=65)),
+    "closed form": replace(SETTINGS, regression=replace(SETTINGS.regression, steps=20, batch=65)),
     "paper": PAPER,
     "quick": quick(),
 }
