@@ -107,7 +107,8 @@ def start_from_components(
     values, vectors = torch.linalg.eigh(gram)
     kept = min(basis.rank, int((values > values[-1].clamp(min=0) * 1e-9).sum()))
     u, s = vectors[:, -kept:].flip(1).float(), values[-kept:].flip(0).clamp(min=0).sqrt().float()
-    if not kept:
+    if not kept:  # nothing moves
+        start_mlp(basis.mlp, run.generator)
         return
     spread = s / len(rows) ** 0.5  # of each coefficient over frames
     for at, channel in enumerate(own):
