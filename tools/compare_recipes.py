@@ -37,7 +37,7 @@ from mua.texture.channels import APPEARANCE, GEOMETRY
 
 PAPER_STEPS = 1_000_000
 BATCH = 64  # frames of a measurement
-POINTS = 40  # of a curve
+POINTS = 25  # of a curve
 KINDS = ("training", "held-out")
 CPU = torch.device("cpu")
 
