@@ -14,11 +14,11 @@ from pathlib import Path
 from unittest.mock import patch
 
 import torch
+import torch._dynamo  # which the first optimiser of a process would import
 from recordings import RATE, FormulaTeacher, plan
 from synthetic_avatar import synthetic_rig
 from synthetic_student import SETTINGS, new_student, quick, samples
 
-import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.errors import InputError
 from mua.processes import ALONE, Processes, joined
 from mua.recording.parts import record_together
