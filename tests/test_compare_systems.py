@@ -158,6 +158,17 @@ def few(frames: TrainingFrames) -> TrainingFrames:
     return replace(frames, sizes=replace(frames.sizes, settings=replace(SETTINGS, regression=schedule)))
 
 
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_what_was_learnt_is_taken_up_from_its_state(name: str, frames: TrainingFrames) -> None:
+    system = trained(name, few(frames), Budget(steps=2))
+    again = SYSTEMS[name](frames.sizes)
+    again.restore(system.state(), frames)
+    motion = frames.motion.of(torch.arange(3))
+    assert torch.equal(again.textures(motion), system.textures(motion))
+    assert isinstance(again, NetworkSystem)
+    assert (again.steps, again.seconds) == (2, system.seconds)
+
+
 def test_a_budget_without_an_end_is_refused(frames: TrainingFrames) -> None:
     with pytest.raises(InputError, match=r"^budget: neither seconds nor steps are given, expected one of them$"):
         trained("linear", frames, Budget())

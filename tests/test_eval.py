@@ -5,6 +5,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -230,6 +231,12 @@ class Fake:
         assert budget.seconds == 1
         self._mean = frames.mean_texture
 
+    def state(self) -> dict[str, Tensor]:
+        return {"mean": self._mean}
+
+    def restore(self, state: dict[str, Tensor], device: torch.device) -> None:
+        self._mean = state["mean"]
+
     def textures(self, motion: Motion) -> Tensor:
         return self._mean.expand(len(motion), self._texels, 23)
 
@@ -281,6 +288,30 @@ def test_the_command_writes_tables_plots_and_sheets(
     assert "| f32 | f32 | " in markdown
     assert "+0.000" in markdown
     assert "out of memory" in capsys.readouterr().out
+
+
+def test_a_trained_system_is_not_trained_again(
+    recording: Recording, tmp_path: Path, faked: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trained: list[str] = []
+    fit = Fake.fit
+
+    def counted(self: Fake, *given: Any) -> None:
+        trained.append(self.name)
+        fit(self, *given)
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Fake, "fit", counted)
+    monkeypatch.setattr(judge, "judge", interrupted)
+    for seed in (0, 0, 1):
+        with pytest.raises(KeyboardInterrupt):
+            command.evaluate(
+                recording.directory, system=["good", "bad"], seconds=1.0, preset_name="tiny", frames=1, views=1,
+                size=SIZE, seed=seed, output=tmp_path,
+            )  # fmt: skip
+    assert trained == ["good", "bad", "bad", "good", "bad"]
 
 
 def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> None:

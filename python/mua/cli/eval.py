@@ -45,7 +45,10 @@ def evaluate(
     device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="Directory to write to.")] = Path("evaluation"),
 ) -> None:
-    """Compare avatar files and systems with the teacher of RECORDING: table, plots and contact sheets."""
+    """Compare avatar files and systems with the teacher of RECORDING: table, plots and contact sheets.
+
+    What was trained is kept in the output's directory work: the same command, given again, does not train it again.
+    """
     recording = Recording(recording_path)
     chosen = judge.choose_frames(recording, frames)
     if not chosen:
@@ -103,11 +106,11 @@ def _avatars(
 def _systems(
     names: list[str], recording: Recording, settings: Settings, *, seconds: float, work: Path, display: Display
 ) -> list[entries.Entry]:
-    """Train one system after the other."""
+    """Train one system after the other; those that the work directory holds are taken from there."""
     if not names:
         return []
     generator = torch.Generator().manual_seed(settings.seed)
-    checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint()), []))
+    checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), seconds), []))
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
 
     def step(progress: Progress) -> None:
@@ -119,7 +122,8 @@ def _systems(
     rows = []
     for name in names:
         display.stage(name)
-        rows.append(entries.system_entry(name, recording, frames, budget=Budget(seconds=seconds), report=step))
+        budget = Budget(seconds=seconds)
+        rows.append(entries.system_entry(name, recording, frames, budget=budget, checkpoints=checkpoints, report=step))
         if rows[-1].failure:
             display.note(f"{name}: {rows[-1].failure}")
     return rows

@@ -21,6 +21,7 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.splats import SplatFrame
 from mua.recording import Recording, WholeFrame
 from mua.rig.rig import Rig
+from mua.student.checkpoint import Checkpoints
 from mua.student.optimise import Report, Run
 from mua.student.settings import Settings
 
@@ -87,12 +88,24 @@ def avatar_entries(device: Device, path: Path, rig: Rig, *, size: int, played: b
     return [*entries, Entry(path.stem + PLAYED, decoder, cost, own_mesh=True)] if played else entries
 
 
-def system_entry(name: str, recording: Recording, frames: TrainingFrames, *, budget: Budget, report: Report) -> Entry:
-    """Train the system called `name`; one that fails becomes an entry with a sentence."""
+def system_entry(
+    name: str,
+    recording: Recording,
+    frames: TrainingFrames,
+    *,
+    budget: Budget,
+    checkpoints: Checkpoints,  # of this recording, these sizes and this budget
+    report: Report,
+) -> Entry:
+    """Train the system called `name`, or take up what an earlier run made of it; one that fails becomes a sentence."""
     try:
         system = SYSTEMS[name](frames.sizes)
-        seed = frames.sizes.settings.seed
-        system.fit(frames, budget, torch.Generator().manual_seed(seed), report)
+        kept = checkpoints.load(f"system {name}")
+        if kept is not None:
+            system.restore(kept, frames)
+        else:
+            system.fit(frames, budget, torch.Generator().manual_seed(frames.sizes.settings.seed), report)
+            checkpoints.save(f"system {name}", system.state())
     except Exception as error:  # whatever one system stumbles over, the others go on
         return Entry(name, None, failure=sentence(error))
     cost = Cost(parameters=system.parameters, flops=system.flops, bytes=FLOAT * system.parameters)

@@ -122,6 +122,18 @@ class NetworkSystem:
         )
         self._network, self.seconds = network.eval(), budget.clock() - started
 
+    def state(self) -> dict[str, Any]:
+        """What was learnt, for a file."""
+        learnt = {name: tensor.cpu() for name, tensor in self.network.state_dict().items()}
+        return {"network": learnt, "steps": self.steps, "seconds": self.seconds}
+
+    def restore(self, state: dict[str, Any], frames: TrainingFrames) -> None:
+        """Take up what was learnt from the same frames before."""
+        network = self._build(self._sizes)
+        network.attach(frames, frames.device)  # the convolutions' maps need the rig
+        network.load_state_dict(state["network"])
+        self._network, self.steps, self.seconds = network.eval(), state["steps"], state["seconds"]
+
     @torch.no_grad()
     def textures(self, motion: Motion) -> Tensor:
         """Raw channels [F, N, 23] at the valid texels."""

@@ -7,7 +7,7 @@ themselves are listed in `mua.compare.systems`.
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import torch
 from torch import Tensor
@@ -111,6 +111,12 @@ class System(Protocol):
 
     def textures(self, motion: Motion) -> Tensor:
         """Raw channels [F, N, 23] at the valid texels."""
+
+    def state(self) -> dict[str, Any]:
+        """What was learnt, for a file."""
+
+    def restore(self, state: dict[str, Any], frames: TrainingFrames) -> None:
+        """Take up what was learnt from the same frames before."""
 
 
 def coarse_parameters(coarse: Coarse) -> int:
