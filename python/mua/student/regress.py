@@ -71,15 +71,16 @@ def regress(
     def lesson() -> tuple[Tensor, Tensor]:
         generator = run.alone(f"{stage} points").generator
         smooth = fit_local(inputs, z, goal, white, locality, generator=generator)
-        points = draw_around(z, count, noise=generalisation.noise, generator=generator)
+        own = run.processes.held(count)
+        points = draw_around(z, count, noise=generalisation.noise, generator=generator)[own.start :: own.step]
         return points, torch.cat([smooth(some) for some in points.split(POINTS_AT_ONCE)])
 
     def loss(model: nn.Module) -> Tensor:
         points, values = lesson()
-        drawn = torch.randint(len(points), (schedule.batch,), generator=run.generator)
-        share = run.processes.share(drawn, frames=len(points))
-        own = share.rows.to(points.device)
-        return share.weight * criterion(model(points[own]), values[own])
+        drawn = torch.randint(count, (schedule.batch,), generator=run.generator)
+        share, own = run.processes.share(drawn, frames=count), run.processes.held(count)
+        places = ((share.rows - own.start) // own.step).to(points.device)
+        return share.weight * criterion(model(points[places]), values[places])
 
     groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": generalisation.weight_decay}]
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
