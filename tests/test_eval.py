@@ -39,7 +39,7 @@ from mua.student.settings import Schedule
 from mua.teachers.teacher import TeacherFrame
 
 SIZE = 176
-SAME = 2e-3  # half floats of colour and of blending, in a picture of 0..1
+SAME = 2 / 255  # of a picture of 0..1: the recording's half precision, and the order of equal depths
 LEAST_PSNR = 50.0  # dB, beside the CPU rasteriser, as tests/parity
 
 
@@ -119,7 +119,7 @@ def test_a_given_texture_is_drawn_as_the_player_draws_it(
         player = Offscreen(device, buffers, frame.clip, Toggles())
         for camera, picture in zip(studio.cameras(frame), studio.draw(frame, frame.texture), strict=True):
             image = player.picture(frame.index, [camera])
-            assert np.abs(picture - np.clip(image[..., :3], 0, 1)).mean() < SAME
+            assert np.abs(picture - np.clip(image[..., :3], 0, 1)).max() < SAME
             assert picture.max() > 0.2  # there is something to see
 
 
@@ -234,7 +234,7 @@ class Fake:
     def state(self) -> dict[str, Tensor]:
         return {"mean": self._mean}
 
-    def restore(self, state: dict[str, Tensor], device: torch.device) -> None:
+    def restore(self, state: dict[str, Tensor], frames: TrainingFrames) -> None:
         self._mean = state["mean"]
 
     def textures(self, motion: Motion) -> Tensor:
