@@ -152,7 +152,7 @@ class BandNetwork(Network):
         """Convolutions start from noise; blendshapes as our student's, by closed form or from noise."""
         settings = replace(frames.sizes.settings, finetune=Schedule(steps=0, batch=1, rate=0.0))
         inputs = self.normalize(frames.motion.descriptors.to(run.device))
-        fit = fit_branch if closed_form else descend_branch
+        fit = partial(fit_branch, parts=frames.parts) if closed_form else descend_branch
         for branch, (name, part) in zip(self.branches, PARTS.items(), strict=False):
             source = partial(_bands_from, frames, part.start)
             fit(branch, inputs, source, channels=part, settings=settings, name=name, run=run)

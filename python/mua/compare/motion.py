@@ -32,7 +32,8 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
     student, samples = prepare(recording, settings)
     student.to(run.device)
     inputs = student.normalize(samples.descriptors.to(run.device))
-    fit_coarse(student.coarse, inputs, samples.meshes.to(run.device), settings=settings, run=run)
+    meshes = samples.meshes.to(run.device)
+    fit_coarse(student.coarse, inputs, meshes, settings=settings, run=run, parts=samples.parts)
     student.requires_grad_(False).cpu()
     frames = len(samples)
     bands = hold(samples.subbands, slice(0, CHANNELS), frames=frames, size=settings.texels)
@@ -51,6 +52,7 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
         mean=mean,
         mean_texture=samples.mean_texture,
         weights=torch.cat([channel_weights(variance[part], part) for part in (GEOMETRY, APPEARANCE)]),
+        parts=samples.parts,
         device=run.device,
     )
 

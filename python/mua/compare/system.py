@@ -14,6 +14,7 @@ from torch import Tensor
 
 from mua.motion.encoding import PoseEncoding
 from mua.rig.rig import Rig
+from mua.student.local import Parts
 from mua.student.model import Bands, Coarse, Student, lowpass_texels
 from mua.student.optimise import Report
 from mua.student.settings import Settings
@@ -76,6 +77,7 @@ class TrainingFrames:
     mean: Bands  # [1, ...] of the training frames
     mean_texture: Tensor  # [N, 23] of the training frames
     weights: Tensor  # [23] of the channels in every system's loss (`mua.student.targets.channel_weights`)
+    parts: Parts | None  # of the body, where our student's coefficients are local
     device: torch.device  # that systems are trained on; what is above stays on the CPU
 
     def __len__(self) -> int:
