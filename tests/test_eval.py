@@ -227,7 +227,7 @@ class Fake:
 
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
         if self.name == "bad":
-            raise RuntimeError("out of memory")
+            raise RuntimeError("no [place] left")
         assert budget.seconds == 1
         self._mean = frames.mean_texture
 
@@ -268,7 +268,7 @@ def test_the_command_writes_tables_plots_and_sheets(
     told = json.loads((output / "results.json").read_text())
     systems = {row["system"]: row for row in told["systems"]}
     assert list(systems) == ["mean texture", "f32", "i8", "good", "bad"]
-    assert systems["bad"]["failure"] == "RuntimeError: out of memory"
+    assert systems["bad"]["failure"] == "RuntimeError: no [place] left"
     assert systems["bad"]["mean"]["training"]["psnr"] is None
     assert systems["good"]["mean"]["held out"] == systems["mean texture"]["mean"]["held out"]
     assert (systems["good"]["parameters"], systems["good"]["bytes"], systems["good"]["fps"]) == (
@@ -281,13 +281,13 @@ def test_the_command_writes_tables_plots_and_sheets(
 
     rows = list(csv.DictReader((output / "results.csv").read_text().splitlines()))
     assert float(rows[1]["held out psnr"]) == systems["f32"]["mean"]["held out"]["psnr"]
-    assert (rows[1]["training lpips"], rows[4]["failure"]) == ("", "RuntimeError: out of memory")
+    assert (rows[1]["training lpips"], rows[4]["failure"]) == ("", "RuntimeError: no [place] left")
     markdown = (output / "results.md").read_text()
     assert "no weights given" in markdown
-    assert "- bad: RuntimeError: out of memory" in markdown
+    assert "- bad: RuntimeError: no [place] left" in markdown
     assert "| f32 | f32 | " in markdown
     assert "+0.000" in markdown
-    assert "out of memory" in capsys.readouterr().out
+    assert "no [place] left" in capsys.readouterr().out
 
 
 def test_a_trained_system_is_not_trained_again(

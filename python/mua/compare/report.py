@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+from rich.markup import escape
 from rich.table import Table
 
 from mua.compare.judge import KINDS, Result
@@ -62,10 +63,10 @@ def table(results: Sequence[Result], setting: Setting) -> Table:
         for i, (kind, held_out) in enumerate(KINDS.items()):
             last = i == len(KINDS) - 1
             costs = costs_of(result) if i == 0 else [""] * len(COSTS)
-            name = result.entry.name if i == 0 else ""
+            name = escape(result.entry.name) if i == 0 else ""
             shown.add_row(name, kind, *_figures(result, held_out, setting), *costs, end_section=last)
         if result.failure:
-            shown.add_row("", f"[red]{result.failure}[/red]", end_section=True)
+            shown.add_row("", f"[red]{escape(result.failure)}[/red]", end_section=True)
     return shown
 
 
