@@ -18,7 +18,7 @@ from mua.student.smoother import Sum, fit_smoother
 INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors when they are whitened
 BLEND = 0.5  # points lie up to this far on the way from one frame to another
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
-POINTS = 1 << 15  # at which the function's values are computed, once
+VISITS = 16  # to each point: the function's values there are computed once
 POINTS_AT_ONCE = 1 << 10
 GENERALISATION = Generalisation()
 
@@ -65,7 +65,7 @@ def regress(
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
-    count = min(POINTS, schedule.steps * schedule.batch)
+    count = max(schedule.steps * schedule.batch // VISITS, 1)
 
     @cache  # and not at all where a finished stage is taken up
     def lesson() -> tuple[Tensor, Tensor]:
