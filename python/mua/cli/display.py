@@ -55,7 +55,7 @@ class Display:
             self._say(f"  {done} of {total}{', ' if detail else ''}{detail}{ending}")
 
     def note(self, sentence: str) -> None:
-        self.console.print(f"  {sentence}", highlight=False)
+        self.console.print(f"  {sentence}", highlight=False, markup=False)
 
     def _say_end(self) -> None:
         if self.progress.disable:

@@ -22,8 +22,9 @@ from mua.render import to_bytes
 DPI = 120
 LABEL_GAP = 0.055  # of an axis' height, between labels
 Colour = tuple[float, float, float, float]
+Point = tuple[float, float, str, Colour]  # cost, PSNR, name
 
-PALETTE = "tab10"
+PALETTES = ("tab10", "tab20")  # the second where the first has too few colours
 CELL = 300  # pixels along a cell's longer side
 CAPTION = 20  # pixels
 CROP = 6  # the zoomed square has so small a part of a picture's side
@@ -57,10 +58,11 @@ def rate_distortion(results: Sequence[Result]) -> bytes:
         "GFLOPs a frame": lambda r: None if r.entry.cost.flops is None else r.entry.cost.flops / 1e9,
     }
     figure = Figure(figsize=(12, 9), layout="constrained")
-    panels = figure.subplots(len(KINDS), len(costs), sharex="col")
+    panels = figure.subplots(len(KINDS), len(costs), sharex="col", sharey="row")
     for row, (kind, held_out) in zip(panels, KINDS.items(), strict=True):
-        for panel, (unit, cost) in zip(row, costs.items(), strict=True):
-            _scatter(panel, results, cost, held_out)
+        points = [_scatter(panel, results, cost, held_out) for panel, cost in zip(row, costs.values(), strict=True)]
+        for panel, unit, own in zip(row, costs, points, strict=True):
+            _label(panel, own)
             panel.set(title=f"{kind} poses", xlabel=unit, ylabel="PSNR, dB")
             panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             panel.xaxis.set_major_formatter("{x:g}")
@@ -106,7 +108,9 @@ def _mark_clips(panel: Axes, frames: dict[tuple[str, int], float]) -> None:
             last = clip
 
 
-def _scatter(panel: Axes, results: Sequence[Result], cost: Callable[[Result], float | None], held_out: bool) -> None:
+def _scatter(
+    panel: Axes, results: Sequence[Result], cost: Callable[[Result], float | None], held_out: bool
+) -> list[Point]:
     points = []
     for colour, result in zip(_colours(len(results)), results, strict=True):
         x, y = cost(result), result.of(held_out).psnr
@@ -115,10 +119,10 @@ def _scatter(panel: Axes, results: Sequence[Result], cost: Callable[[Result], fl
             points.append((x, y, result.entry.name, colour))
     panel.set_xscale("log")
     panel.margins(x=0.15, y=0.12)
-    _label(panel, points)
+    return points
 
 
-def _label(panel: Axes, points: Sequence[tuple[float, float, str, Colour]]) -> None:
+def _label(panel: Axes, points: Sequence[Point]) -> None:
     """Names at the right edge, in the order of the points' heights and apart, each with a line to its point."""
     if not points:
         return
@@ -127,7 +131,9 @@ def _label(panel: Axes, points: Sequence[tuple[float, float, str, Colour]]) -> N
     heights = np.array([(y - low) / (high - low) for _, y, _, _ in points])
     for i in range(1, len(heights)):
         heights[i] = max(heights[i], heights[i - 1] + LABEL_GAP)
-    heights -= max(heights[-1] - 0.98, 0)
+    heights[-1] = min(heights[-1], 1.0)
+    for i in range(len(heights) - 2, -1, -1):
+        heights[i] = min(heights[i], heights[i + 1] - LABEL_GAP)
     for (x, y, name, colour), height in zip(points, heights, strict=True):
         panel.annotate(
             name,
@@ -235,7 +241,7 @@ def _blank(width: int, height: int) -> Array:
 
 
 def _colours(count: int) -> list[Colour]:
-    palette = matplotlib.colormaps[PALETTE]
+    palette = matplotlib.colormaps[PALETTES[count > matplotlib.colormaps[PALETTES[0]].N]]
     return [palette(i % palette.N) for i in range(count)]
 
 
