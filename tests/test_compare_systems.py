@@ -180,6 +180,12 @@ def test_a_budget_that_a_closed_form_uses_up_leaves_no_step(frames: TrainingFram
     assert explained(system, frames) > LEARNT
 
 
+def test_convolutions_start_at_the_mean_texture(frames: TrainingFrames) -> None:
+    system = trained("2d-conv+2d-conv", frames, Budget(steps=0))
+    found = system.textures(frames.motion.of(torch.arange(3)))
+    assert torch.equal(found, frames.mean_texture.expand(3, -1, -1))
+
+
 def test_the_rate_falls_to_zero_over_the_budget() -> None:
     place = torch.nn.Parameter(torch.zeros(1))
     places = [0.0]
