@@ -8,6 +8,7 @@ import torch
 from synthetic_student import SETTINGS, new_student, quick, run_in, samples
 from torch import Tensor, nn
 
+from mua.errors import InputError
 from mua.student.checkpoint import Checkpoints
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress, Run, optimise
@@ -150,6 +151,12 @@ def test_frames_that_choose_are_not_trained_on(tmp_path: Path) -> None:
     for part in ("coarse.mean", "coarse.basis", "geometry.ll_mean", "appearance.d3.mean"):
         assert torch.equal(plain.state_dict()[part], same.state_dict()[part])
         assert not torch.equal(plain.state_dict()[part], far.state_dict()[part])
+
+
+@pytest.mark.parametrize(("share", "sentence"), [(0.001, "0 frames to choose, 60 to train on"), (1.0, "60 frames to")])
+def test_a_share_that_leaves_nothing_is_refused(tmp_path: Path, share: float, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        set_apart(with_clips(), share, run=run_in(tmp_path))
 
 
 def test_a_training_with_selection_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

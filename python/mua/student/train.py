@@ -114,11 +114,18 @@ def train(
 
 
 def set_apart(samples: Samples, share: float, *, run: Run) -> tuple[Samples, Samples | None]:
-    """The frames to train on, and those of whole clips, about a `share` of all, that choose the best step."""
+    """The frames to train on, and those of whole clips, about a `share` of all, that choose the best step.
+
+    Raises InputError where either would be none.
+    """
     if not share:
         return samples, None
     clips = torch.zeros(len(samples), dtype=torch.int64) if samples.clips is None else samples.clips
     chosen = validation_rows(clips, share, generator=run.generator)
+    count = int(chosen.sum())
+    if not 0 < count < len(samples):
+        left = len(samples) - count
+        raise InputError(f"validation {share:g}: {count} frames to choose, {left} to train on, expected some of both")
     return samples.of((~chosen).nonzero()[:, 0]), samples.of(chosen.nonzero()[:, 0])
 
 
