@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -75,10 +76,16 @@ def main() -> None:
     parser.add_argument("recording", type=Path)
     parser.add_argument("--preset", default="tiny")
     parser.add_argument("--steps", type=int, default=100_000, help="of the paper's recipe, for each branch")
+    parser.add_argument("--fine-tuning", type=int, help="steps of the closed-form recipe's; the preset's if left out")
+    parser.add_argument("--rate", type=float, help="of the first of them; the preset's if left out")
     parser.add_argument("-o", "--output", type=Path, default=Path("build/recipes"))
     arguments = parser.parse_args()
     recording = Recording(arguments.recording)
     settings = replace(preset(arguments.preset), texels=recording.rig.texels.size)
+    if arguments.fine_tuning is not None:
+        settings = replace(settings, finetune=replace(settings.finetune, steps=arguments.fine_tuning))
+    if arguments.rate is not None:
+        settings = replace(settings, finetune=replace(settings.finetune, rate=arguments.rate))
     tasks = make_tasks(recording, settings)
     short = with_recipe(settings, "paper")
     short = replace(short, finetune=replace(short.finetune, steps=arguments.steps))
@@ -119,7 +126,7 @@ def make_tasks(recording: Recording, settings: Settings) -> list[Task]:
 def follow(task: Task, recording: Recording, settings: Settings) -> list[tuple[float, int, float, float]]:
     """Train one branch; (seconds, step, training loss, held-out loss) along the way, the clock stopped to measure."""
     torch.manual_seed(settings.seed)
-    student, _ = prepare(recording, settings)
+    student, samples = prepare(recording, settings)
     branch = student.geometry if task.name == "geometry" else student.appearance
     descends = settings.start == "random"
     steps = settings.finetune.steps
@@ -138,9 +145,10 @@ def follow(task: Task, recording: Recording, settings: Settings) -> list[tuple[f
 
     with tempfile.TemporaryDirectory() as directory:
         run = Run(torch.Generator().manual_seed(settings.seed), Checkpoints(Path(directory), "compare"), report, CPU)
-        fit: Callable[..., None] = descend_branch if descends else fit_branch
+        fit: Callable[..., None] = descend_branch if descends else partial(fit_branch, parts=samples.parts)
         frames = task.kinds["training"]
-        fit(branch, frames.inputs, frames.source, channels=task.channels, settings=settings, name=task.name, run=run)
+        own = run.alone(task.name)  # as train() has it
+        fit(branch, frames.inputs, frames.source, channels=task.channels, settings=settings, name=task.name, run=own)
     return rows
 
 
