@@ -77,15 +77,15 @@ def main() -> None:
     parser.add_argument("--preset", default="tiny")
     parser.add_argument("--steps", type=int, default=100_000, help="of the paper's recipe, for each branch")
     parser.add_argument("--fine-tuning", type=int, help="steps of the closed-form recipe's; the preset's if left out")
+    parser.add_argument("--batch", type=int, help="frames of each of them; the preset's if left out")
     parser.add_argument("--rate", type=float, help="of the first of them; the preset's if left out")
     parser.add_argument("-o", "--output", type=Path, default=Path("build/recipes"))
     arguments = parser.parse_args()
     recording = Recording(arguments.recording)
     settings = replace(preset(arguments.preset), texels=recording.rig.texels.size)
-    if arguments.fine_tuning is not None:
-        settings = replace(settings, finetune=replace(settings.finetune, steps=arguments.fine_tuning))
-    if arguments.rate is not None:
-        settings = replace(settings, finetune=replace(settings.finetune, rate=arguments.rate))
+    given = {"steps": arguments.fine_tuning, "batch": arguments.batch, "rate": arguments.rate}
+    change = {name: value for name, value in given.items() if value is not None}
+    settings = replace(settings, finetune=replace(settings.finetune, **change))
     tasks = make_tasks(recording, settings)
     short = with_recipe(settings, "paper")
     short = replace(short, finetune=replace(short.finetune, steps=arguments.steps))
