@@ -26,7 +26,7 @@ def program(csharp: CSharp, request: pytest.FixtureRequest) -> Path:
     names = ["UnityEngine", "UnityEditor", *(["Unity.InputSystem", "Unity.XR.MetaOpenXR"] if request.param else [])]
     references = [compiler.built(name) for name in (*names, "Mua.Format", "Mua.Motion", "Mua.Avatar")]
     defines = sample.defines("editor", packages=request.param)
-    sources = [*sample.sources(), *editor.sources(), PROGRAMS / "shared", PROGRAMS / "PlayerProgram.cs"]
+    sources = [*sample.sources(), *editor.sources(), PROGRAMS / "shared", *sorted(PROGRAMS.glob("Player*.cs"))]
     return csharp.build(sources, name="PlayerProgram", references=references, defines=defines)
 
 

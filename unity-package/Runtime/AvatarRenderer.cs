@@ -1,7 +1,5 @@
 using System;
 using System.Collections.Generic;
-using Mua.Format;
-using Mua.Motion;
 using UnityEngine;
 using UnityEngine.Rendering;
 
@@ -32,27 +30,19 @@ namespace Mua
         [SerializeField]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
 
+        private readonly AvatarPlayback playback = new AvatarPlayback();
+        private readonly AvatarPlacement placement = new AvatarPlacement();
         private AvatarLoader loader;
         private AvatarBuffers buffers;
-        private AvatarSurface surface;
         private AvatarPose pose;
         private AvatarJoints joints;
-        private ClipSampler[] clips = new ClipSampler[0];
-        private string[] names = new string[0];
-        private int playing; // index of the clip
-        private double seconds; // in the clip
-        private double shown = double.NaN; // of those, what the pose is of
         private bool hasMoved; // since the last Record
         private bool isEdited; // the inspector has changed a field
         private AvatarAsset loaded; // as avatar, file and clip were when they took effect
         private string loadedFile = "";
         private string loadedClip = "";
-        private bool isPlaced;
         private bool isScaleReported;
         private string refusal; // why there is no room for the avatar beside the others
-        private DualQuaternion place;
-        private Vector3 position;
-        private Quaternion rotation;
 
         /// <summary>The imported avatar that is shown; null where it came from a file.</summary>
         public AvatarAsset Avatar => avatar;
@@ -69,18 +59,13 @@ namespace Mua
         public string AvatarName => State == AvatarState.Ready ? buffers.Avatar.Name : "";
 
         /// <summary>Names of the avatar's clips.</summary>
-        public IReadOnlyList<string> Clips => names;
+        public IReadOnlyList<string> Clips => playback.Names;
 
         /// <summary>Index of the clip that plays.</summary>
         public int ClipIndex
         {
-            get => playing;
-            set
-            {
-                playing = clips.Length == 0 ? 0 : Mathf.Clamp(value, 0, clips.Length - 1);
-                seconds = 0;
-                shown = double.NaN;
-            }
+            get => playback.Index;
+            set => playback.Index = value;
         }
 
         /// <summary>Whether the clip goes on by itself.</summary>
@@ -96,19 +81,19 @@ namespace Mua
         /// <summary>Seconds into the clip.</summary>
         public double Seconds
         {
-            get => seconds;
-            set => seconds = value;
+            get => playback.Seconds;
+            set => playback.Seconds = value;
         }
 
         /// <summary>Frame of the clip at the avatar's rate; setting it goes to the frame's beginning.</summary>
         public int Frame
         {
-            get => clips.Length == 0 ? 0 : (int)AvatarPose.Position(clips[playing], seconds);
-            set => seconds = clips.Length == 0 ? 0 : value / clips[playing].Rate;
+            get => playback.Frame;
+            set => playback.Frame = value;
         }
 
         /// <summary>Frames of the clip at the avatar's rate.</summary>
-        public int FrameCount => clips.Length == 0 ? 0 : clips[playing].FrameCount;
+        public int FrameCount => playback.FrameCount;
 
         /// <summary>Transforms that give the pose, or null where a clip does.</summary>
         public Transform Rig
@@ -140,6 +125,9 @@ namespace Mua
         /// <summary>The decoder; null until the avatar is ready.</summary>
         internal AvatarFrame Decoded { get; private set; }
 
+        /// <summary>Its other views; null until the avatar is ready.</summary>
+        internal AvatarSurface Surface { get; private set; }
+
         /// <summary>Whether it shows the file or the imported avatar of that name, without an ending.</summary>
         internal bool Shows(string stem)
         {
@@ -168,26 +156,14 @@ namespace Mua
             if (pose.IsFresh)
             {
                 Decoded.Decode(
-                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslation, place);
+                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslation, placement.Value);
             }
             else if (hasMoved)
             {
-                Decoded.Repose(commands, pose.Current, pose.CurrentTranslation, place);
+                Decoded.Repose(commands, pose.Current, pose.CurrentTranslation, placement.Value);
             }
             pose.IsFresh = false;
             hasMoved = false;
-        }
-
-        /// <summary>Adds what is drawn before the splats.</summary>
-        internal void AddOpaque(List<AvatarDraw> draws, AvatarEyes eyes)
-        {
-            surface.AddOpaque(draws, eyes, views);
-        }
-
-        /// <summary>Adds what is drawn over all else.</summary>
-        internal void AddOverlay(List<AvatarDraw> draws, AvatarEyes eyes)
-        {
-            surface.AddOverlay(draws, eyes, views);
         }
 
         /// <summary>Has the next Record pose the avatar again.</summary>
@@ -240,7 +216,7 @@ namespace Mua
             {
                 Place();
                 Pose();
-                surface.CastShadow(views, Bounds, gameObject.layer);
+                Surface.CastShadow(views, Bounds, gameObject.layer);
             }
         }
 
@@ -307,7 +283,7 @@ namespace Mua
                 }
                 buffers = loader.Take();
                 Decoded = new AvatarFrame(AvatarWorld.RequireResources(), buffers);
-                surface = new AvatarSurface(AvatarWorld.RequireResources(), Decoded);
+                Surface = new AvatarSurface(AvatarWorld.RequireResources(), Decoded);
                 Begin();
             }
             catch (Exception error) // whatever it is: the user sees one sentence, and no frame tries again
@@ -320,15 +296,8 @@ namespace Mua
         private void Begin()
         {
             loader.Dispose();
-            AvatarFile content = buffers.Avatar;
-            pose = new AvatarPose(content);
-            clips = new ClipSampler[content.Clips.Length];
-            names = new string[clips.Length];
-            for (int i = 0; i < clips.Length; i++)
-            {
-                clips[i] = new ClipSampler(content.Clips[i], content.Skeleton.JointCount, content.Encoding.Rate);
-                names[i] = clips[i].Name;
-            }
+            pose = new AvatarPose(buffers.Avatar);
+            playback.Take(buffers.Avatar);
             ChooseClip();
             AvatarWorld.Add(this);
             loader = null;
@@ -339,10 +308,9 @@ namespace Mua
         private void ChooseClip()
         {
             loadedClip = clip;
-            ClipIndex = string.IsNullOrEmpty(clip) ? 0 : Array.IndexOf(names, clip);
-            if (!string.IsNullOrEmpty(clip) && Array.IndexOf(names, clip) < 0)
+            if (!playback.Choose(clip) && !string.IsNullOrEmpty(clip))
             {
-                Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", names) + ".");
+                Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", playback.Names) + ".");
             }
         }
 
@@ -370,15 +338,7 @@ namespace Mua
         /// <summary>Where the GameObject stands now.</summary>
         private void Place()
         {
-            transform.GetPositionAndRotation(out Vector3 at, out Quaternion turned);
-            if (!at.Equals(position) || !turned.Equals(rotation) || !isPlaced)
-            {
-                position = at;
-                rotation = turned;
-                place = AvatarSpace.Place(at, turned);
-                isPlaced = true;
-                hasMoved = true;
-            }
+            hasMoved |= placement.Follow(transform);
             if (!isScaleReported && !AvatarSpace.IsRigid(transform.lossyScale))
             {
                 isScaleReported = true;
@@ -396,18 +356,12 @@ namespace Mua
             if (joints != null)
             {
                 pose.Sample(joints, Time.timeAsDouble);
-                shown = double.NaN;
+                playback.Forget();
                 hasMoved = true;
             }
-            else if (clips.Length > 0)
+            else if (!playback.IsEmpty)
             {
-                seconds += IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0;
-                if (!seconds.Equals(shown))
-                {
-                    pose.Sample(clips[playing], seconds);
-                    shown = seconds;
-                    hasMoved = true;
-                }
+                hasMoved |= playback.Sample(pose, IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
             }
             else
             {
@@ -434,18 +388,17 @@ namespace Mua
         {
             AvatarWorld.Remove(this);
             loader?.Dispose();
-            surface?.Dispose();
+            Surface?.Dispose();
             Decoded?.Dispose();
             buffers?.Dispose();
             loader = null;
-            surface = null;
+            Surface = null;
             Decoded = null;
             buffers = null;
             pose = null;
             joints = null;
-            clips = new ClipSampler[0];
-            names = new string[0];
-            isPlaced = false;
+            playback.Clear();
+            placement.Forget();
             refusal = null;
         }
     }

@@ -150,7 +150,7 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 avatars[i].Record(commands);
-                avatars[i].AddOpaque(draws, eyes);
+                avatars[i].Surface.AddOpaque(draws, eyes, avatars[i].Views);
             }
             if (splats.SplatCount > 0 && !camera.orthographic)
             {
@@ -159,7 +159,7 @@ namespace Mua
             }
             for (int i = 0; i < avatars.Count; i++)
             {
-                avatars[i].AddOverlay(draws, eyes);
+                avatars[i].Surface.AddOverlay(draws, eyes, avatars[i].Views);
             }
             return draws.Count > 0;
         }

@@ -14,13 +14,12 @@ using UnityEngine.XR;
 
 namespace Mua.Samples.VrPlayer
 {
-    internal static class PlayerProgram
+    internal static partial class PlayerProgram
     {
         private const int Patience = 4000; // frames, with a millisecond each, until loading must be over
         private const float Step = 1f / 72;
         private const string Place = "Assets/Scenes/Player.unity";
 
-        private static readonly Dictionary<string, string> Before = new Dictionary<string, string>();
         private static AvatarRenderer shown;
         private static Transform user;
         private static TextMesh panel;
@@ -332,51 +331,6 @@ namespace Mua.Samples.VrPlayer
             Remember();
         }
 
-        /// <summary>Ten frames, and what is another than it was.</summary>
-        private static void Tell(string what)
-        {
-            Frames(10);
-            Until();
-            Dictionary<string, string> now = State();
-            List<string> changes = new List<string>();
-            foreach (KeyValuePair<string, string> value in now)
-            {
-                if (Before[value.Key] != value.Value)
-                {
-                    changes.Add(value.Key + " " + value.Value);
-                }
-            }
-            Say(what, string.Join("; ", changes.ToArray()));
-            Remember();
-        }
-
-        private static void Remember()
-        {
-            Before.Clear();
-            foreach (KeyValuePair<string, string> value in State())
-            {
-                Before[value.Key] = value.Value;
-            }
-        }
-
-        private static Dictionary<string, string> State()
-        {
-            GameObject help = GameObject.Find("Help");
-            return new Dictionary<string, string>
-            {
-                { "playing", shown.IsPlaying.ToString() },
-                { "frame", shown.IsPlaying ? "-" : shown.Frame.ToString() },
-                { "clip", shown.ClipIndex.ToString() },
-                { "avatar", shown.AvatarName },
-                { "views", shown.Views.ToString() },
-                { "help", (help != null).ToString() },
-                { "user", Format(user.position) },
-                { "head", Format(head.transform.forward) },
-                { "size", user.localScale.x.ToString("0.000") },
-                { "avatar faces", Format(shown.transform.forward) },
-            };
-        }
-
         private static void Until(int patience = Patience)
         {
             for (int i = 0; i < patience && shown.State != AvatarState.Ready; i++)
@@ -392,11 +346,6 @@ namespace Mua.Samples.VrPlayer
             {
                 PlayerLoop.Frame(Step);
             }
-        }
-
-        private static string Format(Vector3 v)
-        {
-            return (v.x + 0f).ToString("0.00") + " " + v.y.ToString("0.00") + " " + v.z.ToString("0.00");
         }
 
         private static void Say(string name, object value)
