@@ -37,6 +37,15 @@ def mesh_pca(
     return MeshPca(mean, basis.unflatten(1, meshes.shape[1:]), flat @ basis.T)
 
 
+def set_pca(coarse: Coarse, meshes: Tensor, run: Run) -> MeshPca:
+    """Set mean and basis of `coarse` from meshes [F, V, 3], metres, alike in all processes; returns the PCA."""
+    pca = mesh_pca(meshes, len(coarse.basis), generator=run.generator)
+    run.processes.agree(pca.mean, pca.basis, pca.coefficients)
+    coarse.mean.copy_(pca.mean)
+    coarse.basis.copy_(pca.basis)
+    return pca
+
+
 def fit_coarse(
     coarse: Coarse,
     inputs: Tensor,  # [F, k D] normalised descriptors
@@ -47,10 +56,7 @@ def fit_coarse(
     parts: Parts | None = None,
 ) -> None:
     """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
-    pca = mesh_pca(meshes, settings.components, generator=run.generator)
-    run.processes.agree(pca.mean, pca.basis, pca.coefficients)
-    coarse.mean.copy_(pca.mean)
-    coarse.basis.copy_(pca.basis)
+    pca = set_pca(coarse, meshes, run)
     mlp = regress(
         inputs,
         pca.coefficients,

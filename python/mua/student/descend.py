@@ -11,7 +11,7 @@ import torch
 from torch import Tensor, nn
 
 from mua.processes import ALONE, Processes
-from mua.student.coarse import mesh_pca
+from mua.student.coarse import set_pca
 from mua.student.finetune import Frames, draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
 from mua.student.optimise import Run, optimise
@@ -31,10 +31,7 @@ def descend_coarse(
     run: Run,
 ) -> None:
     """Set the PCA of `coarse` and train F_temp on the L1 error of its coefficients (paper, Eq. L_coarse)."""
-    pca = mesh_pca(meshes, settings.components, generator=run.generator)
-    run.processes.agree(pca.mean, pca.basis, pca.coefficients)
-    coarse.mean.copy_(pca.mean)
-    coarse.basis.copy_(pca.basis)
+    pca = set_pca(coarse, meshes, run)
     start_mlp(coarse.mlp, run.generator)
 
     def loss(model: nn.Module) -> Tensor:
