@@ -1,11 +1,12 @@
-"""Train one student by both recipes on one recording and set their losses against wall-clock time.
+"""Train one student by both recipes on one recording and set their losses against the clock.
 
-    python tools/compare_recipes.py RECORDING --preset tiny --steps 100000 -o build/recipes
+    OMP_NUM_THREADS=1 python tools/compare_recipes.py RECORDING --preset tiny -o build/recipes
 
 The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus appearance) over all frames, taken between the steps, with
-the clock stopped. Where the paper's recipe is run for fewer than its million steps, its end is extrapolated from its
-own curve by the power law through the last decade of steps; the plot shows both. Writes losses.csv, recipes.png and
-recipes.md.
+the clock stopped. Two clocks run: on the wall, and the processor time of all threads of this process, which other work
+on the machine does not lengthen. Where the paper's recipe is run for fewer than its million steps, its end is
+extrapolated from its own curve by the power law through the last decade of steps; the plot shows both. Each measurement
+goes to losses.csv at once; a recipe left out by --recipe is taken from there. Writes recipes.png and recipes.md too.
 """
 
 import argparse
@@ -13,9 +14,10 @@ import csv
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -23,6 +25,7 @@ from scipy.optimize import curve_fit
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
+from mua.files import replacing
 from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints
 from mua.student.descend import descend_branch, set_means
@@ -33,13 +36,14 @@ from mua.student.optimise import Progress, Run
 from mua.student.settings import RECIPES, Settings, preset, with_recipe
 from mua.student.source import Source, hold
 from mua.student.targets import channel_weights
-from mua.student.train import fit_branch
+from mua.student.train import BRANCHES, fit_branch
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
 PAPER_STEPS = 1_000_000
 BATCH = 64  # frames of a measurement
-POINTS = 25  # of a curve
+POINTS = 60  # of a curve
 KINDS = ("training", "held-out")
+STEPS, PROCESSOR, LOSSES = 0, 2, (3, 4)  # columns of a curve
 CPU = torch.device("cpu")
 
 
@@ -61,21 +65,22 @@ class Task:
     weights: torch.Tensor  # [C]
 
 
-@dataclass
-class Curve:
-    """Losses of one recipe: rows of seconds, steps and the loss of each kind, both branches together."""
+class Row(NamedTuple):
+    """A measurement along the training of a branch, or of both one after the other."""
 
-    rows: list[tuple[float, int, float, float]] = field(default_factory=list)
-
-    def array(self) -> Array:
-        return np.array(self.rows)
+    steps: int
+    seconds: float  # on the wall
+    processor: float  # seconds, of all threads
+    training: float  # loss
+    held_out: float
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("recording", type=Path)
     parser.add_argument("--preset", default="tiny")
-    parser.add_argument("--steps", type=int, default=100_000, help="of the paper's recipe, for each branch")
+    parser.add_argument("--recipe", choices=RECIPES, action="append", help="to run; both if left out")
+    parser.add_argument("--steps", type=int, default=PAPER_STEPS, help="of the paper's recipe, for each branch")
     parser.add_argument("--fine-tuning", type=int, help="steps of the closed-form recipe's; the preset's if left out")
     parser.add_argument("--batch", type=int, help="frames of each of them; the preset's if left out")
     parser.add_argument("--rate", type=float, help="of the first of them; the preset's if left out")
@@ -86,19 +91,20 @@ def main() -> None:
     given = {"steps": arguments.fine_tuning, "batch": arguments.batch, "rate": arguments.rate}
     change = {name: value for name, value in given.items() if value is not None}
     settings = replace(settings, finetune=replace(settings.finetune, **change))
-    tasks = make_tasks(recording, settings)
     short = with_recipe(settings, "paper")
     short = replace(short, finetune=replace(short.finetune, steps=arguments.steps))
-    curves = {}
-    for recipe, one in zip(RECIPES, (settings, short), strict=True):
-        parts = [follow(task, recording, one) for task in tasks]
-        curves[recipe] = join(parts)
-        print(recipe, *(f"{x:.4g}" for x in curves[recipe].rows[-1]), flush=True)
     arguments.output.mkdir(parents=True, exist_ok=True)
-    write_csv(arguments.output / "losses.csv", curves)
-    text = summary(curves)
+    kept = Table(arguments.output / "losses.csv")
+    tasks = make_tasks(recording, settings)
+    for recipe, one in zip(RECIPES, (settings, short), strict=True):
+        if recipe not in (arguments.recipe or RECIPES):
+            continue
+        kept.drop(recipe)
+        for task in tasks:
+            follow(task, recording, one, lambda row, key=(recipe, task.name): kept.add(key, row))
+    text = summary(kept)
     (arguments.output / "recipes.md").write_text(text)
-    plot(arguments.output / "recipes.png", curves)
+    plot(arguments.output / "recipes.png", kept)
     print(text)
 
 
@@ -107,9 +113,7 @@ def make_tasks(recording: Recording, settings: Settings) -> list[Task]:
     student, samples = prepare(recording, settings)
     held = torch.from_numpy(describe_frames(recording, student.encoding, held_out=True)).float()
     tasks = []
-    for name, branch, channels in zip(
-        ("geometry", "appearance"), student.branches, (GEOMETRY, APPEARANCE), strict=True
-    ):
+    for name, branch, channels in zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True):
         kinds = {}
         for kind, descriptors, taken in zip(KINDS, (samples.descriptors, held), (False, True), strict=True):
 
@@ -123,25 +127,25 @@ def make_tasks(recording: Recording, settings: Settings) -> list[Task]:
     return tasks
 
 
-def follow(task: Task, recording: Recording, settings: Settings) -> list[tuple[float, int, float, float]]:
-    """Train one branch; (seconds, step, training loss, held-out loss) along the way, the clock stopped to measure."""
+def follow(task: Task, recording: Recording, settings: Settings, add: Callable[[Row], None]) -> None:
+    """Train one branch and `add` what is measured along the way, the clocks stopped meanwhile."""
     torch.manual_seed(settings.seed)
     student, samples = prepare(recording, settings)
     branch = student.geometry if task.name == "geometry" else student.appearance
     descends = settings.start == "random"
     steps = settings.finetune.steps
     marks = set(np.unique(np.geomspace(1, steps, POINTS).astype(int)).tolist())
-    rows: list[tuple[float, int, float, float]] = []
-    spent, started = 0.0, time.perf_counter()
+    clocks = (time.perf_counter, time.process_time)
+    spent, started = [0.0, 0.0], [clock() for clock in clocks]
 
     def report(progress: Progress) -> None:
         nonlocal spent, started
         joint = progress.stage.endswith(("descent", "fine-tuning"))
         if not joint or progress.step not in marks:
             return
-        spent += time.perf_counter() - started
-        rows.append((spent, progress.step, *losses(branch, task)))
-        started = time.perf_counter()
+        spent = [before + clock() - since for before, clock, since in zip(spent, clocks, started, strict=True)]
+        add(Row(progress.step, *spent, *losses(branch, task)))
+        started = [clock() for clock in clocks]
 
     with tempfile.TemporaryDirectory() as directory:
         run = Run(torch.Generator().manual_seed(settings.seed), Checkpoints(Path(directory), "compare"), report, CPU)
@@ -149,7 +153,6 @@ def follow(task: Task, recording: Recording, settings: Settings) -> list[tuple[f
         frames = task.kinds["training"]
         own = run.alone(task.name)  # as train() has it
         fit(branch, frames.inputs, frames.source, channels=task.channels, settings=settings, name=task.name, run=own)
-    return rows
 
 
 @torch.no_grad()
@@ -167,12 +170,37 @@ def losses(branch: Branch, task: Task) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def join(parts: list[list[tuple[float, int, float, float]]]) -> Curve:
-    """Both branches, trained one after the other for as many steps: seconds and losses add up."""
-    a, b = (np.array(part) for part in parts)
-    assert (a[:, 1] == b[:, 1]).all()
-    rows = np.column_stack([a[:, 0] + b[:, 0], a[:, 1], a[:, 2:] + b[:, 2:]])
-    return Curve([(float(r[0]), int(r[1]), float(r[2]), float(r[3])) for r in rows])
+class Table:
+    """The rows of both recipes and branches, kept in a file."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.rows: list[tuple[str, str, Row]] = []
+        if path.exists():
+            with path.open(newline="") as file:
+                _, *lines = csv.reader(file)
+            self.rows = [(a, b, Row(int(steps), *map(float, rest))) for a, b, steps, *rest in lines]
+
+    def drop(self, recipe: str) -> None:
+        self.rows = [row for row in self.rows if row[0] != recipe]
+        self._write()
+
+    def add(self, key: tuple[str, str], row: Row) -> None:
+        self.rows.append((*key, row))
+        self._write()
+        print(*key, row.steps, *(f"{x:.5g}" for x in row[1:]), flush=True)
+
+    def _write(self) -> None:
+        with replacing(self.path) as temporary, temporary.open("w", newline="") as file:
+            table = csv.writer(file)
+            table.writerow(("recipe", "branch", *Row._fields))
+            table.writerows((a, b, *row) for a, b, row in self.rows)
+
+    def curve(self, recipe: str) -> Array:
+        """[n, 5] rows of both branches, trained one after the other for as many steps: all but the steps add up."""
+        parts = [{r.steps: r for a, b, r in self.rows if (a, b) == (recipe, branch)} for branch in BRANCHES]
+        both = sorted(parts[0].keys() & parts[1].keys())
+        return np.array([(n, *(np.array(parts[0][n][1:]) + np.array(parts[1][n][1:]))) for n in both])
 
 
 @dataclass(frozen=True)
@@ -187,62 +215,64 @@ class Tail:
         return self.floor + self.height * np.asarray(steps, dtype=float) ** -self.power
 
 
-def tail(curve: Curve, column: int) -> Tail:
-    table = curve.array()
-    last = table[table[:, 1] >= table[-1, 1] / 10]
+def tail(curve: Array, column: int) -> Tail:
+    last = curve[curve[:, STEPS] >= curve[-1, STEPS] / 10]
     low = last[:, column].min()
-    start = (0.5 * low, (last[0, column] - 0.5 * low) * last[0, 1] ** 0.3, 0.3)
+    start = (0.5 * low, (last[0, column] - 0.5 * low) * last[0, STEPS] ** 0.3, 0.3)
     found, _ = curve_fit(
         lambda x, floor, height, power: floor + height * x**-power,
-        last[:, 1], last[:, column], p0=start, bounds=([0, 0, 0.01], [low, np.inf, 3]), maxfev=20000,
+        last[:, STEPS], last[:, column], p0=start, bounds=([0, 0, 0.01], [low, np.inf, 3]), maxfev=20000,
     )  # fmt: skip
     return Tail(*map(float, found))
 
 
-def summary(curves: dict[str, Curve]) -> str:
-    """The figures as Markdown."""
-    ours, paper = curves["closed-form"].array()[-1], curves["paper"].array()
-    pace = paper[-1, 0] / paper[-1, 1]
-    lines = ["| recipe | steps | seconds | training loss | held-out loss |", "| --- | --- | --- | --- | --- |"]
-    lines.append(f"| closed-form | {int(ours[1])} | {ours[0]:.0f} | {ours[2]:.4f} | {ours[3]:.4f} |")
-    lines.append(
-        f"| paper, as run | {int(paper[-1, 1]):,} | {paper[-1, 0]:.0f} | {paper[-1, 2]:.4f} | {paper[-1, 3]:.4f} |"
-    )
-    ends = [float(tail(curves["paper"], column)(np.array(PAPER_STEPS))) for column in (2, 3)]
-    lines.append(
-        f"| paper, extrapolated | {PAPER_STEPS:,} | {pace * PAPER_STEPS:.0f} | {ends[0]:.4f} | {ends[1]:.4f} |"
-    )
-    best = paper[np.argmin(paper[:, 3])]
+def summary(table: Table) -> str:
+    """The figures as Markdown; nothing where a recipe has not been run."""
+    ours, paper = (table.curve(recipe) for recipe in RECIPES)
+    if not len(ours) or not len(paper):
+        return ""
+    lines = ["| recipe | steps | seconds | processor seconds | training loss | held-out loss |"]
+    lines.append("| --- | --- | --- | --- | --- | --- |")
+    rows = {"closed-form": ours[-1], "paper, as run": paper[-1]}
+    if paper[-1, STEPS] < PAPER_STEPS:
+        pace = paper[-1, 1:3] / paper[-1, STEPS]
+        ends = [float(tail(paper, column)(np.array(PAPER_STEPS))) for column in LOSSES]
+        rows["paper, extrapolated"] = np.array([PAPER_STEPS, *(pace * PAPER_STEPS), *ends])
+    for name, (steps, seconds, processor, training, held) in rows.items():
+        lines.append(f"| {name} | {int(steps):,} | {seconds:.0f} | {processor:.0f} | {training:.4f} | {held:.4f} |")
+    end = list(rows.values())[-1]
+    best = paper[np.argmin(paper[:, LOSSES[1]])]
     lines += [
         "",
-        f"Lowest held-out loss of the paper's recipe: {best[3]:.4f}, after {int(best[1]):,} steps.",
-        f"Wall-clock time of a million steps over that of the closed-form recipe: {pace * PAPER_STEPS / ours[0]:.0f}.",
+        f"Lowest held-out loss of the paper's recipe: {best[LOSSES[1]]:.4f}, after {int(best[STEPS]):,} steps.",
+        f"Time of a million of its steps over that of the closed-form recipe: {end[1] / ours[-1, 1]:.0f} on the wall, "
+        f"{end[2] / ours[-1, 2]:.0f} of the processor.",
     ]
+    below = ours[ours[:, LOSSES[0]] <= end[LOSSES[0]]]
+    if len(below):
+        lines.append(
+            f"Its last training loss is reached by the closed-form recipe after {below[0, PROCESSOR]:.0f} "
+            f"processor seconds, 1/{end[PROCESSOR] / below[0, PROCESSOR]:.0f} of its own."
+        )
     return "\n".join(lines) + "\n"
 
 
-def write_csv(path: Path, curves: dict[str, Curve]) -> None:
-    with path.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(("recipe", "seconds", "steps", *KINDS))
-        for recipe, curve in curves.items():
-            table.writerows((recipe, *row) for row in curve.rows)
-
-
-def plot(path: Path, curves: dict[str, Curve]) -> None:
+def plot(path: Path, table: Table) -> None:
     import matplotlib.pyplot as plt
 
     figure, panels = plt.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
-    for panel, kind, column in zip(panels, KINDS, (2, 3), strict=True):
+    for panel, kind, column in zip(panels, KINDS, LOSSES, strict=True):
         for recipe, colour in zip(RECIPES, ("tab:blue", "tab:orange"), strict=True):
-            table = curves[recipe].array()
-            panel.plot(table[:, 0], table[:, column], color=colour, label=recipe, marker=".", markersize=3)
-        paper = curves["paper"].array()
-        pace = paper[-1, 0] / paper[-1, 1]
-        steps = np.geomspace(paper[-1, 1] / 10, PAPER_STEPS, 50)
-        law = tail(curves["paper"], column)
-        panel.plot(pace * steps, law(steps), "--", color="tab:orange", linewidth=1, label="its power law")
-        panel.set(xscale="log", xlabel="seconds of training", title=f"{kind} frames")
+            curve = table.curve(recipe)
+            if len(curve):
+                panel.plot(curve[:, PROCESSOR], curve[:, column], color=colour, label=recipe, marker=".", markersize=3)
+        paper = table.curve("paper")
+        if len(paper) and paper[-1, STEPS] < PAPER_STEPS:
+            pace = paper[-1, PROCESSOR] / paper[-1, STEPS]
+            steps = np.geomspace(paper[-1, STEPS] / 10, PAPER_STEPS, 50)
+            law = tail(paper, column)
+            panel.plot(pace * steps, law(steps), "--", color="tab:orange", linewidth=1, label="its power law")
+        panel.set(xscale="log", xlabel="processor seconds", title=f"{kind} frames")
     panels[0].set_ylabel("5 |LL| + |D3| + |D2|")
     panels[0].legend()
     figure.savefig(path, dpi=120)
