@@ -1,5 +1,6 @@
 """Training explains its frames, resumes to the same bytes after a kill and gives the same bytes for a seed."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -20,10 +21,11 @@ from synthetic_student import (
 
 from mua.student import source as sources
 from mua.student.checkpoint import Checkpoints
+from mua.student.conditioned import INPUT_FLOOR, Conditioned, fold, whitening
 from mua.student.model import Bands, Branch, Student, build_mlp
 from mua.student.optimise import Progress
-from mua.student.regress import INPUT_FLOOR, regress, squared_error, unfold_last_layer, whitening
-from mua.student.settings import Settings
+from mua.student.regress import leading, regress, squared_error
+from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights, joint_targets
 from mua.student.train import best_coefficients, train
@@ -183,10 +185,49 @@ def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
     assert torch.allclose(spread, (variance / (variance + INPUT_FLOOR)).sqrt(), atol=0.01)
 
 
-def test_unfolding_multiplies_the_output() -> None:
-    mlp, expand = build_mlp(3, 5, 2), torch.randn(2, 7, generator=torch.Generator().manual_seed(0))
-    x = torch.randn(4, 3, generator=torch.Generator().manual_seed(1))
-    assert torch.allclose(unfold_last_layer(mlp, expand)(x), mlp(x) @ expand, atol=1e-5)
+def test_a_rate_rises_then_falls_to_zero() -> None:
+    schedule = Schedule(steps=100, batch=1, rate=2.0, rises=0.1)
+    rates = [schedule.rate_at(step) for step in range(100)]
+    assert rates[:10] == sorted(rates[:10])
+    assert rates[0] == pytest.approx(0.2)
+    assert max(rates) == pytest.approx(2.0, rel=0.05)
+    assert rates[10:] == sorted(rates[10:], reverse=True)
+    assert rates[-1] < 0.001
+    assert {replace(schedule, rises=0.0, falls=False).rate_at(step) for step in (0, 50, 99)} == {2.0}
+
+
+def test_few_frames_get_fewer_steps() -> None:
+    schedule = Schedule(steps=100, batch=8, rate=1.0, passes=20)
+    assert [schedule.over(frames).steps for frames in (0, 1, 20, 40, 1000)] == [1, 3, 50, 100, 100]
+    assert replace(schedule, passes=math.inf).over(1).steps == 100
+
+
+def test_what_tells_frames_apart_is_kept() -> None:
+    z = torch.randn(400, 4, generator=torch.Generator().manual_seed(0)) * torch.tensor([1.0, 1e-4, 0.1, 0.0])
+    assert leading(z).tolist() == [True, False, True, False]
+    assert leading(torch.zeros(5, 3)).sum() < 3
+
+
+def conditioned() -> Conditioned:
+    """One of three descriptor entries and two coordinates to seven outputs, every part of it away from its start."""
+    torch.manual_seed(0)
+    inputs = torch.randn(50, 3) * torch.tensor([3.0, 1.0, 0.1]) + 2
+    module = Conditioned(whitening(inputs), build_mlp(3, 5, 2), torch.randn(2, 7))
+    torch.nn.init.normal_(module.expand.bias)
+    return module
+
+
+def test_a_folded_mlp_is_the_same_function() -> None:
+    module, x = conditioned(), torch.randn(4, 3, generator=torch.Generator().manual_seed(1))
+    assert [tuple(p.shape) for p in module.folded().parameters()] == [(5, 3), (5,), (5, 5), (5,), (7, 5), (7,)]
+    assert torch.allclose(module.folded()(x), module(x), atol=1e-5)
+
+
+def test_a_network_is_folded_wherever_it_holds_a_conditioned_mlp() -> None:
+    network = torch.nn.ModuleDict({"one": torch.nn.Sequential(conditioned()), "other": torch.nn.Linear(2, 2)})
+    fold(network)
+    assert not any(isinstance(module, Conditioned) for module in network.modules())
+    assert isinstance(network["other"], torch.nn.Linear)
 
 
 def test_large_sources_are_read_batch_by_batch(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -83,11 +83,11 @@ def main(
 def vary(settings: Settings, change: dict[str, float]) -> Settings:
     """Settings with some fields of their generalisation changed, and fine-tuned `longer` times as long."""
     own = {name: value for name, value in change.items() if name != "longer"}
-    steps = int(settings.finetune.steps * change.get("longer", 1))
+    longer, fine = change.get("longer", 1), settings.finetune
     return replace(
         settings,
         generalisation=replace(settings.generalisation, **own),  # type: ignore[arg-type]
-        finetune=replace(settings.finetune, steps=steps),
+        finetune=replace(fine, steps=int(longer * fine.steps), passes=longer * fine.passes),
     )
 
 

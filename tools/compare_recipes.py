@@ -133,14 +133,13 @@ def follow(task: Task, recording: Recording, settings: Settings, add: Callable[[
     student, samples = prepare(recording, settings)
     branch = student.geometry if task.name == "geometry" else student.appearance
     descends = settings.start == "random"
-    steps = settings.finetune.steps
-    marks = set(np.unique(np.geomspace(1, steps, POINTS).astype(int)).tolist())
     clocks = (time.perf_counter, time.process_time)
     spent, started = [0.0, 0.0], [clock() for clock in clocks]
 
     def report(progress: Progress) -> None:
         nonlocal spent, started
         joint = progress.stage.endswith(("descent", "fine-tuning"))
+        marks = np.unique(np.geomspace(1, progress.steps, POINTS).astype(int))
         if not joint or progress.step not in marks:
             return
         spent = [before + clock() - since for before, clock, since in zip(spent, clocks, started, strict=True)]

@@ -5,7 +5,6 @@ geometry and appearance at a detail level. With these the published FLOPs come o
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
@@ -18,12 +17,12 @@ from mua.compare.maps import CHANNELS as MAP_CHANNELS
 from mua.compare.maps import SurfaceMaps
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
-from mua.student.descend import descend_branch
+from mua.student.descend import start_from_noise
 from mua.student.finetune import subband_loss
 from mua.student.model import STATIC_LEVELS, Bands, Branch, lowpass_texels
 from mua.student.optimise import Run
-from mua.student.settings import Ranks, Schedule
-from mua.student.train import fit_branch
+from mua.student.settings import Ranks
+from mua.student.train import start_branch
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import filters
 
@@ -150,12 +149,16 @@ class BandNetwork(Network):
 
     def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
         """Convolutions start from noise; blendshapes as our student's, by closed form or from noise."""
-        settings = replace(frames.sizes.settings, finetune=Schedule(steps=0, batch=1, rate=0.0))
+        settings = frames.sizes.settings
         inputs = self.normalize(frames.motion.descriptors.to(run.device))
-        fit = partial(fit_branch, parts=frames.parts) if closed_form else descend_branch
         for branch, (name, part) in zip(self.branches, PARTS.items(), strict=False):
             source = partial(_bands_from, frames, part.start)
-            fit(branch, inputs, source, channels=part, settings=settings, name=name, run=run)
+            if closed_form:
+                start_branch(
+                    branch, inputs, source, channels=part, settings=settings, name=name, run=run, parts=frames.parts
+                )
+            else:
+                start_from_noise(branch, inputs, source, channels=part, run=run)
             scale_branch(branch, self.weights[part])
         start_convolutions(self.convolutions, run.generator)
         groups: Groups = [{"params": list(self.convolutions.parameters()), "lr": rate}]

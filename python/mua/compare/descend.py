@@ -1,6 +1,5 @@
 """Adam within a budget: the same loop, loss and fall of the learning rate for every compared system."""
 
-import math
 import time
 from collections.abc import Callable
 
@@ -10,6 +9,9 @@ from torch import Tensor
 from mua.compare.system import Budget
 from mua.errors import InputError
 from mua.student.optimise import Progress, Report
+from mua.student.settings import fall
+
+RISES = 0.1  # share of the steps in which the rates rise
 
 Groups = list[dict[str, object]]  # of parameters, each with the learning rate `lr` that it starts from
 
@@ -25,8 +27,9 @@ def descend(
     generator: torch.Generator,
     report: Report,
 ) -> int:
-    """Run AdamW until the budget is spent, its rates falling to zero along a cosine of it; returns the steps taken.
+    """Run AdamW until the budget is spent; returns the steps taken.
 
+    The rates rise over the first tenth of what a closed-form start has left of it, and fall to zero along a cosine.
     Raises InputError for a budget without an end.
     """
     if budget.seconds is None and budget.steps is None:
@@ -34,9 +37,12 @@ def descend(
     optimizer = torch.optim.AdamW(groups, weight_decay=0.0)
     rates = [float(group["lr"]) for group in optimizer.param_groups]
     begun, step = time.monotonic(), 0
+    before = _spent(budget, step, started)
     while (spent := _spent(budget, step, started)) < 1:
+        done = (spent - before) / (1 - before)
+        course = min(done / RISES, 1.0) * fall(done)
         for group, rate in zip(optimizer.param_groups, rates, strict=True):
-            group["lr"] = rate * 0.5 * (1 + math.cos(math.pi * spent))
+            group["lr"] = rate * course
         optimizer.zero_grad()
         value = loss(torch.randperm(frames, generator=generator)[: budget.batch])
         value.backward()

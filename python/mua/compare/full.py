@@ -8,11 +8,12 @@ from torch import Tensor, nn
 from mua.compare.descend import Groups
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
+from mua.student.conditioned import Conditioned
 from mua.student.descend import BASIS_START, start_mlp
 from mua.student.factorize import separable_blendshapes
 from mua.student.model import STATIC_LEVELS, Branch, build_mlp
 from mua.student.optimise import Run
-from mua.student.regress import regress, squared_error, unfold_last_layer
+from mua.student.regress import regress, squared_error
 from mua.student.settings import Ranks
 from mua.student.targets import joint_targets
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
@@ -42,7 +43,7 @@ class Basis(nn.Module):
     def __init__(self, channels: slice, rank: int, *, sizes: Sizes) -> None:
         super().__init__()
         self.channels, self.rank = channels, rank
-        self.mlp = build_mlp(sizes.encoding.width, sizes.settings.hidden, rank)
+        self.mlp: nn.Module = build_mlp(sizes.encoding.width, sizes.settings.hidden, rank)
         self.shapes = nn.Parameter(torch.zeros(rank, channels.stop - channels.start, len(sizes.texels)))
 
     def forward(self, inputs: Tensor) -> Tensor:
@@ -114,10 +115,9 @@ def start_from_components(
     for at, channel in enumerate(own):
         x = _channel(frames, rows, channel).to(run.device)
         basis.shapes[:kept, at] = (u / s).T @ x * spread[:, None]
-    mlp = _teach(frames, rows, u * s, normalize=normalize, run=run)
     expand = torch.zeros(kept, basis.rank, device=run.device)
     expand[:, :kept] = torch.diag(1 / spread)
-    basis.mlp.load_state_dict(unfold_last_layer(mlp, expand).state_dict())
+    basis.mlp = _teach(frames, rows, u * s, expand, normalize=normalize, run=run)
 
 
 class SingleLevel(FullNetwork):
@@ -160,7 +160,7 @@ class Separable(nn.Module):
         super().__init__()
         self.channels, self.rank = channels, rank
         count = channels.stop - channels.start
-        self.mlp = build_mlp(sizes.encoding.width, sizes.settings.hidden, count * rank)
+        self.mlp: nn.Module = build_mlp(sizes.encoding.width, sizes.settings.hidden, count * rank)
         self.h = nn.Parameter(torch.zeros(count, rank, sizes.settings.texels))
         self.w = nn.Parameter(torch.zeros(count, rank, sizes.settings.texels))
 
@@ -201,8 +201,7 @@ def start_from_quarter(
     unit = torch.ones(count, device=run.device)
     rank = min(settings.hidden, len(rows))
     targets = joint_targets(stand_in, flat, unit, rank=rank, generator=run.generator)
-    mlp = _teach(frames, rows, targets.coordinates, normalize=normalize, run=run)
-    part.mlp.load_state_dict(unfold_last_layer(mlp, targets.expand).state_dict())
+    part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, normalize=normalize, run=run)
 
 
 def lines_to_full(
@@ -286,15 +285,17 @@ def _teach(
     frames: TrainingFrames,
     rows: Tensor,
     coordinates: Tensor,  # [F, K] of the rows
+    expand: Tensor,  # [K, M]
     *,
     normalize: Callable[[Tensor], Tensor],
     run: Run,
-) -> nn.Sequential:
-    """An MLP to coordinates, taught as our student's are."""
+) -> Conditioned:
+    """An MLP to coordinates @ expand, taught as our student's are."""
     settings = frames.sizes.settings
     return regress(
         normalize(frames.motion.descriptors[rows].to(run.device)),
         coordinates,
+        expand=expand,
         hidden=settings.hidden,
         criterion=squared_error,
         schedule=settings.regression,

@@ -16,6 +16,7 @@ from torch import Tensor, nn
 from mua.compare.descend import Groups, descend
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames, coarse_flops, coarse_parameters
 from mua.student.checkpoint import Checkpoints
+from mua.student.conditioned import fold
 from mua.student.finetune import BASIS_RATE
 from mua.student.model import Coarse, linear_layers
 from mua.student.optimise import Report, Run
@@ -120,6 +121,7 @@ class NetworkSystem:
             generator=generator,
             report=told,
         )
+        fold(network)
         self._network, self.seconds = network.eval(), budget.clock() - started
 
     def state(self) -> dict[str, Any]:

@@ -68,4 +68,4 @@ def fit_coarse(
         run=run,
         generalisation=settings.generalisation,
     )
-    coarse.mlp.load_state_dict(mlp.state_dict())
+    coarse.mlp.load_state_dict(mlp.folded().state_dict())

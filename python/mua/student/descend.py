@@ -55,15 +55,7 @@ def descend_branch(
     judges: Frames | None = None,  # that choose the best step
 ) -> None:
     """Train bases and MLP from noise on the paper's loss; the means are those of the training frames."""
-    variance = set_means(branch, source, frames=len(inputs), processes=run.processes).to(run.device)
-    weights = channel_weights(variance, channels)
-    start_mlp(branch.mlp, run.generator)
-    with weighted(branch, weights), torch.no_grad():
-        branch.ll_basis.copy_(BASIS_START * torch.randn(branch.ll_basis.shape, generator=run.generator))
-        for detail in (branch.d3, branch.d2):
-            for factor in (detail.h, detail.w):
-                factor.copy_(math.sqrt(BASIS_START) * torch.randn(factor.shape, generator=run.generator))
-    branch.silence(still_channels(variance, channels))
+    weights = start_from_noise(branch, inputs, source, channels=channels, run=run)
     finetune(
         branch,
         inputs,
@@ -76,6 +68,27 @@ def descend_branch(
         weight_decay=0.0,
         judges=judges,
     )
+
+
+def start_from_noise(
+    branch: Branch,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    source: Source,  # of the branch's channels, counted from 0
+    *,
+    channels: slice,  # which of the 23 these are
+    run: Run,
+) -> Tensor:
+    """Set the means of `branch` and draw its bases and MLP; returns the weight [C] of each channel's error."""
+    variance = set_means(branch, source, frames=len(inputs), processes=run.processes).to(run.device)
+    weights = channel_weights(variance, channels)
+    start_mlp(branch.mlp, run.generator)
+    with weighted(branch, weights), torch.no_grad():
+        branch.ll_basis.copy_(BASIS_START * torch.randn(branch.ll_basis.shape, generator=run.generator))
+        for detail in (branch.d3, branch.d2):
+            for factor in (detail.h, detail.w):
+                factor.copy_(math.sqrt(BASIS_START) * torch.randn(factor.shape, generator=run.generator))
+    branch.silence(still_channels(variance, channels))
+    return weights
 
 
 @torch.no_grad()

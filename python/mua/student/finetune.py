@@ -14,7 +14,7 @@ from mua.student.settings import Generalisation, Schedule
 
 LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1
 FRAMES_AT_ONCE = 64  # whose loss is measured
-BASIS_RATE = 0.1  # learning rate of the bases relative to that of the MLP
+BASIS_RATE = 3.0  # learning rate of the bases relative to that of the MLP
 
 
 def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
@@ -76,6 +76,7 @@ def finetune(
 
     With `judges` they end as they were at the step whose loss over those frames was the least.
     """
+    schedule = schedule.over(len(inputs))
     selection = None
     if judges is not None:
         selection = Selection(lambda: run.processes.told(mean_loss(branch, judges, weights)))

@@ -81,6 +81,7 @@ class Branch(nn.Module):
     """Geometry or appearance: F_coeff and the subbands that its coefficients drive."""
 
     ll_mean: Tensor
+    mlp: nn.Module  # plain but while it is trained
 
     def __init__(self, channels: int, ranks: Ranks, size: int, *, inputs: int, hidden: int) -> None:
         super().__init__()

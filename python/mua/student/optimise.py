@@ -1,7 +1,6 @@
 """One resumable run of Adam: the loop that every trained stage of a distillation shares."""
 
 import hashlib
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -70,10 +69,8 @@ def optimise(
         selection.look(module, 0, schedule.steps)
     started = time.monotonic()
     for step in range(first, schedule.steps):
-        fall = 0.5 * (1 + math.cos(math.pi * step / schedule.steps)) if schedule.falls else 1.0
-        rate = schedule.rate * fall
         for group, factor in zip(optimizer.param_groups, relative, strict=True):
-            group["lr"] = rate * factor
+            group["lr"] = schedule.rate_at(step) * factor
         optimizer.zero_grad()
         value = loss(model)
         value.backward()

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import torch
 from torch import Tensor, nn
 
+from mua.student.conditioned import Conditioned, Whitening, whitening
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Run, optimise
@@ -15,31 +16,12 @@ from mua.student.settings import Generalisation, Schedule
 from mua.student.smoother import Sum, fit_smoother
 
 # Measured on held-out CMU walks and turns, see docs/accuracy.md.
-INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors when they are whitened
 BLEND = 0.5  # points lie up to this far on the way from one frame to another
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
-VISITS = 16  # to each point: the function's values there are computed once
+VISITS = 32  # to each point: the function's values there are computed once
 POINTS_AT_ONCE = 1 << 10
+FORGONE = 1e-4  # of the spread of what a part sees
 GENERALISATION = Generalisation()
-
-
-@dataclass(frozen=True)
-class Whitening:
-    """An affine map of descriptors whose directions vary alike: x -> (x - mean) @ turn."""
-
-    mean: Tensor  # [k D]
-    turn: Tensor  # [k D, k D]
-
-
-def whitening(inputs: Tensor) -> Whitening:
-    """The whitening of normalised descriptors [F, k D].
-
-    A window's poses are nearly alike; velocities are its weak directions, and a network that sees the descriptor as it
-    is learns them last. The floor keeps directions that hold only noise from being raised to the others' level.
-    """
-    mean = inputs.mean(0)
-    variance, directions = torch.linalg.eigh(torch.cov(inputs.double().T, correction=0).reshape(inputs.shape[1], -1))
-    return Whitening(mean, (directions / (variance.clamp(min=0) + INPUT_FLOOR).sqrt()).to(inputs))
 
 
 def regress(
@@ -51,17 +33,18 @@ def regress(
     schedule: Schedule,
     stage: str,
     run: Run,
+    expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
     generalisation: Generalisation = GENERALISATION,
-) -> nn.Sequential:
-    """An MLP from normalised descriptors to targets, taught the smooth function that goes through them.
+) -> Conditioned:
+    """An MLP from normalised descriptors to targets, or to targets @ expand, taught the smooth function through them.
 
-    It learns the values of that function at points around the frames, on whitened descriptors; the whitening is folded
-    into its first layer. With `locality` the function is a sum over body parts, each of the joints near it.
+    It learns the values of that function at points around the frames. With `locality` the function is a sum over body
+    parts, each of the joints near it.
     """
     white = whitening(inputs)
     run.processes.agree(white.mean, white.turn)
-    z = (inputs - white.mean) @ white.turn
+    z = white(inputs)
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
@@ -84,13 +67,9 @@ def regress(
 
     groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": generalisation.weight_decay}]
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
-    first, *_, last = linear_layers(mlp)
-    with torch.no_grad():
-        first.weight.copy_(first.weight @ white.turn.T)
-        first.bias.sub_(first.weight @ white.mean)
-        last.weight.mul_(unit)
-        last.bias.mul_(unit)
-    return mlp
+    if expand is None:
+        expand = torch.eye(goal.shape[1], device=goal.device)
+    return Conditioned(white, mlp, unit * expand)
 
 
 def fit_local(
@@ -109,10 +88,21 @@ def fit_local(
     for reach, share in zip(locality.reach, locality.shares, strict=True):
         own = whitening(inputs * reach)
         turn = torch.linalg.solve(white.turn.double(), reach[:, None].double() * own.turn.double()).to(z)
+        turn = turn[:, leading(z @ turn)]
         one = fit_smoother(z @ turn, goal, generator=generator)
         turns.append(turn)
         smoothers.append(replace(one, values=one.values @ share))
-    return Sum(torch.stack(turns), tuple(smoothers))
+    return Sum(tuple(turns), tuple(smoothers))
+
+
+def leading(
+    z: Tensor,  # [F, D]
+) -> Tensor:
+    """Which columns [D], bool, hold nearly all of what tells frames apart: distances then cost several times less."""
+    spread, order = z.var(0, correction=0).sort()
+    held = torch.empty_like(order, dtype=torch.bool)
+    held[order] = spread.cumsum(0) > FORGONE * spread.sum()
+    return held
 
 
 def draw_around(
@@ -153,17 +143,3 @@ def squared_error(predicted: Tensor, goal: Tensor) -> Tensor:
 
 def absolute_error(predicted: Tensor, goal: Tensor) -> Tensor:
     return (predicted - goal).abs().sum(1).mean()
-
-
-def unfold_last_layer(
-    mlp: nn.Sequential,
-    expand: Tensor,  # [K, M]
-) -> nn.Sequential:
-    """The MLP to M coefficients, from one to K coordinates: the linear map becomes part of the last layer."""
-    first, *_, last = linear_layers(mlp)
-    wide = build_mlp(first.in_features, first.out_features, expand.shape[1]).to(expand.device)
-    state = mlp.state_dict()
-    *_, weight, bias = state
-    state[weight], state[bias] = expand.T @ last.weight.detach(), expand.T @ last.bias.detach()
-    wide.load_state_dict(state)
-    return wide

@@ -1,5 +1,6 @@
 """What a distillation may vary: three presets, each a point between minutes on a laptop and the paper's own setting."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -25,8 +26,27 @@ class Schedule:
 
     steps: int
     batch: int  # frames per step
-    rate: float  # learning rate of the first step
+    rate: float  # learning rate at its highest
     falls: bool = True  # to zero along a cosine, or stays
+    rises: float = 0.0  # share of the steps in which the rate rises from zero: Adam's first steps are its boldest
+    passes: float = math.inf  # over all frames; the run is shorter where these are fewer steps: few frames overfit
+
+    def over(self, frames: int) -> "Schedule":
+        """The run that so many frames get."""
+        if math.isinf(self.passes):
+            return self
+        return replace(self, steps=min(self.steps, max(math.ceil(self.passes * frames / self.batch), 1)))
+
+    def rate_at(self, step: int) -> float:
+        """The learning rate of a step, counted from 0."""
+        done = step / self.steps
+        rise = min((done + 1 / self.steps) / self.rises, 1.0) if self.rises else 1.0
+        return self.rate * rise * (fall(done) if self.falls else 1.0)
+
+
+def fall(done: float) -> float:
+    """What a learning rate is multiplied by when a share of a run is done: from one to zero along a cosine."""
+    return 0.5 * (1 + math.cos(math.pi * done))
 
 
 @dataclass(frozen=True)
@@ -67,8 +87,8 @@ PRESETS = {
         components=24,
         hidden=128,
         sweeps=10,
-        regression=Schedule(steps=1000, batch=256, rate=3e-3),
-        finetune=Schedule(steps=60, batch=64, rate=1e-4),
+        regression=Schedule(steps=4000, batch=256, rate=3e-3),
+        finetune=Schedule(steps=2000, batch=16, rate=3e-4, rises=0.1, passes=20),
     ),
     "preview": Settings(
         texels=384,
@@ -78,8 +98,8 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=15,
-        regression=Schedule(steps=2000, batch=512, rate=2e-3),
-        finetune=Schedule(steps=150, batch=64, rate=1e-4),
+        regression=Schedule(steps=4000, batch=512, rate=2e-3),
+        finetune=Schedule(steps=1000, batch=16, rate=3e-4, rises=0.1, passes=20),
     ),
     "paper": Settings(
         texels=768,
@@ -90,7 +110,7 @@ PRESETS = {
         hidden=384,
         sweeps=20,
         regression=Schedule(steps=20000, batch=512, rate=2e-3),
-        finetune=Schedule(steps=5000, batch=64, rate=1e-4),
+        finetune=Schedule(steps=5000, batch=64, rate=3e-4, rises=0.1, passes=20),
     ),
 }
 

@@ -59,7 +59,7 @@ def fit_smoother(
 class Sum:
     """f(x) = sum_p smoother_p(x @ turns[p])."""
 
-    turns: Tensor  # [P, D, D]
+    turns: tuple[Tensor, ...]  # [D, D'] each
     smoothers: tuple[Smoother, ...]
 
     def __call__(self, x: Tensor) -> Tensor:

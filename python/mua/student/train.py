@@ -12,13 +12,14 @@ from mua.errors import InputError
 from mua.processes import ALONE, Processes
 from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
+from mua.student.conditioned import fold
 from mua.student.descend import descend_branch, descend_coarse
 from mua.student.factorize import blendshapes, draw_probe, separable_blendshapes
 from mua.student.finetune import Frames, finetune
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
-from mua.student.regress import regress, squared_error, unfold_last_layer
+from mua.student.regress import regress, squared_error
 from mua.student.selection import validation_rows
 from mua.student.settings import Settings
 from mua.student.source import Source, hold
@@ -174,14 +175,50 @@ def fit_branch(
 
     Stops after the stage `until`.
     """
+    weights = start_branch(
+        branch, inputs, source, channels=channels, settings=settings, name=name, run=run, parts=parts, until=until
+    )
+    if until in ("bases", "regression"):
+        return
+    stage = f"{name} fine-tuning"
+    finetune(
+        branch,
+        inputs,
+        lambda rows: source(slice(0, branch.channels), rows),
+        weights=weights,
+        schedule=settings.finetune,
+        stage=stage,
+        run=run.alone(stage),
+        weight_decay=settings.generalisation.weight_decay,
+        judges=judges,
+    )
+    fold(branch)
+
+
+def start_branch(
+    branch: Branch,
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    source: Source,  # of the branch's channels, counted from 0
+    *,
+    channels: slice,
+    settings: Settings,
+    name: str,
+    run: Run,
+    parts: Parts | None = None,
+    until: StageName | None = None,
+) -> Tensor:
+    """Closed-form bases, and an MLP taught their coefficients, conditioned for what follows; not if `until` "bases".
+
+    Returns the weight [C] of each channel's error.
+    """
     stage = f"{name} bases"
     flat, variance = factorize_branch(
         branch, source, frames=len(inputs), settings=settings, stage=stage, run=run.alone(stage)
     )
-    if until == "bases":
-        return
-    hold_still(branch, flat, still_channels(variance, channels))
     weights = channel_weights(variance, channels)
+    if until == "bases":
+        return weights
+    hold_still(branch, flat, still_channels(variance, channels))
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
     stage = f"{name} coefficients"
     own = run.alone(stage)
@@ -190,9 +227,10 @@ def fit_branch(
     local = (
         None if parts is None else texture_locality(parts, branch, targets, weights, fade=settings.generalisation.fade)
     )
-    mlp = regress(
+    branch.mlp = regress(
         inputs,
         targets.coordinates,
+        expand=targets.expand,
         locality=local,
         hidden=settings.hidden,
         criterion=squared_error,
@@ -201,20 +239,7 @@ def fit_branch(
         run=own,
         generalisation=settings.generalisation,
     )
-    if until == "regression":
-        return
-    branch.mlp.load_state_dict(unfold_last_layer(mlp, targets.expand).state_dict())
-    finetune(
-        branch,
-        inputs,
-        lambda rows: source(slice(0, branch.channels), rows),
-        weights=weights,
-        schedule=settings.finetune,
-        stage=f"{name} fine-tuning",
-        run=run.alone(f"{name} fine-tuning"),
-        weight_decay=settings.generalisation.weight_decay,
-        judges=judges,
-    )
+    return weights
 
 
 @torch.no_grad()
