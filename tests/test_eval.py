@@ -228,7 +228,6 @@ class Fake:
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
         if self.name == "bad":
             raise RuntimeError("no [place] left")
-        assert budget.seconds == 1
         self._mean = frames.mean_texture
 
     def state(self) -> dict[str, Tensor]:
@@ -294,10 +293,12 @@ def test_a_trained_system_is_not_trained_again(
     recording: Recording, tmp_path: Path, faked: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     trained: list[str] = []
+    budgets: list[tuple[float | None, int | None]] = []
     fit = Fake.fit
 
     def counted(self: Fake, *given: Any) -> None:
         trained.append(self.name)
+        budgets.append((given[1].seconds, given[1].steps))
         fit(self, *given)
 
     def interrupted(*_: object, **__: object) -> None:
@@ -305,13 +306,14 @@ def test_a_trained_system_is_not_trained_again(
 
     monkeypatch.setattr(Fake, "fit", counted)
     monkeypatch.setattr(judge, "judge", interrupted)
-    for seed in (0, 0, 1):
+    for seed, steps in ((0, None), (0, None), (1, None), (1, 7)):
         with pytest.raises(KeyboardInterrupt):
             command.evaluate(
-                recording.directory, system=["good", "bad"], seconds=1.0, preset_name="tiny", frames=1, views=1,
-                size=SIZE, seed=seed, output=tmp_path,
+                recording.directory, system=["good", "bad"], seconds=1.0, steps=steps, preset_name="tiny", frames=1,
+                views=1, size=SIZE, seed=seed, output=tmp_path,
             )  # fmt: skip
-    assert trained == ["good", "bad", "bad", "good", "bad"]
+    assert trained == ["good", "bad", "bad", "good", "bad", "good", "bad"]
+    assert budgets == [(1.0, None)] * 5 + [(None, 7)] * 2
 
 
 def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> None:

@@ -35,6 +35,9 @@ def evaluate(
         list[str] | None, typer.Option(help="A system of the paper's tables to train, may be repeated; or all.")
     ] = None,
     seconds: Annotated[float, typer.Option(min=0.0, help="Training of each system.")] = 60.0,
+    steps: Annotated[
+        int | None, typer.Option(min=1, help="Of Adam for each system, instead of seconds: the same bytes each time.")
+    ] = None,
     preset_name: Annotated[str, typer.Option("--preset", help="Whose sizes the systems have.")] = "preview",
     frames: Annotated[int | None, typer.Option(min=1, help="Of each kind, evenly; all kept whole if left out.")] = None,
     views: Annotated[int, typer.Option(help="Cameras about the figure.")] = 2,
@@ -56,13 +59,14 @@ def evaluate(
     names = list(entries.SYSTEMS) if system == ["all"] else list(dict.fromkeys(system or []))
     entries.check_systems(names)
     settings = replace(preset(preset_name), texels=recording.rig.texels.size, seed=seed)
+    budget = Budget(seconds=seconds) if steps is None else Budget(steps=steps)
     lpips = Lpips(lpips_weights) if lpips_weights is not None else None
     console = Console()
     with closing(open_device(device)) as opened, Display(console) as display:
         studio = Studio(opened, recording.rig, chosen, views=views, size=size)
         rows = [entries.mean_entry(recording)]
         rows += _avatars(opened, avatars or [], recording, size=size, own_mesh=own_mesh, display=display)
-        rows += _systems(names, recording, settings, seconds=seconds, work=output / "work", display=display)
+        rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
         display.stage("pictures")
         results = judge.judge(studio, chosen, rows, lpips=lpips, progress=display.step)
         setting = report.Setting(
@@ -71,7 +75,8 @@ def evaluate(
             frames={kind: sum(f.clip.held_out == held for f in chosen) for kind, held in judge.KINDS.items()},
             views=views,
             size=size,
-            seconds=seconds,
+            seconds=budget.seconds,
+            steps=budget.steps,
             preset=preset_name,
             lpips=None if lpips is None else lpips.network,
             covered=sum(s.covered for s in results[0].samples) / max(len(results[0].samples), 1),
@@ -104,13 +109,13 @@ def _avatars(
 
 
 def _systems(
-    names: list[str], recording: Recording, settings: Settings, *, seconds: float, work: Path, display: Display
+    names: list[str], recording: Recording, settings: Settings, *, budget: Budget, work: Path, display: Display
 ) -> list[entries.Entry]:
     """Train one system after the other; those that the work directory holds are taken from there."""
     if not names:
         return []
     generator = torch.Generator().manual_seed(settings.seed)
-    checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), seconds), []))
+    checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), budget.seconds, budget.steps), []))
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
 
     def step(progress: Progress) -> None:
@@ -122,7 +127,6 @@ def _systems(
     rows = []
     for name in names:
         display.stage(name)
-        budget = Budget(seconds=seconds)
         rows.append(entries.system_entry(name, recording, frames, budget=budget, checkpoints=checkpoints, report=step))
         if rows[-1].failure:
             display.note(f"{name}: {rows[-1].failure}")

@@ -30,7 +30,8 @@ class Setting:
     frames: dict[str, int]  # by kind
     views: int
     size: int  # pixels
-    seconds: float  # of training for each system
+    seconds: float | None  # of training for each system
+    steps: int | None  # of Adam for each system, where it has no seconds
     preset: str
     lpips: str | None  # network
     covered: float  # share of a picture that the figure covers, mean
@@ -42,12 +43,13 @@ def legend(setting: Setting) -> str:
     perceived = (
         f"LPIPS: {setting.lpips}, times 1000." if setting.lpips else "LPIPS: no weights given (--lpips-weights FILE)."
     )
+    budget = f"{setting.seconds:g} s" if setting.steps is None else f"{setting.steps} steps"
     return (
         f"Means over {counted} frames of {setting.recording} from {setting.views} views of {setting.size} x "
         f"{setting.size} pixels, against the teacher drawn alike; whole picture on black, {setting.covered:.0%} of it "
         "figure. No view is left out of training, because teachers and students are textures and learn from no view. "
         "All lie on the teacher's mesh of the frame, but for rows named own mesh. Systems were trained for "
-        f"{setting.seconds:g} s each at the sizes of preset {setting.preset}. GFLOPs leave out posing and drawing; FPS "
+        f"{budget} each at the sizes of preset {setting.preset}. GFLOPs leave out posing and drawing; FPS "
         f"have decoding, posing and drawing, of files alone, on {setting.device}. MB: the file, or 4 bytes a "
         f"parameter. {perceived} "
         "The teacher may be a simulated stand-in: see its recording."
