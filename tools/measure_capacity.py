@@ -224,7 +224,6 @@ def markdown(points: list[Point]) -> str:
 
 def plot(path: Path, points: list[Point]) -> None:
     import matplotlib.pyplot as plt
-    from matplotlib.ticker import PercentFormatter
 
     figure, panels = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, layout="constrained")
     counts = sorted({point.frames for point in points})
@@ -241,7 +240,7 @@ def plot(path: Path, points: list[Point]) -> None:
             xlabel="numbers that the bases store",
             title=f"{column.replace('_', ' ')} frames",
         )
-        panel.yaxis.set_major_formatter(PercentFormatter(1, decimals=None))
+        panel.yaxis.set_major_formatter(lambda share, _: f"{100 * share:g} %")
         panel.grid(alpha=0.3)
     panels[0].set_ylabel("variance not held, best coefficients")
     handles, labels = panels[0].get_legend_handles_labels()
