@@ -161,9 +161,9 @@ def limbs_apart(fade: float) -> Locality:
 def smooth(inputs: torch.Tensor, shown: torch.Tensor, fade: float) -> Callable[[torch.Tensor], torch.Tensor]:
     """What the MLP is taught of `inputs`, as a function of other inputs."""
     white = whitening(inputs)
-    z = (inputs - white.mean) @ white.turn
+    z = white(inputs)
     found = fit_local(inputs, z, shown, white, limbs_apart(fade), generator=torch.Generator().manual_seed(0))
-    return lambda x: found((x - white.mean) @ white.turn)
+    return lambda x: found(white(x))
 
 
 def test_a_far_joint_moves_a_part_the_less_the_more_it_fades() -> None:
@@ -182,7 +182,7 @@ def test_a_far_joint_moves_a_part_the_less_the_more_it_fades() -> None:
 def test_parts_that_do_not_fade_make_the_function_of_the_whole() -> None:
     inputs, shown = two_limbs(100, seed=2, together=True)
     white = whitening(inputs)
-    z = (inputs - white.mean) @ white.turn
+    z = white(inputs)
     whole = fit_local(inputs, z, shown, white, None, generator=torch.Generator().manual_seed(0))
     assert torch.allclose(smooth(inputs, shown, 1.0)(inputs), whole(z), atol=1e-3)
 

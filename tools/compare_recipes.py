@@ -84,10 +84,11 @@ def main() -> None:
     parser.add_argument("--fine-tuning", type=int, help="steps of the closed-form recipe's; the preset's if left out")
     parser.add_argument("--batch", type=int, help="frames of each of them; the preset's if left out")
     parser.add_argument("--rate", type=float, help="of the first of them; the preset's if left out")
+    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("-o", "--output", type=Path, default=Path("build/recipes"))
     arguments = parser.parse_args()
     recording = Recording(arguments.recording)
-    settings = replace(preset(arguments.preset), texels=recording.rig.texels.size)
+    settings = replace(preset(arguments.preset), texels=recording.rig.texels.size, seed=arguments.seed)
     given = {"steps": arguments.fine_tuning, "batch": arguments.batch, "rate": arguments.rate}
     change = {name: value for name, value in given.items() if value is not None}
     settings = replace(settings, finetune=replace(settings.finetune, **change))

@@ -92,7 +92,7 @@ def predict(
     found = torch.zeros(len(points), values.shape[1])
     for part in owners.unique().tolist():
         white = whitening(inputs * reach[part])
-        z, at = (((x * reach[part]) - white.mean) @ white.turn for x in (inputs, points))
+        z, at = (white(x * reach[part]) for x in (inputs, points))
         function = fit_smoother(z, values[:, owners == part], generator=torch.Generator().manual_seed(0))
         found[:, owners == part] = function(at)
     return found
