@@ -19,9 +19,12 @@ from synthetic_student import (
     samples,
 )
 
+from mua.student import coarse, targets
+from mua.student import regress as regression
 from mua.student import source as sources
 from mua.student.checkpoint import Checkpoints
-from mua.student.conditioned import INPUT_FLOOR, Conditioned, fold, whitening
+from mua.student.conditioned import INPUT_FLOOR, Conditioned, Whitening, fold, whitening
+from mua.student.factorize import truncated_svd
 from mua.student.model import Bands, Branch, Student, build_mlp
 from mua.student.optimise import Progress
 from mua.student.regress import leading, regress, squared_error
@@ -91,6 +94,35 @@ def test_resumes_to_the_same_bytes_after_a_kill(tmp_path: Path, monkeypatch: pyt
     with pytest.raises(Killed):
         trained(tmp_path / "killed", quick(), kill)
     assert same(trained(tmp_path / "killed", quick()), trained(tmp_path / "whole", quick()))
+
+
+@pytest.mark.parametrize(
+    ("stage", "part"), [("coarse mesh", "coarse."), ("geometry coefficients", "geometry."), ("appearance bases", "geo")]
+)
+def test_goes_on_where_directions_come_out_the_other_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stage: str, part: str
+) -> None:
+    """As on another machine or with another number of threads: nothing settles the sign of a singular vector."""
+    monkeypatch.setattr("mua.student.optimise.CHECKPOINT_STEPS", 2)
+    whole = trained(tmp_path / "whole", quick()).state_dict()
+
+    def kill(progress: Progress) -> None:
+        if progress.stage == stage and progress.step == 3:
+            raise Killed
+
+    with pytest.raises(Killed):
+        trained(tmp_path / "killed", quick(), kill)
+    monkeypatch.setattr(coarse, "truncated_svd", turned)
+    monkeypatch.setattr(targets, "truncated_svd", turned)
+    monkeypatch.setattr(regression, "whitening", lambda inputs: Whitening(inputs.mean(0), -whitening(inputs).turn))
+    found = trained(tmp_path / "killed", quick()).state_dict()
+    assert all(torch.equal(found[name], whole[name]) for name in whole if name.startswith(part))
+    assert not torch.equal(found["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
+
+
+def turned(x: torch.Tensor, rank: int, *, generator: torch.Generator) -> tuple[torch.Tensor, ...]:
+    u, s, v = truncated_svd(x, rank, generator=generator)
+    return -u, s, -v
 
 
 def test_a_finished_run_repeats_no_step(tmp_path: Path) -> None:

@@ -198,7 +198,7 @@ def test_a_checkpoint_that_finds_no_room_costs_nothing_trained_before(
     assert f"{stage}.pt: cannot be written (File too large)" in sentence(captured.err)
     begun = [name for name in STAGE_NAMES if name in captured.out.splitlines()]
     assert begun[-1] == stage
-    assert {path.name for path in tmp_path.rglob("*.pt")} == {f"{name}.pt" for name in begun[:-1]}
+    assert {path.stem for path in tmp_path.rglob("*.pt")} & set(STAGE_NAMES) == set(begun[:-1])
     assert mua_train(monkeypatch, written, output) == 0
     repeated = set(capsys.readouterr().out.splitlines()) & set(STAGE_NAMES)
     assert repeated == set(STAGE_NAMES[len(begun) - 1 :])

@@ -39,8 +39,9 @@ def mesh_pca(
 
 def set_pca(coarse: Coarse, meshes: Tensor, run: Run) -> MeshPca:
     """Set mean and basis of `coarse` from meshes [F, V, 3], metres, alike in all processes; returns the PCA."""
-    pca = mesh_pca(meshes, len(coarse.basis), generator=run.generator)
-    run.processes.agree(pca.mean, pca.basis, pca.coefficients)
+    pca = MeshPca(
+        **run.once("coarse components", lambda: vars(mesh_pca(meshes, len(coarse.basis), generator=run.generator)))
+    )
     coarse.mean.copy_(pca.mean)
     coarse.basis.copy_(pca.basis)
     return pca

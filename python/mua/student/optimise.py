@@ -45,6 +45,21 @@ class Run:
         digest = hashlib.sha256(f"{self.generator.initial_seed()} {stage}".encode()).digest()
         return replace(self, generator=torch.Generator().manual_seed(int.from_bytes(digest[:7], "little")))
 
+    def once(self, stage: str, solve: Callable[[], dict[str, Tensor]]) -> dict[str, Tensor]:
+        """What `solve` gives, alike in all processes and kept for a run that goes on.
+
+        Directions are found up to their sign, which another machine or number of threads chooses anew: what was trained
+        on the old ones must not be read by the new.
+        """
+        kept = self.checkpoints.load(stage)
+        if kept is None:
+            tensors = solve()
+            self.processes.agree(*tensors.values())
+            self.checkpoints.save(stage, {"tensors": tensors, "generator": self.generator.get_state()})
+            return tensors
+        self.generator.set_state(kept["generator"])
+        return {name: tensor.to(self.device) for name, tensor in kept["tensors"].items()}
+
 
 def optimise(
     module: nn.Module,

@@ -23,7 +23,7 @@ from mua.student.regress import regress, squared_error
 from mua.student.selection import validation_rows
 from mua.student.settings import Settings
 from mua.student.source import Source, hold
-from mua.student.targets import channel_weights, joint_targets, still_channels
+from mua.student.targets import Targets, channel_weights, joint_targets, still_channels
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
 StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
@@ -135,12 +135,17 @@ def _silent(_: Progress) -> None:
 
 
 def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
-    """The stages of a recipe in order, and the names of the checkpoints that each ends in."""
+    """The stages of a recipe in order, and the names of the checkpoints that each leaves."""
     if settings.start == "random":
-        return {"coarse": ("coarse mesh",), "fine-tuning": tuple(f"{name} descent" for name in BRANCHES)}
-    endings: dict[StageName, str] = {"bases": "bases", "regression": "coefficients", "fine-tuning": "fine-tuning"}
-    parts = {stage: tuple(f"{name} {ending}" for name in BRANCHES) for stage, ending in endings.items()}
-    return {"coarse": ("coarse mesh",), **parts}
+        coarse = ("coarse components", "coarse mesh")
+        return {"coarse": coarse, "fine-tuning": tuple(f"{name} descent" for name in BRANCHES)}
+    endings: dict[StageName, tuple[str, ...]] = {
+        "bases": ("bases",),
+        "regression": ("targets", "coefficients whitening", "coefficients"),
+        "fine-tuning": ("fine-tuning",),
+    }
+    kept = {stage: tuple(f"{name} {end}" for end in ends for name in BRANCHES) for stage, ends in endings.items()}
+    return {"coarse": ("coarse components", "coarse mesh whitening", "coarse mesh"), **kept}
 
 
 def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoints) -> None:
@@ -222,8 +227,11 @@ def start_branch(
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
     stage = f"{name} coefficients"
     own = run.alone(stage)
-    targets = joint_targets(branch, flat, weights, rank=rank, generator=own.generator)
-    run.processes.agree(targets.coordinates, targets.expand)
+    targets = Targets(
+        **own.once(
+            f"{name} targets", lambda: vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator))
+        )
+    )
     local = (
         None if parts is None else texture_locality(parts, branch, targets, weights, fade=settings.generalisation.fade)
     )
