@@ -42,6 +42,7 @@ def regress(
     It learns the values of that function at points around the frames. With `locality` the function is a sum over body
     parts, each of the joints near it.
     """
+    schedule = schedule.over(len(inputs))
     white = Whitening(**run.once(f"{stage} whitening", lambda: vars(whitening(inputs))))
     z = white(inputs)
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)

@@ -29,7 +29,7 @@ class Schedule:
     rate: float  # learning rate at its highest
     falls: bool = True  # to zero along a cosine, or stays
     rises: float = 0.0  # share of the steps in which the rate rises from zero: Adam's first steps are its boldest
-    passes: float = math.inf  # over all frames; the run is shorter where these are fewer steps: few frames overfit
+    passes: float = math.inf  # over all frames; the run is shorter where these are fewer steps: few frames are soon learnt
 
     def over(self, frames: int) -> "Schedule":
         """The run that so many frames get."""
@@ -87,7 +87,7 @@ PRESETS = {
         components=24,
         hidden=128,
         sweeps=10,
-        regression=Schedule(steps=4000, batch=256, rate=3e-3),
+        regression=Schedule(steps=4000, batch=256, rate=3e-3, passes=1000),
         finetune=Schedule(steps=2000, batch=16, rate=3e-4, rises=0.1, passes=20),
     ),
     "preview": Settings(
@@ -98,7 +98,7 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=15,
-        regression=Schedule(steps=4000, batch=512, rate=2e-3),
+        regression=Schedule(steps=4000, batch=512, rate=2e-3, passes=1500),
         finetune=Schedule(steps=1000, batch=16, rate=3e-4, rises=0.1, passes=20),
     ),
     "paper": Settings(
@@ -109,7 +109,7 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=20,
-        regression=Schedule(steps=20000, batch=512, rate=2e-3),
+        regression=Schedule(steps=20000, batch=512, rate=2e-3, passes=1500),
         finetune=Schedule(steps=5000, batch=64, rate=3e-4, rises=0.1, passes=20),
     ),
 }
