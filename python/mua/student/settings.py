@@ -29,7 +29,7 @@ class Schedule:
     rate: float  # learning rate at its highest
     falls: bool = True  # to zero along a cosine, or stays
     rises: float = 0.0  # share of the steps in which the rate rises from zero: Adam's first steps are its boldest
-    passes: float = math.inf  # over all frames; the run is shorter where these are fewer steps: few frames are soon learnt
+    passes: float = math.inf  # over all frames; fewer steps where these are fewer: a handful is soon learnt
 
     def over(self, frames: int) -> "Schedule":
         """The run that so many frames get."""
