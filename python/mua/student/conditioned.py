@@ -1,8 +1,8 @@
 """MLPs in the coordinates that gradient descent likes, and their fold into the plain MLP that the file holds.
 
-A window's poses are nearly alike, and blendshape coefficients differ a thousandfold in what they are worth: Adam, whose
-steps are as long for every weight, is slow on both. So F_coeff and F_temp are trained between whitened descriptors and
-coordinates of the texture; both maps are linear, hence parts of the first and last layer once training ends.
+Adam's steps are as long for every weight, while directions of the descriptor, and blendshape coefficients, differ a
+thousandfold in what they are worth. So MLPs are trained between whitened descriptors and coordinates of the texture;
+both maps are linear, hence parts of the first and last layer once training ends.
 """
 
 from dataclasses import dataclass
