@@ -1,12 +1,14 @@
 """Train one student by each option for unseen motion on one recording and set their losses side by side.
 
     python tools/compare_options.py RECORDING --preset tiny -o build/options
+    python tools/compare_options.py RECORDING --leave 01_06 --leave 01_12 --leave 02_06 -o build/options_left
 
-Each option changes the default in one place. The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus appearance,
-in units of each attribute's spread) over all recorded frames; the shares are of the held-out variance about the
-training mean that the student explains. All options share the bases, which are not timed, but for those that train on
-fewer frames. Rows that OUTPUT/options.csv holds are kept, so that a comparison can be cut short and extended. Writes
-options.csv and options.md.
+The second form leaves training clips out and judges by them, so that the held-out clips need not choose what they are
+to measure. Each option changes the default in one place. The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus
+appearance, in units of each attribute's spread) over all recorded frames; the shares are of the unseen frames' variance
+about the training mean that the student explains. All options share the bases, which are not timed, but for those that
+train on fewer frames. Rows that OUTPUT/options.csv holds are kept, so that a comparison can be cut short and extended.
+Writes options.csv and options.md.
 """
 
 import csv
@@ -47,6 +49,7 @@ OPTIONS: dict[str, dict[str, float]] = {
     "fade 0.4": {"fade": 0.4},
     "no input noise": {"noise": 0.0},
     "input noise 0.6": {"noise": 0.6},
+    "input noise 1": {"noise": 1.0},
     "no weight decay": {"weight_decay": 0.0},
     "weight decay 0.01": {"weight_decay": 1e-2},
     "heading kept": {"heading": False},
@@ -54,28 +57,31 @@ OPTIONS: dict[str, dict[str, float]] = {
     f"{LONGER}x fine-tuning": {"longer": LONGER},
     f"{LONGER}x, a tenth chooses": {"longer": LONGER, "validation": 0.1},
 }
-COLUMNS = ("option", "training loss", "held-out loss", *(f"{name}, %" for name in ATTRIBUTES), "mesh, %", "seconds")
+SHARES = (*(f"{name}, %" for name in ATTRIBUTES), "mesh, %")
 
 
 def main(
     recording: Annotated[Path, typer.Argument(help="Recording with held-out clips.")],
     preset_name: Annotated[str, typer.Option("--preset", help="Of the student.")] = "tiny",
     only: Annotated[list[str], typer.Option(help="Option to measure, may be repeated; all if left out.")] = [],  # noqa: B006
+    leave: Annotated[list[str], typer.Option(help="Training clip to judge by instead, may be repeated.")] = [],  # noqa: B006
     output: Annotated[Path, typer.Option("--output", "-o", help="Directory of the tables.")] = Path("build/options"),
 ) -> None:
     """Measure what helps on motion that was not trained on."""
     opened = Recording(recording)
     settings = replace(preset(preset_name), texels=opened.rig.texels.size)
     output.mkdir(parents=True, exist_ok=True)
-    rows = read_rows(output / "options.csv")
+    unseen = "held-out loss" if not leave else f"loss of {', '.join(leave)}"
+    columns = ("option", "training loss", unseen, *SHARES, "seconds")
+    rows = read_rows(output / "options.csv", columns)
     weights = loss_weights(opened, settings)
-    bases = Checkpoints(output / "bases", run_key((settings, opened.fingerprint()), [weights]))
+    bases = Checkpoints(output / "bases", run_key((settings, leave, opened.fingerprint()), [weights]))
     for option in only or OPTIONS:
         if option not in rows:
-            rows[option] = measure(opened, vary(settings, OPTIONS[option]), weights, bases=bases)
-            write_rows(output / "options.csv", rows)
+            rows[option] = measure(opened, vary(settings, OPTIONS[option]), weights, leave=leave, bases=bases)
+            write_rows(output / "options.csv", rows, columns)
             print(option, *rows[option], flush=True)
-    text = as_markdown(rows)
+    text = as_markdown(rows, columns)
     (output / "options.md").write_text(text)
     print(text)
 
@@ -104,9 +110,12 @@ def loss_weights(recording: Recording, settings: Settings) -> Tensor:
     return torch.cat(weights)
 
 
-def measure(recording: Recording, settings: Settings, weights: Tensor, *, bases: Checkpoints) -> list[float]:
-    """Train and judge one option: the figures of COLUMNS after the first."""
+def measure(
+    recording: Recording, settings: Settings, weights: Tensor, *, leave: list[str], bases: Checkpoints
+) -> list[float]:
+    """Train and judge one option: the figures of a row, without its name."""
     student, samples = prepare(recording, settings)
+    samples, unseen = part(recording, student, samples, leave=leave)
     shares = not settings.generalisation.validation
     with tempfile.TemporaryDirectory() as directory:
         checkpoints = Checkpoints(Path(directory), "compare")
@@ -117,7 +126,28 @@ def measure(recording: Recording, settings: Settings, weights: Tensor, *, bases:
         started = time.perf_counter()
         train(student, samples, settings=settings, checkpoints=checkpoints, device=CPU, report=_silent)
         seconds = time.perf_counter() - started
-    return [*judge(recording, student, samples, weights), seconds]
+    return [*judge(student, samples, unseen, weights), seconds]
+
+
+def part(recording: Recording, student: Student, samples: Samples, *, leave: list[str]) -> tuple[Samples, Samples]:
+    """The frames to train on and those to judge by: the clips that are left out, or else those held out."""
+    if not leave:
+        descriptors = torch.from_numpy(describe_frames(recording, student.encoding, held_out=True)).float()
+        held = replace(
+            samples,
+            descriptors=descriptors,
+            meshes=torch.from_numpy(recording.meshes(np.arange(len(descriptors)), held_out=True)),
+            subbands=lambda channels, rows: Bands(*recording.subbands(channels, rows, held_out=True)),
+            clips=None,
+        )
+        return samples, held
+    names = [clip.name for clip in recording.clips if not clip.held_out]
+    missing = [name for name in leave if name not in names]
+    if missing:
+        raise typer.BadParameter(f"--leave: {missing[0]!r} is no training clip, expected some of {', '.join(names)}")
+    assert samples.clips is not None  # a recording's samples have them
+    left = torch.isin(samples.clips, torch.tensor([names.index(name) for name in leave]))
+    return samples.of((~left).nonzero()[:, 0]), samples.of(left.nonzero()[:, 0])
 
 
 def _silent(_: Progress) -> None:
@@ -133,30 +163,26 @@ def lend_bases(owner: Checkpoints, borrower: Checkpoints) -> None:
 
 
 @torch.no_grad()
-def judge(recording: Recording, student: Student, samples: Samples, weights: Tensor) -> list[float]:
-    """Losses over all training and held-out frames; explained shares of the latter by attribute, then of the mesh."""
-    held = torch.from_numpy(describe_frames(recording, student.encoding, held_out=True)).float()
+def judge(student: Student, samples: Samples, unseen: Samples, weights: Tensor) -> list[float]:
+    """Losses over all training and unseen frames; explained shares of the latter by attribute, then of the mesh."""
     scale = weights[:, None, None]
-    mean = [torch.cat([getattr(branch, name) for branch in student.branches]) for name in ("ll_mean",)]
+    mean = [torch.cat([branch.ll_mean for branch in student.branches])]
     mean += [torch.cat([getattr(branch, name).mean for branch in student.branches], dim=1) for name in ("d3", "d2")]
     losses, missed, spread = [], torch.zeros(CHANNELS), torch.zeros(CHANNELS)
-    for kind, descriptors in ((False, samples.descriptors), (True, held)):
+    for kind in (samples, unseen):
         total = 0.0
-        for rows in torch.arange(len(descriptors)).split(BATCH):
-            truth, found = (
-                Bands(*recording.subbands(slice(0, CHANNELS), rows, held_out=kind)),
-                student.predict(descriptors[rows]),
-            )
-            for part in (GEOMETRY, APPEARANCE):
-                one, other = (Bands(*(band * scale for band in bands)).of(part) for bands in (found, truth))
+        for rows in torch.arange(len(kind)).split(BATCH):
+            truth, found = kind.subbands(slice(0, CHANNELS), rows), student.predict(kind.descriptors[rows])
+            for branch in (GEOMETRY, APPEARANCE):
+                one, other = (Bands(*(band * scale for band in bands)).of(branch) for bands in (found, truth))
                 total += len(rows) * float(subband_loss(one, other))
-            if kind:
+            if kind is unseen:
                 missed += sum(by_channel(a - b) for a, b in zip(found, truth, strict=True))
                 spread += sum(by_channel(a - b) for a, b in zip(truth, mean, strict=True))
-        losses.append(total / max(len(descriptors), 1))
+        losses.append(total / max(len(kind), 1))
     shares = [100 * (1 - float(missed[own].sum() / spread[own].sum())) for own in ATTRIBUTES.values()]
-    truth_mesh = torch.from_numpy(recording.meshes(np.arange(len(held)), held_out=True))
-    left = (student.mesh(held) - truth_mesh).square().sum() / (truth_mesh - samples.meshes.mean(0)).square().sum()
+    left = (student.mesh(unseen.descriptors) - unseen.meshes).square().sum()
+    left /= (unseen.meshes - samples.meshes.mean(0)).square().sum()
     return [*losses, *shares, 100 * (1 - float(left))]
 
 
@@ -165,27 +191,31 @@ def by_channel(band: Tensor) -> Tensor:
     return band.square().movedim(-3, 0).flatten(1).sum(1)
 
 
-def read_rows(path: Path) -> dict[str, list[float]]:
+def read_rows(path: Path, columns: tuple[str, ...]) -> dict[str, list[float]]:
+    """What was measured earlier, of the same columns."""
     if not path.exists():
         return {}
     with path.open(newline="") as file:
-        return {row[0]: [float(value) for value in row[1:]] for row in list(csv.reader(file))[1:]}
+        head, *rows = csv.reader(file)
+    if tuple(head) != columns:
+        raise typer.BadParameter(f"{path}: holds {', '.join(head)}, expected {', '.join(columns)}; give another -o")
+    return {row[0]: [float(value) for value in row[1:]] for row in rows}
 
 
-def write_rows(path: Path, rows: dict[str, list[float]]) -> None:
+def write_rows(path: Path, rows: dict[str, list[float]], columns: tuple[str, ...]) -> None:
     with replacing(path) as temporary, temporary.open("w", newline="") as file:
         table = csv.writer(file)
-        table.writerow(COLUMNS)
+        table.writerow(columns)
         table.writerows((option, *values) for option, values in rows.items())
 
 
-def as_markdown(rows: dict[str, list[float]]) -> str:
+def as_markdown(rows: dict[str, list[float]], columns: tuple[str, ...]) -> str:
     """The table; losses to four digits, shares to a tenth."""
 
     def line(cells: Iterable[str]) -> str:
         return "| " + " | ".join(cells) + " |\n"
 
-    text = line(COLUMNS) + line(["---"] * len(COLUMNS))
+    text = line(columns) + line(["---"] * len(columns))
     for option in (name for name in OPTIONS if name in rows):
         losses, shares, seconds = rows[option][:2], rows[option][2:-1], rows[option][-1]
         text += line([option, *(f"{x:.3f}" for x in losses), *(f"{x:.1f}" for x in shares), f"{seconds:.0f}"])
