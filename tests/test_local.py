@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import recordings
 import torch
+from limbs import limbs_apart, two_limbs
 from synthetic_avatar import synthetic_rig
 from synthetic_student import SETTINGS, new_student
 
@@ -18,12 +19,11 @@ from mua.student.coarse import mesh_pca
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
 from mua.student.local import (
-    Locality,
     Parts,
     body_parts,
     carriers,
     joint_steps,
-    mesh_locality,
+    sample_locality,
     sample_owners,
     texture_locality,
 )
@@ -130,32 +130,9 @@ def test_shares_of_the_parts_make_up_the_whole_texture() -> None:
 def test_shares_of_the_mesh_follow_its_vertices() -> None:
     meshes = torch.randn(30, 7, 3, generator=torch.Generator().manual_seed(0))
     basis = mesh_pca(meshes, 5, generator=torch.Generator().manual_seed(0)).basis
-    shares = mesh_locality(two_parts(), basis, fade=0.5).shares
+    shares = sample_locality(two_parts(), basis, two_parts().vertices, fade=0.5).shares
     assert torch.allclose(shares.sum(0), torch.eye(5), atol=1e-5)
     assert torch.allclose(shares[1], torch.einsum("kvx,lvx->kl", basis[:, 3:], basis[:, 3:]), atol=1e-5)
-
-
-def two_limbs(frames: int, *, seed: int, together: bool) -> tuple[torch.Tensor, torch.Tensor]:
-    """Descriptors of two limbs [F, 2 D] and what the texels of each show [F, 2], which depends on its own limb alone.
-
-    In training, one limb always does nearly what the other does.
-    """
-    generator = torch.Generator().manual_seed(seed)
-    one = torch.randn(frames, 3, generator=generator)
-    other = (
-        one + 0.2 * torch.randn(frames, 3, generator=generator)
-        if together
-        else torch.randn(frames, 3, generator=generator)
-    )
-    shown = [torch.sin(limb[:, 0]) + 0.5 * limb[:, 1] * limb[:, 2] for limb in (one, other)]
-    return torch.cat([one, other], dim=1), torch.stack(shown, dim=1)
-
-
-def limbs_apart(fade: float) -> Locality:
-    own = torch.tensor([1.0, 1, 1, fade, fade, fade])
-    shares = torch.zeros(2, 2, 2)
-    shares[0, 0, 0] = shares[1, 1, 1] = 1
-    return Locality(torch.stack([own, own.flip(0)]), shares)
 
 
 def smooth(inputs: torch.Tensor, shown: torch.Tensor, fade: float) -> Callable[[torch.Tensor], torch.Tensor]:
@@ -192,6 +169,11 @@ def test_local_parts_carry_over_to_limbs_that_move_apart() -> None:
     unseen, truth = two_limbs(200, seed=4, together=False)
     errors = [float((smooth(inputs, shown, fade)(unseen) - truth).square().mean()) for fade in (1.0, 0.5)]
     assert errors[1] < 0.8 * errors[0]
+
+
+def test_a_texel_belongs_to_the_part_of_its_sample() -> None:
+    texels = torch.tensor([0, 31, 32, 47, 48 * 47 + 32])  # of 48 x 48; part 1 begins at column 32
+    assert two_parts().texel_owners(texels).tolist() == [0, 0, 1, 1, 1]
 
 
 def test_a_recording_is_prepared_with_its_parts_and_clips(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """The systems that model the texture at full resolution: PCA, blendshapes, separable blendshapes, a linear map."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import torch
 from torch import Tensor, nn
@@ -11,6 +12,7 @@ from mua.compare.system import Motion, Sizes, TrainingFrames
 from mua.student.conditioned import Conditioned
 from mua.student.descend import BASIS_START, start_mlp
 from mua.student.factorize import separable_blendshapes
+from mua.student.local import D2_TEXELS, Locality, sample_locality, texture_locality
 from mua.student.model import STATIC_LEVELS, Branch, build_mlp
 from mua.student.optimise import Run
 from mua.student.regress import regress, squared_error
@@ -117,7 +119,12 @@ def start_from_components(
         basis.shapes[:kept, at] = (u / s).T @ x * spread[:, None]
     expand = torch.zeros(kept, basis.rank, device=run.device)
     expand[:, :kept] = torch.diag(1 / spread)
-    basis.mlp = _teach(frames, rows, u * s, expand, normalize=normalize, run=run)
+    local = None
+    if frames.parts is not None:
+        directions = (basis.shapes[:kept] / spread[:, None, None]).transpose(1, 2)
+        owners = frames.parts.texel_owners(frames.sizes.texels)
+        local = sample_locality(frames.parts, directions, owners, fade=frames.sizes.settings.generalisation.fade)
+    basis.mlp = _teach(frames, rows, u * s, expand, locality=local, normalize=normalize, run=run)
 
 
 class SingleLevel(FullNetwork):
@@ -201,7 +208,17 @@ def start_from_quarter(
     unit = torch.ones(count, device=run.device)
     rank = min(settings.hidden, len(rows))
     targets = joint_targets(stand_in, flat, unit, rank=rank, generator=run.generator)
-    part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, normalize=normalize, run=run)
+    local = None
+    if frames.parts is not None:
+        fine = frames.parts.fine
+        parts = replace(frames.parts, coarse=finer(fine, D2_TEXELS >> STATIC_LEVELS), fine=finer(fine, D2_TEXELS >> 1))
+        local = texture_locality(parts, stand_in, targets, unit, fade=settings.generalisation.fade)
+    part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, locality=local, normalize=normalize, run=run)
+
+
+def finer(owners: Tensor, times: int) -> Tensor:
+    """Parts [n, n] of samples `times` smaller, [times n, times n]."""
+    return owners.repeat_interleave(times, 0).repeat_interleave(times, 1)
 
 
 def lines_to_full(
@@ -287,6 +304,7 @@ def _teach(
     coordinates: Tensor,  # [F, K] of the rows
     expand: Tensor,  # [K, M]
     *,
+    locality: Locality | None,
     normalize: Callable[[Tensor], Tensor],
     run: Run,
 ) -> Conditioned:
@@ -296,11 +314,13 @@ def _teach(
         normalize(frames.motion.descriptors[rows].to(run.device)),
         coordinates,
         expand=expand,
+        locality=locality,
         hidden=settings.hidden,
         criterion=squared_error,
         schedule=settings.regression,
         stage="coefficients",
         run=run,
+        generalisation=settings.generalisation,
     )
 
 

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from mua.student.factorize import truncated_svd
-from mua.student.local import Parts, mesh_locality
+from mua.student.local import Parts, sample_locality
 from mua.student.model import Coarse
 from mua.student.optimise import Run
 from mua.student.regress import absolute_error, regress
@@ -58,10 +58,11 @@ def fit_coarse(
 ) -> None:
     """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
     pca = set_pca(coarse, meshes, run)
+    fade = settings.generalisation.fade
     mlp = regress(
         inputs,
         pca.coefficients,
-        locality=None if parts is None else mesh_locality(parts, pca.basis, fade=settings.generalisation.fade),
+        locality=None if parts is None else sample_locality(parts, pca.basis, parts.vertices, fade=fade),
         hidden=settings.hidden,
         criterion=absolute_error,
         schedule=settings.regression,

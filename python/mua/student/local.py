@@ -36,11 +36,20 @@ class Parts:
         """[P, k D] what each entry of a descriptor is multiplied by before a part sees it; 1 for its own joint."""
         return fade ** self.steps.float()
 
+    def texel_owners(
+        self,
+        texels: Tensor,  # [N] int64, row * size + col
+    ) -> Tensor:
+        """The part [N] of texels."""
+        size = D2_TEXELS * len(self.fine)
+        return self.fine.to(texels.device)[texels // size // D2_TEXELS, texels % size // D2_TEXELS]
+
 
 @dataclass(frozen=True)
 class Locality:
     """How the targets of a regression are made of parts: its sum over parts is what is taught."""
 
+    steps: Tensor  # [P, k D] int64, of the parts
     reach: Tensor  # [P, k D]
     shares: Tensor  # [P, K, K]; coordinates @ shares[p] are the coordinates of part p's samples alone
 
@@ -135,20 +144,21 @@ def texture_locality(
             shapes = torch.einsum("kr,sri,srj->skij", alpha[:, channel], h, w)
             for band in shapes.flatten(2):
                 _add_shares(shares, band * weights[channel], owner)
-    return Locality(parts.reach(fade).to(device), shares)
+    return Locality(parts.steps.to(device), parts.reach(fade).to(device), shares)
 
 
-def mesh_locality(
+def sample_locality(
     parts: Parts,
-    basis: Tensor,  # [K, V, 3] orthonormal
+    basis: Tensor,  # [K, S, A] orthonormal: what each coordinate puts into A values of S samples
+    owners: Tensor,  # [S] the part of each sample
     *,
     fade: float,
 ) -> Locality:
-    """How the PCA coefficients of the coarse mesh are made of parts."""
+    """How coordinates of a mesh or of a full-size texture are made of parts."""
     shares = torch.zeros(len(parts.steps), len(basis), len(basis), device=basis.device)
-    for axis in range(basis.shape[2]):
-        _add_shares(shares, basis[..., axis], parts.vertices.to(basis.device))
-    return Locality(parts.reach(fade).to(basis.device), shares)
+    for value in range(basis.shape[2]):
+        _add_shares(shares, basis[..., value], owners.to(basis.device))
+    return Locality(parts.steps.to(basis.device), parts.reach(fade).to(basis.device), shares)
 
 
 def _add_shares(

@@ -12,11 +12,11 @@ from mua.student.conditioned import Conditioned, Whitening, whitening
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Run, optimise
+from mua.student.points import draw_points
 from mua.student.settings import Generalisation, Schedule
 from mua.student.smoother import Sum, fit_smoother
 
 # Measured on held-out CMU walks and turns, see docs/accuracy.md.
-BLEND = 0.5  # points lie up to this far on the way from one frame to another
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
 VISITS = 32  # to each point: the function's values there are computed once
 POINTS_AT_ONCE = 1 << 10
@@ -40,7 +40,7 @@ def regress(
     """An MLP from normalised descriptors to targets, or to targets @ expand, taught the smooth function through them.
 
     It learns the values of that function at points around the frames. With `locality` the function is a sum over body
-    parts, each of the joints near it.
+    parts, each of the joints near it, and the points go where parts are as in different frames.
     """
     schedule = schedule.over(len(inputs))
     white = Whitening(**run.once(f"{stage} whitening", lambda: vars(whitening(inputs))))
@@ -55,7 +55,14 @@ def regress(
         generator = run.alone(f"{stage} points").generator
         smooth = fit_local(inputs, z, goal, white, locality, generator=generator)
         own = run.processes.held(count)
-        points = draw_around(z, count, noise=generalisation.noise, generator=generator)[own.start :: own.step]
+        points = draw_points(
+            inputs,
+            white,
+            count,
+            steps=None if locality is None else locality.steps,
+            generalisation=generalisation,
+            generator=generator,
+        )[own.start :: own.step]
         return points, torch.cat([smooth(some) for some in points.split(POINTS_AT_ONCE)])
 
     def loss(model: nn.Module) -> Tensor:
@@ -103,20 +110,6 @@ def leading(
     held = torch.empty_like(order, dtype=torch.bool)
     held[order] = spread.cumsum(0) > FORGONE * spread.sum()
     return held
-
-
-def draw_around(
-    z: Tensor,  # [F, D] whitened descriptors
-    count: int,
-    *,
-    noise: float,
-    generator: torch.Generator,
-) -> Tensor:
-    """Random points [count, D] around the frames and between them."""
-    one, other = torch.randint(len(z), (2, count), generator=generator).to(z.device)
-    along, off = torch.rand(2, count, 1, generator=generator).to(z)
-    drawn = torch.randn(count, z.shape[1], generator=generator).to(z)
-    return z[one] + BLEND * along * (z[other] - z[one]) + noise * off * z.std(0, correction=0) * drawn
 
 
 def seeded_mlp(inputs: int, hidden: int, outputs: int, *, run: Run) -> nn.Sequential:

@@ -54,7 +54,9 @@ class Generalisation:
     """What carries over to unseen motion; `tools/compare_options.py` measures it (docs/training.md)."""
 
     fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
-    noise: float = 0.3  # of the inputs of the regression, up to this share of the spread of each of their directions
+    noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction
+    exchanged: float = 0.75  # share of those points where a body part is as in another frame
+    exchanged_noise: float = 1.0  # of these
     weight_decay: float = 1e-3  # of the MLPs
     heading: bool = True  # whether the descriptor is turned back by the heading
     validation: float = 0.0  # share of the training frames, whole clips, that only choose the best fine-tuning step
@@ -88,7 +90,7 @@ PRESETS = {
         hidden=128,
         sweeps=10,
         regression=Schedule(steps=4000, batch=256, rate=3e-3, passes=1000),
-        finetune=Schedule(steps=2000, batch=16, rate=3e-4, rises=0.1, passes=20),
+        finetune=Schedule(steps=2000, batch=16, rate=5e-4, rises=0.1, passes=20),
     ),
     "preview": Settings(
         texels=384,
@@ -99,7 +101,7 @@ PRESETS = {
         hidden=384,
         sweeps=15,
         regression=Schedule(steps=4000, batch=512, rate=2e-3, passes=1500),
-        finetune=Schedule(steps=1000, batch=16, rate=3e-4, rises=0.1, passes=20),
+        finetune=Schedule(steps=1000, batch=16, rate=5e-4, rises=0.1, passes=20),
     ),
     "paper": Settings(
         texels=768,
@@ -110,7 +112,7 @@ PRESETS = {
         hidden=384,
         sweeps=20,
         regression=Schedule(steps=20000, batch=512, rate=2e-3, passes=1500),
-        finetune=Schedule(steps=5000, batch=64, rate=3e-4, rises=0.1, passes=20),
+        finetune=Schedule(steps=5000, batch=64, rate=5e-4, rises=0.1, passes=20),
     ),
 }
 

@@ -1,0 +1,67 @@
+"""Where the MLPs are taught the smooth function: around the frames, and where a body part is as in another frame.
+
+An MLP follows a function where it was taught it, and little beyond. Unseen poses lie as far from the nearest frame as
+frames lie from each other, and most of them are seen parts in combinations that are not: an arm of one frame, the legs
+of another. With points there too, the MLP follows the function where unseen motion goes (docs/training.md).
+"""
+
+import torch
+from torch import Tensor
+
+from mua.student.conditioned import Whitening
+from mua.student.settings import Generalisation
+
+BLEND = 0.5  # points lie up to this far on the way to a frame
+RADII = 4  # a part is a joint with those fewer than this many joints away
+
+
+def draw_points(
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    white: Whitening,
+    count: int,
+    *,
+    steps: Tensor | None,  # [P, k D] int64, joints between a part and each entry; without them no part is exchanged
+    generalisation: Generalisation,
+    generator: torch.Generator,
+) -> Tensor:
+    """Random whitened points [count, k D]: frames, some with a part of another, moved towards a third, and noise."""
+    z = white(inputs)
+    exchanged = 0 if steps is None else round(generalisation.exchanged * count)
+    around = scatter(pick(z, count - exchanged, generator=generator), z, generalisation.noise, generator=generator)
+    if steps is None or not exchanged:
+        return around
+    mixed = white(exchange(inputs, steps, exchanged, generator=generator))
+    return torch.cat([around, scatter(mixed, z, generalisation.exchanged_noise, generator=generator)])
+
+
+def exchange(
+    inputs: Tensor,  # [F, k D] normalised descriptors
+    steps: Tensor,  # [P, k D]
+    count: int,
+    *,
+    generator: torch.Generator,
+) -> Tensor:
+    """Descriptors [count, k D] of frames in which a random joint, and those near it, are as in another frame."""
+    part = torch.randint(len(steps), (count,), generator=generator).to(inputs.device)
+    radius = torch.randint(RADII, (count, 1), generator=generator).to(inputs.device)
+    one, other = (pick(inputs, count, generator=generator) for _ in range(2))
+    return torch.where(steps.to(inputs.device)[part] <= radius, one, other)
+
+
+def scatter(
+    points: Tensor,  # [count, D]
+    z: Tensor,  # [F, D] whitened descriptors
+    noise: float,  # up to this share of the spread of each direction
+    *,
+    generator: torch.Generator,
+) -> Tensor:
+    """Points moved up to BLEND of the way towards random frames, then by noise of random strength."""
+    along, off = torch.rand(2, len(points), 1, generator=generator).to(z)
+    drawn = torch.randn(points.shape, generator=generator).to(z)
+    target = pick(z, len(points), generator=generator)
+    return points + BLEND * along * (target - points) + noise * off * z.std(0, correction=0) * drawn
+
+
+def pick(rows: Tensor, count: int, *, generator: torch.Generator) -> Tensor:
+    """Random rows."""
+    return rows[torch.randint(len(rows), (count,), generator=generator).to(rows.device)]
