@@ -89,7 +89,7 @@ PRESETS = {
         components=24,
         hidden=128,
         sweeps=10,
-        regression=Schedule(steps=4000, batch=256, rate=3e-3, passes=1000),
+        regression=Schedule(steps=4000, batch=256, rate=3e-3, passes=2000),
         finetune=Schedule(steps=2000, batch=16, rate=5e-4, rises=0.1, passes=20),
     ),
     "preview": Settings(
@@ -100,7 +100,7 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=15,
-        regression=Schedule(steps=4000, batch=512, rate=2e-3, passes=1500),
+        regression=Schedule(steps=4000, batch=512, rate=2e-3, passes=3000),
         finetune=Schedule(steps=1000, batch=16, rate=5e-4, rises=0.1, passes=20),
     ),
     "paper": Settings(
@@ -111,7 +111,7 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=20,
-        regression=Schedule(steps=20000, batch=512, rate=2e-3, passes=1500),
+        regression=Schedule(steps=20000, batch=512, rate=2e-3, passes=3000),
         finetune=Schedule(steps=5000, batch=64, rate=5e-4, rises=0.1, passes=20),
     ),
 }
