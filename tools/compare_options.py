@@ -48,7 +48,7 @@ OPTIONS: dict[str, dict[str, float]] = {
     "fade 0.8": {"fade": 0.8},
     "fade 0.4": {"fade": 0.4},
     "no parts exchanged": {"exchanged": 0.0},
-    "half of the points": {"exchanged": 0.5},
+    "three quarters of the points": {"exchanged": 0.75},
     "all points": {"exchanged": 1.0},
     "no input noise": {"noise": 0.0, "exchanged_noise": 0.0},
     "input noise 0.3": {"exchanged_noise": 0.3},

@@ -55,7 +55,7 @@ class Generalisation:
 
     fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
     noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction
-    exchanged: float = 0.75  # share of those points where a body part is as in another frame
+    exchanged: float = 0.5  # share of those points where a body part is as in another frame
     exchanged_noise: float = 1.0  # of these
     weight_decay: float = 1e-3  # of the MLPs
     heading: bool = True  # whether the descriptor is turned back by the heading
