@@ -21,6 +21,7 @@ from mua.errors import InputError
 
 TIMEOUT = timedelta(minutes=10)  # longer than any process computes between two exchanges
 PATIENCE = timedelta(days=7)  # for others to record their part; a process that ends is noticed at once
+HALVES = 2  # that a process alone computes a batch in: as two processes do, so that both add up the same numbers
 LOST = ("gloo", "Gloo", "NCCL", "Connection closed", "Connection reset")  # what torch's errors say of a dead process
 
 T = TypeVar("T")
@@ -31,12 +32,13 @@ class Share:
     """What one process computes of a batch that is drawn for all of them."""
 
     rows: Tensor  # [B'] at least one
+    held: range  # the frames that they are among
     weight: float  # of their mean loss: its average over the processes is then the mean over the whole batch
 
 
 @dataclass(frozen=True)
 class Processes:
-    """One of `count` processes; alone, every method does nothing and costs nothing."""
+    """One of `count` processes; alone, there is nothing to exchange, and batches are computed half by half."""
 
     rank: int
     count: int
@@ -63,18 +65,36 @@ class Processes:
         """The frames that this process holds: every `count`-th; one of another's where there are too few frames."""
         return range(self.rank % max(frames, 1), frames, self.count)
 
-    def share(
+    def parts(self, frames: int) -> list[range]:
+        """The frames that this process computes, those of a range together."""
+        if self.count > 1:
+            return [self.held(frames)]
+        return [range(half, frames, HALVES) for half in range(min(HALVES, frames))]
+
+    def shares(
         self,
         rows: Tensor,  # [B] the whole batch, the same in all processes
         *,
         frames: int,  # that `rows` are drawn from
-    ) -> Share:
-        """The rows of a batch that this process holds; where it holds none, one that weighs nothing."""
-        if self.count == 1:
-            return Share(rows, 1.0)
-        own = rows[rows % self.count == self.rank]
-        weight = len(own) * self.count / len(rows)
-        return Share(own if len(own) else torch.full((1,), self.held(frames).start), weight)
+    ) -> list[Share]:
+        """What this process computes of a batch; where it holds none of it, one row that weighs nothing."""
+        shares = []
+        for first, part in enumerate(self.parts(frames), start=self.rank):
+            own = rows[rows % part.step == first]
+            if len(own):
+                shares.append(Share(own, part, len(own) * self.count / len(rows)))
+        held = self.held(frames)
+        return shares or [Share(torch.full((1,), held.start), held, 0.0)]
+
+    def mean_loss(
+        self,
+        rows: Tensor,  # [B] the whole batch, the same in all processes
+        loss: Callable[[Share], Tensor],  # the mean over the share's rows
+        *,
+        frames: int,  # that `rows` are drawn from
+    ) -> Tensor:
+        """This process's part of the mean loss over a batch, which is the average of all parts."""
+        return torch.stack([share.weight * loss(share) for share in self.shares(rows, frames=frames)]).sum()
 
     def channels(self, count: int) -> range:
         """Of `count` channels those that this process solves for; see `owner`."""

@@ -10,7 +10,7 @@ import math
 import torch
 from torch import Tensor, nn
 
-from mua.processes import ALONE, Processes
+from mua.processes import ALONE, Processes, Share
 from mua.student.coarse import set_pca
 from mua.student.finetune import Frames, draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
@@ -35,9 +35,11 @@ def descend_coarse(
     start_mlp(coarse.mlp, run.generator)
 
     def loss(model: nn.Module) -> Tensor:
-        share = run.processes.share(draw_frames(len(inputs), settings.regression, run), frames=len(inputs))
-        rows = share.rows.to(inputs.device)
-        return share.weight * (model(inputs[rows]) - pca.coefficients[rows]).abs().sum(1).mean()
+        def part(share: Share) -> Tensor:
+            rows = share.rows.to(inputs.device)
+            return (model(inputs[rows]) - pca.coefficients[rows]).abs().sum(1).mean()
+
+        return run.processes.mean_loss(draw_frames(len(inputs), settings.regression, run), part, frames=len(inputs))
 
     groups: list[dict[str, object]] = [{"params": list(coarse.mlp.parameters()), "weight_decay": 0.0}]
     optimise(coarse.mlp, loss, schedule=settings.regression, parameters=groups, stage="coarse mesh", run=run)

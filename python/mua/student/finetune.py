@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
+from mua.processes import Share
 from mua.student.model import Bands, Branch
 from mua.student.optimise import Run, optimise
 from mua.student.selection import Selection
@@ -82,11 +83,13 @@ def finetune(
         selection = Selection(lambda: run.processes.told(mean_loss(branch, judges, weights)))
 
     def loss(model: nn.Module) -> Tensor:
-        share = run.processes.share(draw_frames(len(inputs), schedule, run), frames=len(inputs))
-        ll, d3, d2 = (band.to(run.device) for band in bands(share.rows))
-        scale = weights[:, None, None]
-        predicted = model(inputs[share.rows.to(inputs.device)])
-        return share.weight * subband_loss(predicted, Bands(ll * scale, d3 * scale, d2 * scale))
+        def part(share: Share) -> Tensor:
+            ll, d3, d2 = (band.to(run.device) for band in bands(share.rows))
+            scale = weights[:, None, None]
+            predicted = model(inputs[share.rows.to(inputs.device)])
+            return subband_loss(predicted, Bands(ll * scale, d3 * scale, d2 * scale))
+
+        return run.processes.mean_loss(draw_frames(len(inputs), schedule, run), part, frames=len(inputs))
 
     mlp = list(branch.mlp.parameters())
     bases = [branch.ll_basis, branch.d3.h, branch.d3.w, branch.d2.h, branch.d2.w]

@@ -8,6 +8,7 @@ from functools import cache
 import torch
 from torch import Tensor, nn
 
+from mua.processes import Share
 from mua.student.conditioned import Conditioned, Whitening, whitening
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
@@ -51,10 +52,9 @@ def regress(
     count = max(schedule.steps * schedule.batch // VISITS, 1)
 
     @cache  # and not at all where a finished stage is taken up
-    def lesson() -> tuple[Tensor, Tensor]:
+    def lesson() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
         smooth = fit_local(inputs, z, goal, white, locality, generator=generator)
-        own = run.processes.held(count)
         points = draw_points(
             inputs,
             white,
@@ -62,15 +62,20 @@ def regress(
             steps=None if locality is None else locality.steps,
             generalisation=generalisation,
             generator=generator,
-        )[own.start :: own.step]
-        return points, torch.cat([smooth(some) for some in points.split(POINTS_AT_ONCE)])
+        )
+        parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
+        return {
+            part: (at, torch.cat([smooth(some) for some in at.split(POINTS_AT_ONCE)])) for part, at in parts.items()
+        }
 
     def loss(model: nn.Module) -> Tensor:
-        points, values = lesson()
+        def part(share: Share) -> Tensor:
+            points, values = lesson()[share.held]
+            places = ((share.rows - share.held.start) // share.held.step).to(points.device)
+            return criterion(model(points[places]), values[places])
+
         drawn = torch.randint(count, (schedule.batch,), generator=run.generator)
-        share, own = run.processes.share(drawn, frames=count), run.processes.held(count)
-        places = ((share.rows - own.start) // own.step).to(points.device)
-        return share.weight * criterion(model(points[places]), values[places])
+        return run.processes.mean_loss(drawn, part, frames=count)
 
     groups: list[dict[str, object]] = [{"params": list(mlp.parameters()), "weight_decay": generalisation.weight_decay}]
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
