@@ -57,6 +57,7 @@ OPTIONS: dict[str, dict[str, float]] = {
     "weight decay 0.01": {"weight_decay": 1e-2},
     "heading kept": {"heading": False},
     "a tenth chooses the step": {"validation": 0.1},
+    "fine-tuned at 3e-4": {"rate": 3e-4},
     f"{LONGER}x fine-tuning": {"longer": LONGER},
     f"{LONGER}x, a tenth chooses": {"longer": LONGER, "validation": 0.1},
 }
@@ -90,13 +91,18 @@ def main(
 
 
 def vary(settings: Settings, change: dict[str, float]) -> Settings:
-    """Settings with some fields of their generalisation changed, and fine-tuned `longer` times as long."""
-    own = {name: value for name, value in change.items() if name != "longer"}
+    """Settings with some fields of their generalisation changed, and fine-tuned `longer` times as long or at `rate`."""
+    own = {name: value for name, value in change.items() if name not in ("longer", "rate")}
     longer, fine = change.get("longer", 1), settings.finetune
     return replace(
         settings,
         generalisation=replace(settings.generalisation, **own),  # type: ignore[arg-type]
-        finetune=replace(fine, steps=int(longer * fine.steps), passes=longer * fine.passes),
+        finetune=replace(
+            fine,
+            steps=int(longer * fine.steps),
+            passes=longer * fine.passes,
+            rate=change.get("rate", fine.rate),
+        ),
     )
 
 
