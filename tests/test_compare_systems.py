@@ -16,9 +16,10 @@ from torch import Tensor
 from mua import rotation
 from mua.asset import count
 from mua.bench.random_avatar import ENCODING
+from mua.compare import full
 from mua.compare.bands import BandNetwork, scale_branch
 from mua.compare.descend import descend
-from mua.compare.full import Basis, lines_to_full
+from mua.compare.full import Basis, finer, lines_to_full
 from mua.compare.maps import SurfaceMaps
 from mua.compare.motion import motion_of, training_frames
 from mua.compare.network import Forgetful, NetworkSystem
@@ -29,9 +30,12 @@ from mua.motion.clip import Clip
 from mua.recording import PlannedClip, Recording, TeacherWriter, record
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
+from mua.student.conditioned import Conditioned
 from mua.student.export import export_branches, export_coarse, export_wavelet
+from mua.student.local import Locality
 from mua.student.model import Student
 from mua.student.optimise import Progress, Run
+from mua.student.regress import regress
 from mua.student.settings import Ranks, Schedule, Settings, preset
 from mua.teachers.teacher import TeacherFrame
 from mua.texture.channels import APPEARANCE, GEOMETRY
@@ -120,6 +124,33 @@ def test_learns_more_than_the_mean_texture_from_a_closed_form(name: str, frames:
     system = trained(name, frames, Budget(steps=STEPS, batch=4))
     assert system.steps == STEPS
     assert explained(system, frames) > LEARNT
+
+
+@pytest.mark.parametrize("name", ["pca-only", "full-blendshapes", "single-level"])
+def test_full_size_systems_are_taught_by_body_part(
+    name: str, frames: TrainingFrames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taught: list[Locality] = []
+
+    def listening(*tensors: Tensor, locality: Locality, **settings: Any) -> Conditioned:
+        taught.append(locality)
+        return regress(*tensors, locality=locality, **settings)
+
+    monkeypatch.setattr(full, "regress", listening)
+    trained(name, few(frames), Budget(steps=1, batch=4))
+    assert len(taught) == (1 if name == "pca-only" else 2)
+    for locality in taught:
+        energy = locality.shares.diagonal(dim1=1, dim2=2).sum(1)  # of the directions, by part
+        assert (energy > 0).sum() > 1
+        whole = locality.shares.sum(0)[:2, :2]  # the teacher moves two shapes: what lies beyond is rounding
+        assert torch.allclose(whole, torch.eye(2), atol=1e-3)
+
+
+def test_parts_of_the_quarter_image_are_those_of_its_texels(frames: TrainingFrames) -> None:
+    assert frames.parts is not None
+    row, column = torch.meshgrid(torch.arange(8), torch.arange(8), indexing="ij")
+    owners = frames.parts.texel_owners(32 * 4 * row + 4 * column)
+    assert torch.equal(finer(frames.parts.fine, 2), owners)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)

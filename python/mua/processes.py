@@ -79,8 +79,8 @@ class Processes:
     ) -> list[Share]:
         """What this process computes of a batch; where it holds none of it, one row that weighs nothing."""
         shares = []
-        for first, part in enumerate(self.parts(frames), start=self.rank):
-            own = rows[rows % part.step == first]
+        for rest, part in enumerate(self.parts(frames), start=self.rank):
+            own = rows[rows % part.step == rest]
             if len(own):
                 shares.append(Share(own, part, len(own) * self.count / len(rows)))
         held = self.held(frames)

@@ -12,7 +12,7 @@ from mua.student.conditioned import Whitening
 from mua.student.settings import Generalisation
 
 BLEND = 0.5  # points lie up to this far on the way to a frame
-RADII = 4  # a part is a joint with those fewer than this many joints away
+RADII = 4  # what is exchanged is a joint with those near it: random, fewer than this many joints away
 
 
 def draw_points(
