@@ -1,12 +1,9 @@
-"""Body parts behind joint names of many habits, and how chains of different length pair up."""
-
-from pathlib import Path
+"""Body parts behind joint names of many habits."""
 
 import numpy as np
 import pytest
 
-from mua.errors import InputError
-from mua.motion.joint_names import match_joints, read_mapping, roles
+from mua.motion.joint_names import roles
 from mua.rig.skeleton import Skeleton
 
 LEG = ("left thigh", "left shin", "left foot", "left toe")
@@ -16,11 +13,6 @@ ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")
 def chain(*names: str) -> Skeleton:
     parents = np.arange(-1, len(names) - 1, dtype=np.int32)
     return Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), root=0)
-
-
-def pairs(source: Skeleton, target: Skeleton, mapping: dict[str, str] | None = None) -> dict[str, tuple[str, str]]:
-    found = match_joints(source, target, mapping)
-    return {target.names[t]: (source.names[a], source.names[b]) for t, (a, b) in found.items()}
 
 
 @pytest.mark.parametrize(
@@ -74,66 +66,3 @@ def test_knows_fingers() -> None:
         ("LeftThumbProximal", "LeftThumbIntermediate", "LeftThumbDistal"),
     ):
         assert roles(chain("Hips", "LeftHand", *names))["left thumb"] == (2, 3, 4)
-
-
-def test_composes_several_source_joints_into_one() -> None:
-    source = chain("root", "lowerback", "upperback", "thorax", "lowerneck", "upperneck", "head")
-    target = chain("Hips", "Spine", "Spine1", "Spine2", "Neck", "Head")
-    assert pairs(source, target) == {
-        "Hips": ("root", "root"),
-        "Spine": ("lowerback", "lowerback"),
-        "Spine1": ("upperback", "upperback"),
-        "Spine2": ("thorax", "thorax"),
-        "Neck": ("lowerneck", "upperneck"),
-        "Head": ("head", "head"),
-    }
-
-
-def test_shares_spines_of_other_lengths_in_proportion() -> None:
-    four = chain("Hips", "Spine", "Spine1", "Spine2", "Spine3", "Head")
-    two = chain("Hips", "Spine", "Chest", "Head")
-    assert pairs(four, two)["Spine"] == ("Spine", "Spine1")
-    assert pairs(four, two)["Chest"] == ("Spine2", "Spine3")
-    assert pairs(two, four)["Spine1"] == ("Spine", "Spine")
-    assert pairs(two, four)["Spine3"] == ("Chest", "Chest")
-
-
-def test_matches_unknown_names_that_are_equal() -> None:
-    assert pairs(chain("Hips", "b_Tail_01"), chain("Hips", "rig:b_tail_01"))["rig:b_tail_01"] == ("b_Tail_01",) * 2
-
-
-def test_prefers_the_mapping() -> None:
-    source, target = chain("Hips", "Bone", "LeftArm"), chain("Hips", "LeftArm")
-    assert pairs(source, target, {"LeftArm": "Bone"})["LeftArm"] == ("Bone", "Bone")
-
-
-def test_says_so_where_no_name_matches() -> None:
-    with pytest.raises(InputError, match=r"Bone1.*LeftArm.*mapping file"):
-        match_joints(chain("Bone0", "Bone1"), chain("Hips", "LeftArm"))
-
-
-def test_rejects_a_mapping_of_unknown_joints() -> None:
-    source, target = chain("Hips", "Bone"), chain("Hips", "LeftArm")
-    with pytest.raises(InputError, match="target joint 'Nose'"):
-        match_joints(source, target, {"Nose": "Bone"})
-    with pytest.raises(InputError, match="source joint 'Nose'"):
-        match_joints(source, target, {"LeftArm": "Nose"})
-
-
-def test_reads_a_mapping_from_json_and_toml(tmp_path: Path) -> None:
-    (tmp_path / "map.json").write_text('{"LeftArm": "Bone 1"}')
-    (tmp_path / "map.toml").write_text('LeftArm = "Bone 1"\n')
-    for name in ("map.json", "map.toml"):
-        assert read_mapping(tmp_path / name) == {"LeftArm": "Bone 1"}
-
-
-@pytest.mark.parametrize("text", ["{", "[1]", '{"LeftArm": 3}', '"LeftArm"'])
-def test_rejects_a_mapping_file_that_is_no_table_of_names(tmp_path: Path, text: str) -> None:
-    (tmp_path / "map.json").write_text(text)
-    with pytest.raises(InputError, match=r"map\.json"):
-        read_mapping(tmp_path / "map.json")
-
-
-def test_rejects_an_absent_mapping_file(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"absent\.toml"):
-        read_mapping(tmp_path / "absent.toml")

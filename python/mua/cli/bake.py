@@ -12,7 +12,7 @@ from mua.bake.pipeline import Order, bake
 from mua.bake.report import STAND_IN
 from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
-from mua.motion.joint_names import read_mapping
+from mua.motion.mapping import read_mapping
 from mua.student.settings import preset, with_recipe
 
 

@@ -23,7 +23,7 @@ from mua.errors import InputError
 from mua.files import replacing
 from mua.gpu import adapters, open_device
 from mua.motion.clip import Clip
-from mua.motion.joint_names import read_mapping
+from mua.motion.mapping import read_mapping
 from mua.player.buffers import AvatarBuffers
 from mua.player.motion import named_clip, player_clips
 from mua.player.offscreen import Offscreen, over, reference_picture, write_video

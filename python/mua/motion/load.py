@@ -1,16 +1,27 @@
 """Motion from files as clips on a character's own skeleton."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
+from mua.motion.match import Matches, match_joints
 from mua.motion.read import read_motion
 from mua.motion.resample import resample
-from mua.motion.retarget import retarget
+from mua.motion.retarget import retarget_matched
 from mua.motion.source import SourceMotion
 from mua.rig.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class LoadedMotion:
+    """A clip on a character, and what it was made from."""
+
+    clip: Clip
+    source: SourceMotion
+    matches: Matches
+    notes: tuple[str, ...]  # worth telling the user, a sentence each
 
 
 def load_motion(
@@ -25,16 +36,16 @@ def load_motion(
     Motion on the very same skeleton is taken as it stands; any other is retargeted.
     Errors: InputError naming the file where it cannot be read or none of its joints is matched.
     """
-    clips: list[Clip] = []
-    notes: list[str] = []
-    for source in read_motion(path):
-        if same_joints(source.skeleton, skeleton):
-            clip, told = resample(source.clip, rate), source.notes
-        else:
-            clip, told = _retargeted(path, source, skeleton, mapping=mapping, rate=rate)
-        clips.append(clip)
-        notes += told
-    return clips, tuple(dict.fromkeys(notes))
+    loaded = load_motions(path, skeleton, mapping=mapping, rate=rate)
+    notes = dict.fromkeys(note for motion in loaded for note in motion.notes)
+    return [motion.clip for motion in loaded], tuple(notes)
+
+
+def load_motions(
+    path: Path, skeleton: Skeleton, *, mapping: Mapping[str, str] | None, rate: float
+) -> list[LoadedMotion]:
+    """The same, each clip with the motion that it was made from and the joints that were matched."""
+    return [_put_on(path, source, skeleton, mapping=mapping, rate=rate) for source in read_motion(path)]
 
 
 def same_joints(a: Skeleton, b: Skeleton) -> bool:
@@ -53,10 +64,15 @@ def unique_names(clips: Sequence[Clip]) -> list[Clip]:
     return named
 
 
-def _retargeted(
+def _put_on(
     path: Path, source: SourceMotion, skeleton: Skeleton, *, mapping: Mapping[str, str] | None, rate: float
-) -> tuple[Clip, tuple[str, ...]]:
+) -> LoadedMotion:
     try:
-        return retarget(source, skeleton, mapping=mapping, rate=rate)
+        if same_joints(source.skeleton, skeleton):
+            matches = match_joints(source.skeleton, skeleton)
+            return LoadedMotion(resample(source.clip, rate), source, matches, source.notes)
+        matches = match_joints(source.skeleton, skeleton, mapping)
+        clip, notes = retarget_matched(source, skeleton, matches, rate=rate)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
+    return LoadedMotion(clip, source, matches, notes)

@@ -19,7 +19,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.motion.clip import Clip
 from mua.motion.descriptor import heading_of
-from mua.motion.joint_names import Matches, Roles, match_joints, roles
+from mua.motion.match import Matches, match_joints
 from mua.motion.resample import resample
 from mua.motion.source import SourceMotion
 from mua.rig.skeleton import Skeleton
@@ -46,17 +46,16 @@ class _Rest:
     source: Skeleton
     source_turned: Array  # [S, 4]
     source_at: Array  # [S, 3] metres
-    named: Roles  # of the target
     matches: Matches
 
     def joint(self, role: str) -> int | None:
         """The first matched target joint of a role."""
-        return next((joint for joint in self.named.get(role, ()) if joint in self.matches), None)
+        return self.matches.joint(role)
 
     def places(self, role: str) -> Array | None:
         """[2, 3] where a role begins on target and source, None if it is not matched."""
-        joint = self.joint(role)
-        return None if joint is None else np.stack([self.target_at[joint], self.source_at[self.matches[joint][0]]])
+        ends = self.matches.ends(role)
+        return None if ends is None else np.stack([self.target_at[ends[0]], self.source_at[ends[1]]])
 
     def middle(self, part: str) -> Array | None:
         """[2, 3] the middle between left and right."""
@@ -72,7 +71,14 @@ def retarget(
     mapping: target joint names to source joint names, before any match by name. Joints that nothing matches keep their
     bind rotation. Errors: InputError if no joint name matches or `mapping` names an unknown joint.
     """
-    rest = _rest(source.skeleton, target, match_joints(source.skeleton, target, mapping))
+    return retarget_matched(source, target, match_joints(source.skeleton, target, mapping), rate=rate)
+
+
+def retarget_matched(
+    source: SourceMotion, target: Skeleton, matches: Matches, *, rate: float = 30.0
+) -> tuple[Clip, tuple[str, ...]]:
+    """The same for joints that are matched already."""
+    rest = _rest(source.skeleton, target, matches)
     clip = resample(source.clip, rate)
     upright = _body_turn(rest)
     facing = rotation.conjugate(heading_of(upright))
@@ -81,7 +87,7 @@ def retarget(
     rotations = _local_rotations(rest, _alignments(rest, upright), moved)
     translation, notes = _translation(rest, rotations, rotation.rotate(facing, source_at))
     notes = [f"{clip.name}: {note}" for note in notes]
-    if unmatched := len(target.names) - len(rest.matches):
+    if unmatched := len(target.names) - len(rest.matches.chains):
         notes.append(
             f"{unmatched} of {len(target.names)} joints match none of the motion and keep their bind rotation."
         )
@@ -91,7 +97,7 @@ def retarget(
 def _rest(source: Skeleton, target: Skeleton, matches: Matches) -> _Rest:
     target_rest = target.world(target.bind_rotations, target.bind_translations[target.root])
     source_rest = source.world(source.bind_rotations, source.bind_translations[source.root])
-    return _Rest(target, *target_rest, source, *source_rest, named=roles(target), matches=matches)
+    return _Rest(target, *target_rest, source, *source_rest, matches=matches)
 
 
 def _body_turn(rest: _Rest) -> Array:
@@ -135,8 +141,8 @@ def _unit(v: Array) -> Array:
 def _alignments(rest: _Rest, upright: Array) -> dict[int, Array]:
     """A_t [4] of every matched target joint, from the root outwards: each starts from that of the joint above."""
     found: dict[int, Array] = {}
-    parts = {joint: role for role, joints in rest.named.items() for joint in joints}
-    for joint in sorted(rest.matches):
+    parts = {joint: role for role, joints in rest.matches.roles.items() for joint in joints}
+    for joint in sorted(rest.matches.chains):
         above = int(rest.target.parents[joint])
         while above >= 0 and above not in found:
             above = int(rest.target.parents[above])
@@ -172,7 +178,7 @@ def _sole_alignment(rest: _Rest, side: str, upright: Array, base: Array) -> Arra
         return base
     tips = (
         _first_child(rest.target, rest.target_at, toe),
-        _first_child(rest.source, rest.source_at, rest.matches[toe][1]),
+        _first_child(rest.source, rest.source_at, rest.matches.chains[toe][1]),
     )
     up = np.stack([Y, _nearest_axis(rotation.rotate(upright, Y))])
     target_sole, source_sole = (_sole_frame(knee[i], ankle[i], ball[i], tips[i], up[i]) for i in range(2))
@@ -210,9 +216,9 @@ def _local_rotations(rest: _Rest, alignments: dict[int, Array], moved: Array) ->
     local = np.empty_like(turned)
     for joint, parent in enumerate(target.parents):
         above = turned[:, parent] if parent >= 0 else IDENTITY
-        if joint in rest.matches:
+        if joint in rest.matches.chains:
             bound = rotation.multiply(alignments[joint], rest.target_turned[joint])
-            turned[:, joint] = rotation.multiply(moved[:, rest.matches[joint][1]], bound)
+            turned[:, joint] = rotation.multiply(moved[:, rest.matches.chains[joint][1]], bound)
             local[:, joint] = rotation.normalize(rotation.multiply(rotation.conjugate(above), turned[:, joint]))
         else:
             local[:, joint] = target.bind_rotations[joint]
@@ -229,7 +235,7 @@ def _translation(rest: _Rest, rotations: Array, source_at: Array) -> tuple[Array
     hips = legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]
     if not hips:
         return np.tile(target.bind_translations[target.root], (len(rotations), 1)), ["no hips; it stays in place."]
-    path = scale * source_at[:, [matches[joint][0] for joint in hips]].mean(axis=1)
+    path = scale * source_at[:, [matches.chains[joint][0] for joint in hips]].mean(axis=1)
     shift = path - at[:, hips].mean(axis=1)
     lift = _lift(rest, at + shift[:, None], source_at, scale)
     notes = []
@@ -259,12 +265,12 @@ def _leg_scale(rest: _Rest) -> tuple[float, float]:
 def _all_bones(rest: _Rest) -> Array:
     """[2] summed lengths of the bones between matched joints, on target and source."""
     total = np.zeros(2)
-    for joint, (first, _) in rest.matches.items():
+    for joint, (first, _) in rest.matches.chains.items():
         parent = int(rest.target.parents[joint])
-        if parent in rest.matches:
+        if parent in rest.matches.chains:
             bones = (
                 rest.target_at[joint] - rest.target_at[parent],
-                rest.source_at[first] - rest.source_at[rest.matches[parent][0]],
+                rest.source_at[first] - rest.source_at[rest.matches.chains[parent][0]],
             )
             total += np.linalg.norm(bones, axis=-1)
     return total
@@ -279,7 +285,7 @@ def _lift(rest: _Rest, at: Array, source_at: Array, scale: float) -> float:
     soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
     if not soles:
         return 0.0
-    feet = [rest.matches[joint][0] for joint in soles]
+    feet = [rest.matches.chains[joint][0] for joint in soles]
     floor = 0.0 if _stands(rest.target_at) else rest.target_at[:, 1].min()
     lowest = np.min(at[:, soles, 1] - (rest.target_at[soles, 1] - floor), axis=1)
     lowest_source = np.min(source_at[:, feet, 1] - rest.source_at[feet, 1], axis=1)

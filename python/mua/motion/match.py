@@ -1,0 +1,118 @@
+"""Which joint of a motion's skeleton moves which joint of a character: by a mapping, by roles, by equal names."""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.motion.joint_names import NAMESPACE, Roles, roles
+from mua.rig.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class Matches:
+    """The source joints that move each target joint, and what the target's joints are."""
+
+    chains: Mapping[int, tuple[int, int]]  # target joint -> first and last source joint of the chain that moves it
+    roles: Roles  # of the target
+
+    def joint(self, role: str) -> int | None:
+        """The first matched target joint of a role."""
+        return next((joint for joint in self.roles.get(role, ()) if joint in self.chains), None)
+
+    def ends(self, role: str) -> tuple[int, int] | None:
+        """The target and the source joint where a role begins, None if it is not matched."""
+        joint = self.joint(role)
+        return None if joint is None else (joint, self.chains[joint][0])
+
+
+def match_joints(
+    source: Skeleton,
+    target: Skeleton,
+    mapping: Mapping[str, str] | None = None,  # target to source joint names
+) -> Matches:
+    """Find the source chain that moves each target joint: by `mapping`, then by role, then by equal names.
+
+    Chains of different length share their joints in proportion.
+    Errors: InputError if `mapping` names an unknown joint or if nothing but the root matches.
+    """
+    chains = _match_equal_names(source, target)
+    source_roles, target_roles = roles(source), roles(target)
+    for role, joints in target_roles.items():
+        chain = source_roles.get(role, ())
+        for i, joint in enumerate(joints):
+            if chain:
+                first, end = i * len(chain) // len(joints), -(-(i + 1) * len(chain) // len(joints))
+                chains[joint] = chain[first], chain[end - 1]
+    for target_name, source_name in (mapping or {}).items():
+        chosen = _index(source, source_name, "source")
+        chains[_index(target, target_name, "target")] = chosen, chosen
+    if not mapping and not set(chains) - set(target_roles["hips"]) and _plain(source) != _plain(target):
+        raise InputError(
+            f"motion: no joint name of the source ({_sample(source)}) matches one of the character "
+            f"({_sample(target)}); give a mapping file of target and source joint names"
+        )
+    return Matches(chains, target_roles)
+
+
+@dataclass(frozen=True)
+class JointPair:
+    """A joint of the character and what moves it."""
+
+    target: str
+    source: str  # the first joint of the chain that moves it
+    role: str  # "left thigh"; empty where the two were matched by their names alone
+
+
+def joint_pairs(source: Skeleton, target: Skeleton, matches: Matches) -> tuple[JointPair, ...]:
+    """Matched joints in the order of the target's."""
+    parts = {joint: role for role, joints in matches.roles.items() for joint in joints}
+    return tuple(
+        JointPair(target.names[joint], source.names[matches.chains[joint][0]], parts.get(joint, ""))
+        for joint in sorted(matches.chains)
+    )
+
+
+def unmatched_target(
+    target: Skeleton,
+    matches: Matches,
+    weighted: Iterable[int] | Array | None = None,  # joints that carry skin weight; all where not given
+) -> tuple[str, ...]:
+    """Names of the target's joints that nothing moves."""
+    joints = range(len(target.names)) if weighted is None else sorted(int(joint) for joint in weighted)
+    return tuple(target.names[joint] for joint in joints if joint not in matches.chains)
+
+
+def unmatched_source(source: Skeleton, matches: Matches) -> tuple[str, ...]:
+    """Names of the source's joints that move nothing; ends of chains, which only mark a length, are left out."""
+    used = {joint for first, last in matches.chains.values() for joint in _between(source, first, last)}
+    parents = set(source.parents.tolist())
+    return tuple(name for joint, name in enumerate(source.names) if joint not in used and joint in parents)
+
+
+def _between(skeleton: Skeleton, first: int, last: int) -> list[int]:
+    chain = [last]
+    while chain[-1] != first and skeleton.parents[chain[-1]] >= 0:
+        chain.append(int(skeleton.parents[chain[-1]]))
+    return chain if chain[-1] == first else [first, last]
+
+
+def _match_equal_names(source: Skeleton, target: Skeleton) -> dict[int, tuple[int, int]]:
+    places = {name: joint for joint, name in enumerate(_plain(source))}
+    return {joint: (places[name], places[name]) for joint, name in enumerate(_plain(target)) if name in places}
+
+
+def _plain(skeleton: Skeleton) -> list[str]:
+    return [re.sub(r"[^a-z0-9]", "", NAMESPACE.sub("", name).lower()) for name in skeleton.names]
+
+
+def _index(skeleton: Skeleton, name: str, side: str) -> int:
+    if name not in skeleton.names:
+        raise InputError(f"mapping: {side} joint {name!r} does not exist; expected one of {_sample(skeleton)}")
+    return skeleton.names.index(name)
+
+
+def _sample(skeleton: Skeleton) -> str:
+    shown = ", ".join(skeleton.names[:6])
+    return shown if len(skeleton.names) <= 6 else f"{shown}, ... {len(skeleton.names)} in all"

@@ -1,0 +1,127 @@
+"""A person in T-pose built joint by joint, other proportions and joint axes of the same, and motion for it."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from mua import rotation
+from mua.motion.clip import Clip
+from mua.rig.skeleton import Skeleton
+
+# World positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is mirrored.
+PARENTS = {
+    "Hips": "",
+    "Spine": "Hips",
+    "Spine1": "Spine",
+    "Spine2": "Spine1",
+    "Neck": "Spine2",
+    "Head": "Neck",
+    "HeadTop_End": "Head",
+    "LeftShoulder": "Spine2",
+    "LeftArm": "LeftShoulder",
+    "LeftForeArm": "LeftArm",
+    "LeftHand": "LeftForeArm",
+    "LeftHandMiddle1": "LeftHand",
+    "LeftUpLeg": "Hips",
+    "LeftLeg": "LeftUpLeg",
+    "LeftFoot": "LeftLeg",
+    "LeftToeBase": "LeftFoot",
+    "LeftToe_End": "LeftToeBase",
+}
+T_POSE = {
+    "Hips": (0, 1.0, 0),
+    "Spine": (0, 1.1, 0),
+    "Spine1": (0, 1.2, 0.01),
+    "Spine2": (0, 1.32, 0),
+    "Neck": (0, 1.5, -0.02),
+    "Head": (0, 1.6, 0.01),
+    "HeadTop_End": (0, 1.8, 0.03),
+    "LeftShoulder": (0.06, 1.45, 0),
+    "LeftArm": (0.18, 1.45, -0.01),
+    "LeftForeArm": (0.46, 1.45, -0.01),
+    "LeftHand": (0.72, 1.45, 0),
+    "LeftHandMiddle1": (0.82, 1.45, 0),
+    "LeftUpLeg": (0.1, 0.94, 0),
+    "LeftLeg": (0.1, 0.52, 0.01),
+    "LeftFoot": (0.1, 0.1, -0.02),
+    "LeftToeBase": (0.1, 0.02, 0.11),
+    "LeftToe_End": (0.1, 0.0, 0.17),
+}
+
+
+def person(*, arms_down: float = 0, legs_apart: float = 0, size: float = 1, axes: int | None = None) -> Skeleton:
+    """The T-pose, arms lowered and legs set apart (feet roll along) by degrees; joint axes random by seed `axes`."""
+    at = {name: np.array(place) * size for name, place in T_POSE.items()}
+    swing(at, "LeftArm", -arms_down)
+    swing(at, "LeftUpLeg", legs_apart)
+    parents = dict(PARENTS)
+    for name in [name for name in at if name.startswith("Left")]:
+        at["Right" + name[4:]] = at[name] * [-1, 1, 1]
+        parents["Right" + name[4:]] = parents[name].replace("Left", "Right")
+    names = tuple(at)
+    turned = np.tile([1.0, 0, 0, 0], (len(names), 1))
+    if axes is not None:
+        turned = Rotation.random(len(names), random_state=axes).as_quat(scalar_first=True)
+    index = np.array([names.index(parents[name]) if parents[name] else -1 for name in names], dtype=np.int32)
+    above = np.where(index[:, None] < 0, [1.0, 0, 0, 0], turned[index])
+    origin = np.array([at[parents[name]] if parents[name] else np.zeros(3) for name in names])
+    local = rotation.rotate(rotation.conjugate(above), np.array(list(at.values())) - origin)
+    return Skeleton(names, index, rotation.multiply(rotation.conjugate(above), turned), local, root=0)
+
+
+def swing(at: dict[str, np.ndarray], joint: str, degrees: float) -> None:
+    """Turn everything below a left joint about Z through it."""
+    turn, centre = Rotation.from_euler("z", degrees, degrees=True), at[joint]
+    below = {joint}
+    for name, parent in PARENTS.items():
+        if parent in below:
+            below.add(name)
+            at[name] = centre + turn.apply(at[name] - centre)
+
+
+def random_clip(skeleton: Skeleton, frames: int = 9) -> Clip:
+    """Every joint up to about 60 degrees away from bind, the root also along a path."""
+    random = np.random.default_rng(8)
+    turns = Rotation.from_rotvec(random.normal(size=(frames * len(skeleton.names), 3)) * 0.4).as_quat(scalar_first=True)
+    rotations = rotation.multiply(turns.reshape(frames, -1, 4), skeleton.bind_rotations)
+    translation = skeleton.bind_translations[skeleton.root] + random.normal(size=(frames, 3)) * [1, 0.1, 1]
+    return Clip("clip", 30.0, rotations, translation)
+
+
+def world(skeleton: Skeleton, clip: Clip) -> tuple[np.ndarray, np.ndarray]:
+    return skeleton.world(clip.rotations, clip.translation)
+
+
+def walk(skeleton: Skeleton, frames: int = 60, speed: float = 1.2, rate: float = 30.0) -> Clip:
+    """Steps along +Z of a person with plain axes: each foot stands for half of a second, knees and elbows bend."""
+    at = dict(
+        zip(skeleton.names, skeleton.world(skeleton.bind_rotations, skeleton.bind_translations[0])[1], strict=True)
+    )
+    thigh, shin = (np.linalg.norm(at[a] - at[b]) for a, b in (("LeftUpLeg", "LeftLeg"), ("LeftLeg", "LeftFoot")))
+    time = np.arange(frames) / rate
+    rotations = np.tile(skeleton.bind_rotations, (frames, 1, 1))
+    drop = 0.06 * (thigh + shin)  # keeps a knee's bend in the longest stride
+    for side, phase in (("Left", 0.0), ("Right", 0.5)):
+        cycle = (time + phase) % 1.0
+        ankle = at[f"{side}Foot"] - at[f"{side}UpLeg"]
+        swing = np.clip((cycle - 0.5) / 0.5, 0, 1)
+        ahead = np.where(cycle < 0.5, speed * (0.25 - cycle), speed * (swing - 0.5) / 2)
+        height = ankle[1] + drop + 0.15 * np.sin(np.pi * swing) * (thigh + shin)
+        pitch, bend = _two_bones(thigh, shin, ahead, -height)
+        for joint, angle in ((f"{side}UpLeg", pitch), (f"{side}Leg", bend), (f"{side}Foot", -pitch - bend)):
+            turns = Rotation.from_rotvec(angle[:, None] * [1, 0, 0]).as_quat(scalar_first=True)
+            rotations[:, skeleton.names.index(joint)] = turns
+        arm = Rotation.from_euler("zy", np.stack([np.full(frames, -1.2), 0.3 * np.sin(2 * np.pi * cycle)], axis=-1))
+        fold = Rotation.from_rotvec((-0.4 - 0.2 * np.sin(2 * np.pi * cycle))[:, None] * [0, 1, 0])
+        for joint, turn in (("Arm", arm), ("ForeArm", fold)):
+            quaternion = turn.as_quat(scalar_first=True) * ([1, 1, 1, 1] if side == "Left" else [1, 1, -1, -1])
+            rotations[:, skeleton.names.index(side + joint)] = quaternion
+    path = skeleton.bind_translations[0] + np.stack([0 * time, 0 * time - drop, speed * time], axis=-1)
+    return Clip("walk", rate, rotations, path)
+
+
+def _two_bones(upper: float, lower: float, ahead: np.ndarray, below: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Turns about X of two bones that hang along -Y so that their end is `ahead` along Z and `below` along -Y."""
+    reach = np.minimum(np.hypot(ahead, below), (upper + lower) * (1 - 1e-9))
+    inner = np.arccos((upper**2 + reach**2 - lower**2) / (2 * upper * reach))
+    bend = np.pi - np.arccos((upper**2 + lower**2 - reach**2) / (2 * upper * lower))
+    return -np.arctan2(ahead, below) - inner, bend

@@ -1,0 +1,72 @@
+"""How chains of joints pair up, what is left over, and what is refused."""
+
+import numpy as np
+import pytest
+
+from mua.errors import InputError
+from mua.motion.match import joint_pairs, match_joints, unmatched_source, unmatched_target
+from mua.rig.skeleton import Skeleton
+
+
+def chain(*names: str) -> Skeleton:
+    parents = np.arange(-1, len(names) - 1, dtype=np.int32)
+    return Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), root=0)
+
+
+def pairs(source: Skeleton, target: Skeleton, mapping: dict[str, str] | None = None) -> dict[str, tuple[str, str]]:
+    found = match_joints(source, target, mapping).chains
+    return {target.names[t]: (source.names[a], source.names[b]) for t, (a, b) in found.items()}
+
+
+def test_composes_several_source_joints_into_one() -> None:
+    source = chain("root", "lowerback", "upperback", "thorax", "lowerneck", "upperneck", "head")
+    target = chain("Hips", "Spine", "Spine1", "Spine2", "Neck", "Head")
+    assert pairs(source, target) == {
+        "Hips": ("root", "root"),
+        "Spine": ("lowerback", "lowerback"),
+        "Spine1": ("upperback", "upperback"),
+        "Spine2": ("thorax", "thorax"),
+        "Neck": ("lowerneck", "upperneck"),
+        "Head": ("head", "head"),
+    }
+
+
+def test_shares_spines_of_other_lengths_in_proportion() -> None:
+    four = chain("Hips", "Spine", "Spine1", "Spine2", "Spine3", "Head")
+    two = chain("Hips", "Spine", "Chest", "Head")
+    assert pairs(four, two)["Spine"] == ("Spine", "Spine1")
+    assert pairs(four, two)["Chest"] == ("Spine2", "Spine3")
+    assert pairs(two, four)["Spine1"] == ("Spine", "Spine")
+    assert pairs(two, four)["Spine3"] == ("Chest", "Chest")
+
+
+def test_matches_unknown_names_that_are_equal() -> None:
+    assert pairs(chain("Hips", "b_Tail_01"), chain("Hips", "rig:b_tail_01"))["rig:b_tail_01"] == ("b_Tail_01",) * 2
+
+
+def test_prefers_the_mapping() -> None:
+    source, target = chain("Hips", "Bone", "LeftArm"), chain("Hips", "LeftArm")
+    assert pairs(source, target, {"LeftArm": "Bone"})["LeftArm"] == ("Bone", "Bone")
+
+
+def test_says_so_where_no_name_matches() -> None:
+    with pytest.raises(InputError, match=r"Bone1.*LeftArm.*mapping file"):
+        match_joints(chain("Bone0", "Bone1"), chain("Hips", "LeftArm"))
+
+
+def test_rejects_a_mapping_of_unknown_joints() -> None:
+    source, target = chain("Hips", "Bone"), chain("Hips", "LeftArm")
+    with pytest.raises(InputError, match="target joint 'Nose'"):
+        match_joints(source, target, {"Nose": "Bone"})
+    with pytest.raises(InputError, match="source joint 'Nose'"):
+        match_joints(source, target, {"LeftArm": "Nose"})
+
+
+def test_lists_pairs_and_what_is_left_over() -> None:
+    source, target = chain("root", "lowerback", "thorax", "Prop", "Prop_end"), chain("Hips", "Spine", "Tail")
+    matches = match_joints(source, target)
+    listed = [(pair.target, pair.source, pair.role) for pair in joint_pairs(source, target, matches)]
+    assert listed == [("Hips", "root", "hips"), ("Spine", "lowerback", "spine")]
+    assert unmatched_target(target, matches) == ("Tail",)
+    assert unmatched_target(target, matches, weighted=[0, 1]) == ()
+    assert unmatched_source(source, matches) == ("Prop",)

@@ -1,0 +1,113 @@
+"""What is measured of a clip on a character is what was done to it: limbs turned, a body turned, feet moved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from people import person, walk, world
+from scipy.spatial.transform import Rotation
+
+from mua import rotation
+from mua.motion.clip import Clip
+from mua.motion.match import match_joints
+from mua.motion.quality import MotionQuality, measure_motion
+from mua.motion.retarget import retarget
+from mua.motion.source import SourceMotion
+from mua.rig.skeleton import Skeleton
+
+ANGLE_BOUND = 1e-4  # degrees: chains of at most 12 joints in double precision
+
+
+def measured(skeleton: Skeleton, source: Clip, clip: Clip) -> MotionQuality:
+    return measure_motion(SourceMotion(skeleton, source), skeleton, clip, match_joints(skeleton, skeleton))
+
+
+def turned(skeleton: Skeleton, clip: Clip, joint: str, axis: str, degrees: float) -> Clip:
+    """The clip with a joint of plain axes turned in its parent's space in every frame."""
+    rotations = clip.rotations.copy()
+    j = skeleton.names.index(joint)
+    rotations[:, j] = rotation.multiply(
+        Rotation.from_euler(axis, degrees, degrees=True).as_quat(scalar_first=True), rotations[:, j]
+    )
+    return replace(clip, rotations=rotations)
+
+
+def test_finds_nothing_wrong_where_nothing_was_changed() -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    found = measured(skeleton, clip, clip)
+    assert found.name == clip.name
+    assert found.limb_degrees < ANGLE_BOUND
+    assert found.facing_degrees == pytest.approx(0, abs=5)
+    assert found.feet_height == pytest.approx(0, abs=0.02)
+    assert found.slide == pytest.approx(0, abs=0.05)
+    assert found.flaws == ()
+
+
+def test_another_heading_of_the_whole_is_no_fault() -> None:
+    source, target = person(), person(size=1.4, axes=2)
+    clip, _ = retarget(SourceMotion(source, walk(source)), target)
+    turn = Rotation.from_euler("y", 130, degrees=True).as_quat(scalar_first=True)
+    rotations = clip.rotations.copy()
+    rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
+    clip = replace(clip, rotations=rotations, translation=rotation.rotate(turn, clip.translation))
+    found = measure_motion(SourceMotion(source, walk(source)), target, clip, match_joints(source, target))
+    assert found.limb_degrees < ANGLE_BOUND
+    assert found.flaws == ()
+
+
+def test_measures_a_limb_that_points_elsewhere_and_names_it() -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    found = measured(skeleton, clip, turned(skeleton, clip, "LeftForeArm", "y", 25))
+    assert found.limb_degrees == found.limbs["left forearm"]
+    assert found.limb_degrees == pytest.approx(25, abs=5)
+    assert found.limbs["right thigh"] < 5
+    assert "left forearm" in found.flaws[0]
+
+
+@pytest.mark.parametrize("joint", ["Spine", "Hips"])
+def test_measures_a_torso_that_is_turned_away_from_the_travel(joint: str) -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    found = measured(skeleton, clip, turned(skeleton, clip, joint, "y", 90))
+    assert found.facing_degrees == pytest.approx(90, abs=5)
+    assert any("faces 90 degrees away" in flaw for flaw in found.flaws)
+
+
+def test_has_no_facing_for_a_clip_that_goes_nowhere_or_backwards() -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    still = replace(clip, translation=clip.translation * [0, 1, 0])
+    backwards = replace(clip, translation=clip.translation * [1, 1, -1])
+    assert measured(skeleton, still, still).facing_degrees is None
+    assert measured(skeleton, backwards, backwards).facing_degrees is None
+
+
+@pytest.mark.parametrize(("lift", "words"), [(-0.3, "0.30 m below the floor"), (0.5, "0.50 m above the floor")])
+def test_measures_feet_off_the_floor(lift: float, words: str) -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    moved = replace(clip, translation=clip.translation + np.array([0, lift, 0]))
+    found = measured(skeleton, clip, moved)
+    assert found.feet_height == pytest.approx(lift, abs=0.02)
+    assert any(words in flaw for flaw in found.flaws)
+
+
+def test_measures_feet_that_slide_where_the_source_stands() -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    slower = replace(clip, translation=clip.translation * [1, 1, 0.5])
+    found = measured(skeleton, clip, slower)
+    speed = np.ptp(world(skeleton, clip)[1][:, 0, 2]) / (len(clip) - 1) * clip.rate
+    assert found.slide == pytest.approx(speed / 2, rel=0.15)
+    assert any("slide" in flaw for flaw in found.flaws)
+
+
+def test_measures_what_there_is_of_a_body() -> None:
+    names = ("Hips", "Spine")
+    offsets = np.array([[0, 1.0, 0], [0, 0.5, 0]])
+    half = Skeleton(names, np.array([-1, 0], dtype=np.int32), np.tile([1.0, 0, 0, 0], (2, 1)), offsets, root=0)
+    clip = Clip("half", 30.0, np.tile([1.0, 0, 0, 0], (1, 2, 1)), offsets[:1])
+    found = measured(half, clip, clip)
+    assert (found.limb_degrees, found.facing_degrees, found.feet_height, found.slide) == (0, None, None, None)
