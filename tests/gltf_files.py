@@ -115,9 +115,9 @@ def read(glb: Glb, tmp_path: Path) -> Surfaces:
     return read_surfaces(glb.save(tmp_path / "body.glb"))
 
 
-def posed(surfaces: Surfaces, rotations: np.ndarray, translation: np.ndarray) -> np.ndarray:
+def posed(surfaces: Surfaces, rotations: np.ndarray, translations: np.ndarray) -> np.ndarray:
     """Vertices blended linearly from rigid joints."""
-    transforms = surfaces.skeleton.skinning(rotations, translation)
+    transforms = surfaces.skeleton.skinning(rotations, translations)
     return sum(
         surfaces.skin_weights[:, k, None]
         * rotation.dual_transform(transforms[surfaces.skin_indices[:, k]], surfaces.vertices)
@@ -130,7 +130,7 @@ def assert_is_column(surfaces: Surfaces, bound: float = FLOAT_BOUND) -> None:
     np.testing.assert_array_equal(surfaces.skin_indices[surfaces.faces][..., 0], BONES[TRIANGLES])
     np.testing.assert_allclose(surfaces.uv[surfaces.uv_faces], UV[TRIANGLES], atol=bound)
     bind = surfaces.skeleton.bind_pose
-    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translation), surfaces.vertices, atol=1e-7)
+    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translations), surfaces.vertices, atol=1e-7)
 
 
 def accessor_of(glb: Glb, name: str) -> dict[str, Any]:

@@ -84,18 +84,16 @@ def random_clip(skeleton: Skeleton, frames: int = 9) -> Clip:
     turns = Rotation.from_rotvec(random.normal(size=(frames * len(skeleton.names), 3)) * 0.4).as_quat(scalar_first=True)
     rotations = rotation.multiply(turns.reshape(frames, -1, 4), skeleton.bind_rotations)
     translation = skeleton.bind_translations[skeleton.root] + random.normal(size=(frames, 3)) * [1, 0.1, 1]
-    return Clip("clip", 30.0, rotations, translation)
+    return Clip("clip", 30.0, rotations, skeleton.with_root(translation))
 
 
 def world(skeleton: Skeleton, clip: Clip) -> tuple[np.ndarray, np.ndarray]:
-    return skeleton.world(clip.rotations, clip.translation)
+    return skeleton.world(clip.rotations, clip.translations)
 
 
 def walk(skeleton: Skeleton, frames: int = 60, speed: float = 1.2, rate: float = 30.0) -> Clip:
     """Steps along +Z of a person with plain axes: each foot stands for half of a second, knees and elbows bend."""
-    at = dict(
-        zip(skeleton.names, skeleton.world(skeleton.bind_rotations, skeleton.bind_translations[0])[1], strict=True)
-    )
+    at = dict(zip(skeleton.names, skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)[1], strict=True))
     thigh, shin = (np.linalg.norm(at[a] - at[b]) for a, b in (("LeftUpLeg", "LeftLeg"), ("LeftLeg", "LeftFoot")))
     time = np.arange(frames) / rate
     rotations = np.tile(skeleton.bind_rotations, (frames, 1, 1))
@@ -116,7 +114,7 @@ def walk(skeleton: Skeleton, frames: int = 60, speed: float = 1.2, rate: float =
             quaternion = turn.as_quat(scalar_first=True) * ([1, 1, 1, 1] if side == "Left" else [1, 1, -1, -1])
             rotations[:, skeleton.names.index(side + joint)] = quaternion
     path = skeleton.bind_translations[0] + np.stack([0 * time, 0 * time - drop, speed * time], axis=-1)
-    return Clip("walk", rate, rotations, path)
+    return Clip("walk", rate, rotations, skeleton.with_root(path))
 
 
 def _two_bones(upper: float, lower: float, ahead: np.ndarray, below: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -49,7 +49,7 @@ def clip(rig: Rig, name: str, frames: int) -> Clip:
     rng = np.random.default_rng(frames)
     rotations = rng.standard_normal((frames, len(rig.skeleton.names), 4))
     rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
-    return Clip(name, RATE, rotations, rng.standard_normal((frames, 3)))
+    return Clip(name, RATE, rotations, rng.standard_normal((frames, len(rig.skeleton.names), 3)))
 
 
 def plan(rig: Rig) -> list[PlannedClip]:

@@ -83,7 +83,7 @@ def synthetic_clip(skeleton: Skeleton, rng: np.random.Generator, *, frames: int 
     axes = rotation.normalize(rng.normal(size=(len(skeleton.names), 3)))
     angles = 0.6 * np.sin(np.arange(frames)[:, None] / 2 + np.arange(len(skeleton.names)))
     drift = skeleton.bind_translations[skeleton.root] + np.arange(frames)[:, None] * [0.02, 0, 0.05]
-    return Clip("wave", 24.0, rotation.from_axis_angle(axes, angles), drift)
+    return Clip("wave", 24.0, rotation.from_axis_angle(axes, angles), skeleton.with_root(drift))
 
 
 def _texel_map(mesh: Mesh) -> TexelMap:

@@ -45,7 +45,7 @@ def test_brings_z_up_to_y_up(tmp_path: Path) -> None:
     upright[:, 0] = np.pi / 2  # the model's rest pose has Y up, AMASS's world Z
     trans = np.array([[1.0, 2, 3], [1, 2, 4]])
     motion = read_amass(write(tmp_path, poses=upright, trans=trans))
-    _, at = motion.skeleton.world(motion.clip.rotations, motion.clip.translation)
+    _, at = motion.skeleton.world(motion.clip.rotations, motion.clip.translations)
     names = motion.skeleton.names
     assert (at[:, names.index("head"), 1] > at[:, 0, 1] + 0.4).all()
     np.testing.assert_allclose(at[1] - at[0], np.tile([0, 1, 0], (52, 1)), atol=1e-12)
@@ -57,7 +57,7 @@ def test_brings_z_up_to_y_up(tmp_path: Path) -> None:
 def test_rests_as_a_person_facing_z(joints: int) -> None:
     skeleton = nominal_skeleton(joints)
     assert (skeleton.parents[1:] < np.arange(1, joints)).all()
-    _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations[0])
+    _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     place = dict(zip(skeleton.names, at, strict=True))
     assert 1.3 < place["head"][1] - place["left_foot"][1] < 1.7
     assert 1.2 < place["left_wrist"][0] - place["right_wrist"][0] < 1.8

@@ -80,7 +80,7 @@ def read(glb: Glb, tmp_path: Path) -> Animation:
 
 
 def bind(skeleton: Skeleton) -> tuple[np.ndarray, np.ndarray]:
-    return skeleton.bind_rotations, skeleton.bind_pose.translation
+    return skeleton.bind_rotations, skeleton.bind_pose.translations
 
 
 def with_camera(glb: Glb) -> Glb:
@@ -109,7 +109,7 @@ def test_motion_without_a_mesh_is_the_identity_on_its_own_rig(tmp_path: Path, ba
     assert (clip.name, clip.rate, len(clip)) == ("wave", 30.0, FRAMES)
     cosines = np.abs(np.sum(clip.rotations * expected.rotations, axis=-1))
     np.testing.assert_allclose(cosines, 1, atol=TURN_BOUND)
-    np.testing.assert_allclose(clip.translation, expected.translation, atol=FLOAT_BOUND)
+    np.testing.assert_allclose(clip.translations, expected.translations, atol=FLOAT_BOUND)
     assert not notes
 
 
@@ -143,7 +143,7 @@ def test_motion_above_the_skeleton_moves_its_root(tmp_path: Path) -> None:
     glb.json["scenes"][0]["nodes"] = [3]
     animate(glb, 3, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [0, 0, 2]])
     animation = read(glb, tmp_path)
-    positions = animation.skeleton.world(animation.clips[0].rotations, animation.clips[0].translation)[1]
+    positions = animation.skeleton.world(animation.clips[0].rotations, animation.clips[0].translations)[1]
     hips = animation.skeleton.names.index("hips")
     assert animation.skeleton.root == hips
     np.testing.assert_allclose(positions[-1, hips], [3, 0, 2], atol=FLOAT_BOUND)

@@ -64,9 +64,9 @@ def moving(rest: np.ndarray, parents: np.ndarray, *, hips: bool = True, frames: 
     return Motion("dance", 30.0, worlds)
 
 
-def posed(surfaces: Surfaces, rotations: np.ndarray, translation: np.ndarray) -> np.ndarray:
+def posed(surfaces: Surfaces, rotations: np.ndarray, translations: np.ndarray) -> np.ndarray:
     """Vertices blended linearly from rigid joints."""
-    transforms = surfaces.skeleton.skinning(rotations, translation)
+    transforms = surfaces.skeleton.skinning(rotations, translations)
     return sum(
         surfaces.skin_weights[:, k, None].astype(float)
         * rotation.dual_transform(transforms[surfaces.skin_indices[:, k]], surfaces.vertices)
@@ -89,7 +89,7 @@ def skinned(whole: Scene, frame: int) -> np.ndarray:
 def assert_follows(whole: Scene, surfaces: Surfaces, bound: float = WEIGHT_BOUND) -> None:
     (clip,) = surfaces.clips
     for frame in (0, 4, 8):
-        ours = posed(surfaces, clip.rotations[frame], clip.translation[frame])[surfaces.faces]
+        ours = posed(surfaces, clip.rotations[frame], clip.translations[frame])[surfaces.faces]
         np.testing.assert_allclose(ours, skinned(whole, frame), atol=bound)
 
 
@@ -97,7 +97,7 @@ def test_bind_pose_reproduces_the_bind_vertices() -> None:
     surfaces = assemble(scene(), HERE)
     np.testing.assert_allclose(surfaces.vertices[surfaces.faces], part().positions[part().faces], atol=DOUBLE_BOUND)
     bind = surfaces.skeleton.bind_pose
-    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translation), surfaces.vertices, atol=WEIGHT_BOUND)
+    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translations), surfaces.vertices, atol=WEIGHT_BOUND)
 
 
 def test_clip_follows_the_sources_matrices() -> None:
@@ -250,7 +250,7 @@ def test_implausible_height_is_brought_to_metres_and_told(unit: float, told: flo
     surfaces = assemble(whole, HERE)
     np.testing.assert_allclose(surfaces.vertices[surfaces.faces], part().positions[part().faces], atol=1e-12)
     assert f"one unit is taken as {told:g} m" in surfaces.notes[0]
-    np.testing.assert_allclose(surfaces.clips[0].translation[-1], [0.8, 0.9, 0], atol=1e-12)
+    np.testing.assert_allclose(surfaces.clips[0].translations[-1, surfaces.skeleton.root], [0.8, 0.9, 0], atol=1e-12)
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 90, 180, 270])
@@ -263,7 +263,7 @@ def test_character_is_turned_to_face_forward(degrees: int) -> None:
         parts=(replace(part(), positions=_moved(away, part().positions)),),
     )
     surfaces = assemble(whole, HERE)
-    left = surfaces.skeleton.world(surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_pose.translation)[1][3]
+    left = surfaces.skeleton.world(surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_pose.translations)[1][3]
     assert left[0] > 0.15
     assert bool(surfaces.notes) == (degrees >= 90)
 

@@ -82,7 +82,7 @@ def test_decoded_file_equals_the_torch_student(baked: Baked, tmp_path: Path, sto
     write(tmp_path / "a.muaavatar", avatar, storage=storage)
     avatar = read(tmp_path / "a.muaavatar")
     for clip in recording.clips[:8]:
-        described = describe(recording.rig.skeleton, student.encoding, clip.rotations, clip.translation)[7:8]
+        described = describe(recording.rig.skeleton, student.encoding, clip.rotations, clip.translations)[7:8]
         expected = student.texture(student.predict(torch.from_numpy(described).float()))[0].numpy()
         posed = decode_clip_frame(avatar, clip, frame=7)
         for channels in ATTRIBUTES.values():
@@ -98,7 +98,7 @@ def test_same_order_gives_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
 
 
 def clip(name: str, frames: int) -> Clip:
-    return Clip(name, 30.0, np.tile([1.0, 0, 0, 0], (frames, 1, 1)), np.zeros((frames, 3)))
+    return Clip(name, 30.0, np.tile([1.0, 0, 0, 0], (frames, 1, 1)), np.zeros((frames, 1, 3)))
 
 
 def test_plan_spreads_frames_over_all_training_clips() -> None:

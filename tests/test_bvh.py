@@ -89,7 +89,7 @@ def slow_world_positions(path: Path) -> np.ndarray:
 
 
 def world_positions(motion: SourceMotion) -> np.ndarray:
-    return motion.skeleton.world(motion.clip.rotations, motion.clip.translation)[1]
+    return motion.skeleton.world(motion.clip.rotations, motion.clip.translations)[1]
 
 
 @pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "ZXZ", "Y", "XZ"])
@@ -154,7 +154,7 @@ MOTION\nFrames: 1\nFrame Time: 1\n0 {leg} 0\n"""
 
 def test_takes_a_given_scale(tmp_path: Path) -> None:
     motion = read_bvh(write(tmp_path, PERSON), scale=0.5)
-    np.testing.assert_array_equal(motion.clip.translation, [[0, 4.5, 0], [0.5, 4.75, -1]])
+    np.testing.assert_array_equal(motion.clip.translations[:, 0], [[0, 4.5, 0], [0.5, 4.75, -1]])
 
 
 @pytest.mark.parametrize(
@@ -175,7 +175,7 @@ def test_reads_the_same_from_other_layouts(tmp_path: Path, variant: str) -> None
     found = read_bvh(write(tmp_path, variant))
     assert found.skeleton.names == expected.skeleton.names
     np.testing.assert_array_equal(found.clip.rotations, expected.clip.rotations)
-    np.testing.assert_array_equal(found.clip.translation, expected.clip.translation)
+    np.testing.assert_array_equal(found.clip.translations, expected.clip.translations)
 
 
 def test_keeps_spaces_in_joint_names(tmp_path: Path) -> None:
@@ -224,7 +224,7 @@ def test_says_which_bones_stretch(tmp_path: Path) -> None:
 def test_adds_positions_that_are_deviations_from_the_offset(tmp_path: Path) -> None:
     rows = "0 0 0 0 0 0  0 0 0 0 0 0  0 0 0 0 0 0\n0 0 0 0 0 0  2 0 0 0 0 0  0 0 0 0 0 0\n"
     motion = read_bvh(write(tmp_path, REFERENCE + rows), scale=1.0)
-    np.testing.assert_array_equal(motion.clip.translation, [[0, 1, 0], [2, 1, 0]])
+    np.testing.assert_array_equal(motion.clip.translations[:, motion.skeleton.root], [[0, 1, 0], [2, 1, 0]])
     np.testing.assert_array_equal(motion.skeleton.bind_translations[2], [0, 0.7, 0])
 
 

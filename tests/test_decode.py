@@ -28,7 +28,7 @@ def perceptron(mlp: Mlp, x: Array) -> Array:
 
 def descriptor(avatar: Avatar, frame: int) -> Array:
     clip = avatar.clips[0]
-    raw = describe(avatar.rig.skeleton, avatar.encoding, clip.rotations, clip.translation)[frame]
+    raw = describe(avatar.rig.skeleton, avatar.encoding, clip.rotations, clip.translations)[frame]
     return np.asarray((raw - avatar.normalization.mean) / avatar.normalization.scale)
 
 
@@ -83,7 +83,7 @@ def test_a_frame_of_a_clip_is_its_window_newest_first() -> None:
     avatar = synthetic_avatar()
     clip = avatar.clips[0]
     for frame, window in ((3, [3, 2, 1]), (1, [1, 0, 0]), (0, [0, 0, 0])):
-        expected = decode(avatar, clip.rotations[window], translation=clip.translation[window])
+        expected = decode(avatar, clip.rotations[window], translations=clip.translations[window])
         np.testing.assert_array_equal(decode_clip_frame(avatar, clip, frame=frame).centres, expected.centres)
 
 
@@ -127,7 +127,7 @@ def test_moving_the_root_moves_everything_rigidly() -> None:
     texture = random_texture(len(rig.texels.texels))
     turn = rotation.from_axis_angle(np.array([0.6, 0, 0.8]), 2.0)
     moved = np.array([1.0, 2, 3])
-    pose = Pose(np.concatenate([turn[None], rig.skeleton.bind_rotations[1:]]), moved)
+    pose = Pose(np.concatenate([turn[None], rig.skeleton.bind_rotations[1:]]), rig.skeleton.with_root(moved))
     still = pose_splats(rig, rig.mesh.vertices, texture=texture, pose=rig.skeleton.bind_pose)
     posed = pose_splats(rig, rig.mesh.vertices, texture=texture, pose=pose)
     pivot = rig.skeleton.bind_translations[0]

@@ -31,7 +31,7 @@ def clip(skeleton: Skeleton) -> Clip:
     """Random motion below a joint that keeps its bind rotation, as the one above a root does."""
     rotations = quaternions(FRAMES * 5, seed=3).reshape(FRAMES, 5, 4)
     rotations[:, 0] = skeleton.bind_rotations[0]
-    return Clip("clip", 30.0, rotations, np.random.default_rng(4).normal(size=(FRAMES, 3)))
+    return Clip("clip", 30.0, rotations, np.random.default_rng(4).normal(size=(FRAMES, 5, 3)))
 
 
 def matrix(q: np.ndarray) -> np.ndarray:
@@ -40,11 +40,11 @@ def matrix(q: np.ndarray) -> np.ndarray:
 
 def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: int) -> np.ndarray:
     """One descriptor as mua.motion.encoding words it, for the skeleton of this file, by 3x3 matrices."""
-    above, offset = matrix(skeleton.bind_rotations[0]), skeleton.bind_translations[0]
+    above = matrix(skeleton.bind_rotations[0])
     bind = above @ matrix(skeleton.bind_rotations[1])
 
     def root(g: int) -> tuple[np.ndarray, np.ndarray]:
-        return above @ matrix(clip.rotations[g, 1]) @ bind.T, offset + above @ clip.translation[g]
+        return above @ matrix(clip.rotations[g, 1]) @ bind.T, clip.translations[g, 0] + above @ clip.translations[g, 1]
 
     turn, position = root(f)
     back = np.eye(3)
@@ -67,7 +67,7 @@ def test_holds_what_the_encoding_declares(
     skeleton: Skeleton, clip: Clip, heading: bool, window: int, joints: tuple[int, ...]
 ) -> None:
     encoding = PoseEncoding(joints, 30.0, window, heading)
-    found = describe(skeleton, encoding, clip.rotations, clip.translation)
+    found = describe(skeleton, encoding, clip.rotations, clip.translations)
     assert found.shape == (FRAMES, encoding.width)
     assert found.dtype == np.float64
     expected = [slow_descriptor(skeleton, encoding, clip, f) for f in range(FRAMES)]
@@ -77,17 +77,17 @@ def test_holds_what_the_encoding_declares(
 @pytest.mark.parametrize("heading", [True, False])
 def test_a_window_gives_the_numbers_of_its_clip(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
     encoding = PoseEncoding((2, 3), 30.0, 3, heading)
-    whole = describe(skeleton, encoding, clip.rotations, clip.translation)
+    whole = describe(skeleton, encoding, clip.rotations, clip.translations)
     for f in range(FRAMES):
         newest_first = np.maximum(f - np.arange(3), 0)
-        one = describe_window(skeleton, encoding, clip.rotations[newest_first], clip.translation[newest_first])
+        one = describe_window(skeleton, encoding, clip.rotations[newest_first], clip.translations[newest_first])
         np.testing.assert_array_equal(one, whole[f])
 
 
 def test_holds_the_clip_still_before_its_start(skeleton: Skeleton, clip: Clip) -> None:
     encoding = PoseEncoding((2, 3), 30.0, 3)
-    still = describe(skeleton, encoding, clip.rotations[[0, 0, 0]], clip.translation[[0, 0, 0]])
-    first = describe(skeleton, encoding, clip.rotations, clip.translation)[0]
+    still = describe(skeleton, encoding, clip.rotations[[0, 0, 0]], clip.translations[[0, 0, 0]])
+    first = describe(skeleton, encoding, clip.rotations, clip.translations)[0]
     np.testing.assert_array_equal(first, still[2])
 
 
@@ -98,26 +98,27 @@ def moved(skeleton: Skeleton, clip: Clip, yaw: float, shift: np.ndarray) -> Clip
     local = rotation.multiply(rotation.conjugate(above), rotation.multiply(turn, above))
     rotations = clip.rotations.copy()
     rotations[:, 1] = rotation.multiply(local, rotations[:, 1])
-    world = skeleton.bind_translations[0] + rotation.rotate(above, clip.translation)
+    translations = clip.translations.copy()
+    world = translations[:, 0] + rotation.rotate(above, translations[:, 1])
     world = rotation.rotate(turn, world) + shift
-    translation = rotation.rotate(rotation.conjugate(above), world - skeleton.bind_translations[0])
-    return Clip(clip.name, clip.rate, rotations, translation)
+    translations[:, 1] = rotation.rotate(rotation.conjugate(above), world - translations[:, 0])
+    return Clip(clip.name, clip.rate, rotations, translations)
 
 
 @pytest.mark.parametrize("heading", [True, False])
 def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
     encoding = PoseEncoding((2, 3), 30.0, 3, heading)
     elsewhere = moved(skeleton, clip, 0.0, np.array([5.0, -2, 3]))
-    found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translation)
-    np.testing.assert_allclose(found, describe(skeleton, encoding, clip.rotations, clip.translation), atol=BOUND)
+    found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translations)
+    np.testing.assert_allclose(found, describe(skeleton, encoding, clip.rotations, clip.translations), atol=BOUND)
 
 
 def test_depends_on_the_facing_only_without_heading(skeleton: Skeleton, clip: Clip) -> None:
     elsewhere = moved(skeleton, clip, 2.5, np.array([5.0, -2, 3]))
     for heading in (True, False):
         encoding = PoseEncoding((2, 3), 30.0, 3, heading)
-        found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translation)
-        here = describe(skeleton, encoding, clip.rotations, clip.translation)
+        found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translations)
+        here = describe(skeleton, encoding, clip.rotations, clip.translations)
         assert (np.abs(found - here).max() < BOUND) == heading
 
 
@@ -133,7 +134,10 @@ def test_chooses_joints_that_vary_and_are_used(skeleton: Skeleton) -> None:
         turn = rotation.from_axis_angle(np.array([0, 0, 1.0]), np.radians(degrees) * wave)
         rotations[:, joint] = rotation.multiply(rotations[:, joint], turn)
     rotations[1::2] *= -1  # q and -q are the same rotation
-    halves = [Clip("a", 30.0, rotations[:20], np.zeros((20, 3))), Clip("b", 30.0, rotations[20:], np.zeros((20, 3)))]
+    halves = [
+        Clip("a", 30.0, rotations[:20], np.zeros((20, 5, 3))),
+        Clip("b", 30.0, rotations[20:], np.zeros((20, 5, 3))),
+    ]
     assert choose_joints(skeleton, halves, np.ones(5, dtype=bool)) == (3, 4)
     assert choose_joints(skeleton, halves, np.array([1, 1, 1, 1, 0], dtype=bool)) == (3,)
 
@@ -142,7 +146,7 @@ def test_chooses_a_joint_that_differs_between_still_clips(skeleton: Skeleton) ->
     still = np.tile(skeleton.bind_rotations, (3, 1, 1))
     other = still.copy()
     other[:, 3] = rotation.multiply(still[:, 3], np.array([np.cos(0.2), 0, np.sin(0.2), 0]))
-    clips = [Clip("a", 30.0, still, np.zeros((3, 3))), Clip("b", 30.0, other, np.zeros((3, 3)))]
+    clips = [Clip("a", 30.0, still, np.zeros((3, 5, 3))), Clip("b", 30.0, other, np.zeros((3, 5, 3)))]
     assert choose_joints(skeleton, clips, np.ones(5, dtype=bool)) == (3,)
 
 

@@ -43,7 +43,7 @@ def recording(directory: Path, *, training: int = 2) -> Recording:
             clip = synthetic_clip(rig.skeleton, rng, frames=9)
             writer.start_clip(f"clip {number}", held_out=held_out)
             for frame in range(len(clip)):
-                pose = Pose(clip.rotations[frame], clip.translation[frame])
+                pose = Pose(clip.rotations[frame], clip.translations[frame])
                 mesh = (rig.mesh.vertices + 0.01 * rng.normal(size=3)).astype(np.float32)
                 texture = rng.normal(50 if held_out else 0, 0.1, (len(rig.texels.texels), CHANNELS))
                 texture[:, 3] += 1

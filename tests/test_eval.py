@@ -154,7 +154,7 @@ def test_cameras_follow_the_root_at_one_distance(studio: Studio, frames: list[Wh
 def _root(frame: WholeFrame) -> Array:
     pose: Pose = frame.clip.pose(frame.index)
     skeleton = synthetic_rig().skeleton
-    return np.asarray(skeleton.world(pose.rotations, pose.translation)[1][skeleton.root])
+    return np.asarray(skeleton.world(pose.rotations, pose.translations)[1][skeleton.root])
 
 
 @pytest.mark.parametrize(("views", "size", "said"), [(2, 175, "--size 175"), (0, SIZE, "--views 0"), (17, SIZE, "17")])

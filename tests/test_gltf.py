@@ -86,12 +86,12 @@ def test_woman_stands_in_metres_and_faces_forward(shared_data: Any) -> None:
     assert 1.5 < high[1] < 1.8
     assert 1.5 < high[0] - low[0] < 1.8  # arms spread
     places = dict(zip(surfaces.skeleton.names, surfaces.skeleton.world(
-        surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_pose.translation)[1], strict=True))  # fmt: skip
+        surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_pose.translations)[1], strict=True))  # fmt: skip
     assert places["LeftHand"][0] > 0.5 > -0.5 > places["RightHand"][0]
     assert places["LeftToeBase"][2] > places["LeftFoot"][2] + 0.05
     assert [m.name for m in surfaces.materials] == ["_Body", "Hair"]
     bind = surfaces.skeleton.bind_pose
-    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translation), surfaces.vertices, atol=1e-6)
+    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translations), surfaces.vertices, atol=1e-6)
 
 
 def test_lumberjack_stands_upright_and_keeps_its_clips(shared_data: Any) -> None:
@@ -107,7 +107,7 @@ def test_lumberjack_stands_upright_and_keeps_its_clips(shared_data: Any) -> None
     assert parents["DEF-thigh.L_023"] == parents["DEF-thigh.R_015"] == "DEF-spine_02"
     assert parents["DEF-upper_arm.L_045"] == "DEF-spine.003_05"
     clip = surfaces.clips[0]
-    feet = min(posed(surfaces, r, t)[:, 1].min() for r, t in zip(clip.rotations, clip.translation, strict=True))
+    feet = min(posed(surfaces, r, t)[:, 1].min() for r, t in zip(clip.rotations, clip.translations, strict=True))
     assert abs(feet) < 0.03
 
 

@@ -14,7 +14,7 @@ def test_clip_turns_and_moves_the_joints(tmp_path: Path) -> None:
     animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [3, 0, 0]])
     (clip,) = read(glb, tmp_path).clips
     assert (clip.name, clip.rate, len(clip)) == ("wave", 30.0, 31)
-    np.testing.assert_allclose(clip.translation[15], [1.5, 0, 0], atol=FLOAT_BOUND)
+    np.testing.assert_allclose(clip.translations[15, 0], [1.5, 0, 0], atol=FLOAT_BOUND)
     np.testing.assert_allclose(clip.rotations[15, 1], [np.sqrt(0.5), 0, 0, np.sqrt(0.5)], atol=1e-7)
     np.testing.assert_allclose(clip.rotations[:, 2], np.tile([1, 0, 0, 0], (31, 1)), atol=1e-7)
 
@@ -34,7 +34,7 @@ def test_motion_above_the_skeleton_moves_its_root(tmp_path: Path) -> None:
     animate(glb, 4, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [0, 0, 2]])
     animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
     surfaces = read(glb, tmp_path)
-    positions = surfaces.skeleton.world(surfaces.clips[0].rotations, surfaces.clips[0].translation)[1]
+    positions = surfaces.skeleton.world(surfaces.clips[0].rotations, surfaces.clips[0].translations)[1]
     hips = surfaces.skeleton.names.index("hips")
     np.testing.assert_allclose(positions[-1, hips], [1, 0, 2], atol=FLOAT_BOUND)
     assert surfaces.skeleton.root == hips

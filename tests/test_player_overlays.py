@@ -54,10 +54,10 @@ class Stage:
 
     def picture(self, cameras: tuple[Camera, ...], show: str) -> Array:
         commands = self.device.commands()
-        self.gpu.avatars[0].decode(commands, self.clip.rotations[self.window], self.clip.translation[self.window])
+        self.gpu.avatars[0].decode(commands, self.clip.rotations[self.window], self.clip.translations[self.window])
         self.gpu.sort(commands, cameras)
         commands.submit()
-        self.scene.pose(self.clip.rotations[INDEX], self.clip.translation[INDEX], ground=self.ground)
+        self.scene.pose(self.clip.rotations[INDEX], self.clip.translations[INDEX], ground=self.ground)
         return draw_picture(self.device, self.scene, cameras, parse_toggles(show))
 
 
@@ -124,7 +124,7 @@ def test_shows_the_outside_of_the_surface_bright_and_the_inside_dark(stage: Stag
 def test_draws_every_joint_over_all_else(stage: Stage) -> None:
     camera = camera_at(stage.frame.centres)
     image = stage.picture((camera,), "splats,geometry,template,skeleton")
-    _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translation[INDEX])
+    _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
     for column, row in pixels(camera, joints).astype(int):
         np.testing.assert_allclose(image[row, column, :3], JOINT_COLOR, atol=HALF)
 
@@ -202,8 +202,9 @@ def test_finds_the_shadow_of_every_corner_inside_the_square() -> None:
 def still(avatar: Avatar, heights: Array) -> Clip:
     """The rest pose, its root moved up by each height."""
     pose: Pose = avatar.rig.skeleton.bind_pose
-    lift = np.outer(heights, [0, 1.0, 0])
-    return Clip("still", 24.0, np.tile(pose.rotations, (len(heights), 1, 1)), pose.translation + lift)
+    skeleton = avatar.rig.skeleton
+    translations = skeleton.with_root(pose.translations[skeleton.root] + np.outer(heights, [0, 1.0, 0]))
+    return Clip("still", 24.0, np.tile(pose.rotations, (len(heights), 1, 1)), translations)
 
 
 def test_stands_the_ground_under_most_frames() -> None:

@@ -45,7 +45,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
     directory = tmp_path_factory.mktemp("window")
     avatar = synthetic_avatar(1)
     clip = avatar.clips[0]
-    longer = Clip("twice", clip.rate, np.tile(clip.rotations, (2, 1, 1)), np.tile(clip.translation, (2, 1)))
+    longer = Clip("twice", clip.rate, np.tile(clip.rotations, (2, 1, 1)), np.tile(clip.translations, (2, 1, 1)))
     write(directory / "first.muaavatar", synthetic_avatar(0))
     write(directory / "second.muaavatar", replace(avatar, clips=(clip, longer)))
     (directory / "broken.muaavatar").write_bytes(b"not an avatar")

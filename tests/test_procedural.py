@@ -28,7 +28,7 @@ def figure() -> Character:
 
 
 def _posed(figure: Character, clip: Clip, frame: int) -> Array:
-    joints = figure.skeleton.skinning(clip.rotations[frame], clip.translation[frame])
+    joints = figure.skeleton.skinning(clip.rotations[frame], clip.translations[frame])
     dual = blend_vertices(joints, figure.skin_indices, figure.skin_weights)
     return rotation.dual_transform(dual, figure.mesh.vertices)
 
@@ -62,7 +62,7 @@ def test_stands_on_the_ground_at_human_size_facing_z(figure: Character) -> None:
     assert low[1] == pytest.approx(0, abs=1e-3)
     assert 1.6 < high[1] < 1.8
     toes, heel = (figure.skeleton.names.index(name) for name in ("LeftToeBase", "LeftFoot"))
-    _, places = figure.skeleton.world(figure.skeleton.bind_rotations, figure.skeleton.bind_translations[0])
+    _, places = figure.skeleton.world(figure.skeleton.bind_rotations, figure.skeleton.bind_translations)
     assert places[toes, 2] > places[heel, 2]
     assert places[toes, 0] > 0
 
@@ -161,7 +161,7 @@ def test_clips_are_finite_rotations_of_every_joint(figure: Character) -> None:
         assert clip.rate == 30
         assert 2 <= len(clip) / clip.rate <= 4
         assert clip.rotations.shape == (len(clip), len(figure.skeleton.names), 4)
-        assert np.isfinite(clip.translation).all()
+        assert np.isfinite(clip.translations).all()
         np.testing.assert_allclose(np.linalg.norm(clip.rotations, axis=-1), 1, atol=1e-12)
         assert np.all(np.sum(clip.rotations[1:] * clip.rotations[:-1], axis=-1) > 0)
 
@@ -175,8 +175,8 @@ def test_clips_loop(figure: Character, name: str) -> None:
 
     inside = angle(clip.rotations[1:], clip.rotations[:-1]).max()
     assert angle(clip.rotations[0], clip.rotations[-1]).max() <= inside
-    step = np.linalg.norm(np.diff(clip.translation, axis=0), axis=1).max()
-    across = clip.translation[0] - clip.translation[-1]
+    step = np.linalg.norm(np.diff(clip.translations[:, 0], axis=0), axis=1).max()
+    across = clip.translations[0, 0] - clip.translations[-1, 0]
     if name == "walk":  # it travels along +Z, a constant distance a loop
         across = across * [1, 1, 0]
     assert np.linalg.norm(across) <= step
@@ -192,7 +192,7 @@ def test_feet_stay_on_the_ground(figure: Character, name: str) -> None:
 
 def test_a_standing_foot_does_not_slide(figure: Character) -> None:
     walk = next(clip for clip in figure.clips if clip.name == "walk")
-    _, places = figure.skeleton.world(walk.rotations, walk.translation)
+    _, places = figure.skeleton.world(walk.rotations, walk.translations)
     toes = places[:, figure.skeleton.names.index("LeftToeBase")]
     standing = toes[4:16]  # the left foot lies flat from a tenth to half of the first stride of 30 frames
     assert np.ptp(standing[:, [0, 2]], axis=0).max() < 0.01

@@ -2,7 +2,6 @@
 
 import os
 import shutil
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -162,10 +161,7 @@ def test_clips_stay_in_order_and_are_shared_by_their_length() -> None:
 
     def names(lengths: list[int], parts: int) -> list[list[str]]:
         clips = [clip(rig, str(number), max(length, 1)) for number, length in enumerate(lengths)]
-        cut = [
-            replace(c, rotations=c.rotations[:n], translation=c.translation[:n])
-            for c, n in zip(clips, lengths, strict=True)
-        ]
+        cut = [c.cut(slice(n)) for c, n in zip(clips, lengths, strict=True)]
         return [[p.clip.name for p in part] for part in divide([planned(c) for c in cut], parts)]
 
     def planned(one: Clip) -> PlannedClip:

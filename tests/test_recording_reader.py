@@ -31,7 +31,7 @@ def test_clips_and_poses_come_back_exactly(written: Path) -> None:
         assert (stored.name, stored.held_out, stored.complete) == (planned.clip.name, planned.held_out, True)
         assert stored.recorded.tolist() == sorted(planned.wanted)
         np.testing.assert_array_equal(stored.rotations, planned.clip.rotations)
-        np.testing.assert_array_equal(stored.translation, planned.clip.translation)
+        np.testing.assert_array_equal(stored.translations, planned.clip.translations)
 
 
 def test_rig_comes_back_exactly(written: Path) -> None:
@@ -169,6 +169,6 @@ def test_names_a_file_cut_short(written: Path, tmp_path: Path, name: str) -> Non
 def test_refuses_a_newer_version(written: Path, tmp_path: Path) -> None:
     shutil.copytree(written, tmp_path / "copy")
     header = json.loads((written / "recording.json").read_text())
-    (tmp_path / "copy/recording.json").write_text(json.dumps(header | {"version": 2}))
-    with pytest.raises(InputError, match="version is 2, this program reads 1"):
+    (tmp_path / "copy/recording.json").write_text(json.dumps(header | {"version": 3}))
+    with pytest.raises(InputError, match="version is 3, this program reads 2"):
         Recording(tmp_path / "copy")

@@ -135,9 +135,9 @@ def nan_at(array: Array, *where: int) -> Array:
         ),
         (lambda f: replace(f, texture=f.texture + np.inf), r"channel 0 \(offset\) .* is inf"),
         (lambda f: replace(f, texture=f.texture * 1e6), "differs by .* from the reference frame's"),
-        (lambda f: replace(f, pose=Pose(f.pose.rotations[:2], f.pose.translation)), r"rotations has shape \[2, 4\]"),
-        (lambda f: replace(f, pose=Pose(f.pose.rotations * 2, f.pose.translation)), "of joint 0 has length 2"),
-        (lambda f: replace(f, pose=Pose(f.pose.rotations, nan_at(f.pose.translation, 0))), "pose translation is nan"),
+        (lambda f: replace(f, pose=Pose(f.pose.rotations[:2], f.pose.translations)), r"rotations has shape \[2, 4\]"),
+        (lambda f: replace(f, pose=Pose(f.pose.rotations * 2, f.pose.translations)), "of joint 0 has length 2"),
+        (lambda f: replace(f, pose=Pose(f.pose.rotations, nan_at(f.pose.translations, 0))), "pose translations is nan"),
         (lambda f: replace(f, mesh=None), "mesh is missing, expected both or neither"),
     ],
 )

@@ -29,7 +29,7 @@ def whole_frames(teacher: SimulatedTeacher, clip: Clip) -> list[TeacherFrame]:
 
 def posed(rig: Rig, frame: TeacherFrame) -> tuple[np.ndarray, np.ndarray]:
     """Centres [N, 3] and rotations [N, 4] of a frame's splats in the world."""
-    joints = rig.skeleton.skinning(frame.pose.rotations, frame.pose.translation)
+    joints = rig.skeleton.skinning(frame.pose.rotations, frame.pose.translations)
     vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
     surface = rig.mesh.faces, rig.texels.triangles, rig.texels.barycentrics
     centres, rotations, _, _ = skin_splats(blend_texels(vertex_dq, *surface), frame.mesh, *surface, frame.texture)
@@ -126,8 +126,9 @@ def test_appearance_does_not_depend_on_heading_or_place(teacher: SimulatedTeache
     yaw = rotation.from_axis_angle(np.array([0, 1.0, 0]), 2.0)
     rotations = clip.rotations.copy()
     rotations[:, 0] = rotation.multiply(yaw, rotations[:, 0])
-    origin = character.skeleton.bind_translations[0]
-    turned = Clip("turned", clip.rate, rotations, rotation.rotate(yaw, clip.translation - origin) + origin + [3, 0, 1])
+    origin, translations = character.skeleton.bind_translations[0], clip.translations.copy()
+    translations[:, 0] = rotation.rotate(yaw, translations[:, 0] - origin) + origin + [3, 0, 1]
+    turned = Clip("turned", clip.rate, rotations, translations)
     first, second = whole_frames(teacher, clip)[-1], whole_frames(teacher, turned)[-1]
     single_in_motion = 100 * SINGLE  # the simulation divides positions of up to 4 m by substeps
     np.testing.assert_allclose(second.texture, first.texture, atol=single_in_motion)
@@ -142,7 +143,7 @@ def simulated_vertices(character: Character, clip: Clip) -> list[np.ndarray]:
     state = Simulation(mesh.vertices, mesh.faces, looseness=character.looseness, bones=bones)
     folds = Folds(mesh.vertices, mesh.faces, looseness=character.looseness, rng=np.random.default_rng(0))
     result = []
-    for frame, joints in enumerate(character.skeleton.skinning(clip.rotations, clip.translation)):
+    for frame, joints in enumerate(character.skeleton.skinning(clip.rotations, clip.translations)):
         dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
         turn, ends = dual[:, :4], bones.posed(joints)
         target = folds(rotation.dual_transform(dual, mesh.vertices), turn)

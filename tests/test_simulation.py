@@ -21,7 +21,7 @@ NO_BONES = Bones(np.zeros(0, int), np.zeros((0, 2, 3)), np.zeros(0))
 def skinned(character: Character, clip: Clip) -> list[tuple[Array, Array]]:
     """Skinned positions and rotations of every frame."""
     result = []
-    for joints in character.skeleton.skinning(clip.rotations, clip.translation):
+    for joints in character.skeleton.skinning(clip.rotations, clip.translations):
         dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
         result.append((rotation.dual_transform(dual, character.mesh.vertices), dual[:, :4]))
     return result
@@ -77,7 +77,7 @@ def test_swing_dies_out_when_the_pose_is_held() -> None:
         "held",
         RATE,
         np.concatenate([clip.rotations, np.repeat(clip.rotations[-1:], 60, axis=0)]),
-        np.concatenate([clip.translation, np.repeat(clip.translation[-1:], 60, axis=0)]),
+        np.concatenate([clip.translations, np.repeat(clip.translations[-1:], 60, axis=0)]),
     )
     speed = np.linalg.norm(np.diff(play(character, held), axis=0), axis=2).max(axis=1) * RATE
     assert speed[9] > 0.1
@@ -93,7 +93,7 @@ def test_the_same_motion_gives_the_same_bytes() -> None:
 def test_a_moving_surface_differs_from_one_at_rest_in_the_same_pose() -> None:
     character = tube(looseness=0.7)
     clip = swing(character, frames=10)
-    held = Clip("held", RATE, clip.rotations[-1:], clip.translation[-1:])
+    held = Clip("held", RATE, clip.rotations[-1:], clip.translations[-1:])
     apart = np.linalg.norm(play(character, clip)[-1] - play(character, held)[0], axis=1)
     assert apart.max() > 0.01
 

@@ -133,9 +133,9 @@ def skinned_by_usd(path: Path, time: float) -> np.ndarray:
     return np.array(points, float)
 
 
-def posed(surfaces: Surfaces, rotations: np.ndarray, translation: np.ndarray) -> np.ndarray:
+def posed(surfaces: Surfaces, rotations: np.ndarray, translations: np.ndarray) -> np.ndarray:
     """Vertices that each follow their first joint."""
-    transforms = surfaces.skeleton.skinning(rotations, translation)
+    transforms = surfaces.skeleton.skinning(rotations, translations)
     return rotation.dual_transform(transforms[surfaces.skin_indices[:, 0]], surfaces.vertices)
 
 
@@ -163,14 +163,14 @@ def test_y_up_stage_gives_the_same_character(tmp_path: Path, character: Path) ->
 def test_bind_pose_reproduces_the_bind_vertices(character: Path) -> None:
     surfaces = read_surfaces(character)
     bind = surfaces.skeleton.bind_pose
-    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translation), surfaces.vertices, atol=1e-14)
+    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translations), surfaces.vertices, atol=1e-14)
 
 
 @pytest.mark.parametrize("frame", [0, 4, 100])
 def test_posed_clip_equals_usd_skinning(character: Path, frame: int) -> None:
     surfaces = read_surfaces(character)
     (clip,) = surfaces.clips
-    ours = posed(surfaces, clip.rotations[frame], clip.translation[frame])
+    ours = posed(surfaces, clip.rotations[frame], clip.translations[frame])
     theirs = skinned_by_usd(character, frame * 24 / clip.rate)[:, [0, 2, 1]] * [0.01, 0.01, -0.01]
     np.testing.assert_allclose(ours, theirs, atol=SKINNING_BOUND)
 
@@ -273,7 +273,7 @@ def test_motion_without_a_mesh_is_the_identity_on_its_own_rig(character: Path) -
     (source,) = read_motion(edited(character, lambda stage: stage.RemovePrim("/Man/Body")))
     clip, notes = retarget(source, surfaces.skeleton)
     np.testing.assert_allclose(clip.rotations, surfaces.clips[0].rotations, atol=TURN_BOUND)
-    np.testing.assert_allclose(clip.translation, surfaces.clips[0].translation, atol=SKINNING_BOUND)
+    np.testing.assert_allclose(clip.translations, surfaces.clips[0].translations, atol=SKINNING_BOUND)
     assert not notes
 
 
@@ -293,7 +293,7 @@ def test_placed_skeleton_carries_its_character_along(character: Path) -> None:
     stage.GetRootLayer().Save()
     surfaces = read_surfaces(character)
     np.testing.assert_allclose(surfaces.vertices.min(axis=0), [0.9, 0, -0.08], atol=1e-7)
-    np.testing.assert_allclose(surfaces.clips[0].translation[0], [1, 0, 0], atol=1e-7)
+    np.testing.assert_allclose(surfaces.clips[0].translations[0, 0], [1, 0, 0], atol=1e-7)
 
 
 def test_texture_coordinates_are_turned_by_a_transform(character: Path) -> None:

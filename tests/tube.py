@@ -38,18 +38,18 @@ def still(character: Character, *, frames: int = 5) -> Clip:
     """The bind pose, held."""
     skeleton = character.skeleton
     rotations = np.tile(skeleton.bind_rotations, (frames, 1, 1))
-    return Clip("still", RATE, rotations, np.tile(skeleton.bind_translations[skeleton.root], (frames, 1)))
+    return Clip("still", RATE, rotations, np.tile(skeleton.bind_translations, (frames, 1, 1)))
 
 
 def swing(character: Character, *, frames: int = 20) -> Clip:
     """Begins at rest, then the upper two joints bend to and fro and the root moves sideways."""
     time = np.arange(frames) / RATE
     held = still(character, frames=frames)
-    rotations, translation = held.rotations.copy(), held.translation.copy()
+    rotations, translations = held.rotations.copy(), held.translations.copy()
     rotations[:, 1] = rotation.from_axis_angle(np.array([1.0, 0, 0]), 0.6 * np.sin(4 * time))
     rotations[:, 2] = rotation.from_axis_angle(np.array([0, 0, 1.0]), 0.8 * np.sin(3 * time))
-    translation[:, 0] += 0.3 * np.sin(5 * time) ** 2
-    return Clip("swing", RATE, rotations, translation)
+    translations[:, character.skeleton.root, 0] += 0.3 * np.sin(5 * time) ** 2
+    return Clip("swing", RATE, rotations, translations)
 
 
 def _wall(rings: int, sides: int) -> Mesh:

@@ -22,7 +22,7 @@ def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
 def frame_boxes(rig: Rig, clip: Clip) -> Array:
     """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
     boxes = []
-    for joints in rig.skeleton.skinning(clip.rotations, clip.translation):
+    for joints in rig.skeleton.skinning(clip.rotations, clip.translations):
         dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
         posed = rotation.dual_transform(dual, rig.mesh.vertices)
         boxes.append([posed.min(axis=0) - MARGIN, posed.max(axis=0) + MARGIN])
@@ -31,7 +31,7 @@ def frame_boxes(rig: Rig, clip: Clip) -> Array:
 
 def root_positions(rig: Rig, clip: Clip) -> Array:
     """World positions [F, 3] of the root joint, metres."""
-    _, placed = rig.skeleton.world(clip.rotations, clip.translation)
+    _, placed = rig.skeleton.world(clip.rotations, clip.translations)
     return np.asarray(placed[:, rig.skeleton.root])
 
 

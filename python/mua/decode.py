@@ -38,17 +38,17 @@ def decode(
     avatar: Avatar,
     rotations: Array,  # [k, J, 4] local joint rotations, newest first
     *,
-    translation: Array,  # [k, 3] local translation of the root joint, metres
+    translations: Array,  # [k, J, 3] local joint translations, metres
     dtype: npt.DTypeLike = np.float32,
 ) -> Frame:
     """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
-    descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translation)
+    descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
     x = ((descriptor - avatar.normalization.mean) / avatar.normalization.scale).astype(dtype)
     canonical = expand_mesh(avatar, x)
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
-    return pose_splats(avatar.rig, canonical, texture=texture, pose=Pose(rotations[0], translation[0]))
+    return pose_splats(avatar.rig, canonical, texture=texture, pose=Pose(rotations[0], translations[0]))
 
 
 def decode_clip_frame(
@@ -60,7 +60,7 @@ def decode_clip_frame(
 ) -> Frame:
     """Decode one frame of a clip; before its first frame, the clip is held still."""
     window = np.maximum(frame - np.arange(avatar.encoding.window), 0)
-    return decode(avatar, clip.rotations[window], translation=clip.translation[window], dtype=dtype)
+    return decode(avatar, clip.rotations[window], translations=clip.translations[window], dtype=dtype)
 
 
 def expand_mesh(
@@ -110,7 +110,7 @@ def pose_splats(
     canonical = canonical.astype(dtype, copy=False)
     faces, triangles = rig.mesh.faces, rig.texels.triangles
     barycentrics = rig.texels.barycentrics.astype(dtype, copy=False)
-    joints = rig.skeleton.skinning(pose.rotations, pose.translation).astype(dtype)
+    joints = rig.skeleton.skinning(pose.rotations, pose.translations).astype(dtype)
     vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
     texel_dq = blend_texels(vertex_dq, faces, triangles, barycentrics)
     centres, rotations, scales, opacities = skin_splats(texel_dq, canonical, faces, triangles, barycentrics, texture)

@@ -21,8 +21,8 @@ def portrait(
     screen: tuple[int, int],  # width, height, pixels
 ) -> Camera:
     """A camera that frames all of the figure."""
-    posed, _ = skeleton.world(pose.rotations, pose.translation)
-    bind, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations[skeleton.root])
+    posed, _ = skeleton.world(pose.rotations, pose.translations)
+    bind, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     twist = heading_of(rotation.multiply(posed[skeleton.root], rotation.conjugate(bind[skeleton.root])))
     yaw = 2 * np.arctan2(twist[2], twist[0])
     return orbit(frame_bounds(frame), screen=screen, azimuth=float(yaw + THREE_QUARTER), elevation=float(ABOVE))

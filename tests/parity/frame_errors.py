@@ -50,7 +50,7 @@ class PosedFrame:
         self.cameras = cameras_of(avatar.rig, clip, eyes=eyes, screen=screen)
         self.bounds = avatar.bounds + root_positions(avatar.rig, clip)[index]
         commands = device.commands()
-        gpu.decode(commands, clip.rotations[window], clip.translation[window])
+        gpu.decode(commands, clip.rotations[window], clip.translations[window])
         frame.sort(commands, self.cameras)
         commands.submit()
         self.visible = int(frame.arguments.read()[VISIBLE_WORD])

@@ -17,7 +17,6 @@ from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.offscreen import Offscreen, reference_picture
@@ -107,7 +106,7 @@ def picture(device: Device, frame: SplatFrame, cameras: tuple[Camera, ...], *, i
     avatar = frame.avatars[0].avatar.avatar
     clip, window = avatar.clips[0], avatar.encoding.frames(index)
     commands = device.commands()
-    frame.avatars[0].decode(commands, clip.rotations[window], clip.translation[window])
+    frame.avatars[0].decode(commands, clip.rotations[window], clip.translations[window])
     frame.sort(commands, cameras)
     commands.submit()
     return draw_image(device, SplatRenderer(device, image_format(device)), frame.sorted, cameras)
@@ -143,7 +142,7 @@ def test_order_is_back_to_front_and_keeps_the_texels_of_equal_keys(device: Devic
 def test_a_frame_is_few_dispatches_in_the_order_of_the_kernels(device: Device, tmp_path: Path) -> None:
     avatar = synthetic_avatar()
     frame, clip, listed = opened(device, avatar, tmp_path), avatar.clips[0], Listed()
-    frame.avatars[0].decode(listed, clip.rotations[:3], clip.translation[:3])  # type: ignore[arg-type]
+    frame.avatars[0].decode(listed, clip.rotations[:3], clip.translations[:3])  # type: ignore[arg-type]
     frame.sort(listed, [orbit(avatar.bounds, screen=(8, 8))])  # type: ignore[arg-type]
     assert listed.names == FRAME_ORDER
     assert len(listed.names) < FEWER_THAN
@@ -217,7 +216,8 @@ def test_the_next_frame_does_not_see_the_last(device: Device, tmp_path: Path) ->
 def test_depth_keys_follow_the_figure_away_from_the_origin(device: Device, tmp_path: Path) -> None:
     avatar = synthetic_avatar()
     clip = avatar.clips[0]
-    far = Clip(clip.name, clip.rate, clip.rotations, clip.translation + np.array([30.0, 0, -40]))
+    parents = avatar.rig.skeleton.parents
+    far = replace(clip, translations=clip.translations + np.array([30.0, 0, -40]) * (parents < 0)[:, None])
     frame = opened(device, replace(avatar, clips=(far,)), tmp_path)
     posed = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], 3, eyes=1, screen=64)
     assert len(np.unique(posed.keys)) > frame.splat_count / 2

@@ -77,7 +77,7 @@ class Crowd:
         commands = device.commands()
         for avatar, index, place in zip(self.frame.avatars, INDICES, PLACES, strict=True):
             clip, window = avatar.avatar.avatar.clips[0], avatar.avatar.avatar.encoding.frames(index)
-            avatar.decode(commands, clip.rotations[window], clip.translation[window], place)
+            avatar.decode(commands, clip.rotations[window], clip.translations[window], place)
         self.frame.sort(commands, self.cameras)
         commands.submit()
         count = int(self.frame.arguments.read()[VISIBLE_WORD])

@@ -68,7 +68,7 @@ def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frame
     if frames > 2:
         rotations[2] = rotations[1]  # a slerp between equals
         rotations[1] *= -1
-    return Clip(f"{rate} Hz", rate, rotations, rng.normal(size=(frames, 3)))
+    return Clip(f"{rate} Hz", rate, rotations, skeleton.with_root(rng.normal(size=(frames, 3))))
 
 
 CASES = {
@@ -118,14 +118,14 @@ def expected_numbers(avatar: Avatar, clip: Clip) -> dict[str, Array]:
     """[F, ...] of every frame of a clip."""
     skeleton, encoding = avatar.rig.skeleton, avatar.encoding
     windows = np.array([encoding.frames(frame) for frame in range(len(clip))])
-    turned, placed = skeleton.world(clip.rotations, clip.translation)
-    descriptors = describe(skeleton, encoding, clip.rotations, clip.translation)
+    turned, placed = skeleton.world(clip.rotations, clip.translations)
+    descriptors = describe(skeleton, encoding, clip.rotations, clip.translations)
     return {
         "rotations": clip.rotations[windows],
-        "translations": clip.translation[windows],
+        "translations": clip.translations[windows][..., skeleton.root, :],
         "descriptor": (descriptors - avatar.normalization.mean) / avatar.normalization.scale,
         "turned": turned,
         "placed": placed,
-        "skinning": rotation.dual_multiply(PLACE, skeleton.skinning(clip.rotations, clip.translation)),
+        "skinning": rotation.dual_multiply(PLACE, skeleton.skinning(clip.rotations, clip.translations)),
         "root": placed[:, skeleton.root],
     }

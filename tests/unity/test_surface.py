@@ -194,7 +194,7 @@ class Painter:
         buffers = PosedBuffers(splats, vertex_dq, mesh, first_splat=scene.first_splat - first)
         overlays = Overlays(self.device, scene.avatar, buffers, color=self.format, depth=DEPTH_FORMAT)
         clip, camera = scene.avatar.clips[0], scene.cameras[eye]
-        overlays.pose(clip.rotations[FRAME], clip.translation[FRAME], ground=0.0)
+        overlays.pose(clip.rotations[FRAME], clip.translations[FRAME], ground=0.0)
         if name == "Skeleton":  # whose joints stand where the avatar's own space has them
             camera = replace(camera, view=camera.view @ rigid(PLACE))
         draws: dict[str, Callable[[wgpu.GPURenderPassEncoder, Camera], None]] = {

@@ -264,7 +264,10 @@ def _clip(tree: Tree, path: str, skeleton: Skeleton) -> Clip:
         _refuse(f"{path}.rotations", "a clip needs at least one frame")
     translation = reals(tree["translation"], f"{path}.translation", (len(rotations), 3))
     return Clip(
-        name=tree["name"], rate=_rate(tree["rate"], f"{path}.rate"), rotations=rotations, translation=translation
+        name=tree["name"],
+        rate=_rate(tree["rate"], f"{path}.rate"),
+        rotations=rotations,
+        translations=skeleton.with_root(translation),
     )
 
 

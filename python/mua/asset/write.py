@@ -68,7 +68,7 @@ def _avatar(avatar: Avatar, storage: Storage) -> Tree:
         "coarse": _coarse(avatar.coarse, storage),
         "geometry": _branch(avatar.geometry, storage, static=_half(storage)),  # i8 moves texels visibly
         "appearance": _branch(avatar.appearance, storage, static=storage),
-        "clips": [_clip(clip, storage) for clip in avatar.clips],
+        "clips": [_clip(clip, avatar.rig.skeleton.root, storage) for clip in avatar.clips],
         "bounds": pack(avatar.bounds),
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
     }
@@ -140,9 +140,14 @@ def _detail(band: DetailBand, storage: Storage) -> Tree:
     }
 
 
-def _clip(clip: Clip, storage: Storage) -> Tree:
+def _clip(clip: Clip, root: int, storage: Storage) -> Tree:
     rotations = pack(clip.rotations, _half(storage))
-    return {"name": clip.name, "rate": clip.rate, "rotations": rotations, "translation": pack(clip.translation)}
+    return {
+        "name": clip.name,
+        "rate": clip.rate,
+        "rotations": rotations,
+        "translation": pack(clip.translations[:, root]),
+    }
 
 
 def _half(storage: Storage) -> Storage:

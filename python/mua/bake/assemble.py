@@ -67,4 +67,4 @@ def thumbnail(avatar: Avatar) -> bytes:
 
 def _shortened(clip: Clip) -> Clip:
     count = int(PLAYBACK_SECONDS * clip.rate)
-    return replace(clip, rotations=clip.rotations[:count], translation=clip.translation[:count])
+    return clip.cut(slice(count))

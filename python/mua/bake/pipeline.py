@@ -81,5 +81,5 @@ def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
         digest.update(array.tobytes())
     for clip in planned:
         digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
-        digest.update(clip.clip.rotations.tobytes() + clip.clip.translation.tobytes())
+        digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
     return digest.hexdigest()[:12]

@@ -39,8 +39,8 @@ def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[Clip]]:
         if len(clip) < SHORTEST:
             training.append(clip)
             continue
-        training.append(replace(clip, rotations=clip.rotations[:at], translation=clip.translation[:at]))
-        end = replace(clip, rotations=clip.rotations[at:], translation=clip.translation[at:])
+        training.append(clip.cut(slice(at)))
+        end = clip.cut(slice(at, None))
         held.append(replace(end, name=f"{clip.name} (end)"))
     return training, held
 

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +66,7 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
     if not buffers.avatar.clips:
         raise InputError(f"{path} holds no clips; mua-bench needs one to pose the avatar")
     clip, played = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate), WARM_UP + frames
-    clip = replace(clip, rotations=clip.rotations[:played], translation=clip.translation[:played])
+    clip = clip.cut(slice(played))
     shots = film(Shot(screen, eyes=eyes), buffers.avatar.rig, clip)
     bandwidth = copy_bandwidth(device)
     frame = SplatFrame(device, [buffers])
@@ -139,7 +139,7 @@ def _compute(device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Ca
     (avatar,) = frame.avatars
     window = [i % len(clip) for i in avatar.avatar.avatar.encoding.frames(index)]
     commands = device.commands(timed=True)
-    avatar.decode(commands, clip.rotations[window], clip.translation[window])
+    avatar.decode(commands, clip.rotations[window], clip.translations[window])
     frame.sort(commands, shots[window[0]])
     commands.submit()
     return commands

@@ -100,7 +100,7 @@ def _clip(skeleton: Skeleton) -> Clip:
     swing = SWING * np.sin(2 * np.pi * np.arange(FRAMES) / FRAMES)
     axes = np.tile([0.0, 0.0, 1.0], (FRAMES, JOINTS, 1))
     rotations = rotation.from_axis_angle(axes, np.tile(swing[:, None], (1, JOINTS)))
-    return Clip("sway", ENCODING.rate, rotations, np.tile(skeleton.bind_translations[skeleton.root], (FRAMES, 1)))
+    return Clip("sway", ENCODING.rate, rotations, np.tile(skeleton.bind_translations, (FRAMES, 1, 1)))
 
 
 def _wavelet() -> Wavelet:

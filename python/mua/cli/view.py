@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, TypeAlias
@@ -133,7 +132,7 @@ def _chosen(
 
 def _part(clip: Clip, frames: range) -> Clip:
     kept = slice(frames.start, frames.stop)
-    return replace(clip, rotations=clip.rotations[kept], translation=clip.translation[kept])
+    return clip.cut(kept)
 
 
 def _save(output: Path, pictures: Iterator[Array], *, count: int, rate: float) -> None:

@@ -164,7 +164,7 @@ class _Decoder:
     def _decode(self, frame: WholeFrame) -> Picture:
         window = self._frame.avatar.avatar.encoding.frames(frame.index)
         commands = self._device.commands()
-        self._frame.decode(commands, frame.clip.rotations[window], frame.clip.translation[window])
+        self._frame.decode(commands, frame.clip.rotations[window], frame.clip.translations[window])
         commands.submit()
         channels = self._frame.texel_channels.read(np.float32).reshape(-1, self._frame.splat_count)
         return Picture(np.ascontiguousarray(channels.T), self._frame.mesh.read(np.float32).reshape(-1, 3))

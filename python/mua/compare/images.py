@@ -78,5 +78,4 @@ class Studio:
 
 def _still(frame: WholeFrame) -> Clip:
     """The frame as a clip of one."""
-    own = slice(frame.index, frame.index + 1)
-    return Clip(frame.clip.name, frame.clip.rate, frame.clip.rotations[own], frame.clip.translation[own])
+    return frame.clip.cut(slice(frame.index, frame.index + 1))

@@ -65,7 +65,7 @@ def motion_of(
     student: Student,
 ) -> Motion:
     """What the systems see of some frames of a clip, whether they were trained on them or not."""
-    described = describe(rig.skeleton, student.encoding, clip.rotations, clip.translation)[frames]
+    described = describe(rig.skeleton, student.encoding, clip.rotations, clip.translations)[frames]
     descriptors = torch.from_numpy(described).float()
     with torch.no_grad():
         canonical = student.mesh(descriptors)
@@ -84,10 +84,10 @@ def pose_about_root(
     heading: bool,
 ) -> Array:
     """Posed vertices [V, 3] relative to the root joint, turned back by its heading where descriptors are, metres."""
-    rotations, translation = clip.rotations[frame], clip.translation[frame]
-    joints = rig.skeleton.skinning(rotations, translation)
+    rotations, translations = clip.rotations[frame], clip.translations[frame]
+    joints = rig.skeleton.skinning(rotations, translations)
     posed = rotation.dual_transform(blend_vertices(joints, rig.skin_indices, rig.skin_weights), canonical)
-    _, places = rig.skeleton.world(rotations, translation)
+    _, places = rig.skeleton.world(rotations, translations)
     relative = posed - places[rig.skeleton.root]
     if heading:
         relative = rotation.rotate(rotation.conjugate(heading_of(joints[rig.skeleton.root, :4])), relative)

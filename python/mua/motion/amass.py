@@ -77,7 +77,7 @@ def read_amass(path: Path) -> SourceMotion:
     rotations = rotation.from_axis_angle(axes, angles)
     rotations[:, 0] = rotation.multiply(Z_UP_TO_Y_UP, rotations[:, 0])
     pelvis = rotation.rotate(Z_UP_TO_Y_UP, translation + skeleton.bind_translations[0])
-    return SourceMotion(skeleton, Clip(path.stem, rate, rotations, pelvis))
+    return SourceMotion(skeleton, Clip(path.stem, rate, rotations, skeleton.with_root(pelvis)))
 
 
 def nominal_skeleton(joints: int) -> Skeleton:

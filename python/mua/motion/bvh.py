@@ -170,7 +170,7 @@ def _assemble(path: Path, nodes: list[_Node], rate: float, values: Array, scale:
         j for j in range(len(nodes)) if j not in carried and np.ptp(positions[:, j], axis=0).max() > STRETCH * span
     ]
     skeleton = replace(skeleton, bind_translations=rest * scale, root=root)
-    clip = Clip(path.stem, rate, rotations, translation * scale)
+    clip = Clip(path.stem, rate, rotations, skeleton.with_root(translation * scale))
     notes = []
     if stretched:
         notes.append(f"{path.name}: bones that stretch keep their mean length: {_listed(skeleton, stretched)}.")
@@ -256,7 +256,7 @@ def _is_z_up(skeleton: Skeleton, clip: Clip) -> bool:
     if not feet:
         return False
     above = named.get("head", named["hips"])[0]
-    _, positions = skeleton.world(clip.rotations, clip.translation)
+    _, positions = skeleton.world(clip.rotations, clip.translations)
     up = (positions[:, above] - positions[:, feet].mean(axis=1)).mean(axis=0)
     return bool(up[2] > abs(up[1]))
 
@@ -269,9 +269,10 @@ def _turn(skeleton: Skeleton, clip: Clip, turn: Array) -> tuple[Skeleton, Clip]:
     bind_rotations, bind_translations = skeleton.bind_rotations.copy(), skeleton.bind_translations.copy()
     bind_rotations[top] = rotation.multiply(turn, bind_rotations[top])
     bind_translations[top] = rotation.rotate(turn, bind_translations[top])
-    translation = rotation.rotate(turn, clip.translation) if top[skeleton.root] else clip.translation
+    translations = clip.translations.copy()
+    translations[:, top] = rotation.rotate(turn, translations[:, top])
     skeleton = replace(skeleton, bind_rotations=bind_rotations, bind_translations=bind_translations)
-    return skeleton, replace(clip, rotations=rotations, translation=translation)
+    return skeleton, replace(clip, rotations=rotations, translations=translations)
 
 
 def _listed(skeleton: Skeleton, joints: list[int]) -> str:

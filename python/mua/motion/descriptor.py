@@ -28,21 +28,21 @@ def describe(
     skeleton: Skeleton,
     encoding: PoseEncoding,
     rotations: Array,  # [F, J, 4] local, unit
-    translation: Array,  # [F, 3] local translation of the root joint, metres
+    translations: Array,  # [F, J, 3] local, metres
 ) -> Array:
     """Descriptors [F, k D] float64 of every frame of a clip; before its first frame, the clip is held still."""
     window = np.arange(len(rotations))[:, None] - np.arange(encoding.window)
-    return _gather(encoding, _frames(skeleton, encoding, rotations, translation), np.maximum(window, 0))
+    return _gather(encoding, _frames(skeleton, encoding, rotations, translations), np.maximum(window, 0))
 
 
 def describe_window(
     skeleton: Skeleton,
     encoding: PoseEncoding,
     rotations: Array,  # [k, J, 4] local, unit, newest first
-    translation: Array,  # [k, 3] local translation of the root joint, metres, newest first
+    translations: Array,  # [k, J, 3] local, metres, newest first
 ) -> Array:
     """Descriptor [k D] float64 of one window: the numbers that `describe` gives for its newest frame."""
-    frames = _frames(skeleton, encoding, rotations, translation)
+    frames = _frames(skeleton, encoding, rotations, translations)
     return np.asarray(_gather(encoding, frames, np.arange(encoding.window)[None])[0])
 
 
@@ -75,10 +75,10 @@ def heading_of(turn: Array) -> Array:
     return np.where(vanishes, [1.0, 0, 0, 0], twist / np.where(vanishes, 1, length))
 
 
-def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, translation: Array) -> _Frames:
-    rotations, translation = np.asarray(rotations, dtype=float), np.asarray(translation, dtype=float)
-    turned, position = _root_world(skeleton, rotations, translation)
-    bind, _ = _root_world(skeleton, skeleton.bind_rotations, skeleton.bind_translations[skeleton.root])
+def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, translations: Array) -> _Frames:
+    rotations, translations = np.asarray(rotations, dtype=float), np.asarray(translations, dtype=float)
+    turned, position = _root_world(skeleton, rotations, translations)
+    bind, _ = _root_world(skeleton, skeleton.bind_rotations, skeleton.bind_translations)
     return _Frames(
         position=position,
         turn=rotation.multiply(turned, rotation.conjugate(bind)),
@@ -86,13 +86,13 @@ def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, transl
     )
 
 
-def _root_world(skeleton: Skeleton, rotations: Array, translation: Array) -> tuple[Array, Array]:
+def _root_world(skeleton: Skeleton, rotations: Array, translations: Array) -> tuple[Array, Array]:
     """World rotation [..., 4] and position [..., 3] of the root joint alone."""
-    turned, position = rotations[..., skeleton.root, :], translation
+    turned, position = rotations[..., skeleton.root, :], translations[..., skeleton.root, :]
     joint = int(skeleton.parents[skeleton.root])
     while joint >= 0:
         turned = rotation.multiply(rotations[..., joint, :], turned)
-        position = skeleton.bind_translations[joint] + rotation.rotate(rotations[..., joint, :], position)
+        position = translations[..., joint, :] + rotation.rotate(rotations[..., joint, :], position)
         joint = int(skeleton.parents[joint])
     return turned, position
 

@@ -84,9 +84,9 @@ class _Pair:
     def of(cls, source: SourceMotion, target: Skeleton, clip: Clip, matches: Matches) -> "_Pair":
         original = resample(source.clip, clip.rate)
         frames = min(len(clip), len(original))
-        turned, at = target.world(clip.rotations[:frames], clip.translation[:frames])
-        _, source_at = source.skeleton.world(original.rotations[:frames], original.translation[:frames])
-        bind = target.world(target.bind_rotations, target.bind_translations[target.root])
+        turned, at = target.world(clip.rotations[:frames], clip.translations[:frames])
+        _, source_at = source.skeleton.world(original.rotations[:frames], original.translations[:frames])
+        bind = target.world(target.bind_rotations, target.bind_translations)
         return cls(target, matches, clip.rate, turned, at, source_at, *bind)
 
     def places(self, roles: tuple[str, ...]) -> tuple[Array, Array] | None:

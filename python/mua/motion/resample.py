@@ -1,4 +1,4 @@
-"""Resample a clip to another rate: rotations along the shorter arc, positions linearly."""
+"""Resample a clip to another rate: rotations along the shorter arc, translations linearly."""
 
 import numpy as np
 
@@ -22,5 +22,6 @@ def resample(clip: Clip, rate: float) -> Clip:
         name=clip.name,
         rate=rate,
         rotations=rotation.slerp(clip.rotations[before], clip.rotations[after], t[:, None]),
-        translation=clip.translation[before] + t[:, None] * (clip.translation[after] - clip.translation[before]),
+        translations=clip.translations[before]
+        + t[:, None, None] * (clip.translations[after] - clip.translations[before]),
     )

@@ -82,7 +82,7 @@ def retarget_matched(
     clip = resample(source.clip, rate)
     upright = _body_turn(rest)
     facing = rotation.conjugate(heading_of(upright))
-    source_turned, source_at = source.skeleton.world(clip.rotations, clip.translation)
+    source_turned, source_at = source.skeleton.world(clip.rotations, clip.translations)
     moved = rotation.multiply(facing, rotation.multiply(source_turned, rotation.conjugate(rest.source_turned)))
     rotations = _local_rotations(rest, _alignments(rest, upright), moved)
     translation, notes = _translation(rest, rotations, rotation.rotate(facing, source_at))
@@ -91,12 +91,12 @@ def retarget_matched(
         notes.append(
             f"{unmatched} of {len(target.names)} joints match none of the motion and keep their bind rotation."
         )
-    return Clip(clip.name, rate, rotations, translation), (*source.notes, *notes)
+    return Clip(clip.name, rate, rotations, target.with_root(translation)), (*source.notes, *notes)
 
 
 def _rest(source: Skeleton, target: Skeleton, matches: Matches) -> _Rest:
-    target_rest = target.world(target.bind_rotations, target.bind_translations[target.root])
-    source_rest = source.world(source.bind_rotations, source.bind_translations[source.root])
+    target_rest = target.world(target.bind_rotations, target.bind_translations)
+    source_rest = source.world(source.bind_rotations, source.bind_translations)
     return _Rest(target, *target_rest, source, *source_rest, matches=matches)
 
 
@@ -229,7 +229,7 @@ def _local_rotations(rest: _Rest, alignments: dict[int, Array], moved: Array) ->
 def _translation(rest: _Rest, rotations: Array, source_at: Array) -> tuple[Array, list[str]]:
     """Local translation [F, 3] of the target's root that carries the hips along the source's path, and notes."""
     target, matches = rest.target, rest.matches
-    turned, at = target.world(rotations, np.tile(target.bind_translations[target.root], (len(rotations), 1)))
+    turned, at = target.world(rotations, np.broadcast_to(target.bind_translations, (*rotations.shape[:-1], 3)))
     scale, leg = _leg_scale(rest)
     legs = [joint for side in SIDES if (joint := rest.joint(f"{side} thigh")) is not None]
     hips = legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]

@@ -75,27 +75,27 @@ class AvatarFrame:
         self,
         commands: Commands,
         rotations: Array,  # [k, J, 4] local joint rotations, newest first
-        translation: Array,  # [k, 3] local translation of the root joint, metres
+        translations: Array,  # [k, J, 3] local joint translations, metres
         place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
     ) -> None:
         """Append the dispatches from a window of poses to posed splats.
 
         What depends on the pose alone is written to the device at once: submit before the next decode.
         """
-        self._write_pose(rotations, translation, place)
+        self._write_pose(rotations, translations, place)
         self._coarse(commands)
         self._branch(commands, self.avatar.geometry, first_channel=GEOMETRY.start)
         self._branch(commands, self.avatar.appearance, first_channel=APPEARANCE.start)
         self._pose(commands)
 
-    def _write_pose(self, rotations: Array, translation: Array, place: Array) -> None:
+    def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
         avatar = self.avatar.avatar
         skeleton, normalization = avatar.rig.skeleton, avatar.normalization
-        descriptor = describe_window(skeleton, avatar.encoding, rotations, translation)
+        descriptor = describe_window(skeleton, avatar.encoding, rotations, translations)
         self.descriptor.write(((descriptor - normalization.mean) / normalization.scale).astype(np.float32))
-        joints = rotation.dual_multiply(place, skeleton.skinning(rotations[0], translation[0]))
+        joints = rotation.dual_multiply(place, skeleton.skinning(rotations[0], translations[0]))
         self.joints.write(joints.astype(np.float32))
-        root = skeleton.world(rotations[0], translation[0])[1][skeleton.root]
+        root = skeleton.world(rotations[0], translations[0])[1][skeleton.root]
         corners = rotation.dual_transform(place, np.stack(np.meshgrid(*(avatar.bounds + root).T), axis=-1))
         self.bounds = np.stack([corners.min(axis=(0, 1, 2)), corners.max(axis=(0, 1, 2))])
 

@@ -52,12 +52,12 @@ class Offscreen:
     ) -> Array:
         """Premultiplied sRGB and alpha [H, E W, 4] of one frame, eyes side by side."""
         window = self._avatar.avatar.avatar.encoding.frames(index)
-        rotations, translation = self._clip.rotations[window], self._clip.translation[window]
+        rotations, translations = self._clip.rotations[window], self._clip.translations[window]
         commands = self._device.commands()
-        self._avatar.decode(commands, rotations, translation)
+        self._avatar.decode(commands, rotations, translations)
         self._frame.sort(commands, cameras)
         commands.submit()
-        self._scene.pose(rotations[0], translation[0], ground=self._ground)
+        self._scene.pose(rotations[0], translations[0], ground=self._ground)
         return draw_picture(self._device, self._scene, cameras, self._toggles)
 
 

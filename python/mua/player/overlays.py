@@ -1,7 +1,7 @@
 """What is shown beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
 
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -93,13 +93,13 @@ class Overlays:
     def pose(
         self,
         rotations: Array,  # [J, 4] local joint rotations
-        translation: Array,  # [3] local translation of the root joint, metres
+        translations: Array,  # [J, 3] local joint translations, metres
         *,
         ground: float,  # height, metres
     ) -> None:
         """Follow the skeleton; the posed buffers are filled by the frame's own dispatches."""
         skeleton = self._avatar.rig.skeleton
-        _, places = skeleton.world(rotations, translation)
+        _, places = skeleton.world(rotations, translations)
         self._joints.write(np.column_stack([places, np.ones(len(places))]).astype(np.float32))
         self._area = shadow_area(self._avatar.bounds + places[skeleton.root], ground)
 
@@ -162,7 +162,7 @@ def ground_height(rig: Rig, clip: Clip | None) -> float:
     if clip is None:
         return float(rig.mesh.vertices[:, 1].min(initial=0))
     frames = np.unique(np.linspace(0, len(clip) - 1, GROUND_FRAMES).astype(int))
-    some = replace(clip, rotations=clip.rotations[frames], translation=clip.translation[frames])
+    some = clip.cut(frames)
     return float(np.quantile(frame_boxes(rig, some)[:, 0, 1], BELOW_GROUND)) + BOX_MARGIN
 
 

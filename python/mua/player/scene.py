@@ -65,12 +65,12 @@ class Scene:
     def pose(
         self,
         rotations: Array,  # [J, 4] local joint rotations
-        translation: Array,  # [3] local translation of the root joint, metres
+        translations: Array,  # [J, 3] local joint translations, metres
         *,
         ground: float,  # height on which the shadow falls, metres
     ) -> None:
         """Move skeleton and shadow to the pose that the frame decodes."""
-        self._overlays.pose(rotations, translation, ground=ground)
+        self._overlays.pose(rotations, translations, ground=ground)
 
     def draw(self, target: wgpu.GPUTexture, cameras: Sequence[Camera], toggles: Toggles) -> None:
         """Submit the picture of one or two eyes, side by side from the left; the target is as wide as all of them."""

@@ -144,11 +144,11 @@ class Session:
         cameras = self._cameras((max(width // 2, 1) if self.stereo else width, height))
         commands = self._device.commands(timed=self.timed and self.can_time)
         window = self._stage.encoding.frames(self.index)
-        rotations, translation = self._clip.rotations[window], self._clip.translation[window]
+        rotations, translations = self._clip.rotations[window], self._clip.translations[window]
         shown = (self.file, self._clip.name, self.index)
         if shown != self._drawn:
-            self._stage.frame.avatars[0].decode(commands, rotations, translation)
-            self._stage.scene.pose(rotations[0], translation[0], ground=self._stage.ground(self._clip))
+            self._stage.frame.avatars[0].decode(commands, rotations, translations)
+            self._stage.scene.pose(rotations[0], translations[0], ground=self._stage.ground(self._clip))
         self._stage.frame.sort(commands, cameras)
         commands.submit()
         self._drawn = shown
@@ -165,7 +165,7 @@ class Session:
         """Where the root joint is, [3] metres, with the height that it has at the start of the clip."""
         skeleton, clip = self._stage.rig.skeleton, self._clip
         frames = [self.index, 0]
-        _, placed = skeleton.world(clip.rotations[frames], clip.translation[frames])
+        _, placed = skeleton.world(clip.rotations[frames], clip.translations[frames])
         now, start = placed[:, skeleton.root]
         return np.where(HORIZONTAL > 0, now if self.follow else start, start)
 

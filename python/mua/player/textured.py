@@ -56,11 +56,11 @@ class TexturedFrame(SplatFrame):
 
         The numbers are written to the device at once: submit before the next pose.
         """
-        joints = self.rig.skeleton.skinning(pose.rotations, pose.translation)
+        joints = self.rig.skeleton.skinning(pose.rotations, pose.translations)
         self._joints.write(joints.astype(np.float32))
         self._mesh.write(np.ascontiguousarray(mesh, dtype=np.float32))
         self._texel_channels.write(np.ascontiguousarray(texture.T, dtype=np.float32))
-        (self._box,) = frame_boxes(self.rig, Clip("", 1.0, pose.rotations[None], pose.translation[None]))
+        (self._box,) = frame_boxes(self.rig, Clip("", 1.0, pose.rotations[None], pose.translations[None]))
         commands.dispatch(
             self._blend_vertices,
             (groups(self._vertices, SKINNED), 1, 1),

@@ -6,7 +6,7 @@
     shards/00000/         up to `shard_frames` recorded frames and every pose up to the last of them
         index.json        which frames of which clips; CRC-32 of each file
         rotations.npy     [P, J, 4] float64 local joint rotations of all frames, recorded or not
-        translations.npy  [P, 3] float64
+        translations.npy  [P, J, 3] float64 local joint translations, metres
         meshes.npy        [S, V, 3] float32 canonical vertices, metres
         ll.npy            [S, 23, n, n] float16, less the reference's; n = size / 16
         d3.npy            [S, 3, 23, n, n] float16, likewise

@@ -14,7 +14,7 @@ from mua.recording.rig_file import rig_hash
 from mua.rig.rig import Rig
 from mua.texture.channels import CHANNELS
 
-VERSION = 1
+VERSION = 2
 HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
 INDEX, SUM = "index.json", "sum.npy"
 DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2 vary with the frame, D1 and D0 are means (paper, Methodology)
@@ -45,7 +45,7 @@ class Header:
         shapes: dict[str, tuple[tuple[int, ...], str]] = {}
         if poses:
             shapes["rotations"] = ((poses, self.joints, 4), "<f8")
-            shapes["translations"] = ((poses, 3), "<f8")
+            shapes["translations"] = ((poses, self.joints, 3), "<f8")
         if frames:
             shapes["meshes"] = ((frames, self.vertices, 3), "<f4")
             shapes["ll"] = ((frames, CHANNELS, n, n), "<f2")

@@ -39,13 +39,13 @@ class Shard:
     def is_empty(self) -> bool:
         return not self._rotations and not self.complete
 
-    def add_pose(self, clip: str, index: int, *, held_out: bool, rotations: Array, translation: Array) -> None:
+    def add_pose(self, clip: str, index: int, *, held_out: bool, rotations: Array, translations: Array) -> None:
         """Append frame `index` of `clip`, so far its pose alone."""
         if not self._segments or self._segments[-1].clip != clip:
             self._segments.append(Segment(clip, held_out, index, 0, [], []))
         self._segments[-1].poses += 1
         self._rotations.append(rotations)
-        self._translations.append(translation)
+        self._translations.append(translations)
 
     def add_frame(
         self,

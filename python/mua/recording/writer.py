@@ -152,13 +152,13 @@ class TeacherWriter:
             raise InputError(f"recording {self.directory}: start_clip comes before the first frame")
         state = self._clips[self._clip]
         try:
-            rotations, translation = self._check_pose(pose)
+            rotations, translations = self._check_pose(pose)
             frame = self._encode(mesh, texture)
         except InputError as error:
             where = f"recording {self.directory}: clip {self._clip!r}, frame {state.frames}"
             raise InputError(f"{where}: {error}") from None
         self._shard.add_pose(
-            self._clip, state.frames, held_out=state.held_out, rotations=rotations, translation=translation
+            self._clip, state.frames, held_out=state.held_out, rotations=rotations, translations=translations
         )
         if frame is not None:
             self._keep(state, frame, whole=len(state.recorded) % self._whole_every == 0 if whole is None else whole)
@@ -240,12 +240,12 @@ class TeacherWriter:
 
     def _check_pose(self, pose: Pose) -> tuple[Array, Array]:
         rotations = _checked("pose rotations", pose.rotations, (self._header.joints, 4), np.float64)
-        translation = _checked("pose translation", pose.translation, (3,), np.float64)
+        translations = _checked("pose translations", pose.translations, (self._header.joints, 3), np.float64)
         lengths = np.linalg.norm(rotations, axis=1)
         joint = int(np.argmax(np.abs(lengths - 1)))
         if abs(lengths[joint] - 1) > UNIT_LENGTH_ERROR:
             raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
-        return rotations, translation
+        return rotations, translations
 
     def _encode(self, mesh: Array | None, texture: Array | None) -> _Encoded | None:
         """Check and transform what was added, relative to the reference frame, which the first texture becomes."""

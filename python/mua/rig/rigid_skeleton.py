@@ -45,7 +45,8 @@ def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
     clips = []
     for source, motion in zip(scene.motions, motions, strict=True):
         local = rotation.from_matrix(local_rotations(motion.rotations, bind.parents))
-        clips.append(Clip(source.name, source.rate, local, _root_translation(skeleton, local, motion.positions)))
+        at = _root_translation(skeleton, local, motion.positions)
+        clips.append(Clip(source.name, source.rate, local, skeleton.with_root(at)))
     return Rigged(skeleton, bind.nodes, tuple(clips), (*told, *_losses(scene, skeleton, bind=bind, motions=motions)))
 
 
@@ -64,7 +65,7 @@ def _root_translation(skeleton: Skeleton, local: Array, positions: Array) -> Arr
     parent = skeleton.parents[skeleton.root]
     if parent < 0:
         return positions[:, skeleton.root]
-    turned, placed = skeleton.world(local, np.zeros((len(local), 3)))
+    turned, placed = skeleton.world(local, skeleton.with_root(np.zeros((len(local), 3))))
     return rotation.rotate(rotation.conjugate(turned[:, parent]), positions[:, skeleton.root] - placed[:, parent])
 
 

@@ -14,15 +14,15 @@ class Pose:
     """One moment of a skeleton: what moves each joint relative to its parent."""
 
     rotations: Array  # [J, 4] local joint rotations, unit, wxyz
-    translation: Array  # [3] local translation of the skeleton's root joint, metres
+    translations: Array  # [J, 3] local joint translations, metres
 
 
 @dataclass(frozen=True)
 class Skeleton:
     """Joints in parent-before-child order; metres, Y up, right-handed; column vectors.
 
-    Every transform is rigid: scales of the source are folded into the mesh. Only joint `root`
-    (the hips of a person) carries an animated translation; the others keep that of the bind pose.
+    Every transform is rigid: scales of the source are folded into the mesh. Joint `root` (the hips of
+    a person) is the one whose path through the world is that of the character.
     """
 
     names: tuple[str, ...]
@@ -33,27 +33,32 @@ class Skeleton:
 
     @property
     def bind_pose(self) -> Pose:
-        return Pose(self.bind_rotations, self.bind_translations[self.root])
+        return Pose(self.bind_rotations, self.bind_translations)
 
     @cached_property
     def bind_inverse(self) -> Array:
         """[J, 8] dual quaternions from the bind pose's world space to each joint's own."""
-        return rotation.dual_inverse(rotation.dual_from_rigid(*self.world(*self._bind)))
+        return rotation.dual_inverse(rotation.dual_from_rigid(*self.world(self.bind_rotations, self.bind_translations)))
 
-    @property
-    def _bind(self) -> tuple[Array, Array]:
-        return self.bind_rotations, self.bind_translations[self.root]
+    def with_root(
+        self,
+        translation: Array,  # [..., 3] local translation of the root joint, metres
+    ) -> Array:
+        """Local translations [..., J, 3] of the bind pose but for the root joint's, metres."""
+        translations = np.tile(self.bind_translations, (*translation.shape[:-1], 1, 1))
+        translations[..., self.root, :] = translation
+        return translations
 
     def world(
         self,
         rotations: Array,  # [..., J, 4] local
-        translation: Array,  # [..., 3] local translation of the root joint
+        translations: Array,  # [..., J, 3] local, metres
     ) -> tuple[Array, Array]:
         """Joint-to-world rotations [..., J, 4] and positions [..., J, 3] (forward kinematics)."""
         turned = np.empty(rotations.shape)
         placed = np.empty((*rotations.shape[:-1], 3))
         for j, parent in enumerate(self.parents):
-            local = translation if j == self.root else self.bind_translations[j]
+            local = translations[..., j, :]
             if parent < 0:
                 turned[..., j, :], placed[..., j, :] = rotations[..., j, :], local
                 continue
@@ -64,7 +69,7 @@ class Skeleton:
     def skinning(
         self,
         rotations: Array,  # [..., J, 4] local
-        translation: Array,  # [..., 3] local translation of the root joint
+        translations: Array,  # [..., J, 3] local, metres
     ) -> Array:
         """Dual quaternions [..., J, 8] that carry bind-pose points to the posed world."""
-        return rotation.dual_multiply(rotation.dual_from_rigid(*self.world(rotations, translation)), self.bind_inverse)
+        return rotation.dual_multiply(rotation.dual_from_rigid(*self.world(rotations, translations)), self.bind_inverse)

@@ -133,7 +133,7 @@ def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: b
     """Descriptors [F, k D] of the recorded frames of a kind, in the order of recording."""
     clips = [clip for clip in recording.clips if clip.held_out == held_out and len(clip)]
     skeleton = recording.rig.skeleton
-    described = [describe(skeleton, encoding, clip.rotations, clip.translation)[clip.recorded] for clip in clips]
+    described = [describe(skeleton, encoding, clip.rotations, clip.translations)[clip.recorded] for clip in clips]
     return np.concatenate([np.zeros((0, encoding.width)), *described])
 
 

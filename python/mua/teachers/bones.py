@@ -39,7 +39,7 @@ def fit_bones(character: Character, looseness: Array) -> Bones:
     """Fit a capsule to each joint that has a child and enough skin of its own; the radius is the median distance."""
     skeleton, vertices = character.skeleton, character.mesh.vertices
     scale = figure_scale(vertices)
-    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations[skeleton.root])
+    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     found = []
     for joint in range(len(skeleton.names)):
         skin = vertices[(character.skin_indices[:, 0] == joint) & (looseness < BODY)]

@@ -65,7 +65,7 @@ class SimulatedTeacher:
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
         """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses."""
         character, bones = self._character, self._bones
-        skinning = character.skeleton.skinning(clip.rotations, clip.translation)
+        skinning = character.skeleton.skinning(clip.rotations, clip.translations)
         for frame, joints in enumerate(skinning):
             dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
             turn, ends = dual[:, :4], bones.posed(joints)
@@ -73,7 +73,7 @@ class SimulatedTeacher:
             if frame == 0:
                 self._simulation.settle(target, turn, ends)
             moved = self._simulation.advance(target, turn, ends, seconds=1 / clip.rate)
-            pose = Pose(clip.rotations[frame], clip.translation[frame])
+            pose = Pose(clip.rotations[frame], clip.translations[frame])
             yield self._whole(pose, joints, dual, moved) if frame in wanted else pose
 
     def _whole(self, pose: Pose, joints: Array, dual: Array, moved: Array) -> TeacherFrame:

@@ -187,4 +187,6 @@ def _dance() -> Performance:
 def build_clips(skeleton: Skeleton) -> tuple[Clip, ...]:
     """The figure's clips, 3 or 4 seconds each."""
     acts = {"walk": _walk(), "turn": _turn(), "reach": _reach(), "dance": _dance()}
-    return tuple(Clip(name, RATE, joint_rotations(skeleton, act), act.hips) for name, act in acts.items())
+    return tuple(
+        Clip(name, RATE, joint_rotations(skeleton, act), skeleton.with_root(act.hips)) for name, act in acts.items()
+    )
