@@ -19,10 +19,12 @@ from mua.asset.tensors import Storage
 from mua.bake.assemble import assemble
 from mua.bake.pipeline import Baked, Order, bake
 from mua.bake.plan import plan, split
+from mua.bake.sources import RATE, load_character
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.motion.descriptor import describe
+from mua.motion.resample import resample
 from mua.recording import Recording
 from mua.student.distil import distil
 from mua.student.settings import Ranks, Schedule, preset
@@ -52,8 +54,22 @@ def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
 def test_leaves_an_avatar_that_reads_back(baked: Baked) -> None:
     avatar = read(baked.output)
     assert avatar.rig.texels.size == 64
-    assert [clip.name for clip in avatar.clips[:4]] == [f"{name} (end)" for name in ("walk", "turn", "reach", "dance")]
     assert avatar.thumbnail
+
+
+def test_the_file_holds_the_clips_of_the_character_whole_and_by_name(baked: Baked) -> None:
+    """Not what was recorded of them: without --hold-out the ends are recorded apart."""
+    stored, given = read(baked.output).clips, load_character(None, uv="auto", seed=0).clips
+    assert [(clip.name, len(clip)) for clip in stored] == [(c.name, len(resample(c, RATE))) for c in given]
+    assert baked.stored.clips == len(given)
+    assert 0 < baked.stored.clip_bytes < baked.stored.file_bytes == baked.output.stat().st_size
+
+
+def test_the_file_says_what_was_held_out(baked: Baked) -> None:
+    walk = read(baked.output).clips[0]
+    assert f"held out of training: walk from frame {len(walk) - len(walk) // 5}, turn" in read(baked.output).notes
+    told = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert told["held_out_from"]["walk"] == len(walk) - len(walk) // 5
 
 
 def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
@@ -103,8 +119,15 @@ def clip(name: str, frames: int) -> Clip:
 
 def test_plan_spreads_frames_over_all_training_clips() -> None:
     planned = plan([clip("a", 30), clip("b", 10)], [clip("c", 100)], frames=8)
-    assert [len(p.wanted) for p in planned] == [6, 2, 40]
+    assert [len(p.wanted) for p in planned] == [6, 2, 2]
     assert [p.held_out for p in planned] == [False, False, True]
+
+
+@pytest.mark.parametrize(("frames", "recorded"), [(1, [0, 0, 1]), (8, [0, 1, 1]), (40, [3, 3, 4]), (4000, [40, 40, 7])])
+def test_held_out_frames_are_at_most_a_quarter_of_the_training_frames(frames: int, recorded: list[int]) -> None:
+    held = [clip("b", 100), clip("c", 200), clip("d", 7)]
+    planned = plan([clip("a", 5000)], held, frames=frames)
+    assert [len(p.wanted) for p in planned if p.held_out] == recorded
 
 
 def test_plan_takes_every_frame_where_more_are_asked_for() -> None:
@@ -116,6 +139,12 @@ def test_without_names_the_end_of_every_clip_is_held_out() -> None:
     training, held = split([clip("a", 50), clip("b", 3)], [])
     assert [(c.name, len(c)) for c in training] == [("a", 40), ("b", 3)]
     assert [(c.name, len(c)) for c in held] == [("a (end)", 10)]
+
+
+def test_an_end_takes_no_name_that_a_clip_has() -> None:
+    training, held = split([clip("a", 50), clip("a (end)", 50)], [])
+    assert [c.name for c in training] == ["a", "a (end)"]
+    assert [c.name for c in held] == ["a (end) (end)"]
 
 
 def test_unknown_held_out_clip_is_named() -> None:
@@ -174,8 +203,8 @@ def test_motion_whose_joints_match_nothing_is_named(tmp_path: Path) -> None:
     assert "no joint name" in sentence
 
 
-def test_unknown_preset_is_named(tmp_path: Path) -> None:
-    assert "huge" in refused(tmp_path, "--preset", "huge")
+def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Path) -> None:
+    assert "--clips jump: there is no such clip, only walk, turn" in refused(tmp_path, "--clips", "jump")
 
 
 def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:

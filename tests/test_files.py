@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mua.errors import InputError
-from mua.files import remove_leftovers, replacing, require_writable, write_bytes
+from mua.files import missing_directory, remove_leftovers, replacing, require_writable, write_bytes
 
 
 def test_replaces_the_whole_content_and_leaves_nothing_else(tmp_path: Path) -> None:
@@ -66,3 +66,20 @@ def test_leftovers_of_this_file_alone_are_removed(tmp_path: Path) -> None:
         path.touch()
     remove_leftovers(tmp_path / "a[1].txt")
     assert set(tmp_path.iterdir()) == set(kept)
+
+
+def test_the_directory_that_would_be_made_is_the_highest_that_is_missing(tmp_path: Path) -> None:
+    assert missing_directory(tmp_path, option="-o") is None
+    assert missing_directory(tmp_path / "a" / "b", option="-o") == tmp_path / "a"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_directory_is_made_at_the_root_of_a_disk() -> None:
+    with pytest.raises(InputError, match=r"-o /no such/place: there is no directory /no such; make it first"):
+        missing_directory(Path("/no such/place"), option="-o")
+
+
+def test_a_file_is_no_directory_to_write_in(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match=r"--work .*: .*file is no directory"):
+        missing_directory(tmp_path / "file" / "a", option="--work")

@@ -9,7 +9,8 @@ from bvh_files import BVH
 
 from mua import rotation
 from mua.errors import InputError
-from mua.motion.load import load_motion, same_joints
+from mua.motion.clip import Clip
+from mua.motion.load import counted, load_motion, same_joints
 from mua.motion.read import read_motion
 from mua.rig.skeleton import Skeleton
 
@@ -48,3 +49,9 @@ def test_refuses_motion_whose_joints_match_none_and_names_the_file(motion: Path)
     source = read_motion(motion)[0]
     with pytest.raises(InputError, match=r"wave\.bvh"):
         load_motion(motion, twice_as_large(source.skeleton), mapping=None, rate=10.0)
+
+
+def test_what_several_clips_bring_is_said_once_with_their_number() -> None:
+    clips = [Clip(name, 30.0, np.zeros((1, 1, 4)), np.zeros((1, 1, 3))) for name in ("a", "b", "c")]
+    notes = ["a: slides.", "b.bvh: slides.", "no joint moves.", "no joint moves.", "c: falls.", "d: slides."]
+    assert counted(notes, clips) == ("2 clips: slides.", "2 clips: no joint moves.", "c: falls.", "d: slides.")

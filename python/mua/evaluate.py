@@ -72,6 +72,15 @@ class Errors:
     def _count(self, attribute: str, picture: str, square: float) -> None:
         self.squares[attribute, picture] = self.squares.get((attribute, picture), 0.0) + square
 
+    def __add__(self, other: "Errors") -> "Errors":
+        """Both groups as one."""
+        squares, vectors = dict(self.squares), dict(self.vectors)
+        for key, square in other.squares.items():
+            squares[key] = squares.get(key, 0.0) + square
+        for attribute, count in other.vectors.items():
+            vectors[attribute] = vectors.get(attribute, 0) + count
+        return Errors(self.frames + other.frames, squares, vectors)
+
     def rms(self, attribute: str, picture: str) -> float:
         """Root mean square error of a vector (all components of the attribute together) in its unit."""
         return UNITS[attribute][1] * math.sqrt(self.squares[attribute, picture] / self.vectors[attribute])
@@ -101,6 +110,12 @@ def evaluate(
             done += 1
             progress(done, recording.whole_count)
     return dict(sorted(groups.items(), key=lambda item: item[0] != TRAINING))
+
+
+def held_out_errors(groups: Mapping[str, Errors]) -> Errors | None:
+    """Errors of all held-out clips together; None where there is no such clip."""
+    held = [errors for name, errors in groups.items() if name != TRAINING]
+    return sum(held[1:], start=held[0]) if held else None
 
 
 class _Judge:

@@ -51,6 +51,29 @@ def require_writable(path: Path) -> None:
         _remove(probe)
 
 
+def missing_directory(path: Path, *, option: str) -> Path | None:
+    """The highest directory that would have to be made for `path` to be one; None where it is there.
+
+    Makes nothing. Raises InputError where nothing can be written in what there is, and where the directory would be
+    made at the root of a disk: that is a slip of the pen more often than it is meant.
+    """
+    missing, there = None, path.absolute()
+    while not there.exists():
+        missing, there = there, there.parent
+    if not there.is_dir():
+        raise InputError(f"{option} {path}: {there} is no directory")
+    if missing is not None and there == Path(there.anchor):
+        raise InputError(f"{option} {path}: there is no directory {missing}; make it first if it is meant")
+    probe = there / f".mua.{os.getpid()}.part"
+    try:
+        probe.touch()
+    except OSError as error:
+        raise InputError(f"{option} {path}: nothing can be written in {there} ({error.strerror})") from error
+    finally:
+        _remove(probe)
+    return missing
+
+
 def remove_leftovers(path: Path) -> None:
     """Remove what killed writers of `path` left beside it; nobody may be writing it."""
     for left in path.parent.glob(f".{glob.escape(path.stem)}.*.part{glob.escape(path.suffix)}"):

@@ -36,6 +36,15 @@ def flops(avatar: Avatar) -> dict[str, int]:
     }
 
 
+def stored_bytes(value: object) -> int:
+    """Bytes of all vectors below one part of a file's tree."""
+    if isinstance(value, dict):
+        return sum(stored_bytes(child) for name, child in value.items() if name != "_at")
+    if isinstance(value, list):
+        return sum(stored_bytes(child) for child in value)
+    return int(getattr(value, "nbytes", 0))
+
+
 def _weights(mlp: Mlp) -> int:
     return sum(layer.weight.size + layer.bias.size for layer in mlp)
 

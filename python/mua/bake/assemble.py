@@ -8,6 +8,7 @@ from PIL import Image
 
 from mua import __version__
 from mua.asset.avatar import Avatar
+from mua.bake.playback import typical_frame
 from mua.bounds import playback_bounds
 from mua.decode import decode_clip_frame
 from mua.motion.clip import Clip
@@ -18,8 +19,6 @@ from mua.rig.rig import Rig
 from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
 from mua.student.model import Student
 
-PLAYBACK_CLIPS = 8  # stored for playback; held-out ones first, so that a viewer sees what the student never saw
-PLAYBACK_SECONDS = 10.0
 THUMBNAIL = 256  # pixels
 
 
@@ -29,11 +28,11 @@ def assemble(
     *,
     name: str,
     encoding: PoseEncoding,
-    clips: Sequence[Clip],  # in order of preference
+    clips: Sequence[Clip],  # all that the character is known to do
     notes: str,
+    stored: Sequence[Clip] | None = None,  # those of them to store for playback; None: all
 ) -> Avatar:
     """Everything that a player needs, as one avatar."""
-    playback = tuple(_shortened(clip) for clip in clips[:PLAYBACK_CLIPS])
     geometry, appearance = export_branches(student)
     avatar = Avatar(
         name=name,
@@ -45,26 +44,20 @@ def assemble(
         geometry=geometry,
         appearance=appearance,
         wavelet=export_wavelet(student),
-        clips=playback,
-        bounds=playback_bounds(rig, playback),
+        clips=tuple(clips if stored is None else stored),
+        bounds=playback_bounds(rig, clips),
         thumbnail=b"",
         notes=notes,
     )
-    return replace(avatar, thumbnail=thumbnail(avatar))
+    return replace(avatar, thumbnail=thumbnail(avatar, clips))
 
 
-def thumbnail(avatar: Avatar) -> bytes:
-    """A PNG of the first playback clip's middle frame."""
-    clip = avatar.clips[0]
-    index = len(clip) // 2
+def thumbnail(avatar: Avatar, clips: Sequence[Clip]) -> bytes:
+    """A PNG of a typical frame of the clips."""
+    clip, index = typical_frame(clips, root=avatar.rig.skeleton.root)
     frame = decode_clip_frame(avatar, clip, frame=index)
     screen = (THUMBNAIL, THUMBNAIL)
     camera = portrait(frame, avatar.rig.skeleton, pose=clip.pose(index), screen=screen)
     stream = io.BytesIO()
     Image.fromarray(to_bytes(render(frame, camera))).save(stream, "PNG")
     return stream.getvalue()
-
-
-def _shortened(clip: Clip) -> Clip:
-    count = int(PLAYBACK_SECONDS * clip.rate)
-    return clip.cut(slice(count))

@@ -10,15 +10,17 @@ from typing import Protocol
 import torch
 
 from mua.asset.avatar import Avatar
-from mua.asset.read import read
+from mua.asset.count import stored_bytes
+from mua.asset.read import decode_tree, load
 from mua.asset.tensors import Storage
 from mua.asset.write import write
-from mua.bake import report
+from mua.bake import playback, report
 from mua.bake.assemble import assemble
 from mua.contact_sheet import contact_sheet
 from mua.errors import InputError
 from mua.evaluate import Errors, evaluate
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
+from mua.motion.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.student.distil import distil, distil_stage
@@ -49,6 +51,8 @@ class Distillation:
     device: torch.device
     name: str  # of the avatar
     teacher: str  # what the teacher is; stands in the avatar and beside every figure
+    clips: tuple[Clip, ...] | None = None  # of the character, whole; None: those of the recording, their ends joined
+    playback: tuple[str, ...] = (playback.ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
     processes: Processes = ALONE  # that train together; the first of them writes
 
@@ -67,6 +71,7 @@ class Baked:
 
     errors: Mapping[str, Errors]  # by group of frames; none where the recording keeps no frame whole
     output: Path
+    stored: report.Stored
     sheet: Path | None
     figures: Path | None
 
@@ -110,28 +115,38 @@ def teach_stage(order: Distillation, stage: StageName, recording: Recording, lis
 def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
     """Write the avatar, read it back, measure it and picture it."""
     listener.stage("avatar")
-    held, training = ([c for c in recording.clips if len(c) and c.held_out == kind] for kind in (True, False))
+    clips = playback.whole_clips(recording.clips) if order.clips is None else order.clips
+    starts = playback.held_out(recording.clips)
     avatar = assemble(
         student,
         recording.rig,
         name=order.name,
         encoding=student.encoding,
-        clips=[*held, *training],
-        notes=order.teacher,
+        clips=clips,
+        stored=playback.choose(clips, order.playback),
+        notes=f"{order.teacher}; {playback.held_out_sentence(starts)}",
     )
     write(order.output, avatar, storage=order.storage)
+    tree = load(order.output)
+    avatar = decode_tree(tree)  # what a user gets, not what was trained
+    stored = _stored(avatar, stored_bytes(tree["clips"]), order.output)
 
     listener.stage("evaluation")
     if not recording.whole_count:
         listener.note("the recording keeps no frame whole, so there are neither errors nor a contact sheet")
-        return Baked({}, order.output, None, None)
-    avatar = read(order.output)  # what a user gets, not what was trained
+        return Baked({}, order.output, stored, None, None)
     errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
-    baked = Baked(errors, order.output, order.beside("_contact_sheet.png"), order.beside("_errors.md"))
+    baked = Baked(errors, order.output, stored, order.beside("_contact_sheet.png"), order.beside("_errors.md"))
     _picture(order.beside("_contact_sheet.png"), avatar, recording)
     write_bytes(order.beside("_errors.md"), report.markdown(errors, teacher=order.teacher).encode())
-    write_bytes(order.beside("_errors.json"), report.as_json(errors, teacher=order.teacher).encode())
+    told = report.as_json(errors, teacher=order.teacher, held_out=starts)
+    write_bytes(order.beside("_errors.json"), told.encode())
     return baked
+
+
+def _stored(avatar: Avatar, clip_bytes: int, path: Path) -> report.Stored:
+    seconds = sum(len(clip) / clip.rate for clip in avatar.clips)
+    return report.Stored(len(avatar.clips), seconds, clip_bytes, path.stat().st_size)
 
 
 @contextmanager

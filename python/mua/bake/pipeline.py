@@ -12,6 +12,7 @@ from mua import __version__
 from mua.asset.tensors import Storage
 from mua.bake.distillation import Baked, Distillation, Listener, finish, teach
 from mua.bake.plan import plan, split
+from mua.bake.playback import ALL, choose
 from mua.bake.report import STAND_IN
 from mua.bake.sources import RATE, load_character, load_clips
 from mua.files import require_writable
@@ -35,6 +36,7 @@ class Order:
     mapping: Mapping[str, str] | None = None  # target joint to source joint
     uv: Literal["keep", "unwrap", "auto"] = "auto"
     storage: Storage = "f16"
+    clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
 
 def bake(order: Order, listener: Listener) -> Baked:
@@ -46,6 +48,7 @@ def bake(order: Order, listener: Listener) -> Baked:
         listener.note(sentence)
     training, held = split(clips, order.hold_out)
     planned = plan(training, held, frames=order.settings.frames)
+    choose(clips, order.clips)  # before hours of work
 
     require_writable(order.output)
     recording = _record(order, character, planned, listener)
@@ -56,6 +59,8 @@ def bake(order: Order, listener: Listener) -> Baked:
         device=order.device,
         name=character.name,
         teacher=STAND_IN,
+        clips=tuple(clips),
+        playback=order.clips,
         storage=order.storage,
     )
     student = teach(distillation, recording, listener)

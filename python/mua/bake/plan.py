@@ -10,9 +10,11 @@ from mua.motion.clip import Clip
 from mua.recording import PlannedClip
 
 HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out
-HELD_FRAMES = 40  # recorded of each held-out clip, all of them whole
+HELD_FRAMES = 40  # recorded of each held-out clip at most, all of them whole
+HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training
 WHOLE_FRAMES = 60  # of all training frames, kept whole to measure the error on
 SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
+ENDING = " (end)"  # after a clip's name: its held-out end, recorded as a clip of its own
 
 
 def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip], list[Clip]]:
@@ -33,20 +35,23 @@ def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip],
 
 
 def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[Clip]]:
+    names = {clip.name for clip in clips}
     training, held = [], []
     for clip in clips:
-        at = len(clip) - len(clip) // HELD_SHARE
-        if len(clip) < SHORTEST:
+        at, end = len(clip) - len(clip) // HELD_SHARE, clip.name + ENDING
+        if len(clip) < SHORTEST or end in names:  # who has a clip of that very name keeps both whole
             training.append(clip)
             continue
         training.append(clip.cut(slice(at)))
-        end = clip.cut(slice(at, None))
-        held.append(replace(end, name=f"{clip.name} (end)"))
+        held.append(replace(clip.cut(slice(at, None)), name=end))
     return training, held
 
 
 def plan(training: Sequence[Clip], held: Sequence[Clip], *, frames: int) -> list[PlannedClip]:
-    """Record `frames` training frames, evenly over all training clips, and some of each held-out clip."""
+    """Record `frames` training frames, evenly over all training clips, and up to a quarter as many held-out ones.
+
+    Every held-out clip gets its share of these; some get none where there are more clips than frames.
+    """
     if frames < 1:
         raise InputError(f"--frames {frames}: expected at least 1")
     starts = np.cumsum([0, *(len(clip) for clip in training)])
@@ -56,10 +61,15 @@ def plan(training: Sequence[Clip], held: Sequence[Clip], *, frames: int) -> list
     for clip, start, stop in zip(training, starts[:-1], starts[1:], strict=True):
         wanted, whole = (frozenset((f[(f >= start) & (f < stop)] - start).tolist()) for f in (chosen, kept))
         planned.append(PlannedClip(clip, held_out=False, wanted=wanted, whole=whole))
-    for clip in held:
-        wanted = frozenset(_evenly(len(clip), HELD_FRAMES).tolist())
+    for clip, count in zip(held, _shares(max(frames // HELD_PART, 1), len(held)), strict=True):
+        wanted = frozenset(_evenly(len(clip), min(count, HELD_FRAMES)).tolist())
         planned.append(PlannedClip(clip, held_out=True, wanted=wanted, whole=wanted))
     return planned
+
+
+def _shares(total: int, parts: int) -> list[int]:
+    """`total` as that many whole numbers, alike but for one."""
+    return [total * (part + 1) // parts - total * part // parts for part in range(parts)]
 
 
 def _evenly(count: int, wanted: int) -> np.ndarray:

@@ -3,10 +3,12 @@
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
 
 from rich.table import Table
 
-from mua.evaluate import MESH, PICTURES, UNITS, Errors
+from mua.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
 from mua.texture.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"
@@ -16,7 +18,20 @@ LEGEND = (
     "coefficients for the learnt bases. Explained: of the variance about the mean. Note: {teacher}."
 )
 BASELINES = ("mean", "best", "student")
+SHORT = ("", "frames", "colour", "offset", "colour /255", "offset mm", "mesh mm")
+SHORT_LEGEND = "Shares of the variance about the mean texture, then root mean square errors; _errors.md holds the rest."
+HELD_OUT = "all held out"
 HEADINGS = ("frames", "attribute", "unit", "mean", "best", "student", "explained")
+
+
+@dataclass(frozen=True)
+class Stored:
+    """What the file holds for playback, and what that takes."""
+
+    clips: int
+    seconds: float  # of all clips together
+    clip_bytes: int
+    file_bytes: int
 
 
 def rows(groups: Mapping[str, Errors]) -> list[tuple[str, ...]]:
@@ -35,18 +50,33 @@ def percent(share: float) -> str:
 
 
 def table(groups: Mapping[str, Errors], *, teacher: str) -> Table:
-    """For the terminal."""
-    shown = Table(*HEADINGS, title="RMS error", caption=LEGEND.format(teacher=teacher))
-    last = ""
-    for name, *cells in rows(groups):
-        shown.add_row("" if name == last else name, *cells, end_section=cells[0] == MESH)
-        last = name
+    """For the terminal: one line for training, for all held-out clips together and for each of them."""
+    shown = Table(*SHORT, title="What the student explains, and its RMS errors")
+    shown.caption = f"{SHORT_LEGEND} Note: {teacher}."
+    for column in shown.columns[1:]:
+        column.justify = "right"
+    held = held_out_errors(groups)
+    clips = [(name, errors) for name, errors in groups.items() if name != TRAINING]
+    if TRAINING in groups:
+        shown.add_row(TRAINING, *_short(groups[TRAINING]))
+    if held is not None:
+        shown.add_row(HELD_OUT, *_short(held), end_section=True)
+    for name, errors in clips if len(clips) > 1 else ():
+        shown.add_row(f"  {name}", *_short(errors))
     return shown
+
+
+def _short(errors: Errors) -> list[str]:
+    explained = [percent(errors.explained(attribute)) for attribute in ("SH", "offset")]
+    return [str(errors.frames), *explained, *(f"{errors.rms(name, 'student'):.3g}" for name in ("SH", "offset", MESH))]
 
 
 def markdown(groups: Mapping[str, Errors], *, teacher: str) -> str:
     """The table, and what the student misses split by cause, in shares of the variance about the mean texture."""
     lines = ["| " + " | ".join(HEADINGS) + " |", "|" + " --- |" * len(HEADINGS)]
+    held = held_out_errors(groups)
+    together = {} if held is None else {HELD_OUT: held}
+    groups = {name: groups[name] for name in groups if name == TRAINING} | together | dict(groups)
     lines += ["| " + " | ".join(row) + " |" for row in rows(groups)]
     lines += ["", "| frames | attribute | D1 and D0 left out | bases too small | mispredicted |", "|" + " --- |" * 5]
     for name, errors in groups.items():
@@ -60,15 +90,35 @@ def missed(errors: Errors, attribute: str) -> tuple[str, str, str]:
     return percent(1 - bands), percent(bands - best), percent(best - student)
 
 
-def as_json(groups: Mapping[str, Errors], *, teacher: str) -> str:
-    """Every figure, unrounded."""
-    told = {
-        name: {
-            "frames": errors.frames,
-            "rms": {a: {p: errors.rms(a, p) for p in PICTURES} for a in ATTRIBUTES},
-            "explained": {a: {p: errors.explained(a, p) for p in PICTURES} for a in ATTRIBUTES},
-            "mesh mm": {p: errors.rms(MESH, p) for p in ("mean", "student")},
-        }
-        for name, errors in groups.items()
+def as_json(groups: Mapping[str, Errors], *, teacher: str, held_out: Mapping[str, int]) -> str:
+    """Every figure, unrounded; `held_out` says from which frame on each clip was held out of training."""
+    told: dict[str, object] = {"teacher": teacher, "held_out_from": dict(held_out)}
+    told["groups"] = {name: _figures(errors) for name, errors in groups.items()}
+    held = held_out_errors(groups)
+    if held is not None:
+        told["held_out"] = _figures(held)
+    return json.dumps(told, indent=1)
+
+
+def _figures(errors: Errors) -> dict[str, object]:
+    return {
+        "frames": errors.frames,
+        "rms": {a: {p: errors.rms(a, p) for p in PICTURES} for a in ATTRIBUTES},
+        "explained": {a: {p: errors.explained(a, p) for p in PICTURES} for a in ATTRIBUTES},
+        "mesh mm": {p: errors.rms(MESH, p) for p in ("mean", "student")},
     }
-    return json.dumps({"teacher": teacher, "groups": told}, indent=1)
+
+
+def closing(stored: Stored, output: Path) -> str:
+    """What was written, for the last lines of a bake."""
+    size = f"{output}: {stored.file_bytes / 1e6:.1f} MB"
+    if not stored.clips:
+        return f"{size}, no clip stored for playback"
+    clips = "1 clip" if stored.clips == 1 else f"{stored.clips} clips"
+    return f"{size}, {clips} of {duration(stored.seconds)} in all, {stored.clip_bytes / 1e6:.1f} MB of it"
+
+
+def duration(seconds: float) -> str:
+    """Such as 8 min 28 s."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{seconds:.1f} s"

@@ -6,7 +6,7 @@ from typing import Literal
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
-from mua.motion.load import load_motion, unique_names
+from mua.motion.load import counted, load_motion, unique_names
 from mua.motion.resample import resample
 from mua.rig.character import Character
 from mua.rig.read import read_character
@@ -41,4 +41,4 @@ def load_clips(
         loaded, told = load_motion(path, character.skeleton, mapping=mapping, rate=RATE)
         clips += loaded
         notes += told
-    return unique_names(clips), list(dict.fromkeys(notes))
+    return unique_names(clips), list(counted(notes, clips))

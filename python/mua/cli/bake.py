@@ -1,19 +1,14 @@
 """mua-bake: a rigged character and its motion become a verified `.muaavatar`."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 from rich.console import Console
 
-from mua.asset.tensors import Storage
-from mua.bake.pipeline import Order, bake
-from mua.bake.report import STAND_IN
-from mua.cli.display import Display, choose_device, show
+from mua.cli.bake_options import check_inputs, check_output, check_settings
 from mua.cli.failure import refusing
 from mua.motion.mapping import read_mapping
-from mua.student.settings import preset, with_recipe
 
 
 def main(
@@ -25,11 +20,18 @@ def main(
     ] = [],  # noqa: B006 typer copies it
     output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
     preset_name: Annotated[str, typer.Option("--preset", help="tiny, preview or paper.")] = "preview",
-    frames: Annotated[int | None, typer.Option(help="Training frames to record; the preset's if left out.")] = None,
+    frames: Annotated[
+        int | None,
+        typer.Option(help="Training frames to record, and a quarter as many held-out ones; the preset's if left out."),
+    ] = None,
     texels: Annotated[int | None, typer.Option(help="Texels along a side; the preset's if left out.")] = None,
     hold_out: Annotated[
         list[str], typer.Option(help="Clip to keep from training, may be repeated; none: the end of every clip.")
     ] = [],  # noqa: B006 typer copies it
+    clips: Annotated[
+        list[str],
+        typer.Option(help="Clip that the file holds for playback, may be repeated; or all, none, or how many."),
+    ] = ["all"],  # noqa: B006 typer copies it
     mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: target joint to source joint.")] = None,
     uv: Annotated[
         Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
@@ -37,7 +39,9 @@ def main(
     recipe: Annotated[
         str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
     ] = "closed-form",
-    storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
+    storage: Annotated[
+        Literal["f32", "f16", "i8"], typer.Option(help="Element type of bases, static offset and weights.")
+    ] = "f16",
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
     device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
     work: Annotated[Path | None, typer.Option(help="Work directory; beside the output if left out.")] = None,
@@ -46,23 +50,33 @@ def main(
 
     A run that was interrupted goes on where it stopped when the same command is given again.
     """
-    settings = with_recipe(replace(preset(preset_name), seed=seed), recipe)
-    settings = replace(settings, frames=settings.frames if frames is None else frames)
-    settings = replace(settings, texels=settings.texels if texels is None else texels)
+    settings = check_settings(preset_name, recipe, seed=seed, frames=frames, texels=texels)
+    work = output.with_suffix(".work") if work is None else work
+    check_inputs(character, motion)
+    made = check_output(output, work)
+    joints = None if mapping is None else read_mapping(mapping)
+
+    from mua.bake.pipeline import Order, bake  # seconds of loading: only once the options are known to be good
+    from mua.bake.report import STAND_IN
+    from mua.cli.display import Display, choose_device, show
+
     order = Order(
         output=output,
-        work=output.with_suffix(".work") if work is None else work,
+        work=work,
         settings=settings,
         character=character,
         motions=tuple(motion),
         hold_out=tuple(hold_out),
-        mapping=None if mapping is None else read_mapping(mapping),
+        clips=tuple(clips),
+        mapping=joints,
         uv=uv,
         storage=storage,
         device=choose_device(device),
     )
     console = Console()
     with Display(console) as display:
+        for directory in made:
+            display.note(f"There is no directory {directory}: it is made.")
         baked = bake(order, display)
     show(console, baked, teacher=STAND_IN)
 

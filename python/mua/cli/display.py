@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mua.bake.distillation import Baked
-from mua.bake.report import table
+from mua.bake.report import closing, table
 from mua.errors import InputError
 
 LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
@@ -24,18 +24,21 @@ class Display:
         )
         self.task: TaskID | None = None
         self._told = self._begun = 0.0
+        self._notes: dict[str, int] = {}  # of this stage, and how often each came
 
     def __enter__(self) -> "Display":
         self.progress.start()
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._say_notes()
         self.progress.stop()
         if self.task is not None:
             self._say_end()
 
     def stage(self, name: str) -> None:
         """End the bar of the stage before and begin one."""
+        self._say_notes()
         if self.task is not None:
             self.progress.update(self.task, total=1, completed=1)
             self._say_end()
@@ -46,6 +49,7 @@ class Display:
 
     def step(self, done: int, total: int, *, detail: str = "") -> None:
         """Say how far the stage is."""
+        self._say_notes()
         if self.task is None:
             return
         self.progress.update(self.task, completed=done, total=total, detail=detail)
@@ -55,7 +59,14 @@ class Display:
             self._say(f"  {done} of {total}{', ' if detail else ''}{detail}{ending}")
 
     def note(self, sentence: str) -> None:
-        self.console.print(f"  {sentence}", highlight=False, markup=False)
+        """Say a sentence, before the next step or stage: one that comes several times is said once."""
+        self._notes[sentence] = self._notes.get(sentence, 0) + 1
+
+    def _say_notes(self) -> None:
+        for sentence, count in self._notes.items():
+            times = f" ({count} times)" if count > 1 else ""
+            self.console.print(f"  {sentence}{times}", highlight=False, markup=False, soft_wrap=True)
+        self._notes.clear()
 
     def _say_end(self) -> None:
         if self.progress.disable:
@@ -68,10 +79,11 @@ class Display:
 
 
 def show(console: Console, baked: Baked, *, teacher: str) -> None:
-    """Print what a bake or a training ends with: the table of errors, and where everything is."""
+    """Print what a bake or a training ends with: the table of errors, and what was written where."""
     if baked.errors:
         console.print(table(baked.errors, teacher=teacher))
-    for path in (baked.output, baked.sheet, baked.figures):
+    console.print(closing(baked.stored, baked.output), highlight=False, soft_wrap=True, markup=False)
+    for path in (baked.sheet, baked.figures):
         if path is not None:
             console.print(path, highlight=False, soft_wrap=True)
 

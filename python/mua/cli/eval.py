@@ -9,7 +9,7 @@ import torch
 import typer
 from rich.console import Console
 
-from mua.cli.bake import Display
+from mua.cli.display import Display
 from mua.cli.failure import refusing
 from mua.errors import InputError
 from mua.files import replacing, write_bytes

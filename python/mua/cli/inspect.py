@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mua.asset.avatar import Avatar
-from mua.asset.count import flops, parameters
+from mua.asset.count import flops, parameters, stored_bytes
 from mua.asset.flatbuffer import Tree
 from mua.asset.read import decode_tree, load
 from mua.cli.failure import refusing
@@ -62,17 +62,8 @@ def _bytes(file: Path, tree: Tree) -> Table:
     table = Table("part", "bytes", title=f"{file.stat().st_size / 1e6:.2f} MB")
     table.columns[1].justify = "right"
     for part in PARTS:
-        table.add_row(part, f"{_held(tree[part]):,}")
+        table.add_row(part, f"{stored_bytes(tree[part]):,}")
     return table
-
-
-def _held(value: object) -> int:
-    """Bytes of all vectors below one part of the tree."""
-    if isinstance(value, dict):
-        return sum(_held(child) for name, child in value.items() if name != "_at")
-    if isinstance(value, list):
-        return sum(_held(child) for child in value)
-    return int(getattr(value, "nbytes", 0))
 
 
 def _costs(avatar: Avatar) -> Table:

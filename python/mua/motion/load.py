@@ -31,14 +31,13 @@ def load_motion(
     mapping: Mapping[str, str] | None,  # joint of `skeleton` to joint of the file, before any match by name
     rate: float,  # frames per second of the clips returned
 ) -> tuple[list[Clip], tuple[str, ...]]:
-    """The clips of a motion file, or of every file of a directory, on `skeleton`, and notes worth telling the user.
+    """The clips of a motion file, or of every file of a directory, on `skeleton`, and notes of each clip for the user.
 
     Motion on the very same skeleton is taken as it stands; any other is retargeted.
     Errors: InputError naming the file where it cannot be read or none of its joints is matched.
     """
     loaded = load_motions(path, skeleton, mapping=mapping, rate=rate)
-    notes = dict.fromkeys(note for motion in loaded for note in motion.notes)
-    return [motion.clip for motion in loaded], tuple(notes)
+    return [motion.clip for motion in loaded], tuple(note for motion in loaded for note in motion.notes)
 
 
 def load_motions(
@@ -62,6 +61,16 @@ def unique_names(clips: Sequence[Clip]) -> list[Clip]:
         count = seen[clip.name] = seen.get(clip.name, 0) + 1
         named.append(clip if count == 1 else replace(clip, name=f"{clip.name} {count}"))
     return named
+
+
+def counted(notes: Sequence[str], clips: Sequence[Clip]) -> tuple[str, ...]:
+    """Every sentence once: where several clips bring the same, it says of how many instead of which."""
+    names = {clip.name for clip in clips}
+    told: dict[str, list[str]] = {}
+    for note in notes:
+        owner, _, sentence = note.partition(": ")
+        told.setdefault(sentence if {owner, Path(owner).stem} & names else note, []).append(note)
+    return tuple(own[0] if len(own) == 1 else f"{len(own)} clips: {sentence}" for sentence, own in told.items())
 
 
 def _put_on(

@@ -6,7 +6,7 @@ from pathlib import Path
 from mua.asset.avatar import Avatar
 from mua.errors import InputError
 from mua.motion.clip import Clip
-from mua.motion.load import load_motion, unique_names
+from mua.motion.load import counted, load_motion, unique_names
 from mua.motion.resample import resample
 
 
@@ -24,7 +24,7 @@ def player_clips(
     rate = avatar.encoding.rate
     if motion is not None:
         clips, notes = load_motion(motion, avatar.rig.skeleton, mapping=mapping, rate=rate)
-        return unique_names(clips), notes
+        return unique_names(clips), counted(notes, clips)
     if not avatar.clips:
         raise InputError(f"{file} holds no clips; mua-view needs one to pose the avatar")
     return [resample(clip, rate) for clip in avatar.clips], ()

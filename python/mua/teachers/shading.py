@@ -15,6 +15,7 @@ import warp as wp
 
 from mua import rotation
 from mua.arrays import Array
+from mua.teachers.warp_start import start
 
 DEVICE = "cpu"
 LAMP = np.array([0.35, 0.65, 0.67])  # towards the lamp: from above, front and the body's left
@@ -26,7 +27,7 @@ DISPLAY_GAMMA = 2.2  # textures and splat colours are display values
 SHADOW = 0.85  # of the light, that a bone hides when it fills the view along the normal
 SHEEN = 0.10  # display value at the centre of the lamp's reflection
 
-wp.config.log_level = wp.LOG_ERROR  # its greeting is not for the user of a library
+start()
 
 
 @dataclass(frozen=True)

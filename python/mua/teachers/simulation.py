@@ -18,6 +18,7 @@ import warp as wp
 from mua import rotation
 from mua.arrays import Array
 from mua.teachers.bones import Bones, capsule_distance, figure_scale
+from mua.teachers.warp_start import start
 
 DEVICE = "cpu"  # a frame takes milliseconds: less than its way to a GPU and back
 SUBSTEP = 1 / 120  # seconds, at most
@@ -36,7 +37,7 @@ SHORTEST_EDGE = 1e-4  # metres on a person
 LOOSE = 0.5  # cloth above this looseness collides with the bones
 GAP = 0.01  # metres between cloth and bones' skin
 
-wp.config.log_level = wp.LOG_ERROR  # its greeting is not for the user of a library
+start()
 
 
 @wp.kernel(enable_backward=False)

@@ -1,0 +1,90 @@
+"""The clips that an avatar's file holds for playback: those that the user gave, whole, by their own names."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from mua.bake.plan import ENDING
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.recording import RecordedClip
+
+ALL, NONE = "all", "none"
+LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is pictured
+
+
+def whole_clips(recorded: Iterable[RecordedClip]) -> list[Clip]:
+    """The clips of a recording, each with its held-out end joined to it again."""
+    clips = {clip.name: clip for clip in recorded if len(clip)}
+    ends = {name: beginning for name, clip in clips.items() if (beginning := _beginning(clip, clips)) is not None}
+    joined = {beginning.name: clips[name] for name, beginning in ends.items()}
+    return [
+        _together(clip, joined[name]) if name in joined else Clip(name, clip.rate, clip.rotations, clip.translations)
+        for name, clip in clips.items()
+        if name not in ends
+    ]
+
+
+def choose(clips: Sequence[Clip], wanted: Sequence[str]) -> tuple[Clip, ...]:
+    """The clips that `--clips` means: some by name, or one of "all", "none" and a number of clips from the first on.
+
+    Errors: InputError for a name that no clip has.
+    """
+    by_name = {clip.name: clip for clip in clips}
+    if len(wanted) == 1 and wanted[0] not in by_name:
+        (word,) = wanted
+        if word in (ALL, NONE):
+            return tuple(clips) if word == ALL else ()
+        if word.isdecimal():
+            return tuple(clips[: int(word)])
+    for name in wanted:
+        if name not in by_name:
+            expected = f"{', '.join(by_name)}; or {ALL}, {NONE} or how many"
+            raise InputError(f"--clips {name}: there is no such clip, only {expected}")
+    return tuple(by_name[name] for name in dict.fromkeys(wanted))
+
+
+def held_out(recorded: Sequence[RecordedClip]) -> dict[str, int]:
+    """From which frame on each clip that was held out of training was, by the clip's own name."""
+    clips = {clip.name: clip for clip in recorded if len(clip)}
+    starts = {}
+    for name, clip in clips.items():
+        beginning = _beginning(clip, clips)
+        if beginning is not None:
+            starts[beginning.name] = len(beginning)
+        elif clip.held_out:
+            starts[name] = 0
+    return starts
+
+
+def held_out_sentence(starts: dict[str, int]) -> str:
+    """What was held out, for a person who reads it in the file."""
+    told = [name if start == 0 else f"{name} from frame {start}" for name, start in starts.items()]
+    return f"held out of training: {', '.join(told)}" if told else "no clip was held out of training"
+
+
+def typical_frame(
+    clips: Sequence[Clip],
+    *,
+    root: int,  # joint whose heading does not count
+) -> tuple[Clip, int]:
+    """The clip and frame whose pose is nearest to the mean of all: what a picture of the character shows."""
+    owners = [(clip, frame) for clip in clips for frame in range(len(clip))]
+    owners = owners[:: -(-len(owners) // LOOKED_AT)]
+    rotations = np.stack([np.delete(clip.rotations[frame], root, axis=0) for clip, frame in owners])  # [F, J - 1, 4]
+    rotations = np.where(np.sum(rotations * rotations[:1], axis=-1, keepdims=True) < 0, -rotations, rotations)
+    away = np.square(rotations - rotations.mean(axis=0)).sum(axis=(1, 2))
+    return owners[int(np.argmin(away))]
+
+
+def _beginning(clip: RecordedClip, clips: dict[str, RecordedClip]) -> RecordedClip | None:
+    """The clip whose held-out end `clip` is."""
+    name = clip.name.removesuffix(ENDING)
+    beginning = clips.get(name) if name != clip.name and clip.held_out else None
+    return None if beginning is None or beginning.held_out else beginning
+
+
+def _together(beginning: Clip, end: Clip) -> Clip:
+    rotations = np.concatenate([beginning.rotations, end.rotations])
+    translations = np.concatenate([beginning.translations, end.translations])
+    return Clip(beginning.name, beginning.rate, rotations, translations)

@@ -1,0 +1,73 @@
+"""Options of mua-bake are refused in one sentence, before anything is loaded."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mua.cli.bake_options import check_inputs, check_output, check_settings
+from mua.errors import InputError
+
+HEAVY = {"torch", "warp", "pxr", "scipy"}
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"texels": 100}, "--texels 100: expected a multiple of 16 from 32 on"),
+        ({"texels": 16}, "--texels 16: expected"),
+        ({"frames": 0}, "--frames 0: expected at least 1"),
+        ({"seed": -1}, "--seed -1: expected 0 or more"),
+    ],
+)
+def test_a_number_that_no_bake_can_have_is_refused(options: dict[str, int], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        check_settings("tiny", "closed-form", **({"seed": 0, "frames": None, "texels": None} | options))
+
+
+def test_numbers_override_the_preset() -> None:
+    settings = check_settings("tiny", "closed-form", seed=3, frames=7, texels=64)
+    assert (settings.seed, settings.frames, settings.texels) == (3, 7, 64)
+
+
+def test_files_that_are_not_there_are_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"nobody\.glb: there is no such file"):
+        check_inputs(tmp_path / "nobody.glb", [])
+    with pytest.raises(InputError, match="is a directory, expected a file"):
+        check_inputs(tmp_path, [])
+    with pytest.raises(InputError, match=r"--motion .*walk\.bvh: there is no such file or directory"):
+        check_inputs(None, [tmp_path, tmp_path / "walk.bvh"])
+
+
+def test_an_output_of_another_kind_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"a\.glb: expected a name that ends in \.muaavatar"):
+        check_output(tmp_path / "a.glb", tmp_path / "work")
+
+
+def test_a_file_in_the_place_of_the_work_directory_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "work").touch()
+    with pytest.raises(InputError, match=r"--work .*: is a file, expected a directory"):
+        check_output(tmp_path / "a.muaavatar", tmp_path / "work")
+
+
+def test_directories_to_make_are_told_once(tmp_path: Path) -> None:
+    new = tmp_path / "new"
+    assert check_output(new / "more" / "a.muaavatar", new / "work") == [new]
+    assert check_output(tmp_path / "a.muaavatar", tmp_path / "work") == []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("--preset", "huge"), ("--texels", "100"), ("nobody.glb",), ("--mapping", "none.json"), ("-o", "a.glb")],
+)
+def test_a_wrong_option_is_refused_before_torch_warp_or_readers_are_loaded(arguments: tuple[str, ...]) -> None:
+    code = (
+        f"import sys; sys.argv[1:] = {arguments!r}; from mua.cli.bake import run\n"
+        "try: run()\n"
+        f"except SystemExit as ended: sys.exit(10 * ended.code + bool({HEAVY!r} & set(sys.modules)))"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert told.returncode == 10, told.stderr
+    assert told.stderr.startswith("error: ")
+    assert told.stderr.count("\n") == 1

@@ -1,0 +1,76 @@
+"""What a bake ends with: an overall line, a line for each clip, and the file's size."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from mua.bake.report import HELD_OUT, Stored, as_json, closing, markdown, table
+from mua.cli.display import Display
+from mua.evaluate import Errors, Picture, held_out_errors
+from mua.motion.clip import Clip
+from mua.recording import RecordedClip, WholeFrame
+
+
+def errors(miss: float, frames: int = 2) -> Errors:
+    """Of a teacher that is one everywhere and a student that misses it by so much; the mean is nought."""
+    rest = Clip("a", 30.0, np.zeros((1, 1, 4)), np.zeros((1, 1, 3)))
+    clip = RecordedClip(rest.name, 30.0, rest.rotations, rest.translations, False, np.zeros(1, np.int64), True)
+    frame = WholeFrame(clip, 0, np.ones((4, 3), np.float32), np.ones((5, 23), np.float32))
+    nought, near = (Picture(np.full((5, 23), v), np.full((4, 3), v)) for v in (0.0, 1 - miss))
+    counted = Errors()
+    for _ in range(frames):
+        counted.add(frame, {"mean": nought, "bands": near, "best": near, "student": near})
+    return counted
+
+
+GROUPS = {"training": errors(0.1), "walk (end)": errors(0.2, frames=1), "dance": errors(0.4, frames=3)}
+
+
+def printed(groups: dict[str, Errors]) -> list[list[str]]:
+    console = Console(file=io.StringIO(), width=200)
+    console.print(table(groups, teacher="a formula"))
+    return [line.replace("│", " ").split("  ") for line in console.file.getvalue().splitlines() if "│" in line]
+
+
+def test_held_out_clips_count_by_their_frames() -> None:
+    held = held_out_errors(GROUPS)
+    assert held is not None
+    assert held.frames == 4
+    assert held.explained("SH") == pytest.approx(1 - (0.2**2 + 3 * 0.4**2) / 4)
+    assert held_out_errors({"training": errors(0.1)}) is None
+
+
+def test_the_terminal_has_a_line_for_training_for_all_held_out_and_for_each_clip() -> None:
+    names = [next(cell.strip() for cell in row if cell.strip()) for row in printed(GROUPS)]
+    assert names == ["training", HELD_OUT, "walk (end)", "dance"]
+    lines = ["".join(row) for row in printed(GROUPS)]
+    assert "99.0 %" in lines[0]
+    assert "96.0 %" in lines[2]
+
+
+def test_a_single_held_out_clip_is_said_once() -> None:
+    assert len(printed({"training": errors(0.1), "dance": errors(0.2)})) == 2
+
+
+def test_files_hold_all_held_out_clips_together_too() -> None:
+    assert f"| {HELD_OUT} (4) | SH |" in markdown(GROUPS, teacher="a formula")
+    assert '"held_out": {\n  "frames": 4' in as_json(GROUPS, teacher="a formula", held_out={"walk": 8, "dance": 0})
+
+
+def test_the_last_lines_say_what_the_file_holds() -> None:
+    stored = Stored(clips=21, seconds=508.0, clip_bytes=10_400_000, file_bytes=61_200_000)
+    assert closing(stored, Path("a.muaavatar")) == "a.muaavatar: 61.2 MB, 21 clips of 8 min 28 s in all, 10.4 MB of it"
+    none = Stored(clips=0, seconds=0.0, clip_bytes=0, file_bytes=5_000_000)
+    assert closing(none, Path("a.muaavatar")) == "a.muaavatar: 5.0 MB, no clip stored for playback"
+
+
+def test_a_sentence_that_comes_several_times_in_a_stage_is_said_once() -> None:
+    file = io.StringIO()
+    with Display(Console(file=file)) as shown:
+        shown.stage("character")
+        for sentence in ("It is large.", "It slides.", "It slides."):
+            shown.note(sentence)
+    assert file.getvalue().splitlines()[1:3] == ["  It is large.", "  It slides. (2 times)"]
