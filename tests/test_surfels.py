@@ -1,5 +1,7 @@
 """Surfels: frames, footprints, signs, and how they follow a deformation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -13,8 +15,9 @@ SIZE = 61
 ROUNDING = 1e3 * float(np.finfo(np.float64).eps)  # one-rings' 2 x 2 inverses lose two digits
 
 
-def tube_surfels(sides: int = 13) -> tuple[surfels.Surfels, np.ndarray]:
+def tube_surfels(sides: int = 13, factor: float = 1.0) -> tuple[surfels.Surfels, np.ndarray]:
     mesh = tube(sides=sides).mesh
+    mesh = replace(mesh, vertices=factor * mesh.vertices)
     texels = build_texel_map(mesh, SIZE)
     found = surfels.rest_surfels(
         mesh,
@@ -52,15 +55,32 @@ def test_neighbouring_frames_have_one_sign_right_around_the_tube() -> None:
 
 
 def test_footprint_is_the_distance_of_texels() -> None:
-    found, _ = tube_surfels(sides=60)
+    found, texels = tube_surfels(sides=60)
     scales = np.exp(found.log_scales)
     wide, high = 2 * np.pi * RADIUS / (0.8 * SIZE), HEIGHT / (0.8 * SIZE)
     chord = np.sinc(1 / 60)  # a side of the 60-gon over its arc
     tilt = 1 - np.cos(2 * np.pi / 60)  # smooth normals lie between those of two sides
-    np.testing.assert_allclose(scales[:, 0], surfels.SPREAD * wide * chord, rtol=tilt)
-    np.testing.assert_allclose(scales[:, 1], min(surfels.SPREAD * high, surfels.LARGEST), rtol=tilt)
-    assert np.all(scales[:, 2] >= surfels.SMALLEST * (1 - 1e-6))
+    inner = surrounded(texels)
+    np.testing.assert_allclose(scales[inner, 0], surfels.SPREAD * wide * chord, rtol=tilt)
+    np.testing.assert_allclose(scales[inner, 1], surfels.SPREAD * high, rtol=tilt)
     assert np.all(scales[:, 2] <= scales[:, :2].min(axis=1))
+
+
+def surrounded(texels: np.ndarray) -> np.ndarray:
+    """Which texels have all eight neighbours: those of a chart's border reach out to it."""
+    grid = np.zeros((SIZE + 2, SIZE + 2), int)
+    row, column = np.divmod(texels, SIZE)
+    grid[row + 1, column + 1] = 1
+    around = sum(grid[row + 1 + i, column + 1 + j] for i in (-1, 0, 1) for j in (-1, 0, 1))
+    return np.asarray(around == 9)
+
+
+@pytest.mark.parametrize("factor", [2.0**-10, 2.0**5])  # exact in floating point
+def test_surfels_of_a_figure_of_any_size_differ_by_its_size_alone(factor: float) -> None:
+    found, _ = tube_surfels()
+    other, _ = tube_surfels(factor=factor)
+    np.testing.assert_allclose(other.log_scales - found.log_scales, np.log(factor), atol=ROUNDING)
+    np.testing.assert_allclose(other.rotations, found.rotations, atol=ROUNDING)
 
 
 def test_surfels_on_a_sharp_edge_still_cover_their_texels() -> None:
@@ -105,14 +125,26 @@ def test_alignment_of_hardly_any_texels(count: int) -> None:
 def test_rigid_motion_and_growth_are_measured() -> None:
     mesh = tube().mesh
     turn = Rotation.from_euler("xyz", [0.5, -1.0, 0.3])
-    q, log_stretch = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(1.5 * turn.apply(mesh.vertices) + [1, 2, 3])
+    q, strain = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(1.5 * turn.apply(mesh.vertices) + [1, 2, 3])
     expected = np.roll(turn.as_quat(), 1)
     np.testing.assert_allclose(np.abs(q @ expected), 1, atol=ROUNDING)
-    np.testing.assert_allclose(log_stretch, np.log(1.5), atol=ROUNDING)
+    np.testing.assert_allclose(strain[:, 1], 1.5**2 - 1, rtol=0.01)  # along y; at a border edges on both sides differ
+    normals = surfels.vertex_normals(mesh.vertices, mesh.faces)
+    np.testing.assert_allclose(_applied(strain, normals), 0, atol=ROUNDING)
+    across = np.cross(normals, [0, 1.0, 0])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    np.testing.assert_allclose(_applied(strain, across), 1.5**2 - 1, rtol=0.01)
+
+
+def _applied(strain: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """x . strain x."""
+    xx, yy, zz, xy, xz, yz = strain.T
+    a, b, c = x.T
+    return np.asarray(a * a * xx + b * b * yy + c * c * zz + 2 * (a * b * xy + a * c * xz + b * c * yz))
 
 
 def test_frames_do_not_turn_at_rest() -> None:
     mesh = tube().mesh
-    q, log_stretch = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(mesh.vertices)
+    q, strain = surfels.SurfaceFrames(mesh.vertices, mesh.faces)(mesh.vertices)
     np.testing.assert_allclose(q, np.tile([1.0, 0, 0, 0], (len(q), 1)), atol=ROUNDING)
-    np.testing.assert_allclose(log_stretch, 0, atol=ROUNDING)
+    np.testing.assert_allclose(strain, 0, atol=ROUNDING)

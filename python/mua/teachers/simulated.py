@@ -82,14 +82,15 @@ class SimulatedTeacher:
         displacement = rotation.dual_transform(rotation.dual_inverse(dual), moved) - bind
         coarse = self._coarse(displacement)[self._template]
         back = rotation.conjugate(dual[:, :4])
-        turn, log_stretch = self._surface(moved)
+        turn, strain = self._surface(moved)
         turn = rotation.multiply(back, turn)
         turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
         texture = self._texels.texture(
             displacement,
             coarse,
             turn=turn,
-            log_stretch=log_stretch,
+            moved=moved,
+            strain=strain,
             light=self._light(joints, dual, moved, turn),
         )
         mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)

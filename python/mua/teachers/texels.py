@@ -11,6 +11,7 @@ from mua.teachers.shading import Light
 from mua.texture.albedo import sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1
 from mua.texture.sh import LINEAR
+from mua.texture.stretch import SurfelStretch
 from mua.texture.surfels import rest_surfels
 
 MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1; of one whose alpha is 0, the negative
@@ -36,6 +37,7 @@ class SurfaceTexels:
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.rotations, surfels.log_scales, albedo[:, :3])
         )
+        self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.rotations)
         alpha = np.clip(albedo[:, 3], 1e-6, 1 - 1e-6)
         self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_OPAQUE, MOST_OPAQUE)
 
@@ -45,7 +47,8 @@ class SurfaceTexels:
         coarse_displacement: Array,  # [T, 3] of the template's vertices
         *,
         turn: Array,  # [V, 4] of the surface about its vertices beside R_tex, canonical space; unit, w >= 0
-        log_stretch: Array,  # [V]
+        moved: Array,  # [V, 3] the dense surface in the world, metres
+        strain: Array,  # [V, 6] of the surface about its vertices
         light: Light,  # its sheen in canonical space
     ) -> Array:
         """Raw channels [N, 23] float32, stored channel by channel: each is a plane of its own."""
@@ -53,7 +56,7 @@ class SurfaceTexels:
         planes[0:3] = self._relief + self._at_texels(displacement) - _planes(self._coarse, coarse_displacement)
         planes[3:7] = _turned(self._at_texels(turn), self._rest)
         planes[7:10] = self._log_scales
-        planes[7:9] += self._at_texels(log_stretch[:, None])
+        planes[7:9] += self._stretch(moved, self._at_texels(strain))
         planes[10] = self._opacity
         planes[11:14] = (self._albedo * self._at_texels(light.gain) - 0.5) / np.float32(SH_C0)
         slope = self._at_texels(light.sheen / SH_C1)

@@ -9,11 +9,12 @@ from scipy.sparse import csgraph
 from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Mesh
+from mua.texture.footprints import TexelPoints, neighbour_steps, neighbours, sample_surface, spreads
 
-SPREAD = 0.6  # standard deviation over the distance of neighbouring texels: overlapping surfels leave no gaps
+SPREAD = 0.65  # standard deviation over the distance of neighbouring texels: between four, 97 % is covered
 FLATNESS = 0.1  # thickness over the smaller standard deviation
-SMALLEST = 2e-4  # metres, of any standard deviation
-LARGEST = 2e-2  # metres
+CELL = 1.5  # standard deviation over that of the surface nearest to a texel: half opaque at the border of a square
+LEAST = 1e-6  # of the surface's size, of any standard deviation: a texel where the surface has no extent
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,8 @@ def rest_surfels(
 
     The frame is the rotation nearest to the map from texture to surface (polar decomposition in the surface), so that
     a sheared chart gets rounder surfels, not spikes across its texels. The extents along its axes are those of the
-    texel's footprint on its own triangle: across an edge that smooth normals round off, surfels are thick and leave
-    no gap.
+    steps to the neighbouring texels and those of the surface that lies nearest to it: across an edge that smooth
+    normals round off, surfels are thick and leave no gap, and where two charts meet they reach the seam.
     """
     weighted, area = _weighted_steps(mesh, size)
     at_corners = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, area], axis=1), len(mesh.uv))
@@ -47,12 +48,16 @@ def rest_surfels(
     along_u, along_v = steps[:, :3], steps[:, 3:]
     upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
     frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
-    footprint = (weighted / np.maximum(area, 1e-12))[triangles].reshape(-1, 2, 3)
-    extents = SPREAD * np.linalg.norm(footprint @ frames, axis=1)
+    own = (weighted / np.maximum(area, 1e-12))[triangles].reshape(-1, 2, 3)
+    points = TexelPoints(mesh, size, texels, triangles, barycentrics)
+    footprint = neighbour_steps(points, own)
+    cells = spreads(points, sample_surface(points, footprint), frames)
+    extents = np.maximum(SPREAD * np.linalg.norm(footprint @ frames, axis=1), CELL * cells)
     extents[:, 2] = np.maximum(extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
+    least = max(LEAST * float(np.ptp(mesh.vertices, axis=0).max()), float(np.finfo(np.float32).tiny))
     return Surfels(
         rotations=align_neighbours(rotation.from_matrix(frames), texels, size),
-        log_scales=np.log(np.clip(extents, SMALLEST, LARGEST)),
+        log_scales=np.log(np.maximum(extents, least)),
     )
 
 
@@ -61,17 +66,26 @@ class SurfaceFrames:
 
     def __init__(self, vertices: Array, faces: Array) -> None:
         """Take `vertices` [V, 3] as the rest shape of `faces` [F, 3]."""
-        self._tangents = _tangent_operator(vertices, faces)
-        self._rest, self._rest_size = self._measure(vertices)
+        self._tangents, basis = _tangent_operator(vertices, faces)
+        self._rest, self._rest_metric = self._measure(vertices)
+        t, b = basis[:, :, 0].T, basis[:, :, 1].T
+        pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+        self._products = [((t[i], t[j]), (b[i], b[j]), t[i] * b[j] + b[i] * t[j]) for i, j in pairs]
 
     def __call__(
         self,
         vertices: Array,  # [V, 3] deformed
     ) -> tuple[Array, Array]:
-        """Rotations [V, 4] from the rest frames to the deformed ones, and log stretches [V]: half the log of area."""
-        frames, size = self._measure(vertices)
+        """Rotations [V, 4] from the rest frames to the deformed ones, and strains [V, 6].
+
+        A strain is the change of the metric in the rest surface: a tangent x of length 1 at rest has the length
+        sqrt(1 + x . strain x). Its components are xx, yy, zz, xy, xz, yz.
+        """
+        frames, metric = self._measure(vertices)
         turn = np.einsum("vik,vjk->vij", frames, self._rest)
-        return rotation.from_matrix(turn), np.log(size / self._rest_size)
+        tt, tb, bb = (metric - self._rest_metric).T
+        strain = [tt * p * q + tb * r + bb * s * u for (p, q), (s, u), r in self._products]
+        return rotation.from_matrix(turn), np.stack(strain, axis=1)
 
     def squeeze(
         self,
@@ -84,7 +98,7 @@ class SurfaceFrames:
         return np.maximum(-0.5 * np.log(np.maximum(least, 1e-6)), 0)
 
     def _measure(self, vertices: Array) -> tuple[Array, Array]:
-        """Frames [V, 3, 3], columns x, y, z, and lengths [V] of the unit tangents carried along.
+        """Frames [V, 3, 3], columns x, y, z, and products [V, 3] of the two unit tangents carried along.
 
         Of all frames about the normal, the one nearest to both carried tangents (polar decomposition in the plane).
         """
@@ -95,7 +109,8 @@ class SurfaceFrames:
         x = t + np.cross(b, z)
         x -= z * np.sum(x * z, axis=1, keepdims=True)
         x /= np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-12)
-        return np.stack([x, np.cross(z, x), z], axis=2), np.sqrt(area)
+        metric = np.stack([np.sum(p * q, axis=1) for p, q in ((t, t), (t, b), (b, b))], axis=1)
+        return np.stack([x, np.cross(z, x), z], axis=2), metric
 
 
 def align_neighbours(
@@ -109,7 +124,7 @@ def align_neighbours(
     the most alike neighbours; a chart is simply connected, so that any forest serves where frames are smooth.
     """
     count = len(q)
-    a, b = _neighbours(texels, size)
+    a, b = (np.concatenate(ends) for ends in zip(*neighbours(texels, size), strict=True))
     alike = np.sum(q[a] * q[b], axis=1)
     graph = sparse.csr_matrix((2 - np.abs(alike), (a, b)), shape=(count, count))  # 0 would mean no edge
     forest = csgraph.minimum_spanning_tree(graph)
@@ -176,8 +191,10 @@ def _frames(tangents: Array, normals: Array) -> Array:
     return np.stack([x, np.cross(z, x), z], axis=2)
 
 
-def _tangent_operator(vertices: Array, faces: Array) -> sparse.csr_matrix:
+def _tangent_operator(vertices: Array, faces: Array) -> tuple[sparse.csr_matrix, Array]:
     """A matrix [2 V, V] that carries two orthogonal unit tangents of each vertex along with the surface.
+
+    Also returns the tangents at rest, [V, 3, 2].
 
     Row i is the least-squares derivative along the tangent over the edges of vertex i, each weighted by 1 / length^2.
     """
@@ -198,15 +215,4 @@ def _tangent_operator(vertices: Array, faces: Array) -> sparse.csr_matrix:
     offs = sparse.csr_matrix((rows.ravel(), (at, to)), shape=(2 * count, count))
     own = np.asarray(offs.sum(axis=1)).ravel()
     here = np.tile(np.arange(count), 2)
-    return (offs - sparse.csr_matrix((own, (np.arange(2 * count), here)), shape=offs.shape)).tocsr()
-
-
-def _neighbours(texels: Array, size: int) -> tuple[Array, Array]:
-    """Pairs of rows of `texels` that are neighbours along a row or a column of the texture."""
-    row = np.full(size * size, -1, dtype=np.int64)
-    row[texels] = np.arange(len(texels))
-    grid = row.reshape(size, size)
-    a = np.concatenate([grid[:, :-1].ravel(), grid[:-1].ravel()])
-    b = np.concatenate([grid[:, 1:].ravel(), grid[1:].ravel()])
-    both = (a >= 0) & (b >= 0)
-    return a[both], b[both]
+    return (offs - sparse.csr_matrix((own, (np.arange(2 * count), here)), shape=offs.shape)).tocsr(), basis

@@ -1,0 +1,148 @@
+"""What each texel has to cover: the steps to its neighbours, and the surface that lies nearer to it than to others."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from mua.arrays import Array
+from mua.rig.character import Mesh
+from mua.rig.charts import areas, find_charts
+
+SLIT = 2.5  # times its texel's footprint that the step to a neighbour may span; a longer one crosses a slit in a chart
+COARSEST = 8.0  # times the median footprint that a texel may have: beyond it a surfel is fog about its few triangles
+SAMPLES = 8  # of the surface, for each texel
+FEW = 2  # samples: fewer than these say little about the extent of a texel's surface
+NEAREST = 6  # texels among which a sample seeks the nearest that faces its way
+FAR = 1.5  # steps from the nearest texel: surface that lies farther away is bare, no texel grows so far
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Points spread evenly over a surface, each with the texel that has to cover it."""
+
+    places: Array  # [S, 3] metres
+    texels: Array  # [S] rows of the texel map
+    bare: Array  # [S] bool, no texel lies near
+
+
+@dataclass(frozen=True)
+class TexelPoints:
+    """The texels of a texture as points of a surface."""
+
+    mesh: Mesh
+    size: int
+    texels: Array  # [N] row * size + col, ascending
+    triangles: Array  # [N] into the mesh's faces
+    barycentrics: Array  # [N, 3]
+
+    @property
+    def places(self) -> Array:
+        """[N, 3] metres."""
+        return _interpolate(self.mesh.vertices, self.mesh.faces[self.triangles], self.barycentrics)
+
+
+def neighbour_steps(
+    points: TexelPoints,
+    own: Array,  # [N, 2, 3] steps of one texel along u and v on each texel's triangle
+) -> Array:
+    """Steps [N, 2, 3] along u and v that lead to the farther of the two neighbours in the same chart.
+
+    Where there is none, the step on the texel's own triangle stands in, no longer than that triangle is wide.
+    """
+    mesh, places = points.mesh, points.places
+    chart = charts_of(mesh)[points.triangles]
+    raw = np.linalg.norm(own, axis=2)
+    lengths = np.minimum(raw, COARSEST * np.median(raw)) if len(raw) else raw
+    found, farthest = np.zeros_like(own), np.zeros(lengths.shape)
+    for axis, (a, b) in enumerate(neighbours(points.texels, points.size)):
+        step = places[b] - places[a]
+        length = np.linalg.norm(step, axis=1)
+        beside = (chart[a] == chart[b]) & (length <= SLIT * np.maximum(lengths[a, axis], lengths[b, axis]))
+        for end in (a, b):  # each texel is at most once the first and once the second
+            longer = beside & (length > farthest[end, axis])
+            found[end[longer], axis], farthest[end[longer], axis] = step[longer], length[longer]
+    width = np.sqrt(areas(mesh.vertices[mesh.faces]))[points.triangles, None]
+    alone = (
+        own * (np.minimum(lengths, width) / np.maximum(np.linalg.norm(own, axis=2), np.finfo(float).tiny))[..., None]
+    )
+    return np.where(farthest[:, :, None] > 0, found, alone)
+
+
+def sample_surface(
+    points: TexelPoints,
+    steps: Array,  # [N, 2, 3] of neighbour_steps
+) -> Samples:
+    """Spread samples over the surface and give each to the texel under it, or else to the nearest that faces its way.
+
+    What lies on another triangle than its texel and farther away than FAR steps is bare: nothing near shows it.
+    """
+    mesh, places = points.mesh, points.places
+    normals = _normals(mesh)
+    triangles, barycentrics = _spread(mesh, SAMPLES * len(points.texels))
+    at = _interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
+    column, row = (_interpolate(mesh.uv, mesh.uv_faces[triangles], barycentrics) * points.size).astype(np.int64).T
+    row_of_texel = np.full(points.size**2, -1, np.int64)
+    row_of_texel[points.texels] = np.arange(len(points.texels))
+    inside = (column >= 0) & (column < points.size) & (row >= 0) & (row < points.size)
+    texel = np.where(inside, row_of_texel[np.where(inside, row * points.size + column, 0)], -1)
+    charts = charts_of(mesh)
+    stray = (texel < 0) | (charts[points.triangles[texel]] != charts[triangles])
+    if stray.any():
+        found = cKDTree(places).query(at[stray], k=min(NEAREST, len(places)))[1].reshape(int(stray.sum()), -1)
+        facing = np.einsum("snc,sc->sn", normals[points.triangles[found]], normals[triangles[stray]]) > 0
+        texel[stray] = np.take_along_axis(found, np.argmax(facing, axis=1)[:, None], axis=1)[:, 0]
+    reach = np.linalg.norm(steps, axis=2).max(axis=1)[texel]
+    far = np.linalg.norm(at - places[texel], axis=1) > FAR * reach
+    bare = far & (points.triangles[texel] != triangles)
+    return Samples(at, texel, bare)
+
+
+def spreads(
+    points: TexelPoints,
+    samples: Samples,
+    frames: Array,  # [N, 3, 3] columns x, y, z
+) -> Array:
+    """Root mean squares [N, 3] of the distances of samples from their texels along the frames' axes; 0 without any."""
+    texel = samples.texels[~samples.bare]
+    away = np.einsum("sc,sck->sk", samples.places[~samples.bare] - points.places[texel], frames[texel])
+    count = np.maximum(np.bincount(texel, minlength=len(frames)), FEW)
+    return np.stack([np.sqrt(np.bincount(texel, column**2, len(frames)) / count) for column in away.T], axis=1)
+
+
+def charts_of(mesh: Mesh) -> Array:
+    """The UV chart [F] of each face."""
+    pairs = np.stack([mesh.faces, mesh.uv_faces], axis=-1).reshape(-1, 2)
+    nodes = np.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
+    return find_charts(nodes, mesh.uv[mesh.uv_faces])
+
+
+def neighbours(texels: Array, size: int) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Pairs of rows of `texels` that are neighbours in a row of the texture, then those in a column."""
+    row = np.full(size * size, -1, dtype=np.int64)
+    row[texels] = np.arange(len(texels))
+    grid = row.reshape(size, size)
+    pairs = [(grid[:, :-1].ravel(), grid[:, 1:].ravel()), (grid[:-1].ravel(), grid[1:].ravel())]
+    along_u, along_v = ((a[(a >= 0) & (b >= 0)], b[(a >= 0) & (b >= 0)]) for a, b in pairs)
+    return along_u, along_v
+
+
+def _spread(mesh: Mesh, count: int) -> tuple[Array, Array]:
+    """Triangles [S] and barycentrics [S, 3] of points at equal shares of the area, the same at every call."""
+    total = np.cumsum(areas(mesh.vertices[mesh.faces]))
+    shares = (np.arange(count) + 0.5) * (total[-1] / max(count, 1)) if len(total) else np.empty(0)
+    triangles = np.minimum(np.searchsorted(total, shares), max(len(total) - 1, 0))
+    # The two-dimensional golden ratio (Roberts 2018, https://extremelearning.com.au) spreads points in the triangles.
+    a, b = (np.arange(count)[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
+    folded = a + b > 1
+    a, b = np.where(folded, 1 - a, a), np.where(folded, 1 - b, b)
+    return triangles, np.stack([1 - a - b, a, b], axis=1)
+
+
+def _normals(mesh: Mesh) -> Array:
+    a, b, c = mesh.vertices[mesh.faces].swapaxes(0, 1)
+    return np.cross(b - a, c - a)
+
+
+def _interpolate(values: Array, corners: Array, barycentrics: Array) -> Array:
+    return np.asarray(np.einsum("nk,nkc->nc", barycentrics, values[corners]))

@@ -1,0 +1,63 @@
+"""How much longer the axes of surfels become as the surface that they lie on is stretched, each axis by itself."""
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+
+HOLD = float(np.log(1.3))  # how far a stretch that is smooth over the vertices may differ from that of the own triangle
+SHORTEST = 0.05  # of its length at rest: a surfel on a triangle that is squeezed to nothing
+
+
+class SurfelStretch:
+    """The stretch of each surfel's x and y.
+
+    It is taken from the strain about the vertices, which runs smoothly from texel to texel, and held within a factor
+    of that of the surfel's own triangle: where one ring of triangles alone is pulled apart, its surfels still reach
+    one another, and those beside it stay as they are.
+    """
+
+    def __init__(
+        self,
+        vertices: Array,  # [V, 3] at rest
+        faces: Array,  # [F, 3]
+        *,
+        triangles: Array,  # [N] into the faces
+        rotations: Array,  # [N, 4] of the surfels at rest
+    ) -> None:
+        axes = rotation.to_matrix(rotations)
+        a, b, c = vertices[faces[triangles]].swapaxes(0, 1)
+        edges = np.stack([b - a, c - a], axis=2)  # [N, 3, 2]
+        coordinates = np.linalg.pinv(edges, rcond=1e-6) @ axes[:, :, :2]  # of the axes' shadows on the triangle
+        length = np.linalg.norm(edges @ coordinates, axis=1, keepdims=True)
+        coordinates /= np.where(length > 0, length, np.inf)
+        self._faces, self._triangles = faces, triangles
+        self._axes = [_squares(*(axes[:, i, k] for i in range(3))) for k in (0, 1)]
+        self._coordinates = [_squares(*(coordinates[:, i, k] for i in (0, 1))) for k in (0, 1)]
+
+    def __call__(
+        self,
+        vertices: Array,  # [V, 3] deformed
+        strain: Array,  # [6, N] of the surface at the texels, as mua.texture.surfels.SurfaceFrames measures it
+    ) -> Array:
+        """Logarithms [2, N] of the lengths of x and y over those at rest."""
+        a, b, c = vertices[self._faces].swapaxes(0, 1)
+        e, f = b - a, c - a
+        metric = np.stack([np.sum(p * q, axis=1) for p, q in ((e, e), (f, f), (e, f))])[:, self._triangles]
+        logs = []
+        for axes, coordinates in zip(self._axes, self._coordinates, strict=True):
+            own = _log_length(np.einsum("kn,kn->n", coordinates, metric))
+            smooth = _log_length(1 + np.einsum("kn,kn->n", axes, strain))
+            logs.append(np.clip(smooth, own - HOLD, own + HOLD))
+        return np.stack(logs)
+
+
+def _squares(*components: Array) -> Array:
+    """What a symmetric matrix [n, N] (its diagonal, then its upper half) is weighted with in x . M x."""
+    count = len(components)
+    halves = [2 * components[i] * components[j] for i in range(count) for j in range(i + 1, count)]
+    return np.stack([x * x for x in components] + halves)
+
+
+def _log_length(square: Array) -> Array:
+    return np.asarray(0.5 * np.log(np.maximum(square, SHORTEST**2)))

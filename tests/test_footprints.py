@@ -1,0 +1,108 @@
+"""What texels have to cover: surfaces come out closed whatever their triangles' share of the texture is."""
+
+import numpy as np
+import pytest
+
+from mua.rig.character import Mesh
+from mua.rig.texel_map import TexelMap, build_texel_map
+from mua.texture.coverage import coverage
+from mua.texture.footprints import TexelPoints, _spread
+from mua.texture.surfels import SPREAD, Surfels, rest_surfels
+
+SIZE = 48
+OPAQUE = 0.8  # of what lies behind, a fifth shines through where two charts meet
+
+
+def laid(mesh: Mesh) -> tuple[TexelMap, Surfels, np.ndarray]:
+    texels = build_texel_map(mesh, SIZE)
+    at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
+    return texels, rest_surfels(mesh, size=SIZE, **at), TexelPoints(mesh, SIZE, **at).places
+
+
+def sheet(points: np.ndarray, uv: np.ndarray) -> Mesh:
+    """A grid [R, C, 3] of points and its UVs [R, C, 2] as triangles."""
+    rows, columns = points.shape[:2]
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    faces = np.concatenate(
+        [
+            np.stack([corner, corner + 1, corner + columns], axis=1),
+            np.stack([corner + 1, corner + columns + 1, corner + columns], axis=1),
+        ]
+    ).astype(np.int32)
+    return Mesh(points.reshape(-1, 3), faces, uv.reshape(-1, 2), faces)
+
+
+def graded(widths: np.ndarray, height: float, *, size: float = 1.0) -> Mesh:
+    """A flat sheet of `size` whose columns take equal shares of it, but `widths` of the texture."""
+    u = np.concatenate([[0], np.cumsum(widths) / np.sum(widths)]) * 0.9 + 0.05
+    x = np.linspace(0, size, len(u))
+    points = np.stack(np.broadcast_arrays(x[None], np.array([[0], [size]]), 0), axis=-1)
+    uv = np.stack(np.broadcast_arrays(u[None], np.array([[0.05], [0.05 + height]])), axis=-1)
+    return sheet(points.astype(float), uv.astype(float))
+
+
+def apart(*meshes: Mesh) -> Mesh:
+    """Meshes with charts of their own."""
+    vertices, corners = (np.cumsum([0, *(len(getattr(m, name)) for m in meshes)]) for name in ("vertices", "uv"))
+    return Mesh(
+        np.concatenate([m.vertices for m in meshes]),
+        np.concatenate([m.faces + at for m, at in zip(meshes, vertices, strict=False)]),
+        np.concatenate([m.uv for m in meshes]),
+        np.concatenate([m.uv_faces + at for m, at in zip(meshes, corners, strict=False)]),
+    )
+
+
+def least_coverage(mesh: Mesh) -> float:
+    """Of points well inside the surface's outline."""
+    _, found, places = laid(mesh)
+    triangles, barycentrics = _spread(mesh, 4000)
+    points = np.einsum("nk,nkc->nc", barycentrics, mesh.vertices[mesh.faces[triangles]])
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    inner = np.all((points >= low + 0.05 * (high - low)) & (points <= high - 0.05 * (high - low)), axis=1)
+    return float(coverage(points[inner], places, found.rotations, np.exp(found.log_scales)).min())
+
+
+@pytest.mark.parametrize("size", [1.3e-3, 1.0, 40.0])
+def test_a_sheet_with_an_anisotropic_layout_is_closed_at_any_size(size: float) -> None:
+    assert least_coverage(graded(np.ones(4), 0.1, size=size)) > OPAQUE
+
+
+def test_columns_with_few_texels_beside_columns_with_many_are_closed() -> None:
+    assert least_coverage(graded(np.array([1, 1, 0.2, 1, 1]), 0.9)) > OPAQUE
+
+
+def test_a_seam_between_two_charts_is_closed() -> None:
+    left, right = graded(np.ones(2), 0.37), graded(np.ones(2), 0.37)
+    aside, below = np.array([1.0, 0, 0]), np.array([0, 0.47])
+    moved = Mesh(right.vertices + aside, right.faces, right.uv + below, right.uv_faces)
+    assert least_coverage(apart(left, moved)) > OPAQUE
+
+
+def test_a_sliver_in_the_texture_makes_no_fog() -> None:
+    """One triangle of a large sheet has a single row of texels: its surfels stay about as large as it is."""
+    body = graded(np.ones(4), 0.6)
+    flap = sheet(
+        np.array([[[0, 2.0, 0], [0.3, 2.0, 0]], [[0, 2.3, 0], [0.3, 2.3, 0]]]),
+        np.array([[[0.05, 0.9], [0.95, 0.9]], [[0.05, 0.922], [0.95, 0.922]]]),
+    )
+    texels, found, places = laid(apart(body, flap))
+    assert np.exp(found.log_scales[places[:, 1] > 1.5]).max() < 0.3
+    assert len(texels.texels)
+
+
+def test_neighbouring_surfels_overlap() -> None:
+    mesh = graded(np.array([1, 0.3, 2, 1.0]), 0.5)
+    texels, found, places = laid(mesh)
+    beside = np.flatnonzero(np.diff(texels.texels) == 1)
+    gap = np.linalg.norm(places[beside + 1] - places[beside], axis=1)
+    extent = np.exp(found.log_scales[:, :2]).max(axis=1)
+    assert np.all(gap <= (extent[beside] + extent[beside + 1]) / (2 * SPREAD) * (1 + 1e-6))
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_hardly_any_texels_have_finite_surfels(count: int) -> None:
+    corner = np.array([[0.0, 0.0], [1.2 / SIZE, 0.0], [0.0, 1.2 / SIZE]]) * count
+    mesh = Mesh(np.eye(3), np.array([[0, 1, 2]]), corner, np.array([[0, 1, 2]]))
+    texels, found, _ = laid(mesh)
+    assert len(texels.texels) == count
+    assert np.isfinite(found.log_scales).all()

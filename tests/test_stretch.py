@@ -1,0 +1,60 @@
+"""Surfels of a stretched surface: they grow along the stretch and along nothing else, and stay closed."""
+
+import numpy as np
+import pytest
+from tube import HEIGHT, tube
+
+from mua import rotation
+from mua.rig.character import Mesh
+from mua.rig.texel_map import build_texel_map
+from mua.texture.coverage import coverage
+from mua.texture.footprints import TexelPoints
+from mua.texture.stretch import HOLD, SurfelStretch
+from mua.texture.surfels import SurfaceFrames, rest_surfels
+
+SIZE = 61
+
+
+def stretched(mesh: Mesh, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Log stretches [2, N] of a mesh's surfels, their places and scales after it."""
+    texels = build_texel_map(mesh, SIZE)
+    at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
+    found = rest_surfels(mesh, size=SIZE, **at)
+    _, strain = SurfaceFrames(mesh.vertices, mesh.faces)(moved)
+    at_texels = np.einsum("nk,nkc->cn", texels.barycentrics, strain[mesh.faces[texels.triangles]])
+    stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=texels.triangles, rotations=found.rotations)
+    grown = stretch(moved, at_texels)
+    scales = np.exp(found.log_scales + np.concatenate([grown, np.zeros((1, len(texels.texels)))]).T)
+    return grown, TexelPoints(Mesh(moved, mesh.faces, mesh.uv, mesh.uv_faces), SIZE, **at).places, scales
+
+
+@pytest.mark.parametrize("factor", [0.5, 3.0])
+def test_a_tube_pulled_along_its_axis_grows_along_it_alone(factor: float) -> None:
+    mesh = tube(sides=40).mesh
+    (across, along), _, _ = stretched(mesh, mesh.vertices * [1, factor, 1])
+    np.testing.assert_allclose(along, np.log(factor), atol=0.02)  # smooth normals and flat triangles differ a little
+    np.testing.assert_allclose(across, 0, atol=0.02)
+
+
+def test_one_ring_pulled_apart_stays_closed_and_its_neighbours_small() -> None:
+    mesh = tube(rings=8, sides=13).mesh
+    cut = HEIGHT * 3.5 / 7
+    moved = mesh.vertices + (mesh.vertices[:, 1:2] > cut) * [0, 5 * HEIGHT / 7, 0]  # one ring, 6 times as long
+    (_, along), places, scales = stretched(mesh, moved)
+    pulled = (places[:, 1] > HEIGHT * 3 / 7) & (places[:, 1] < HEIGHT * 9 / 7)
+    assert np.all(along[pulled] >= np.log(6) - HOLD - 1e-6)
+    assert np.all(along[~pulled] <= HOLD + 1e-6)
+    frames = np.tile(np.eye(3), (len(places), 1, 1))
+    angle = np.arctan2(places[:, 0], places[:, 2])
+    frames[:, :, 0] = np.stack([np.cos(angle), 0 * angle, -np.sin(angle)], axis=1)
+    frames[:, :, 2] = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
+    a, b, c = moved[mesh.faces].swapaxes(0, 1)
+    middle = ((a + b + c) / 3)[np.ptp(moved[mesh.faces][:, :, 1], axis=1) > HEIGHT / 2]
+    assert coverage(middle, places, rotation.from_matrix(frames), scales).min() > 0.9
+
+
+def test_a_surface_squeezed_to_nothing_keeps_finite_surfels() -> None:
+    mesh = tube().mesh
+    grown, _, scales = stretched(mesh, mesh.vertices * [1, 0, 1])
+    assert np.isfinite(grown).all()
+    assert scales.min() > 0
