@@ -83,7 +83,12 @@ def random_clip(skeleton: Skeleton, frames: int = 9) -> Clip:
     random = np.random.default_rng(8)
     turns = Rotation.from_rotvec(random.normal(size=(frames * len(skeleton.names), 3)) * 0.4).as_quat(scalar_first=True)
     rotations = rotation.multiply(turns.reshape(frames, -1, 4), skeleton.bind_rotations)
-    translation = skeleton.bind_translations[skeleton.root] + random.normal(size=(frames, 3)) * [1, 0.1, 1]
+    above = int(skeleton.parents[skeleton.root])
+    turned, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    path = random.normal(size=(frames, 3)) * [1, 0.1, 1]
+    if above >= 0:
+        path = rotation.rotate(rotation.conjugate(turned[above]), path)
+    translation = skeleton.bind_translations[skeleton.root] + path
     return Clip("clip", 30.0, rotations, skeleton.with_root(translation))
 
 
@@ -123,3 +128,20 @@ def _two_bones(upper: float, lower: float, ahead: np.ndarray, below: np.ndarray)
     inner = np.arccos((upper**2 + reach**2 - lower**2) / (2 * upper * reach))
     bend = np.pi - np.arccos((upper**2 + lower**2 - reach**2) / (2 * upper * lower))
     return -np.arctan2(ahead, below) - inner, bend
+
+
+def bone_aligned(skeleton: Skeleton, clip: Clip) -> tuple[Skeleton, Clip]:
+    """The same motion of the same places as studios export it: at rest every joint's first bone lies along +X."""
+    turned = np.tile([1.0, 0, 0, 0], (len(skeleton.names), 1))  # from a joint's new space to its old one
+    for joint in reversed(range(1, len(skeleton.names))):
+        bone = skeleton.bind_translations[joint]
+        if length := np.linalg.norm(bone):
+            turned[skeleton.parents[joint]] = rotation.between(np.array([1.0, 0, 0]), bone / length)
+    above = np.where(skeleton.parents[:, None] < 0, [1.0, 0, 0, 0], turned[skeleton.parents])
+    offsets = rotation.rotate(rotation.conjugate(above), skeleton.bind_translations)
+    straight = Skeleton(
+        skeleton.names, skeleton.parents, np.tile([1.0, 0, 0, 0], (len(offsets), 1)), offsets, skeleton.root
+    )
+    rotations = rotation.multiply(rotation.conjugate(above), rotation.multiply(clip.rotations, turned))
+    translations = rotation.rotate(np.broadcast_to(rotation.conjugate(above), rotations.shape), clip.translations)
+    return straight, Clip(clip.name, clip.rate, rotations, translations)

@@ -228,6 +228,15 @@ def test_adds_positions_that_are_deviations_from_the_offset(tmp_path: Path) -> N
     np.testing.assert_array_equal(motion.skeleton.bind_translations[2], [0, 0.7, 0])
 
 
+def test_takes_positions_for_the_offset_that_starts_far_along_the_path(tmp_path: Path) -> None:
+    """Hips below a reference, whose offset is where some frame stands: most frames are nearer to the origin."""
+    text = REFERENCE.replace("OFFSET 0 1 0", "OFFSET 0 1 -40")
+    assert text != REFERENCE
+    rows = "0 0 0 0 0 0  0 1 -41 0 0 0  0 0.7 0 0 0 0\n0 0 0 0 0 0  0 1 3 0 0 0  0 0.7 0 0 0 0\n"
+    motion = read_bvh(write(tmp_path, text + rows), scale=1.0)
+    np.testing.assert_array_equal(world_positions(motion)[:, 1], [[0, 1, -41], [0, 1, 3]])
+
+
 def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
     z_up = PERSON.replace("OFFSET 1 -9 0", "OFFSET 1 0 -9").replace("OFFSET 0 7 0.5", "OFFSET 0 -0.5 7")
     z_up = z_up.replace("0 9 0 0 0 0 0 0 0 0", "0 0 9 0 0 0 0 0 0 0").replace(

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from people import person, random_clip, world
+from people import bone_aligned, person, random_clip, walk, world
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 
@@ -11,6 +11,8 @@ from mua.errors import InputError
 from mua.motion.amass import nominal_skeleton
 from mua.motion.bvh import read_bvh
 from mua.motion.clip import Clip
+from mua.motion.match import match_joints
+from mua.motion.quality import measure_motion
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
 from mua.rig.read import read_surfaces
@@ -21,6 +23,7 @@ POSITION_BOUND = 12 * 100 * 10 * np.finfo(float).eps
 ANGLE_BOUND = POSITION_BOUND / 0.1
 CMU_FACING = 1e-6  # radians by which the hips of CMU's zero pose are turned from facing +Z: rounding of its offsets
 
+ESTIMATE_BOUND = 8.0  # degrees: how far this person's trunk leans at rest, and what a walk tells of twists
 LIMBS = [
     (f"{side}{bone}", f"{side}{end}")
     for side in ("Left", "Right")
@@ -198,6 +201,29 @@ def test_mapping_reaches_joints_that_no_name_gives_away() -> None:
     found, _ = retarget(SourceMotion(source, clip), target, mapping=mapping)
     expected, _ = retarget(SourceMotion(plain, clip), target)
     np.testing.assert_array_equal(found.rotations, expected.rotations)
+
+
+@pytest.mark.parametrize("heading", [0, 130])
+def test_bone_aligned_rest_poses_give_what_a_standing_one_gives(heading: float) -> None:
+    source, target = person(), person(size=1.1, axes=2)
+    clip = walk(source)
+    turn = Rotation.from_euler("y", heading, degrees=True).as_quat(scalar_first=True)
+    clip.rotations[:, 0] = rotation.multiply(turn, clip.rotations[:, 0])
+    clip.translations[:, 0] = rotation.rotate(turn, clip.translations[:, 0])
+    straight, same = bone_aligned(source, clip)
+    np.testing.assert_allclose(world(straight, same)[1], world(source, clip)[1], atol=POSITION_BOUND)
+    expected, _ = retarget(SourceMotion(source, clip), target)
+    found, notes = retarget(SourceMotion(straight, same), target)
+    assert not any("floor" in note for note in notes)
+    for begin, end in LIMBS:
+        assert angle(bone(target, found, begin, end), bone(target, expected, begin, end)) < ANGLE_BOUND
+    turned, wanted = world(target, found)[0], world(target, expected)[0]
+    away = np.degrees(2 * np.arccos(np.minimum(np.abs(np.sum(turned * wanted, axis=-1)), 1)))
+    assert np.median(away, axis=0).max() < ESTIMATE_BOUND
+    quality = measure_motion(SourceMotion(straight, same), target, found, match_joints(straight, target))
+    assert quality.flaws == ()
+    assert quality.facing_degrees is not None
+    assert quality.facing_degrees < ESTIMATE_BOUND
 
 
 @pytest.mark.parametrize("flat", [{0}, {1}, {2}, {0, 1}, {1, 2}, {0, 1, 2}])

@@ -184,7 +184,8 @@ def _decode_channels(nodes: list[_Node], values: Array) -> tuple[Array, Array]:
     """Return local rotations [F, J, 4] and local positions [F, J, 3] in file units.
 
     Rotations apply in the order of the channels, each about the axes that the ones before it have turned. Positions
-    stand for the offset, as most writers mean them; below the root they add to it where they are nearer to zero.
+    stand for the offset, as most writers mean them; below the root they add to it where some frame comes nearer to zero
+    than any comes to the offset.
     """
     rotations = np.tile([1.0, 0, 0, 0], (len(values), len(nodes), 1))
     positions = np.tile(np.array([node.offset for node in nodes]), (len(values), 1, 1))
@@ -199,7 +200,7 @@ def _decode_channels(nodes: list[_Node], values: Array) -> tuple[Array, Array]:
                 rotations[:, j] = rotation.multiply(rotations[:, j], turn)
             column += 1
         moved = positions[:, j]
-        adds = np.linalg.norm(moved, axis=-1).mean() < np.linalg.norm(moved - node.offset, axis=-1).mean()
+        adds = np.linalg.norm(moved, axis=-1).min() < np.linalg.norm(moved - node.offset, axis=-1).min()
         if node.parent >= 0 and adds:
             positions[:, j] += node.offset
     return rotations, positions

@@ -10,16 +10,18 @@ from mua.arrays import Array
 from mua.motion.clip import Clip
 from mua.motion.contacts import STANDING, planted, speed
 from mua.motion.match import Matches
-from mua.motion.resample import resample
+from mua.motion.pair import Pair, Side
 from mua.motion.source import SourceMotion
+from mua.motion.trunk import SIDES, degrees, trunk_of, unit
 from mua.rig.skeleton import Skeleton
 
-SIDES = ("left", "right")
-SEGMENTS = {  # limbs compared: where they begin and end; several roles mean the middle between them
-    f"{side} {limb}": ((f"{side} {limb}",), (f"{side} {end}",))
+SEGMENTS = {  # limbs compared: where they begin and end
+    f"{side} {limb}": (f"{side} {limb}", f"{side} {end}")
     for side in SIDES
     for limb, end in (("upper_arm", "forearm"), ("forearm", "hand"), ("thigh", "shin"), ("shin", "foot"))
-} | {"spine": (("left thigh", "right thigh"), ("left upper_arm", "right upper_arm"))}
+}
+Y = np.array([0.0, 1, 0])
+ON_FLOOR = 0.1  # of the height: a bind pose whose lowest joint is this near to 0 stands on the floor
 LIMB_BOUND = 10.0  # degrees of a limb's median from which a sentence says so
 FACING_BOUND = 10.0  # degrees between facing and travel, more than the source has, from which a sentence says so
 FORWARD = 45.0  # degrees between the source's facing and travel up to which it counts as going forward
@@ -46,89 +48,46 @@ class MotionQuality:
 
 def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: Matches) -> MotionQuality:
     """Compare `clip` on `target` with the `source` that it was made from."""
-    pair = _Pair.of(source, target, clip, matches)
+    pair = Pair.of(source, target, clip, matches)
     limbs = _limb_angles(pair)
-    facing, source_facing = _facing(pair)
-    height = _feet_height(pair)
+    facing = _facing(pair)
+    height = _feet_height(pair.target)
     slide, source_slide = _slide(pair)
     return MotionQuality(
         name=clip.name,
         limb_degrees=max(limbs.values(), default=0.0),
-        facing_degrees=facing,
+        facing_degrees=None if facing is None else facing.body,
         feet_height=height,
         slide=slide,
         limbs=limbs,
         flaws=(
             *_limb_flaws(clip.name, limbs),
-            *_facing_flaws(clip.name, facing, source_facing),
-            *_floor_flaws(clip.name, height, pair.leg),
-            *_slide_flaws(clip.name, slide, source_slide, pair.leg),
+            *_facing_flaws(clip.name, facing),
+            *_floor_flaws(clip.name, height, pair.target.leg),
+            *_slide_flaws(clip.name, slide, source_slide, pair.target.leg),
         ),
     )
 
 
-@dataclass(frozen=True)
-class _Pair:
-    """Both skeletons in the world, frame by frame."""
-
-    target: Skeleton
-    matches: Matches
-    rate: float
-    turned: Array  # [F, T, 4] target
-    at: Array  # [F, T, 3] target, metres
-    source_at: Array  # [F, S, 3] metres
-    bind_turned: Array  # [T, 4] target
-    bind_at: Array  # [T, 3] target, metres
-
-    @classmethod
-    def of(cls, source: SourceMotion, target: Skeleton, clip: Clip, matches: Matches) -> "_Pair":
-        original = resample(source.clip, clip.rate)
-        frames = min(len(clip), len(original))
-        turned, at = target.world(clip.rotations[:frames], clip.translations[:frames])
-        _, source_at = source.skeleton.world(original.rotations[:frames], original.translations[:frames])
-        bind = target.world(target.bind_rotations, target.bind_translations)
-        return cls(target, matches, clip.rate, turned, at, source_at, *bind)
-
-    def places(self, roles: tuple[str, ...]) -> tuple[Array, Array] | None:
-        """Where roles begin (the middle between several) on target and source, [F, 3] each."""
-        ends = [found for role in roles if (found := self.matches.ends(role)) is not None]
-        if len(ends) < len(roles):
-            return None
-        target, source = zip(*ends, strict=True)
-        return self.at[:, list(target)].mean(axis=1), self.source_at[:, list(source)].mean(axis=1)
-
-    @property
-    def leg(self) -> float:
-        """The target's leg in metres; half its height where it has no legs."""
-        chain = [self.matches.joint(f"left {part}") for part in ("thigh", "shin", "foot")]
-        known = [self.bind_at[joint] for joint in chain if joint is not None]
-        if len(known) == len(chain):
-            return float(np.linalg.norm(np.diff(known, axis=0), axis=-1).sum())
-        return float(np.ptp(self.bind_at[:, 1])) / 2
-
-    def soles(self) -> list[tuple[int, int]]:
-        """The joint nearest to the floor of each foot, on target and source."""
-        found = [self.matches.ends(f"{side} toe") or self.matches.ends(f"{side} foot") for side in SIDES]
-        return [pair for pair in found if pair is not None]
-
-
-def _limb_angles(pair: _Pair) -> dict[str, float]:
+def _limb_angles(pair: Pair) -> dict[str, float]:
     """Median angle in degrees by limb, after the one turn about Y that brings the source nearest to the target."""
-    directions = {}
-    for limb, (begin, end) in SEGMENTS.items():
-        begins, ends = pair.places(begin), pair.places(end)
-        if begins is not None and ends is not None:
-            directions[limb] = _unit(ends[0] - begins[0]), _unit(ends[1] - begins[1])
-    if not directions:
+    target, source = _directions(pair.target), _directions(pair.source)
+    shared = [limb for limb in target if limb in source]
+    if not shared:
         return {}
-    heading = _best_heading(
-        np.concatenate([target for target, _ in directions.values()]),
-        np.concatenate([source for _, source in directions.values()]),
-    )
-    return {
-        limb: float(np.median(_degrees(target, rotation.rotate(heading, source))))
-        for limb, (target, source) in directions.items()
-    }
+    heading = _best_heading(*(np.concatenate([side[limb] for limb in shared]) for side in (target, source)))
+    return {limb: float(np.median(degrees(target[limb], rotation.rotate(heading, source[limb])))) for limb in shared}
+
+
+def _directions(side: Side) -> dict[str, Array]:
+    """Directions [F, 3] by limb; the trunk's relative to how it stands in its bind pose."""
+    found = {}
+    for limb, (begin, end) in SEGMENTS.items():
+        first, last = side.place(begin), side.place(end)
+        if first is not None and last is not None:
+            found[limb] = unit(last - first)
+    trunk = side.trunk()
+    return found if trunk is None else found | {"spine": trunk.up}
 
 
 def _best_heading(target: Array, source: Array) -> Array:
@@ -138,40 +97,39 @@ def _best_heading(target: Array, source: Array) -> Array:
     return rotation.from_axis_angle(np.array([0.0, 1, 0]), np.arctan2(sine, cosine))
 
 
-def _facing(pair: _Pair) -> tuple[float | None, float | None]:
-    """Degrees between facing and travel while the source goes forward, on target (its worse end) and source."""
-    hips = pair.places(("left thigh", "right thigh")) or pair.places(("hips",))
-    if hips is None:
-        return None, None
-    source_away = _from_travel(_source_facing(pair), hips[1], pair.rate)
-    target_travel = _travel(hips[0], pair.rate)
-    forward = (np.abs(source_away) < np.radians(FORWARD)) & (np.linalg.norm(target_travel, axis=-1) > MOVING * pair.leg)
+@dataclass(frozen=True)
+class _Facing:
+    """Degrees between facing and travel while the source goes forward."""
+
+    body: float  # of the target, hips and chest together
+    worst: float  # of the target's hips or chest, whichever differs more from the source's
+    source: float  # of the source's same part
+
+
+def _facing(pair: Pair) -> _Facing | None:
+    """None where the source never goes forward or has no trunk."""
+    target_path, source_path, trunk = pair.target.hips(), pair.source.hips(), pair.source.trunk()
+    if target_path is None or source_path is None or trunk is None:
+        return None
+    ahead = {"hips": np.cross(trunk.hips, Y), "spine": np.cross(trunk.chest, Y)}
+    away = _from_travel(ahead["hips"] + ahead["spine"], source_path, pair.rate)
+    moving = np.linalg.norm(_travel(target_path, pair.rate), axis=-1) > MOVING * pair.target.leg
+    forward = (np.abs(away) < np.radians(FORWARD)) & moving
     if np.count_nonzero(forward) < TRAVELS * pair.rate:
-        return None, None
-    worst = max(abs(_middle(_from_travel(facing, hips[0], pair.rate)[forward])) for facing in _target_facings(pair))
-    return float(np.degrees(worst)), float(np.degrees(abs(_middle(source_away[forward]))))
-
-
-def _source_facing(pair: _Pair) -> Array:
-    """Where the source faces along the floor [F, 3], by the lines through its hips and shoulders."""
-    across = np.zeros((len(pair.source_at), 3))
-    for part in ("thigh", "upper_arm"):
-        left, right = (pair.places((f"{side} {part}",)) for side in SIDES)
-        if left is not None and right is not None:
-            across += _unit(left[1] - right[1])
-    return np.cross(across, [0.0, 1, 0])
-
-
-def _target_facings(pair: _Pair) -> list[Array]:
-    """Where hips and chest of the target face [F, 3], by what they do to the mesh bound to them."""
-    left, right = (pair.matches.joint(f"{side} thigh") for side in SIDES)
-    ahead = np.array([0.0, 0, 1])
-    if left is not None and right is not None:
-        ahead = np.cross(pair.bind_at[left] - pair.bind_at[right], [0.0, 1, 0])
-    ends = [pair.matches.roles.get(role, ())[-1:] for role in ("hips", "spine")]
-    joints = [joint for end in ends for joint in end if joint in pair.matches.chains]
-    since = rotation.multiply(pair.turned[:, joints], rotation.conjugate(pair.bind_turned[joints]))
-    return [rotation.rotate(since[:, i], ahead) for i in range(len(joints))]
+        return None
+    bind = trunk_of(pair.target.rest())
+    faced = Y * 0 if bind is None else np.cross(bind.hips, Y)
+    faces = {part: rotation.rotate(turned, faced) for part, turned in pair.turned.items()}
+    body = _middle(_from_travel(np.sum(list(faces.values()), axis=0), target_path, pair.rate)[forward])
+    parts = [
+        (
+            abs(_middle(_from_travel(faces[part], target_path, pair.rate)[forward])),
+            abs(_middle(_from_travel(ahead[part], source_path, pair.rate)[forward])),
+        )
+        for part in faces
+    ]
+    worst, source = max(parts, key=lambda angles: abs(angles[0] - angles[1]))
+    return _Facing(*(float(np.degrees(angle)) for angle in (abs(body), worst, source)))
 
 
 def _from_travel(facing: Array, at: Array, rate: float) -> Array:
@@ -194,40 +152,31 @@ def _middle(angles: Array) -> float:
     return float(np.arctan2(np.sin(angles).mean(), np.cos(angles).mean()))
 
 
-def _feet_height(pair: _Pair) -> float | None:
-    soles = [target for target, _ in pair.soles()]
+def _feet_height(side: Side) -> float | None:
+    """Metres of the lower foot above where it stands in the bind pose, in the lowest frames."""
+    soles = side.soles()
     if not soles:
         return None
-    above = pair.at[:, soles, 1] - (pair.bind_at[soles, 1] - _floor(pair.bind_at))
-    return float(np.quantile(above.min(axis=1), STANDING))
+    return float(np.quantile(np.min(side.at[:, soles, 1] - side.rest_at[soles, 1], axis=1), STANDING)) + _floor(side)
 
 
-def _floor(at: Array) -> float:
-    """Height of the floor that a pose [J, 3] stands on: 0 where its lowest joint is near to it."""
-    lowest = float(at[:, 1].min())
-    return 0.0 if abs(lowest) < 0.1 * np.ptp(at[:, 1]) else lowest
+def _floor(side: Side) -> float:
+    """Height of the floor that the bind pose stands on: 0 where its lowest joint is near to it."""
+    lowest = float(side.rest_at[:, 1].min())
+    return 0.0 if abs(lowest) < ON_FLOOR * np.ptp(side.rest_at[:, 1]) else lowest
 
 
-def _slide(pair: _Pair) -> tuple[float | None, float | None]:
+def _slide(pair: Pair) -> tuple[float | None, float | None]:
     """Mean speed of feet while the source's stand: the target's in metres per second, and the source's scaled to it."""
-    soles = pair.soles()
-    if not soles or len(pair.at) < 2:
+    soles = pair.target.soles(), pair.source.soles()
+    if not soles[0] or len(pair.target.at) < 2:
         return None, None
-    targets, sources = (list(joints) for joints in zip(*soles, strict=True))
-    source_leg = _source_leg(pair)
-    stands = planted(pair.source_at[:, sources], pair.rate, source_leg)
-    if not stands.any():
+    target, source = (side.at[:, joints] for side, joints in zip((pair.target, pair.source), soles, strict=True))
+    held = planted(source, pair.rate, pair.source.leg)
+    if not held.any():
         return None, None
-    target, source = speed(pair.at[:, targets], pair.rate), speed(pair.source_at[:, sources], pair.rate)
-    return float(target[stands].mean()), float(source[stands].mean() * pair.leg / source_leg)
-
-
-def _source_leg(pair: _Pair) -> float:
-    places = [pair.places((f"left {part}",)) for part in ("thigh", "shin", "foot")]
-    known = [place[1] for place in places if place is not None]
-    if len(known) < len(places):
-        return pair.leg
-    return float(np.linalg.norm(np.diff(known, axis=0), axis=-1).sum(axis=0).mean()) or pair.leg
+    scale = pair.target.leg / pair.source.leg
+    return float(speed(target, pair.rate)[held].mean()), float(speed(source, pair.rate)[held].mean() * scale)
 
 
 def _limb_flaws(name: str, limbs: Mapping[str, float]) -> list[str]:
@@ -238,10 +187,13 @@ def _limb_flaws(name: str, limbs: Mapping[str, float]) -> list[str]:
     return [f"{name}: limbs point elsewhere than in the motion (degrees: {listed})."]
 
 
-def _facing_flaws(name: str, facing: float | None, source: float | None) -> list[str]:
-    if facing is None or source is None or facing - source <= FACING_BOUND:
+def _facing_flaws(name: str, facing: _Facing | None) -> list[str]:
+    if facing is None or abs(facing.worst - facing.source) <= FACING_BOUND:
         return []
-    return [f"{name}: the body faces {facing:.0f} degrees away from where it goes; in the motion it is {source:.0f}."]
+    return [
+        f"{name}: the body faces {facing.worst:.0f} degrees away from where it goes; "
+        f"in the motion it is {facing.source:.0f}."
+    ]
 
 
 def _floor_flaws(name: str, height: float | None, leg: float) -> list[str]:
@@ -255,13 +207,3 @@ def _slide_flaws(name: str, slide: float | None, source: float | None, leg: floa
     if slide is None or source is None or slide - source <= SLIDES * leg:
         return []
     return [f"{name}: standing feet slide at {slide:.2f} m/s; in the motion at {source:.2f}."]
-
-
-def _unit(v: Array) -> Array:
-    length = np.linalg.norm(v, axis=-1, keepdims=True)
-    return np.asarray(v / np.where(length > 0, length, 1))
-
-
-def _degrees(a: Array, b: Array) -> Array:
-    """Angles [...] between vectors [..., 3]."""
-    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))

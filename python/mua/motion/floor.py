@@ -1,0 +1,94 @@
+"""Where a body is: the path of its hips, as long as its legs ask for, and feet on the floor."""
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.motion.rest import SIDES, Rest
+
+SOLES = ("foot", "toe")
+STANDING = 0.05  # quantile over frames of the lower foot's height that counts as standing
+ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
+LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stands and stays where it is
+
+
+def root_translation(rest: Rest, rotations: Array, source_at: Array, *, honest: bool) -> tuple[Array, list[str]]:
+    """Local translation [F, 3] of the target's root that carries the hips along the source's path, and notes."""
+    target, matches = rest.target, rest.matches
+    turned, at = target.world(rotations, np.broadcast_to(target.bind_translations, (*rotations.shape[:-1], 3)))
+    scale, leg = _leg_scale(rest)
+    legs = [joint for side in SIDES if (joint := rest.joint(f"{side} thigh")) is not None]
+    hips = legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]
+    if not hips:
+        return np.tile(target.bind_translations[target.root], (len(rotations), 1)), ["no hips; it stays in place."]
+    path = scale * source_at[:, [matches.chains[joint][0] for joint in hips]].mean(axis=1)
+    shift = path - at[:, hips].mean(axis=1)
+    lift, notes = _lift(rest, at + shift[:, None], source_at if honest else None, scale, leg)
+    shift[:, 1] += lift
+    parent = target.parents[target.root]
+    if parent >= 0:
+        shift = rotation.rotate(rotation.conjugate(turned[:, parent]), shift)
+    return target.bind_translations[target.root] + shift, notes
+
+
+def _leg_scale(rest: Rest) -> tuple[float, float]:
+    """Target size over source size, and the target's leg in metres: by the legs, else by all matched bones."""
+    lengths = np.zeros(2)
+    for side in SIDES:
+        chain = [rest.places(f"{side} {part}") for part in ("thigh", "shin", "foot")]
+        known = [places for places in chain if places is not None]
+        if len(known) == len(chain):
+            lengths += np.linalg.norm(np.diff(np.stack(known), axis=0), axis=-1).sum(axis=0)
+    if not lengths.all():
+        lengths = _all_bones(rest)
+    return (float(lengths[0] / lengths[1]), float(lengths[0]) / 2) if lengths.all() else (1.0, 1.0)
+
+
+def _all_bones(rest: Rest) -> Array:
+    """[2] summed lengths of the bones between matched joints, on target and source."""
+    total = np.zeros(2)
+    for joint, (first, _) in rest.matches.chains.items():
+        parent = int(rest.target.parents[joint])
+        if parent in rest.matches.chains:
+            bones = (
+                rest.target_at[joint] - rest.target_at[parent],
+                rest.source_at[first] - rest.source_at[rest.matches.chains[parent][0]],
+            )
+            total += np.linalg.norm(bones, axis=-1)
+    return total
+
+
+def _lift(rest: Rest, at: Array, source_at: Array | None, scale: float, leg: float) -> tuple[float, list[str]]:
+    """Metres by which to raise the target so that standing feet are as high as the source's, and what to say of it.
+
+    The height of a foot is that above its place in the rest pose. Where the source's rest pose does not stand on the
+    floor (ASF skeletons rest about the hips) or shows no body (`source_at` is None), the clip's lower foot is taken to
+    stand, unless the whole clip is far above the floor.
+    """
+    soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
+    if not soles:
+        return 0.0, []
+    floor = 0.0 if _stands(rest.target_at) else rest.target_at[:, 1].min()
+    height = _standing(at[:, soles, 1] - (rest.target_at[soles, 1] - floor))
+    expected = 0.0
+    if source_at is not None and _stands(rest.source_at):
+        feet = [rest.matches.chains[joint][0] for joint in soles]
+        expected = scale * _standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
+        if expected < -LOWEST * leg:  # a path that starts at the origin, not on the floor
+            expected = 0.0
+    elif height > LOWEST * leg:
+        expected = height
+    notes = []
+    if expected > LOWEST * leg:
+        notes.append(f"its feet never come nearer to the floor than {expected:.2f} m; the height is kept.")
+    return expected - height, notes
+
+
+def _standing(heights: Array) -> float:
+    """What counts as standing of heights [F, P] of feet: the lower one's in the lowest frames."""
+    return float(np.quantile(heights.min(axis=1), STANDING))
+
+
+def _stands(at: Array) -> bool:
+    """Whether a rest pose [J, 3] stands on the floor at height 0."""
+    return bool(abs(at[:, 1].min()) < ON_FLOOR * np.ptp(at[:, 1]))
