@@ -2,9 +2,8 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
 import torch
 
@@ -18,6 +17,9 @@ from mua.bake.sources import RATE, load_character, load_clips
 from mua.files import require_writable
 from mua.recording import PlannedClip, Recording, TeacherWriter, record
 from mua.rig.character import Character
+from mua.rig.detail import Detail
+from mua.rig.texel_density import describe_texels
+from mua.rig.uv import UvMode
 from mua.student.settings import Settings
 from mua.teachers.simulated import SimulatedTeacher
 
@@ -34,7 +36,8 @@ class Order:
     motions: tuple[Path, ...] = ()  # none: the character's own clips
     hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
     mapping: Mapping[str, str] | None = None  # target joint to source joint
-    uv: Literal["keep", "unwrap", "auto"] = "auto"
+    uv: UvMode = "auto"
+    detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     storage: Storage = "f16"
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
@@ -42,9 +45,9 @@ class Order:
 def bake(order: Order, listener: Listener) -> Baked:
     """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it."""
     listener.stage("character")
-    character = load_character(order.character, uv=order.uv, seed=order.settings.seed)
+    character = load_character(order.character, uv=order.uv, seed=order.settings.seed, detail=order.detail)
     clips, notes = load_clips(character, order.motions, mapping=order.mapping)
-    for sentence in (*character.notes, *notes):
+    for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):
         listener.note(sentence)
     training, held = split(clips, order.hold_out)
     planned = plan(training, held, frames=order.settings.frames)

@@ -2,23 +2,26 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.motion.load import counted, load_motion, unique_names
 from mua.motion.resample import resample
 from mua.rig.character import Character
+from mua.rig.detail import Detail
 from mua.rig.read import read_character
+from mua.rig.uv import UvMode
 from mua.teachers.procedural import procedural_character
 
 RATE = 30.0  # frames per second of every clip, and of the window that the student sees
 ATLAS = 1024  # texels of the base-colour atlas along a side
 
 
-def load_character(path: Path | None, *, uv: Literal["keep", "unwrap", "auto"], seed: int) -> Character:
+def load_character(path: Path | None, *, uv: UvMode, seed: int, detail: Detail | None = None) -> Character:
     """The character in the file at `path`, or the procedural one where no path is given."""
-    return procedural_character(seed=seed) if path is None else read_character(path, uv=uv, atlas_size=ATLAS)
+    if path is None:
+        return procedural_character(seed=seed)
+    return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail)
 
 
 def load_clips(

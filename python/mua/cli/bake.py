@@ -9,6 +9,7 @@ from rich.console import Console
 from mua.cli.bake_options import check_inputs, check_output, check_settings
 from mua.cli.failure import refusing
 from mua.motion.mapping import read_mapping
+from mua.rig.detail import read_detail
 
 
 def main(
@@ -36,6 +37,12 @@ def main(
     uv: Annotated[
         Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
     ] = "auto",
+    detail: Annotated[
+        list[str],
+        typer.Option(
+            help="How much finer to draw a part, as head=2; may be repeated: head, hands, arms, body, legs or feet."
+        ),
+    ] = [],  # noqa: B006 typer copies it
     recipe: Annotated[
         str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
     ] = "closed-form",
@@ -52,6 +59,7 @@ def main(
     """
     settings = check_settings(preset_name, recipe, seed=seed, frames=frames, texels=texels)
     work = output.with_suffix(".work") if work is None else work
+    finer = read_detail(detail, uv=uv)
     check_inputs(character, motion)
     made = check_output(output, work)
     joints = None if mapping is None else read_mapping(mapping)
@@ -70,6 +78,7 @@ def main(
         clips=tuple(clips),
         mapping=joints,
         uv=uv,
+        detail=finer,
         storage=storage,
         device=choose_device(device),
     )

@@ -22,6 +22,7 @@ CELLS_SIZE = 2048  # texels along all these squares together
 STARVED = 1 / 6  # of its chart's texels for each square metre
 SMOOTHING = 3  # rounds over neighbours
 PATCH = 0.01  # of the character's surface
+MOST_EVENED = 1.5  # of length: what a chart is enlarged by beyond its best linear map, lest a fold in it rules it
 
 
 def find_charts(
@@ -120,6 +121,17 @@ def isometric(
     low = np.full((charts.max() + 1, 2), np.inf)
     np.minimum.at(low, charts, moved.min(axis=1))
     return moved - low[charts, None]
+
+
+def even(
+    corners: Array,  # [F, 3, 2] UV
+    positions: Array,  # [F, 3, 3] metres
+    charts: Array,  # [F]
+) -> Array:
+    """`isometric`, with each chart as large in area as its surface within bounds: [F, 3, 2] metres."""
+    flat = isometric(corners, positions, charts)
+    drawn, surface = np.bincount(charts, areas(flat)), np.bincount(charts, areas(positions))
+    return flat * np.clip(np.sqrt(_ratio(surface, drawn)), 1, MOST_EVENED)[charts, None, None]
 
 
 def unwrap(

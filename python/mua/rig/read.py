@@ -1,15 +1,15 @@
 """One way in for characters of any file format."""
 
 from pathlib import Path
-from typing import Literal
 
 from mua.errors import InputError
 from mua.rig.animation import Animation
 from mua.rig.assemble import Surfaces
 from mua.rig.character import Character
+from mua.rig.detail import Detail
 from mua.rig.gltf import read_gltf, read_gltf_animation
 from mua.rig.usd import read_usd, read_usd_animation
-from mua.rig.uv import build_atlas
+from mua.rig.uv import UvMode, build_atlas
 
 GLTF = (".glb", ".gltf")
 USD = (".usd", ".usda", ".usdc", ".usdz")
@@ -35,6 +35,8 @@ def _checked_suffix(path: Path) -> str:
     return suffix
 
 
-def read_character(path: Path, uv: Literal["keep", "unwrap", "auto"] = "auto", *, atlas_size: int = 2048) -> Character:
+def read_character(
+    path: Path, uv: UvMode = "auto", *, atlas_size: int = 2048, detail: Detail | None = None
+) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    return build_atlas(read_surfaces(path), uv=uv, size=atlas_size)
+    return build_atlas(read_surfaces(path), uv=uv, size=atlas_size, detail=detail)

@@ -1,4 +1,4 @@
-"""One texture space for all materials of a character: artists' charts kept, moved apart or cut anew."""
+"""One texture space for all materials of a character: artists' charts kept, brought to one density or cut anew."""
 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -8,15 +8,16 @@ import numpy as np
 from mua.arrays import Array
 from mua.rig.assemble import Surfaces
 from mua.rig.bake_texture import bake_texture
+from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
-from mua.rig.charts import areas, find_charts, isometric, overlapping, pack, starved, unwrap
+from mua.rig.charts import areas, even, find_charts, overlapping, pack, starved, unwrap
+from mua.rig.detail import Detail, factors, split_by_factor
 from mua.rig.texel_map import build_texel_map, cover
 
 UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]
 
 JUDGED_SIZE = 512  # texels along the map in which overlap is counted
 LOSS_ALLOWED = 0.02  # share of texels claimed twice, or of surface with next to no texels
-EMPHASIS = 2.0  # charts that their artist made finer or coarser stay so, up to this factor of length
 BORDER = 1e-3  # a UV this far beyond the texture counts as inside
 
 
@@ -28,6 +29,7 @@ class _Source:
     positions: Array  # [F, 3, 3] metres
     corners: Array  # [F, 3, 2] raw UV, 0 where there are none
     present: Array  # [F] bool, there are some
+    nodes: Array  # [F, 3] equal where corners share vertex, UV and material
     charts: Array  # [F]
     starved: Array  # [F] bool, has next to no texels for its surface, or none
 
@@ -41,27 +43,25 @@ class _Layout:
     notes: tuple[str, ...] = ()
 
 
-def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int) -> Character:
+def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | None = None) -> Character:
     """Give a character one UV layout and one picture for all its materials.
 
-    `keep` leaves every chart where its artist put it, several materials side by side as whole squares; `unwrap` cuts
-    everything anew with xatlas; `auto` keeps the only texture's layout unless more than 2 % of the valid texels are
-    claimed twice or the surface has next to no texels; else it moves the artist's charts apart and cuts anew only what
-    overlaps itself or is starved of texels.
+    `auto` brings the artist's charts to one density of texels, finer where `detail` says so, packs them, and cuts anew
+    only what overlaps itself or is starved of texels; `unwrap` cuts everything anew with xatlas; `keep` leaves every
+    chart where its artist put it, several materials side by side as whole squares.
 
     The picture is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
     source = _read(surfaces)
-    if uv == "unwrap":
-        layout = _lay_out(source, np.ones(len(surfaces.faces), bool), "it was asked for")
-    else:
+    if uv == "keep":
         layout = _keep(source)
         trouble = _trouble(source, layout)
-        if uv == "auto" and (trouble or not layout.as_is):
-            wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
-            layout = _lay_out(source, wound | source.starved, trouble or "its materials have a texture each")
-        elif trouble:
-            layout = _Layout(layout.corners, layout.as_is, (f"The UV layout was kept although {trouble}.",))
+        told = (f"The UV layout was kept although {trouble}.",) if trouble else ()
+        layout = _Layout(layout.corners, layout.as_is, told)
+    else:
+        wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
+        anew = wound | source.starved if uv == "auto" else np.ones(len(surfaces.faces), bool)
+        layout = _lay_out(source, anew, detail or {})
     return _character(source, layout, size)
 
 
@@ -78,6 +78,7 @@ def _read(surfaces: Surfaces) -> _Source:
         positions=positions,
         corners=corners,
         present=present,
+        nodes=nodes,
         charts=charts,
         starved=starved(corners, positions, nodes, charts=charts) | ~present,
     )
@@ -114,34 +115,39 @@ def _trouble(source: _Source, layout: _Layout) -> str | None:
 def _lay_out(
     source: _Source,
     anew: Array,  # [F] bool, faces whose UVs are of no use
-    because: str,
+    detail: Detail,
 ) -> _Layout:
-    """Keep the other faces' charts, cut these anew, and pack all of them at the scale of the surface."""
-    corners, charts = source.corners.copy(), source.charts.copy()
+    """Keep the other faces' charts, cut these anew, and pack all of them at the scale of the surface and its detail."""
+    surfaces = source.surfaces
+    corners, charts, nodes = source.corners.copy(), source.charts.copy(), source.nodes.copy()
     if anew.any():
         corners[anew] = _cut(source, anew)
-        rows = np.column_stack([source.surfaces.faces[anew].ravel(), corners[anew].reshape(-1, 2)])
-        charts[anew] = charts.max() + 1 + find_charts(_numbered(rows), corners[anew])
-    charts = np.unique(charts, return_inverse=True)[1]
-    total = charts.max() + 1
-    emphasis = (np.bincount(charts, _emphasis(source)) / np.bincount(charts))[charts, None, None]
-    flat = isometric(corners, source.positions, charts) * emphasis
-    cut = len(np.unique(charts[anew]))
-    note = (
-        f"The UV layout was made anew because {because}: {total - cut} charts of the file are kept but moved, and "
-        f"{np.count_nonzero(anew):,} of {len(anew):,} triangles are cut into {cut} new charts."
-    )
-    return _Layout(pack(flat, charts), as_is=False, notes=(note,))
+        rows = np.column_stack([surfaces.faces[anew].ravel(), corners[anew].reshape(-1, 2)])
+        nodes[anew] = nodes.max() + 1 + _numbered(rows)
+        charts[anew] = charts.max() + 1 + find_charts(nodes[anew], corners[anew])
+    parts = body_parts(surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights)
+    surface = areas(source.positions)
+    finer, absent = factors(parts, surface, detail)
+    cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
+    charts, finer = split_by_factor(nodes, corners, charts=charts, surface=surface, finer=finer)
+    flat = even(corners, source.positions, charts) * finer[:, None, None]
+    return _Layout(pack(flat, charts), as_is=False, notes=(_told(anew, kept=kept, cut=cut), *absent))
 
 
-def _emphasis(source: _Source) -> Array:
-    """How much finer in length [F] each face's chart is drawn than its material on average, within bounds."""
-    drawn, surface = areas(source.corners), areas(isometric(source.corners, source.positions, source.charts))
-    finer = np.ones(len(drawn))
-    for group, power in ((source.charts, 0.5), (source.surfaces.face_material, -0.5)):
-        area, there = np.bincount(group, drawn)[group], np.bincount(group, surface)[group]
-        finer *= np.divide(area, there, out=np.ones(len(drawn)), where=(area > 0) & (there > 0)) ** power
-    return np.clip(np.where(drawn > 0, finer, 1.0), 1 / EMPHASIS, EMPHASIS)
+def _told(
+    anew: Array,  # [F] bool
+    *,
+    kept: int,
+    cut: int,
+) -> str:
+    """What has become of the file's charts."""
+    if not kept:
+        return f"All {len(anew):,} triangles are cut into {cut} new UV charts."
+    note = f"{kept} charts of the file's UV layout are kept, at one density of texels"
+    if not cut:
+        return f"{note}."
+    useless = f"{np.count_nonzero(anew):,} of {len(anew):,} triangles overlap in their chart or have next to no texels"
+    return f"{note}; {useless} and are cut into {cut} new charts."
 
 
 def _cut(
