@@ -5,6 +5,7 @@ function before it is written as 8 bits.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +18,16 @@ from mua.kernels.splat_project import splat_project
 from mua.kernels.splat_sort import splat_sort
 
 WHITE = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Projected:
+    """M splats on the screen of one camera."""
+
+    ellipses: Array  # [M, 6] (mua.kernels.splat_project)
+    colors: Array  # [M, 3] sRGB
+    opacities: Array  # [M]
+    order: Array  # [M] back to front
 
 
 def render(
@@ -37,6 +48,12 @@ def render_premultiplied(
     encode: Callable[[Array], Array] = np.asarray,  # of the splats' sRGB [M, 3] to what is blended
 ) -> Array:
     """Premultiplied sRGB, or what `encode` makes of it, and alpha [H, W, 4], float64."""
+    splats = projected(frame, camera)
+    return splat_draw(splats.ellipses, encode(splats.colors), splats.opacities, splats.order, screen=camera.screen)
+
+
+def projected(frame: Frame, camera: Camera) -> Projected:
+    """The splats that a camera sees, ready to be drawn."""
     splats, keys, ellipses = splat_project(
         frame.centres,
         covariances(frame.rotations, frame.scales),
@@ -48,7 +65,7 @@ def render_premultiplied(
         bounds=frame_bounds(frame),
     )
     colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], camera.position)
-    return splat_draw(ellipses[0], encode(colors), frame.opacities[splats], splat_sort(keys), screen=camera.screen)
+    return Projected(ellipses[0], colors, frame.opacities[splats], splat_sort(keys))
 
 
 def frame_bounds(frame: Frame) -> Array:

@@ -12,7 +12,7 @@ from mua.rig.bind_pose import Bind, bind_pose
 from mua.rig.character import MAX_INFLUENCES
 from mua.rig.correction import check_scales, corrected
 from mua.rig.rigid_skeleton import rigid_skeleton
-from mua.rig.scene import Material, Part, Scene
+from mua.rig.scene import Material, Part, Scene, Source
 from mua.rig.scene import Wrap as Wrap  # part of what Surfaces says to the atlas
 from mua.rig.skeleton import Skeleton
 
@@ -40,6 +40,7 @@ class Surfaces:
     skin_weights: Array  # [V, 8] float32, rows sum to 1
     clips: tuple[Clip, ...]
     notes: tuple[str, ...]
+    source: Source | None = None  # what it was made of
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
         skin_weights=mesh.weights.astype(np.float32),
         clips=rigged.clips,
         notes=(*scene.notes, *told, *mesh.notes, *rigged.notes),
+        source=Source(scene, rigged.nodes),
     )
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from mua.arrays import Array
 from mua.motion.clip import Clip
+from mua.rig.scene import Source
 from mua.rig.skeleton import Skeleton
 
 MAX_INFLUENCES = 8
@@ -35,3 +36,4 @@ class Character:
     clips: tuple[Clip, ...] = ()
     looseness: Array | None = None  # [V] 0 (skin) .. 1 (hanging cloth); None: the simulation estimates it
     notes: tuple[str, ...] = field(default=())  # decisions of the reader worth telling the user, a sentence each
+    source: Source | None = None  # what the file held, to compare with; None: there is no file, or nothing to compare

@@ -7,11 +7,11 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.clip import Clip
-from mua.rig.bind_pose import Bind, rotations_of
+from mua.rig.bind_pose import Bind, bind_pose, rotations_of
 from mua.rig.joint_tree import find_root, mass_below, reattached
 from mua.rig.rigid_motion import RigidMotion, local_offsets, local_rotations, rigid_motion
-from mua.rig.scene import Scene
-from mua.rig.skeleton import Skeleton
+from mua.rig.scene import Motion, Scene, Source
+from mua.rig.skeleton import Pose, Skeleton
 
 TOLD_MILLIMETRES = 1.0  # a smaller loss is not worth a sentence
 TOLD_SCALE = 0.01
@@ -48,6 +48,15 @@ def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
         at = _root_translation(skeleton, local, motion.positions)
         clips.append(Clip(source.name, source.rate, local, skeleton.with_root(at)))
     return Rigged(skeleton, bind.nodes, tuple(clips), (*told, *_losses(scene, skeleton, bind=bind, motions=motions)))
+
+
+def rest_pose(source: Source, skeleton: Skeleton) -> Pose:
+    """The pose of a skeleton that the nodes of its source have at rest, which the bind pose need not be."""
+    bind = bind_pose(source.scene)
+    motion = rigid_motion(Motion("rest", 1.0, source.scene.rest[None]), bind)
+    rows = [int(np.flatnonzero(bind.nodes == node)[0]) for node in source.nodes]
+    local = rotation.from_matrix(local_rotations(motion.rotations[:, rows], skeleton.parents))
+    return Pose(local[0], _root_translation(skeleton, local, motion.positions[:, rows])[0])
 
 
 def unique_names(names: list[str]) -> tuple[str, ...]:

@@ -75,3 +75,11 @@ class Scene:
             if part.skin == skin:
                 mass += np.bincount(part.joints.ravel(), part.weights.ravel(), minlength=len(mass))
         return mass
+
+
+@dataclass(frozen=True)
+class Source:
+    """A scene that became a character: in metres and facing +Z as the character does, its meshes as in the file."""
+
+    scene: Scene
+    nodes: Array  # [J] int, the node that each of the character's joints was

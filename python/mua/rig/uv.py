@@ -201,6 +201,7 @@ def _character(source: _Source, layout: _Layout, size: int) -> Character:
         base_color=picture,
         clips=surfaces.clips,
         notes=surfaces.notes + layout.notes,
+        source=surfaces.source,
     )
 
 

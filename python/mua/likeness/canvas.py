@@ -1,0 +1,79 @@
+"""Pictures by OpenGL without a window, on a GPU or on the CPU; nothing here shares code with how splats are made."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from mua.arrays import Array
+from mua.errors import InputError
+
+OPENGL = 330  # the oldest version that has all that is needed
+LAID_OVER = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)  # premultiplied colours, from back to front
+
+
+@contextmanager
+def opened() -> Iterator[moderngl.Context]:
+    """An OpenGL context; raises an InputError where this machine has none."""
+    options: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    try:
+        context = moderngl.create_context(standalone=True, require=OPENGL, **options)
+    except Exception as error:  # the library raises many kinds, some of them plain exceptions
+        raise InputError(
+            f"no OpenGL to draw with ({error}): install a driver (on Debian, libegl1 and libgl1-mesa-dri; they have one "
+            f"for the CPU)"
+        ) from error
+    try:
+        context.gc_mode = "context_gc"
+        yield context
+    finally:
+        context.release()
+
+
+class Canvas:
+    """A picture of premultiplied sRGB and alpha to draw on, and its depth."""
+
+    def __init__(self, context: moderngl.Context, screen: tuple[int, int], *, samples: int, dtype: str) -> None:
+        """`samples` are along a side of every pixel; `dtype` is "f1" for eight bits a channel or "f4" for floats."""
+        self._screen, self._samples, self._dtype = screen, samples, dtype
+        self.size = screen[0] * samples, screen[1] * samples
+        self._color = context.renderbuffer(self.size, dtype=dtype)
+        self._target = context.framebuffer([self._color], context.depth_renderbuffer(self.size))
+
+    def begin(self) -> None:
+        """Draw here from now on, onto nothing."""
+        self._target.use()
+        self._target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+
+    def read(self) -> Array:
+        """The picture [H, W, 4] float32, each pixel the mean of its samples, its first row at the top."""
+        (width, height), count = self._screen, self._samples
+        kind = np.uint8 if self._dtype == "f1" else np.float32
+        samples = np.frombuffer(self._target.read(components=4, dtype=self._dtype), kind)
+        samples = samples.reshape(height, count, width, count, 4)[::-1]
+        total = sum(samples[:, row, :, column].astype(np.float32) for row in range(count) for column in range(count))
+        return np.asarray(total / np.float32((255 if kind is np.uint8 else 1) * count**2))
+
+
+def draw(
+    program: moderngl.Program,
+    rows: Array,  # [N, c], one for each vertex or instance
+    layout: str,  # of a row, as moderngl writes it: "3f 2f"
+    names: Sequence[str],  # of the program's inputs
+    *,
+    mode: int,
+    vertices: int = -1,  # of each instance
+    instances: int = 1,
+) -> None:
+    """Draw rows that are needed once."""
+    if not len(rows):
+        return
+    context = program.ctx
+    buffer = context.buffer(np.ascontiguousarray(rows, dtype=np.float32).tobytes())
+    array = context.vertex_array(program, [(buffer, layout, *names)])
+    array.render(mode, vertices=vertices, instances=instances)
+    array.release()
+    buffer.release()

@@ -1,0 +1,133 @@
+"""The source character and its splats in the same poses and views, drawn, measured and told."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from mua.arrays import Array
+from mua.camera import Camera, orbit
+from mua.decode import pose_splats
+from mua.likeness.canvas import opened
+from mua.likeness.measure import Agreement, agreement, together, worst_place
+from mua.likeness.painter import Painter
+from mua.likeness.posing import Moment, Poser, carriers, skinned
+from mua.likeness.splats import SplatPainter
+from mua.motion.clip import Clip
+from mua.rig.character import Character
+from mua.rig.scene import Source
+from mua.teachers.still import StillTeacher
+
+SCREEN = (384, 512)  # width, height, pixels
+NEAR_BY = 6.0  # pixels about a place within which the surface tells which joint it belongs to
+POSED = 3  # frames of the clips beside the pose of the file
+ABOVE = float(np.radians(5))
+ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "three quarters": -40.0}  # degrees round the figure
+TWO = {"three quarters": -40.0, "back, three quarters": 140.0}
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One pose from one side, drawn twice."""
+
+    view: str
+    source: Array  # [H, W, 4] premultiplied sRGB and alpha
+    splats: Array  # [H, W, 4]
+    agreement: Agreement
+    place: tuple[int, int]  # column and row of the worst place
+    joint: str  # of the source, that carries the surface nearest to it
+    difference: float  # there, in 0..1
+
+
+@dataclass(frozen=True)
+class PoseLikeness:
+    """One pose from all its sides."""
+
+    pose: str
+    shots: tuple[Shot, ...]
+
+    @property
+    def agreement(self) -> Agreement:
+        return together([shot.agreement for shot in self.shots])
+
+    @property
+    def worst(self) -> Shot:
+        return max(self.shots, key=lambda shot: shot.difference)
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """All poses."""
+
+    poses: tuple[PoseLikeness, ...]
+
+    @property
+    def iou(self) -> float:
+        """Of the pose whose silhouettes overlap least."""
+        return min(pose.agreement.iou for pose in self.poses)
+
+    @property
+    def psnr(self) -> float:
+        """Decibels, of the pose whose colours differ most."""
+        return min(pose.agreement.psnr for pose in self.poses)
+
+    @property
+    def worst(self) -> PoseLikeness:
+        return max(self.poses, key=lambda pose: pose.worst.difference)
+
+
+def compare(character: Character, clips: Sequence[Clip], *, texels: int, source: Source) -> Likeness:
+    """Draw a character's source and its splats as the file stands and in frames spread over `clips`.
+
+    Raises InputError where this machine has no OpenGL.
+    """
+    poser = Poser(source, character.skeleton)
+    moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
+    teacher = StillTeacher(character, texels=texels)
+    with opened() as context:
+        studio = _Studio(context, source)
+        return Likeness(tuple(studio.pictured(teacher, moment, TWO if i else ROUND) for i, moment in enumerate(moments)))
+
+
+def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
+    """At most `count` frames, each in the middle of its share of all clips one after the other."""
+    frames = [(clip, frame) for clip in clips for frame in range(len(clip))]
+    count = min(count, len(frames))
+    return [frames[int((i + 0.5) * len(frames) / count)] for i in range(count)]
+
+
+class _Studio:
+    """Both painters, set up for one source."""
+
+    def __init__(self, context: moderngl.Context, source: Source) -> None:
+        self._scene = source.scene
+        self._paint_source = Painter(context, source.scene.parts, source.scene.materials, screen=SCREEN)
+        self._paint_splats = SplatPainter(context, SCREEN)
+        self._carriers = np.concatenate([carriers(source.scene, part) for part in source.scene.parts])
+
+    def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseLikeness:
+        """One pose, drawn from all `views`."""
+        places = [skinned(self._scene, part, moment.nodes) for part in self._scene.parts]
+        used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
+        points = np.concatenate(used)
+        bounds = np.stack([points.min(axis=0), points.max(axis=0)])
+        taught = teacher.frame(moment.pose)
+        frame = pose_splats(teacher.rig, taught.mesh, texture=taught.texture, pose=moment.pose)
+        shots = []
+        for view, degrees in views.items():
+            azimuth = moment.yaw + float(np.radians(degrees))
+            camera = orbit(bounds, screen=SCREEN, azimuth=azimuth, elevation=ABOVE)
+            source, splats = self._paint_source(places, camera), self._paint_splats(frame, camera)
+            column, row, difference = worst_place(source, splats)
+            joint = self._joint_at(np.concatenate(places), camera, (column, row))
+            shots.append(Shot(view, source, splats, agreement(source, splats), (column, row), joint, difference))
+        return PoseLikeness(moment.name, tuple(shots))
+
+    def _joint_at(self, points: Array, camera: Camera, place: tuple[int, int]) -> str:
+        """The name of the node that carries what is seen at a place: the nearest to the eye of the points about it."""
+        clip = np.column_stack([points, np.ones(len(points))]) @ (camera.projection @ camera.view).T
+        screen = (clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN
+        away = np.linalg.norm(screen - (np.array(place) + 0.5), axis=1)
+        about = np.flatnonzero(away <= max(NEAR_BY, float(away.min())))
+        return self._scene.node_names[int(self._carriers[about[np.argmin(clip[about, 3])]])]

@@ -1,0 +1,75 @@
+"""Two pictures of one pose: how far their silhouettes and colours agree, and where they agree least."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import uniform_filter
+
+from mua.arrays import Array
+
+COVERED = 0.5  # opacity from which a pixel belongs to the silhouette
+WINDOW = 24  # a worst place is the worst mean over a square of this part of the picture's height
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """What pictures of one pose have in common, as sums, so that those of several views can be added."""
+
+    common: int  # pixels that both silhouettes hold
+    either: int  # pixels that one of them holds
+    squares: float  # summed over the common pixels and the three channels: squared differences of sRGB in 0..1
+
+    @property
+    def iou(self) -> float:
+        """Overlap of the silhouettes: common pixels over all pixels of either; 1 where both pictures are empty."""
+        return self.common / self.either if self.either else 1.0
+
+    @property
+    def psnr(self) -> float:
+        """Decibels over the common pixels; infinite where they are equal."""
+        if not self.squares:
+            return float("inf")
+        return float(10 * np.log10(3 * self.common / self.squares))
+
+
+def agreement(
+    source: Array,  # [H, W, 4] premultiplied sRGB and alpha
+    splats: Array,  # [H, W, 4]
+) -> Agreement:
+    """Compare silhouettes at half coverage, and colours without their background where both silhouettes are."""
+    one, other = source[..., 3] >= COVERED, splats[..., 3] >= COVERED
+    both = one & other
+    apart = straight(source[both]) - straight(splats[both])
+    return Agreement(int(both.sum()), int((one | other).sum()), float(np.sum(apart**2)))
+
+
+def together(agreements: Sequence[Agreement]) -> Agreement:
+    """The agreement of all views of one pose."""
+    return Agreement(
+        sum(a.common for a in agreements), sum(a.either for a in agreements), sum(a.squares for a in agreements)
+    )
+
+
+def straight(
+    image: Array,  # [..., 4] premultiplied sRGB and alpha
+) -> Array:
+    """Colours [..., 3] as if opaque, in 0..1; black where nothing is."""
+    alpha = image[..., 3:]
+    return np.clip(image[..., :3] / np.where(alpha > 0, alpha, 1), 0, 1)
+
+
+def worst_place(
+    source: Array,  # [H, W, 4] premultiplied sRGB and alpha
+    splats: Array,  # [H, W, 4]
+) -> tuple[int, int, float]:
+    """Column and row about which the pictures differ most, and the mean difference there in 0..1.
+
+    A pixel that only one silhouette holds differs by 1.
+    """
+    difference = np.abs(straight(source) - straight(splats)).max(axis=-1)
+    one, other = source[..., 3] >= COVERED, splats[..., 3] >= COVERED
+    difference = np.where(one & other, difference, one ^ other)
+    mean = uniform_filter(difference.astype(float), max(len(difference) // WINDOW, 1), mode="constant")
+    row, column = np.unravel_index(int(np.argmax(mean)), mean.shape)
+    return int(column), int(row), float(mean[row, column])

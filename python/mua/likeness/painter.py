@@ -1,0 +1,126 @@
+"""Draws triangles as a file describes them: their own textures, no light, several samples in every pixel."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from PIL import Image
+
+from mua.arrays import Array
+from mua.camera import Camera
+from mua.likeness.canvas import LAID_OVER, Canvas, draw
+from mua.rig.scene import Material, Part
+
+SAMPLES = 3  # along a side of a pixel; an odd number, so that no coverage is exactly one half
+LARGEST = 2048  # texels along a side of a texture: no picture shows more
+FILTERING = 8.0  # samples along a texture that is seen at a slant
+SOLID = 0.99  # opacity from which a surface hides all behind it
+
+VERTEX = """
+#version 330
+uniform mat4 matrix;
+in vec3 place;
+in vec2 coordinates;
+out vec2 uv;
+void main() { uv = coordinates; gl_Position = matrix * vec4(place, 1.0); }
+"""
+FRAGMENT = """
+#version 330
+uniform sampler2D picture;
+uniform bvec2 mirrored;
+uniform bool solid; // draw what hides all behind it, else the rest
+in vec2 uv;
+out vec4 color;
+void main()
+{
+    vec2 at = mix(uv, 1.0 - abs(mod(uv, 2.0) - 1.0), mirrored);
+    vec4 texel = textureGrad(picture, at, dFdx(uv), dFdy(uv));
+    if ((texel.a >= SOLID) != solid) discard;
+    color = vec4(texel.rgb * texel.a, texel.a);
+}
+""".replace("SOLID", str(SOLID))
+
+
+@dataclass
+class _Piece:
+    """The triangles of one part on the device."""
+
+    corners: Array  # [3 F] int, vertices of the part
+    coordinates: Array  # [3 F, 2] float32
+    material: int
+    clear: bool  # something of its material shows what is behind
+
+
+class Painter:
+    """Draws the parts of a scene in any pose."""
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        parts: Sequence[Part],
+        materials: Sequence[Material],
+        *,
+        screen: tuple[int, int],  # width, height, pixels
+    ) -> None:
+        self._context, self._materials = context, materials
+        self._program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
+        self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f1")
+        self._textures = {m: _texture(context, materials[m]) for m in sorted({part.material for part in parts})}
+        self._pieces = [_piece(part, materials[part.material]) for part in parts]
+
+    def __call__(
+        self,
+        places: Sequence[Array],  # for each part its vertices [N, 3], world, metres
+        camera: Camera,
+    ) -> Array:
+        """Premultiplied sRGB and alpha [H, W, 4] float32."""
+        self._canvas.begin()
+        self._program["matrix"].write((camera.projection @ camera.view).T.astype(np.float32).tobytes())
+        self._context.enable_only(moderngl.DEPTH_TEST)
+        for piece, at in zip(self._pieces, places, strict=True):
+            self._draw(piece, at[piece.corners], np.arange(len(piece.corners)), solid=True)
+        self._draw_clear(places, camera)
+        return self._canvas.read()
+
+    def _draw_clear(self, places: Sequence[Array], camera: Camera) -> None:
+        """Lay what is not opaque over the rest, from back to front as far as whole triangles can be sorted."""
+        self._context.enable(moderngl.BLEND)
+        self._context.blend_func = LAID_OVER
+        waiting = []
+        for piece, at in zip(self._pieces, places, strict=True):
+            if piece.clear:
+                corners = at[piece.corners]
+                depth = (corners @ camera.view[2, :3]).reshape(-1, 3).mean(axis=1)
+                waiting.append((float(depth.mean()), piece, corners, np.argsort(depth, kind="stable")))
+        for _, piece, corners, order in sorted(waiting, key=lambda entry: entry[0]):
+            self._draw(piece, corners, (order[:, None] * 3 + np.arange(3)).ravel(), solid=False)
+
+    def _draw(self, piece: _Piece, corners: Array, order: Array, *, solid: bool) -> None:
+        material = self._materials[piece.material]
+        self._textures[piece.material].use()
+        self._program["mirrored"].value = (material.wrap_u == "mirror", material.wrap_v == "mirror")
+        self._program["solid"].value = solid
+        rows = np.concatenate([corners, piece.coordinates], axis=1)[order]
+        draw(self._program, rows, "3f 2f", ("place", "coordinates"), mode=moderngl.TRIANGLES)
+
+
+def _piece(part: Part, material: Material) -> _Piece:
+    corners = part.faces.ravel()
+    coordinates = np.zeros((len(corners), 2), np.float32)
+    mapped = part.uv_faces.ravel() >= 0
+    coordinates[mapped] = part.uv[part.uv_faces.ravel()[mapped]]
+    return _Piece(corners, coordinates, part.material, clear=bool(material.image[..., 3].min() < 255 * SOLID))
+
+
+def _texture(context: moderngl.Context, material: Material) -> moderngl.Texture:
+    image = material.image
+    factor = -(-max(image.shape[:2]) // LARGEST)
+    if factor > 1:
+        image = np.asarray(Image.fromarray(image).reduce(factor))
+    texture = context.texture((image.shape[1], image.shape[0]), 4, np.ascontiguousarray(image).tobytes())
+    texture.repeat_x, texture.repeat_y = material.wrap_u == "repeat", material.wrap_v == "repeat"
+    texture.build_mipmaps()
+    texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+    texture.anisotropy = FILTERING
+    return texture

@@ -1,0 +1,97 @@
+"""The source character in a pose: its own nodes, its own weights, linear blend skinning as file formats define it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.motion.clip import Clip
+from mua.motion.descriptor import heading_of
+from mua.rig.assemble import weighted
+from mua.rig.rigid_skeleton import rest_pose
+from mua.rig.scene import Part, Scene, Source
+from mua.rig.skeleton import Pose, Skeleton
+
+REST = "as the file stands"
+
+
+@dataclass(frozen=True)
+class Moment:
+    """One pose, of the character's skeleton and of its source's nodes."""
+
+    name: str
+    pose: Pose
+    nodes: Array  # [nodes, 4, 4] node to world, metres
+    yaw: float  # of the body since the bind pose, about +Y, radians
+
+
+class Poser:
+    """Brings poses of a character to the nodes of its source."""
+
+    def __init__(self, source: Source, skeleton: Skeleton) -> None:
+        self._source, self._skeleton = source, skeleton
+        self._rest = rest_pose(source, skeleton)
+        self._to_bind = np.linalg.inv(self._carried(self._rest))
+        self._holders = _holders(source)
+
+    def rest(self) -> Moment:
+        """The pose in which the file's nodes stand."""
+        return Moment(REST, self._rest, self._source.scene.rest, self._yaw(self._rest))
+
+    def of_clip(self, clip: Clip, frame: int) -> Moment:
+        """A frame of a clip: the file's own nodes where it is the file's clip, else what the joints do to them."""
+        pose = clip.pose(frame)
+        own = [m for m in self._source.scene.motions if m.name == clip.name and len(m.worlds) == len(clip)]
+        nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self._moved(pose)
+        return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose))
+
+    def _moved(self, pose: Pose) -> Array:
+        """The nodes [nodes, 4, 4] at rest, moved by what each joint does between rest and `pose`."""
+        moves = self._carried(pose) @ self._to_bind
+        nodes = self._source.scene.rest.copy()
+        held = self._holders >= 0
+        nodes[held] = moves[self._holders[held]] @ nodes[held]
+        return nodes
+
+    def _carried(self, pose: Pose) -> Array:
+        """Matrices [J, 4, 4] that carry points of the bind pose to the posed world."""
+        dual = self._skeleton.skinning(pose.rotations, pose.translation)
+        matrices = np.tile(np.eye(4), (len(dual), 1, 1))
+        matrices[:, :3, :3] = rotation.to_matrix(dual[:, :4])
+        matrices[:, :3, 3] = rotation.dual_translation(dual)
+        return matrices
+
+    def _yaw(self, pose: Pose) -> float:
+        dual = self._skeleton.skinning(pose.rotations, pose.translation)
+        heading = heading_of(dual[self._skeleton.root, :4])
+        return float(2 * np.arctan2(heading[2], heading[0]))
+
+
+def skinned(scene: Scene, part: Part, nodes: Array) -> Array:
+    """A part's vertices [N, 3] in the world, for nodes [nodes, 4, 4]: the weighted mean of what each joint makes."""
+    skin = scene.skins[part.skin]
+    spaces = nodes[skin.joints] @ skin.inverse_binds
+    weights = weighted(part.weights)
+    placed = np.zeros_like(part.positions)
+    for k in np.flatnonzero(weights.any(axis=0)):
+        space = spaces[part.joints[:, k]]
+        moved = np.einsum("nij,nj->ni", space[:, :3, :3], part.positions) + space[:, :3, 3]
+        placed += weights[:, k, None] * moved
+    return placed
+
+
+def carriers(scene: Scene, part: Part) -> Array:
+    """The node [N] that each of a part's vertices follows most."""
+    heaviest = np.argmax(part.weights, axis=1)[:, None]
+    return np.asarray(scene.skins[part.skin].joints[np.take_along_axis(part.joints, heaviest, axis=1)[:, 0]])
+
+
+def _holders(source: Source) -> Array:
+    """The joint [nodes] that each node is or hangs below, -1 for none."""
+    holders = np.full(len(source.scene.parents), -1)
+    holders[source.nodes] = np.arange(len(source.nodes))
+    for node, parent in enumerate(source.scene.parents):
+        if holders[node] < 0 and parent >= 0:
+            holders[node] = holders[parent]
+    return holders

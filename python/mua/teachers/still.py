@@ -1,0 +1,43 @@
+"""The simulated character without simulation and light: what its splats show of the character's own surface."""
+
+import numpy as np
+
+from mua import rotation
+from mua.kernels.dq_skinning import blend_vertices
+from mua.rig.character import Character
+from mua.rig.rig import build_rig
+from mua.rig.skeleton import Pose
+from mua.teachers.bones import figure_scale
+from mua.teachers.shading import Light
+from mua.teachers.simulated import TURN_WAVELENGTH
+from mua.teachers.smoothing import low_pass
+from mua.teachers.teacher import TeacherFrame
+from mua.teachers.texels import SurfaceTexels
+from mua.texture.surfels import SurfaceFrames
+
+
+class StillTeacher:
+    """Splats of a character that skinning alone moves, in the colours of its textures."""
+
+    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000) -> None:
+        mesh = character.mesh
+        self.rig, _ = build_rig(character, texels=texels, template_vertices=template_vertices)
+        self._character = character
+        self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
+        self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
+        self._texels = SurfaceTexels(character, self.rig)
+        count = len(mesh.vertices)
+        self._still = np.zeros((count, 3)), np.zeros((len(self.rig.mesh.vertices), 3))
+        self._unlit = Light(gain=np.ones((count, 3)), sheen=np.zeros((count, 3)))
+
+    def frame(self, pose: Pose) -> TeacherFrame:
+        """One pose; its splats turn and stretch with the surface as the simulated ones do."""
+        character = self._character
+        joints = character.skeleton.skinning(pose.rotations, pose.translation)
+        dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
+        turn, log_stretch = self._surface(rotation.dual_transform(dual, character.mesh.vertices))
+        turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)
+        turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
+        displacement, coarse = self._still
+        texture = self._texels.texture(displacement, coarse, turn=turn, log_stretch=log_stretch, light=self._unlit)
+        return TeacherFrame(pose=pose, mesh=self.rig.mesh.vertices.astype(np.float32), texture=texture)
