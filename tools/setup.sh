@@ -13,6 +13,10 @@ command -v flatc >/dev/null || missing="$missing flatbuffers-compiler"
 command -v glslangValidator >/dev/null || missing="$missing glslang-tools"
 find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2>/dev/null | grep -q . ||
     missing="$missing mesa-vulkan-drivers"
+# a character's own mesh is drawn by OpenGL without a display (this driver runs on the CPU)
+find /usr/lib /lib -name 'libEGL.so.1' 2>/dev/null | grep -q . || missing="$missing libegl1"
+find /usr/lib /lib -name 'swrast_dri.so' -o -name 'libgallium*.so' 2>/dev/null | grep -q . ||
+    missing="$missing libgl1-mesa-dri"
 # the Unity package's C# is compiled and run without Unity
 command -v mcs >/dev/null || missing="$missing mono-mcs"
 command -v mono >/dev/null || missing="$missing mono-runtime"

@@ -8,6 +8,7 @@ from rich.console import Console
 
 from mua.cli.bake_options import check_inputs, check_output, check_settings
 from mua.cli.failure import refusing
+from mua.errors import InputError
 from mua.motion.mapping import read_mapping
 from mua.rig.detail import read_detail
 
@@ -52,6 +53,10 @@ def main(
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
     device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
     work: Annotated[Path | None, typer.Option(help="Work directory; beside the output if left out.")] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Only compare splats and motion with their sources, in seconds.")
+    ] = False,
+    json: Annotated[Path | None, typer.Option(help="With --check: file for every figure.")] = None,
 ) -> None:
     """Record a teacher, distil it and write a .muaavatar, with a table of errors and a contact sheet beside it.
 
@@ -62,7 +67,16 @@ def main(
     finer = read_detail(detail, uv=uv)
     check_inputs(character, motion)
     made = check_output(output, work)
+    if json is not None and not check:
+        raise InputError("--json: is written by --check alone")
     joints = None if mapping is None else read_mapping(mapping)
+
+    if check:
+        from mua.bake.check import CheckOrder
+        from mua.cli.check import check_and_show
+
+        looked_at = CheckOrder(output, settings.texels, seed, character, tuple(motion), joints, uv)
+        return check_and_show(looked_at, json)
 
     from mua.bake.pipeline import Order, bake  # seconds of loading: only once the options are known to be good
     from mua.bake.report import STAND_IN

@@ -23,8 +23,8 @@ def opened() -> Iterator[moderngl.Context]:
         context = moderngl.create_context(standalone=True, require=OPENGL, **options)
     except Exception as error:  # the library raises many kinds, some of them plain exceptions
         raise InputError(
-            f"no OpenGL to draw with ({error}): install a driver (on Debian, libegl1 and libgl1-mesa-dri; they have one "
-            f"for the CPU)"
+            f"no OpenGL to draw with ({error}): install a driver (on Debian, libegl1 and libgl1-mesa-dri; they have "
+            f"one for the CPU)"
         ) from error
     try:
         context.gc_mode = "context_gc"
@@ -77,3 +77,10 @@ def draw(
     array.render(mode, vertices=vertices, instances=instances)
     array.release()
     buffer.release()
+
+
+def set_uniform(program: moderngl.Program, name: str, value: Any) -> None:
+    """Give a uniform of a program its value."""
+    uniform = program[name]
+    assert isinstance(uniform, moderngl.Uniform)
+    uniform.value = value

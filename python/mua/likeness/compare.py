@@ -1,5 +1,6 @@
 """The source character and its splats in the same poses and views, drawn, measured and told."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,8 +24,8 @@ SCREEN = (384, 512)  # width, height, pixels
 NEAR_BY = 6.0  # pixels about a place within which the surface tells which joint it belongs to
 POSED = 3  # frames of the clips beside the pose of the file
 ABOVE = float(np.radians(5))
-ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "three quarters": -40.0}  # degrees round the figure
-TWO = {"three quarters": -40.0, "back, three quarters": 140.0}
+ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "front, right": -40.0}  # degrees round the figure
+IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each frame, by turns
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,8 @@ def compare(character: Character, clips: Sequence[Clip], *, texels: int, source:
     teacher = StillTeacher(character, texels=texels)
     with opened() as context:
         studio = _Studio(context, source)
-        return Likeness(tuple(studio.pictured(teacher, moment, TWO if i else ROUND) for i, moment in enumerate(moments)))
+        views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
+        return Likeness(tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False)))
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:

@@ -9,6 +9,7 @@ from scipy.ndimage import uniform_filter
 from mua.arrays import Array
 
 COVERED = 0.5  # opacity from which a pixel belongs to the silhouette
+MOST_DECIBELS = 99.0  # of pictures that are equal
 WINDOW = 24  # a worst place is the worst mean over a square of this part of the picture's height
 
 
@@ -17,20 +18,22 @@ class Agreement:
     """What pictures of one pose have in common, as sums, so that those of several views can be added."""
 
     common: int  # pixels that both silhouettes hold
-    either: int  # pixels that one of them holds
+    missing: int  # pixels that only the source's holds
+    beyond: int  # pixels that only the splats' holds
     squares: float  # summed over the common pixels and the three channels: squared differences of sRGB in 0..1
 
     @property
     def iou(self) -> float:
         """Overlap of the silhouettes: common pixels over all pixels of either; 1 where both pictures are empty."""
-        return self.common / self.either if self.either else 1.0
+        either = self.common + self.missing + self.beyond
+        return self.common / either if either else 1.0
 
     @property
     def psnr(self) -> float:
-        """Decibels over the common pixels; infinite where they are equal."""
-        if not self.squares:
-            return float("inf")
-        return float(10 * np.log10(3 * self.common / self.squares))
+        """Decibels over the common pixels, at most MOST_DECIBELS; 0 where there are none."""
+        if not self.common:
+            return 0.0
+        return float(-10 * np.log10(max(self.squares / (3 * self.common), 10 ** (-MOST_DECIBELS / 10))))
 
 
 def agreement(
@@ -41,13 +44,17 @@ def agreement(
     one, other = source[..., 3] >= COVERED, splats[..., 3] >= COVERED
     both = one & other
     apart = straight(source[both]) - straight(splats[both])
-    return Agreement(int(both.sum()), int((one | other).sum()), float(np.sum(apart**2)))
+    common, missing, beyond = (int(np.count_nonzero(held)) for held in (both, one & ~other, other & ~one))
+    return Agreement(common, missing, beyond, float(np.sum(apart**2)))
 
 
 def together(agreements: Sequence[Agreement]) -> Agreement:
     """The agreement of all views of one pose."""
     return Agreement(
-        sum(a.common for a in agreements), sum(a.either for a in agreements), sum(a.squares for a in agreements)
+        common=sum(a.common for a in agreements),
+        missing=sum(a.missing for a in agreements),
+        beyond=sum(a.beyond for a in agreements),
+        squares=sum(a.squares for a in agreements),
     )
 
 

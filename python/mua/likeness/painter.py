@@ -9,7 +9,7 @@ from PIL import Image
 
 from mua.arrays import Array
 from mua.camera import Camera
-from mua.likeness.canvas import LAID_OVER, Canvas, draw
+from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.rig.scene import Material, Part
 
 SAMPLES = 3  # along a side of a pixel; an odd number, so that no coverage is exactly one half
@@ -76,7 +76,7 @@ class Painter:
     ) -> Array:
         """Premultiplied sRGB and alpha [H, W, 4] float32."""
         self._canvas.begin()
-        self._program["matrix"].write((camera.projection @ camera.view).T.astype(np.float32).tobytes())
+        set_uniform(self._program, "matrix", tuple((camera.projection @ camera.view).T.ravel()))  # column by column
         self._context.enable_only(moderngl.DEPTH_TEST)
         for piece, at in zip(self._pieces, places, strict=True):
             self._draw(piece, at[piece.corners], np.arange(len(piece.corners)), solid=True)
@@ -99,8 +99,8 @@ class Painter:
     def _draw(self, piece: _Piece, corners: Array, order: Array, *, solid: bool) -> None:
         material = self._materials[piece.material]
         self._textures[piece.material].use()
-        self._program["mirrored"].value = (material.wrap_u == "mirror", material.wrap_v == "mirror")
-        self._program["solid"].value = solid
+        set_uniform(self._program, "mirrored", (material.wrap_u == "mirror", material.wrap_v == "mirror"))
+        set_uniform(self._program, "solid", solid)
         rows = np.concatenate([corners, piece.coordinates], axis=1)[order]
         draw(self._program, rows, "3f 2f", ("place", "coordinates"), mode=moderngl.TRIANGLES)
 

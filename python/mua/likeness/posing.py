@@ -56,14 +56,14 @@ class Poser:
 
     def _carried(self, pose: Pose) -> Array:
         """Matrices [J, 4, 4] that carry points of the bind pose to the posed world."""
-        dual = self._skeleton.skinning(pose.rotations, pose.translation)
+        dual = self._skeleton.skinning(pose.rotations, pose.translations)
         matrices = np.tile(np.eye(4), (len(dual), 1, 1))
         matrices[:, :3, :3] = rotation.to_matrix(dual[:, :4])
         matrices[:, :3, 3] = rotation.dual_translation(dual)
         return matrices
 
     def _yaw(self, pose: Pose) -> float:
-        dual = self._skeleton.skinning(pose.rotations, pose.translation)
+        dual = self._skeleton.skinning(pose.rotations, pose.translations)
         heading = heading_of(dual[self._skeleton.root, :4])
         return float(2 * np.arctan2(heading[2], heading[0]))
 

@@ -10,7 +10,7 @@ from mua.camera import Camera
 from mua.decode import Frame
 from mua.kernels.splat_draw import MOST_ALPHA
 from mua.kernels.splat_project import half_lengths
-from mua.likeness.canvas import LAID_OVER, Canvas, draw
+from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.render import projected
 
 SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part
@@ -63,7 +63,7 @@ class SplatPainter:
         self._context = context
         self._program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f4")
-        self._program["screen"].value = self._canvas.size
+        set_uniform(self._program, "screen", self._canvas.size)
 
     def __call__(self, frame: Frame, camera: Camera) -> Array:
         """Premultiplied sRGB and alpha [H, W, 4] float32, as `render.render_premultiplied` has every sample."""
@@ -76,7 +76,5 @@ class SplatPainter:
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = LAID_OVER
         names = ("ellipse", "lengths", "shade")
-        draw(
-            self._program, rows, "4f 4f 4f/i", names, mode=moderngl.TRIANGLE_STRIP, vertices=4, instances=len(rows)
-        )
+        draw(self._program, rows, "4f 4f 4f/i", names, mode=moderngl.TRIANGLE_STRIP, vertices=4, instances=len(rows))
         return self._canvas.read()

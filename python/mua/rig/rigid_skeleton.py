@@ -55,8 +55,9 @@ def rest_pose(source: Source, skeleton: Skeleton) -> Pose:
     bind = bind_pose(source.scene)
     motion = rigid_motion(Motion("rest", 1.0, source.scene.rest[None]), bind)
     rows = [int(np.flatnonzero(bind.nodes == node)[0]) for node in source.nodes]
-    local = rotation.from_matrix(local_rotations(motion.rotations[:, rows], skeleton.parents))
-    return Pose(local[0], _root_translation(skeleton, local, motion.positions[:, rows])[0])
+    turned, placed = motion.rotations[0, rows], motion.positions[0, rows]
+    local = rotation.from_matrix(local_rotations(turned, skeleton.parents))
+    return Pose(local, local_offsets(turned, placed, skeleton.parents))
 
 
 def unique_names(names: list[str]) -> tuple[str, ...]:

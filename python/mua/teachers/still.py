@@ -33,7 +33,7 @@ class StillTeacher:
     def frame(self, pose: Pose) -> TeacherFrame:
         """One pose; its splats turn and stretch with the surface as the simulated ones do."""
         character = self._character
-        joints = character.skeleton.skinning(pose.rotations, pose.translation)
+        joints = character.skeleton.skinning(pose.rotations, pose.translations)
         dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
         turn, log_stretch = self._surface(rotation.dual_transform(dual, character.mesh.vertices))
         turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)

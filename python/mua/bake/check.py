@@ -1,0 +1,147 @@
+"""A look at a character and its motion before a bake: what the splats keep of the one and the clips of the other."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from mua.bake.distillation import Listener
+from mua.bake.sources import RATE, load_character
+from mua.errors import InputError
+from mua.files import replacing, require_writable, write_bytes
+from mua.likeness import told
+from mua.likeness.compare import Likeness, compare
+from mua.likeness.sheet import likeness_sheet
+from mua.motion.clip import Clip
+from mua.motion.load import LoadedMotion, load_motions
+from mua.motion.mapping import write_mapping
+from mua.motion.match import JointPair, joint_pairs, match_joints, unmatched_target
+from mua.motion.quality import MotionQuality, measure_motion
+from mua.motion.source import SourceMotion
+from mua.rig.character import Character
+
+WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
+
+
+@dataclass(frozen=True)
+class CheckOrder:
+    """What a user asks to have looked at."""
+
+    output: Path  # the picture and the mapping lie beside it and are named after it
+    texels: int
+    seed: int
+    character: Path | None = None  # None: the procedural character
+    motions: tuple[Path, ...] = ()  # none: the character's own clips
+    mapping: Mapping[str, str] | None = None  # target joint to source joint
+    uv: Literal["keep", "unwrap", "auto"] = "auto"
+
+    def beside(self, ending: str) -> Path:
+        return self.output.with_name(self.output.stem + ending)
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was found."""
+
+    likeness: Likeness | None  # None where there is nothing to compare or to draw with
+    motions: tuple[MotionQuality, ...]
+    matched: tuple[JointPair, ...]
+    unmatched: tuple[str, ...]  # joints with skin that no motion moves
+    notes: tuple[str, ...]  # what the readers changed or left out
+    warnings: tuple[str, ...]  # what looks wrong
+    written: tuple[Path, ...]
+
+
+def check(order: CheckOrder, listener: Listener) -> Check:
+    """Measure likeness and motion, and leave a picture and a mapping file to start from beside the output.
+
+    Raises InputError where the character or a motion cannot be read, or where nothing can be written.
+    """
+    require_writable(order.output)
+    listener.stage("character")
+    character = load_character(order.character, uv=order.uv, seed=order.seed)
+    listener.stage("motion")
+    loaded = _loaded(order, character)
+    qualities = tuple(measure_motion(m.source, character.skeleton, m.clip, m.matches) for m in loaded)
+    listener.stage("likeness")
+    clips = [m.clip for m in loaded]
+    likeness, warnings = likeness_of(character, clips, texels=order.texels)
+    pairs, unmatched = _matched(character, loaded) if order.motions else ((), ())
+    written = []
+    if likeness is not None:
+        written.append(order.beside("_check.png"))
+        write_sheet(written[0], likeness)
+    if pairs:
+        written.append(order.beside("_mapping.json"))
+        write_mapping(written[-1], pairs, unmatched)
+    return Check(
+        likeness=likeness,
+        motions=qualities,
+        matched=pairs,
+        unmatched=unmatched,
+        notes=tuple(dict.fromkeys((*character.notes, *(note for m in loaded for note in m.notes)))),
+        warnings=(*warnings, *(flaw for quality in qualities for flaw in quality.flaws)),
+        written=tuple(written),
+    )
+
+
+def likeness_of(character: Character, clips: Sequence[Clip], *, texels: int) -> tuple[Likeness | None, tuple[str, ...]]:
+    """How much the splats look like the character, and a sentence for what is poor; None where it cannot be said."""
+    if character.source is None:
+        return None, (WITHOUT_FILE,)
+    try:
+        likeness = compare(character, clips, texels=texels, source=character.source)
+    except InputError as error:
+        return None, (f"The likeness is not measured: {error}.",)
+    return likeness, told.sentences(likeness)
+
+
+def write_sheet(path: Path, likeness: Likeness) -> None:
+    """Write the picture of source beside splats."""
+    with replacing(path) as temporary:
+        likeness_sheet(likeness).save(temporary)
+
+
+def as_json(order: CheckOrder, found: Check) -> str:
+    """Every figure, unrounded."""
+    content: dict[str, Any] = {
+        "character": None if order.character is None else str(order.character),
+        "texels": order.texels,
+        "likeness": None if found.likeness is None else told.as_dict(found.likeness),
+        "motion": [_without_flaws(quality) for quality in found.motions],
+        "matched": [asdict(pair) for pair in found.matched],
+        "unmatched": found.unmatched,
+        "warnings": found.warnings,
+        "notes": found.notes,
+    }
+    return json.dumps(content, indent=1)
+
+
+def write_json(path: Path, order: CheckOrder, found: Check) -> None:
+    write_bytes(path, (as_json(order, found) + "\n").encode())
+
+
+def _without_flaws(quality: MotionQuality) -> dict[str, Any]:
+    return {name: value for name, value in asdict(quality).items() if name != "flaws"}
+
+
+def _loaded(order: CheckOrder, character: Character) -> list[LoadedMotion]:
+    """The clips of the motions put on the character, else its own."""
+    skeleton = character.skeleton
+    if not order.motions:
+        matches = match_joints(skeleton, skeleton)
+        return [LoadedMotion(clip, SourceMotion(skeleton, clip), matches, ()) for clip in character.clips]
+    return [
+        motion for path in order.motions for motion in load_motions(path, skeleton, mapping=order.mapping, rate=RATE)
+    ]
+
+
+def _matched(character: Character, loaded: Sequence[LoadedMotion]) -> tuple[tuple[JointPair, ...], tuple[str, ...]]:
+    """The pairs of the motion that moves most joints, and the joints with skin that it leaves still."""
+    most = max(loaded, key=lambda motion: len(motion.matches.chains))
+    carrying = np.unique(character.skin_indices[character.skin_weights > 0])
+    pairs = joint_pairs(most.source.skeleton, character.skeleton, most.matches)
+    return pairs, unmatched_target(character.skeleton, most.matches, carrying)

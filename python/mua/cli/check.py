@@ -1,0 +1,70 @@
+"""What `mua-bake --check` prints."""
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from mua.bake.check import Check, CheckOrder, check, write_json
+from mua.cli.display import Display
+from mua.files import require_writable
+from mua.likeness.compare import Likeness
+from mua.motion.quality import MotionQuality
+
+
+def check_and_show(order: CheckOrder, json: Path | None) -> None:
+    """Check a character and its motion and print what was found."""
+    if json is not None:
+        require_writable(json)
+    console = Console()
+    with Display(console) as display:
+        found = check(order, display)
+    if json is not None:
+        write_json(json, order, found)
+    show(console, found)
+
+
+def show(console: Console, found: Check) -> None:
+    """Tables of figures, then sentences, then where everything is."""
+    if found.likeness is not None:
+        console.print(_likeness_table(found.likeness))
+    if found.motions:
+        console.print(_motion_table(found.motions))
+    if found.matched:
+        pairs = ", ".join(f"{pair.target} < {pair.source}" for pair in found.matched)
+        _say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")
+    if found.unmatched:
+        _say(console, f"Joints with skin that it does not move ({len(found.unmatched)}): {', '.join(found.unmatched)}")
+    for sentence in (*found.notes, *found.warnings):
+        _say(console, sentence)
+    for path in found.written:
+        _say(console, str(path))
+
+
+def _likeness_table(likeness: Likeness) -> Table:
+    table = Table("pose", "overlap", "inside", "worst at", "seen from", title="Splats beside the source, unlit")
+    for pose in likeness.poses:
+        seen, worst = pose.agreement, pose.worst
+        table.add_row(pose.pose, f"{100 * seen.iou:.1f} %", f"{seen.psnr:.1f} dB", worst.joint, worst.view)
+    return table
+
+
+def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
+    table = Table("clip", "limbs", "facing", "feet", "slide", title="Motion beside its source")
+    for motion in motions:
+        cells = (
+            f"{motion.limb_degrees:.1f}°",
+            _measured(motion.facing_degrees, "{:.0f}°"),
+            _measured(motion.feet_height, "{:+.3f} m"),
+            _measured(motion.slide, "{:.2f} m/s"),
+        )
+        table.add_row(motion.name, *cells)
+    return table
+
+
+def _measured(value: float | None, shape: str) -> str:
+    return "" if value is None else shape.format(value)
+
+
+def _say(console: Console, sentence: str) -> None:
+    console.print(sentence, highlight=False, markup=False, soft_wrap=True)

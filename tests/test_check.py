@@ -1,0 +1,61 @@
+"""mua-bake --check: what it writes, prints and refuses, without baking anything."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from PIL import Image
+from test_likeness import column_file
+from typer.testing import CliRunner
+
+from mua.cli.bake import main
+from mua.errors import InputError
+from mua.motion.mapping import read_mapping
+
+app = typer.Typer()
+app.command()(main)
+
+
+def run(*arguments: object) -> str:
+    """What the command prints; its errors are raised."""
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments], catch_exceptions=False)
+    assert result.exit_code == 0
+    return result.output
+
+
+def test_leaves_a_picture_a_mapping_and_figures_and_no_avatar(tmp_path: Path) -> None:
+    character, output, figures = column_file(tmp_path), tmp_path / "x" / "a.muaavatar", tmp_path / "a.json"
+    text = run(character, "--motion", character, "--check", "--texels", 96, "-o", output, "--json", figures)
+    assert sorted(path.name for path in output.parent.iterdir()) == ["a_check.png", "a_mapping.json"]
+    with Image.open(output.parent / "a_check.png") as picture:
+        assert np.asarray(picture).std() > 0
+    assert read_mapping(output.parent / "a_mapping.json") == {name: name for name in ("hips", "spine", "head")}
+    told = json.loads(figures.read_text())
+    assert 0.9 < told["likeness"]["iou"] < 1
+    assert told["likeness"]["psnr"] > 30
+    assert [motion["name"] for motion in told["motion"]] == ["bend"]
+    assert told["motion"][0]["limb_degrees"] == pytest.approx(0, abs=1e-3)
+    assert {"facing_degrees", "feet_height", "slide"} <= told["motion"][0].keys()
+    assert [pair["target"] for pair in told["matched"]] == ["hips", "spine", "head"]
+    assert told["unmatched"] == []
+    assert told["warnings"] == [sentence for sentence in told["warnings"] if sentence in text]
+    assert "bend, frame 15" in text
+
+
+def test_a_character_with_neither_motion_nor_clips_is_checked_as_it_stands(tmp_path: Path) -> None:
+    run(column_file(tmp_path, clip=False), "--check", "--texels", 96, "-o", tmp_path / "a.muaavatar")
+    assert not (tmp_path / "a_mapping.json").exists()
+    assert (tmp_path / "a_check.png").exists()
+
+
+def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -> None:
+    text = run("--check", "--texels", 64, "-o", tmp_path / "a.muaavatar")
+    assert "nothing to compare" in text
+    assert not list(tmp_path.iterdir())
+
+
+def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--json: is written by --check alone"):
+        run("--json", tmp_path / "a.json", "-o", tmp_path / "a.muaavatar")

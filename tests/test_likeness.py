@@ -1,0 +1,228 @@
+"""The source character beside its splats: what each painter draws, and what the comparison finds."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import gltf_files
+import moderngl
+import numpy as np
+import pytest
+from test_render import sphere
+from tube import tube
+
+from mua.arrays import Array
+from mua.bake.check import WITHOUT_FILE, likeness_of
+from mua.camera import Camera, orbit
+from mua.kernels.splat_project import LEAST_OPACITY
+from mua.likeness import splats as splat_painting
+from mua.likeness import told
+from mua.likeness.canvas import opened
+from mua.likeness.compare import SCREEN, spread
+from mua.likeness.measure import MOST_DECIBELS, Agreement, agreement, worst_place
+from mua.likeness.painter import Painter
+from mua.likeness.posing import Poser, skinned
+from mua.likeness.sheet import likeness_sheet
+from mua.likeness.splats import SplatPainter
+from mua.render import frame_bounds, render_premultiplied
+from mua.rig.character import Character
+from mua.rig.read import read_character
+from mua.rig.scene import Material, Part
+
+SIDE = 9  # pixels, odd: a pixel's middle is on the axis
+AHEAD = Camera(np.eye(4), np.diag([1.0, 1.0, 0.5, 1.0]), (SIDE, SIDE))  # sees -1..1; what has more z is behind
+EIGHT_BITS = 1 / 255
+TEXELS = 192
+
+
+@pytest.fixture
+def context() -> Iterator[moderngl.Context]:
+    with opened() as there:
+        yield there
+
+
+def card(*, depth: float, material: int = 0, low: float = -1.0, uv: float = 1.0) -> Part:
+    """A square from `low` to 1 that faces the camera; its texture repeats `uv` times."""
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
+    return Part(
+        name="card",
+        group=0,
+        positions=np.column_stack([low + (1 - low) * corners, np.full(4, depth)]),
+        faces=np.array([[0, 1, 2], [0, 2, 3]]),
+        uv=np.column_stack([corners[:, 0], 1 - corners[:, 1]]) * uv,
+        uv_faces=np.array([[0, 1, 2], [0, 2, 3]]),
+        material=material,
+        skin=0,
+        joints=np.zeros((4, 1), int),
+        weights=np.ones((4, 1)),
+    )
+
+
+def plain(*color: int) -> Material:
+    return Material("plain", np.array([[color]], np.uint8))
+
+
+def drawn(context: moderngl.Context, parts: list[Part], materials: list[Material]) -> Array:
+    painter = Painter(context, parts, materials, screen=(SIDE, SIDE))
+    return painter([part.positions for part in parts], AHEAD)
+
+
+def test_a_card_shows_its_picture_upright(context: moderngl.Context) -> None:
+    picture = np.zeros((2, 2, 4), np.uint8)
+    picture[0, 0], picture[1, 1], picture[..., 3] = (255, 0, 0, 255), (0, 255, 0, 255), 255
+    image = drawn(context, [card(depth=0)], [Material("", picture, "clamp", "clamp")])
+    np.testing.assert_allclose(image[0, 0], [1, 0, 0, 1], atol=EIGHT_BITS)  # its first row is at the top
+    np.testing.assert_allclose(image[-1, -1], [0, 1, 0, 1], atol=EIGHT_BITS)
+    np.testing.assert_allclose(image[0, -1], [0, 0, 0, 1], atol=EIGHT_BITS)
+
+
+def test_a_mirrored_texture_turns_round_at_its_end(context: moderngl.Context) -> None:
+    picture = np.zeros((1, 2, 4), np.uint8)
+    picture[0, 0], picture[..., 3] = (255, 0, 0, 255), 255
+    image = drawn(context, [card(depth=0, uv=2)], [Material("", picture, "mirror", "mirror")])
+    reds = image[SIDE // 2, [0, SIDE // 2, -1], 0]
+    np.testing.assert_allclose(reds, [1, 0, 1], atol=EIGHT_BITS)
+
+
+def test_the_nearer_card_hides_the_farther_whatever_comes_first(context: moderngl.Context) -> None:
+    materials = [plain(255, 0, 0, 255), plain(0, 255, 0, 255)]
+    for near in (0, 1):
+        parts = [card(depth=-0.5 if m == near else 0.5, material=m) for m in (0, 1)]
+        np.testing.assert_allclose(drawn(context, parts, materials)[4, 4, :2], np.eye(2)[near], atol=EIGHT_BITS)
+
+
+def test_what_is_half_transparent_lies_over_what_is_behind(context: moderngl.Context) -> None:
+    materials = [plain(255, 0, 0, 128), plain(0, 255, 0, 255)]
+    share = 128 / 255
+    before = drawn(context, [card(depth=-0.5), card(depth=0.5, material=1)], materials)
+    np.testing.assert_allclose(before[4, 4], [share, 1 - share, 0, 1], atol=2 * EIGHT_BITS)
+    behind = drawn(context, [card(depth=0.5), card(depth=-0.5, material=1)], materials)
+    np.testing.assert_allclose(behind[4, 4], [0, 1, 0, 1], atol=2 * EIGHT_BITS)
+
+
+def test_a_pixel_is_covered_by_the_share_of_its_samples(context: moderngl.Context) -> None:
+    image = drawn(
+        context, [card(depth=0, low=-1 / 27)], [plain(255, 255, 255, 255)]
+    )  # all but the first third of its pixel
+    np.testing.assert_allclose(image[3:6, 3:6, 3], np.outer([1, 2 / 3, 0], [0, 2 / 3, 1]), atol=EIGHT_BITS)
+
+
+def test_splats_are_drawn_as_by_the_reference(context: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(splat_painting, "SAMPLES", 1)
+    frame = sphere(400)
+    camera = orbit(frame_bounds(frame), screen=(61, 47), azimuth=0.3)
+    image = SplatPainter(context, camera.screen)(frame, camera)
+    apart = np.abs(image - render_premultiplied(frame, camera))
+    # Some 30 splats over each other, each with a few roundings of float32 in an exponent of up to 6.
+    assert np.quantile(apart, 0.99) < 30 * 24 * 2**-24
+    assert apart.max() < LEAST_OPACITY  # what a pixel gains or loses on the rim of a quad
+
+
+def column_file(tmp_path: Path, *, clip: bool = True) -> Path:
+    """The column of gltf_files, with a clip that bends and lifts it."""
+    glb = gltf_files.body()
+    if clip:
+        turn = [[0, 0, 0, 1], [0, 0, np.sin(0.3), np.cos(0.3)]]
+        time = glb.accessor(np.array([0.0, 1.0]))
+        samplers = [
+            {"input": time, "output": glb.accessor(np.array(turn))},
+            {"input": time, "output": glb.accessor(np.array([[0, 0, 0], [0.1, 0.2, 0.3]]))},
+        ]
+        targets = [{"node": 1, "path": "rotation"}, {"node": 0, "path": "translation"}]
+        channels = [{"sampler": s, "target": target} for s, target in enumerate(targets)]
+        glb.json["animations"] = [{"name": "bend", "samplers": samplers, "channels": channels}]
+    return glb.save(tmp_path / "column.glb")
+
+
+def column(tmp_path: Path) -> Character:
+    """The same, as a bake reads it."""
+    return read_character(column_file(tmp_path), atlas_size=128)
+
+
+def test_the_source_is_posed_alike_by_its_own_nodes_and_by_the_joints(tmp_path: Path) -> None:
+    character = column(tmp_path)
+    assert character.source is not None
+    (part,) = character.source.scene.parts
+    poser = Poser(character.source, character.skeleton)
+    clip = character.clips[0]
+    own = poser.of_clip(clip, len(clip) - 1).nodes
+    moved = poser.of_clip(replace(clip, name="another"), len(clip) - 1).nodes
+    assert np.abs(own - character.source.scene.rest).max() > 0.1
+    np.testing.assert_allclose(moved, own, atol=1e-6)  # float32 keys of the file
+    np.testing.assert_allclose(skinned(character.source.scene, part, poser.rest().nodes), part.positions, atol=1e-6)
+
+
+def test_splats_look_like_the_character_that_they_are_of(tmp_path: Path) -> None:
+    character = column(tmp_path)
+    likeness, warnings = likeness_of(character, character.clips, texels=TEXELS)
+    assert likeness is not None
+    assert len(likeness.poses) == 4
+    # Splats of 8 mm reach a few millimetres beyond the edges of a column 40 cm wide.
+    assert likeness.poses[0].agreement.iou > 0.96
+    assert likeness.iou > 0.93  # bent by dual quaternions here, by a linear blend there
+    assert likeness.psnr > 40
+    assert not any("colours" in sentence for sentence in warnings)
+    sheet = likeness_sheet(likeness)
+    assert sheet.width == 2 * 3 * SCREEN[0]
+
+
+def test_wrong_colours_are_measured_and_told(tmp_path: Path) -> None:
+    character = column(tmp_path)
+    dark = replace(character, base_color=character.base_color // np.array([2, 2, 2, 1], np.uint8))
+    likeness, warnings = likeness_of(dark, (), texels=TEXELS)
+    assert likeness is not None
+    assert likeness.psnr == pytest.approx(20 * np.log10(255 / 128), abs=0.1)  # white, drawn as 127
+    assert any("colours differ" in sentence for sentence in warnings)
+
+
+def test_a_missing_part_is_measured_and_the_joint_named(tmp_path: Path) -> None:
+    character = column(tmp_path)
+    top = character.mesh.vertices[character.mesh.faces][:, :, 1].min(axis=1) >= 1.0 - 1e-6
+    mesh = replace(character.mesh, faces=character.mesh.faces[~top], uv_faces=character.mesh.uv_faces[~top])
+    likeness, warnings = likeness_of(replace(character, mesh=mesh), (), texels=TEXELS)
+    assert likeness is not None
+    assert 0.55 < likeness.iou < 0.75  # a third is missing
+    found = likeness.poses[0].agreement
+    assert found.missing > 5 * found.beyond
+    assert likeness.worst.worst.joint == "head"
+    assert "head" in warnings[0]
+    assert told.as_dict(likeness)["iou"] == likeness.iou
+
+
+def test_a_character_without_a_file_is_not_compared() -> None:
+    assert likeness_of(tube(), (), texels=TEXELS) == (None, (WITHOUT_FILE,))
+
+
+def test_frames_are_spread_over_all_clips(tmp_path: Path) -> None:
+    clip = column(tmp_path).clips[0]
+    short = replace(clip, name="short", rotations=clip.rotations[:1], translations=clip.translations[:1])
+    chosen = spread([clip, short], 3)
+    assert [(c.name, frame) for c, frame in chosen] == [("bend", 5), ("bend", 16), ("bend", 26)]
+    assert spread([short], 3) == [(short, 0)]
+    assert spread([], 3) == []
+
+
+def picture(alpha: list[float], red: list[float]) -> Array:
+    """One row of pixels, premultiplied."""
+    image = np.zeros((1, len(alpha), 4))
+    image[0, :, 3], image[0, :, 0] = alpha, np.multiply(alpha, red)
+    return image
+
+
+def test_agreement_counts_half_covered_pixels_and_colours_where_both_are() -> None:
+    found = agreement(picture([1, 0.5, 1, 0.4], [0.5, 1, 0.2, 0]), picture([1, 1, 0.4, 0.6], [0.4, 1, 0.9, 0]))
+    assert (found.common, found.missing, found.beyond) == (2, 1, 1)
+    assert found.iou == 0.5
+    assert found.psnr == pytest.approx(10 * np.log10(3 * 2 / 0.01))
+
+
+def test_equal_and_empty_pictures_have_bounded_figures() -> None:
+    assert Agreement(4, 0, 0, 0.0).psnr == MOST_DECIBELS
+    assert Agreement(0, 0, 0, 0.0).iou == 1.0
+    assert Agreement(0, 3, 0, 0.0).psnr == 0.0
+
+
+def test_the_worst_place_is_where_differences_gather() -> None:
+    source, other = np.zeros((48, 48, 4)), np.zeros((48, 48, 4))
+    source[10:14, 30:34] = other[40, 3] = 1
+    assert worst_place(source, other)[:2] in {(c, r) for c in range(30, 34) for r in range(10, 14)}
