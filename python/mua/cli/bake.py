@@ -76,7 +76,8 @@ def main(
         from mua.cli.check import check_and_show
 
         looked_at = CheckOrder(output, settings.texels, seed, character, tuple(motion), joints, uv)
-        return check_and_show(looked_at, json)
+        check_and_show(looked_at, json)
+        return
 
     from mua.bake.pipeline import Order, bake  # seconds of loading: only once the options are known to be good
     from mua.bake.report import STAND_IN
