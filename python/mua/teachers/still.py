@@ -35,9 +35,10 @@ class StillTeacher:
         character = self._character
         joints = character.skeleton.skinning(pose.rotations, pose.translations)
         dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
-        turn, log_stretch = self._surface(rotation.dual_transform(dual, character.mesh.vertices))
+        moved = rotation.dual_transform(dual, character.mesh.vertices)
+        turn, strain = self._surface(moved)
         turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)
         turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
         displacement, coarse = self._still
-        texture = self._texels.texture(displacement, coarse, turn=turn, log_stretch=log_stretch, light=self._unlit)
+        texture = self._texels.texture(displacement, coarse, turn=turn, moved=moved, strain=strain, light=self._unlit)
         return TeacherFrame(pose=pose, mesh=self.rig.mesh.vertices.astype(np.float32), texture=texture)
