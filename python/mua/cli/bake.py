@@ -15,7 +15,8 @@ from mua.rig.detail import read_detail
 
 def main(
     character: Annotated[
-        Path | None, typer.Argument(help="Rigged character: .glb, .gltf, .usd* or .usdz; none: the procedural one.")
+        Path | None,
+        typer.Argument(help="Rigged character: .glb, .gltf, .vrm, .usd* or .usdz; none: the procedural one."),
     ] = None,
     motion: Annotated[
         list[Path], typer.Option(help="Motion file or directory, may be repeated; none: the character's own clips.")

@@ -6,8 +6,9 @@ from mua.errors import InputError
 from mua.motion.amass import read_amass
 from mua.motion.bvh import read_bvh
 from mua.motion.source import SourceMotion
+from mua.signature import refuse_foreign, require_kind
 
-RIG_SUFFIXES = (".glb", ".gltf", ".usd", ".usda", ".usdc", ".usdz")
+RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".usdz")
 SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
 
 
@@ -25,11 +26,14 @@ def read_motion(path: Path) -> list[SourceMotion]:
         raise InputError(f"{path}: does not exist, expected a motion file or a directory of them")
     suffix = path.suffix.lower()
     if suffix == ".bvh":
+        require_kind(path, "a BVH motion file", kinds=("a BVH motion file",))
         return [read_bvh(path)]
     if suffix == ".npz":
+        require_kind(path, "an AMASS archive", kinds=("a ZIP archive",))
         return [read_amass(path)]
     if suffix in RIG_SUFFIXES:
         return _read_rig_clips(path)
+    refuse_foreign(path)
     raise InputError(f"{path}: expected a suffix out of {', '.join(SUFFIXES)}, found {path.suffix!r}")
 
 

@@ -1,6 +1,7 @@
 """The skeleton and clips of a scene whether or not a mesh hangs on it, such as motion exported "without skin"."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from mua.motion.clip import Clip
 from mua.rig.bind_pose import bind_pose
 from mua.rig.correction import check_scales, corrected
 from mua.rig.joint_tree import is_hips
-from mua.rig.rigid_skeleton import rigid_skeleton
+from mua.rig.rigid_skeleton import rigid_skeleton, roles_of
 from mua.rig.scene import Part, Scene
 from mua.rig.skeleton import Skeleton
 
@@ -23,6 +24,7 @@ class Animation:
     skeleton: Skeleton
     clips: tuple[Clip, ...]
     notes: tuple[str, ...]
+    roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it
 
 
 def bare_animation(scene: Scene, path: Path) -> Animation:
@@ -39,7 +41,7 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     bind = bind_pose(scene)
     scene, told = corrected(scene, bind, points=bind.places[bind.mass > 0])
     rigged = rigid_skeleton(scene, bind_pose(scene))
-    return Animation(rigged.skeleton, rigged.clips, (*scene.notes, *told, *rigged.notes))
+    return Animation(rigged.skeleton, rigged.clips, (*scene.notes, *told, *rigged.notes), roles_of(scene, rigged))
 
 
 def _stand_in(scene: Scene, skin: int, carries: Array) -> Part:

@@ -1,6 +1,7 @@
 """From the pieces that a scene file holds to one surface on one rigid skeleton; shared by all readers."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,8 @@ from mua.motion.clip import Clip
 from mua.rig.bind_pose import Bind, bind_pose
 from mua.rig.character import MAX_INFLUENCES
 from mua.rig.correction import check_scales, corrected
-from mua.rig.rigid_skeleton import rigid_skeleton
-from mua.rig.scene import Material, Part, Scene, Source
+from mua.rig.rigid_skeleton import rigid_skeleton, roles_of
+from mua.rig.scene import Material, Part, Scene, Source, without
 from mua.rig.scene import Wrap as Wrap  # part of what Surfaces says to the atlas
 from mua.rig.skeleton import Skeleton
 
@@ -41,6 +42,8 @@ class Surfaces:
     clips: tuple[Clip, ...]
     notes: tuple[str, ...]
     source: Source | None = None  # what it was made of
+    corner_colors: Array | None = None  # [F, 3, 4] linear, multiplied into the materials; None where all are white
+    roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it
 
 
 @dataclass(frozen=True)
@@ -55,14 +58,17 @@ class _Mesh:
     uv: Array  # [T, 2]
     uv_faces: Array  # [F, 3] int
     face_material: Array  # [F] int32
+    colors: Array  # [F, 3, 4] linear
     notes: tuple[str, ...]
 
 
-def assemble(scene: Scene, path: Path) -> Surfaces:
+def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
     """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
 
-    Raises an InputError that names `path` where no skinned triangle is left.
+    `leave_out` names meshes, nodes or materials whose triangles are no part of the character.
+    Raises an InputError that names `path` where no skinned triangle is left, or where it holds no such name.
     """
+    scene = without(scene, leave_out, path)
     if not any(len(part.faces) for part in scene.parts):
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character")
     check_scales(scene, path)
@@ -96,6 +102,8 @@ def assemble(scene: Scene, path: Path) -> Surfaces:
         clips=rigged.clips,
         notes=(*scene.notes, *told, *mesh.notes, *rigged.notes),
         source=Source(scene, rigged.nodes),
+        corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
+        roles=roles_of(scene, rigged),
     )
 
 
@@ -156,6 +164,8 @@ def _merge(scene: Scene, bind: Bind) -> _Mesh:
         columns["uv"].append(part.uv)
         columns["uv_faces"].append(np.where(part.uv_faces < 0, -1, part.uv_faces + uv_count)[:, turn])
         columns["face_material"].append(np.full(len(part.faces), part.material, np.int32))
+        colors = np.ones((len(part.faces), 3, 4)) if part.colors is None else part.colors
+        columns["colors"].append(colors[:, turn])
         vertex_count += len(vertices)
         uv_count += len(part.uv)
     return _Mesh(**{name: np.concatenate(column) for name, column in columns.items()}, notes=tuple(notes))
@@ -215,6 +225,7 @@ def _weld(mesh: _Mesh) -> _Mesh:
         uv=uv,
         uv_faces=uv_faces,
         face_material=face_material,
+        colors=mesh.colors[kept],
         notes=(*mesh.notes, *told),
     )
 

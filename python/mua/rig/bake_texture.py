@@ -6,6 +6,7 @@ from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
 from mua.rig.charts import areas
+from mua.rig.pictures import multiplied
 from mua.rig.scene import Material, Wrap
 from mua.rig.texel_map import TexelMap
 
@@ -16,6 +17,7 @@ def bake_texture(
     face_material: Array,  # [F] into materials
     *,
     materials: tuple[Material, ...],
+    colors: Array | None = None,  # [F, 3, 4] linear colour and opacity of the corners, multiplied in
 ) -> Array:
     """Sample every texel of the atlas where its point lay in its material's picture: [S, S, 4] uint8 sRGB.
 
@@ -32,6 +34,9 @@ def bake_texture(
                 points[rows],
                 wraps=(material.wrap_u, material.wrap_v),
             )
+    if colors is not None:
+        factors = np.einsum("nk,nkc->nc", texels.barycentrics, colors[texels.triangles])
+        picture[texels.texels] = multiplied(picture[texels.texels], factors)
     empty = np.ones((texels.size, texels.size), bool)
     empty.flat[texels.texels] = False
     return _fill_from_nearest(picture.reshape(texels.size, texels.size, 4), empty)

@@ -95,11 +95,13 @@ def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents
     """Joint-to-bind-world matrices [J, 4, 4] and which [J] of them are the file's own.
 
     Inverse binds of joints without weights are often left at the identity: such a joint takes the file's only where
-    it agrees with the place that the rest pose gives it beside its neighbours.
+    it agrees with the place that the rest pose gives it beside its neighbours. A joint that only carries rigid meshes
+    stands beside its neighbours as in the rest pose, which is where the file puts those meshes.
     """
+    carries = _rigid_holders(scene, index)
     bound, proposed = _file_binds(scene, index)
     size = np.ptp([matrix[:3, 3] for matrix in bound.values()], axis=0).max() if bound else 0.0
-    trusted = np.array([j in bound for j in range(len(nodes))])
+    trusted = np.array([j in bound or j in carries for j in range(len(nodes))])
     towards = _by_descendants(bound, parents)
     for j in [*sorted(towards, reverse=True), *range(len(nodes))]:  # first up from the bound joints, then down
         if j in bound:
@@ -116,19 +118,42 @@ def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents
     return np.stack([bound[j] for j in range(len(nodes))]), trusted
 
 
+def _rigid_holders(scene: Scene, index: dict[int, int]) -> set[int]:
+    """The joints that meshes without weights hang on."""
+    return {index[int(scene.skins[part.skin].joints[0])] for part in scene.parts if scene.skins[part.skin].rigid}
+
+
 def _file_binds(scene: Scene, index: dict[int, int]) -> tuple[dict[int, Array], dict[int, Array]]:
-    """Joint-to-bind-world matrices by the file's inverse binds: of joints with weights, and of those without."""
+    """Joint-to-bind-world matrices by the file's inverse binds: of joints with weights, and of those without.
+
+    Where skins that are bound apart from the rest pose do not say how they stand to one another, or are the smaller
+    part of the character, the rest pose serves as bind pose: in it the file itself puts all together.
+    """
     bound: dict[int, Array] = {}
     proposed: dict[int, Array] = {}
-    masses = {s: scene.masses(s) for s, skin in enumerate(scene.skins) if not skin.rigid}
-    for s in sorted(masses, key=lambda s: -masses[s].sum()):
+    masses = {s: scene.masses(s) for s in range(len(scene.skins))}
+    skinned = [s for s in sorted(masses, key=lambda s: -masses[s].sum()) if not scene.skins[s].rigid]
+    guessed = 2 * sum(masses[s].sum() for s in skinned) < sum(mass.sum() for mass in masses.values())
+    for s in skinned:
         skin, mass = scene.skins[s], masses[s]
         if not mass.any():
             continue
-        space = _bind_space(scene, skin, mass=mass, bound=bound, index=index)
+        space = _shared_space(skin, mass=mass, bound=bound, index=index)
+        if space is None:
+            space = _rest_space(scene, skin, mass=mass)
+            beside = np.eye(4) if space is None or not bound else _moved_with(scene, skin, mass, bound, index)
+            if (space is None and (bound or guessed)) or beside is None:
+                return _rest_binds(scene, index)
+            space = _upright_space(scene, skin, mass=mass, kept=index) if space is None else beside @ space
         for node, matrix, joint_mass in zip(skin.joints, space @ np.linalg.inv(skin.inverse_binds), mass, strict=True):
             (bound if joint_mass > 0 else proposed).setdefault(index[int(node)], matrix)
     return bound, proposed
+
+
+def _rest_binds(scene: Scene, index: dict[int, int]) -> tuple[dict[int, Array], dict[int, Array]]:
+    """Joints with weights bound where they stand at rest; those without have nothing to propose."""
+    used = {int(node) for s, skin in enumerate(scene.skins) for node in skin.joints[scene.masses(s) > 0]}
+    return {index[node]: scene.rest[node] for node in sorted(used)}, {}
 
 
 def _by_descendants(bound: dict[int, Array], parents: Array) -> dict[int, int]:
@@ -142,37 +167,56 @@ def _by_descendants(bound: dict[int, Array], parents: Array) -> dict[int, int]:
     return towards
 
 
-def _bind_space(
-    scene: Scene,
+def _shared_space(
     skin: Skin,
     *,
     mass: Array,  # [n]
     bound: dict[int, Array],
     index: dict[int, int],
-) -> Array:
-    """The matrix [4, 4] that takes the mesh's own space of a skin to the bind-pose world."""
+) -> Array | None:
+    """The matrix [4, 4] from a skin's mesh space to the bind-pose world, by a joint that is bound already."""
     shared = [k for k, node in enumerate(skin.joints) if mass[k] > 0 and index[int(node)] in bound]
-    if shared:
-        k = max(shared, key=lambda k: mass[k])
-        return bound[index[int(skin.joints[k])]] @ skin.inverse_binds[k]
-    used = np.flatnonzero(mass)
-    spaces, mass = scene.rest[skin.joints[used]] @ skin.inverse_binds[used], mass[used]
+    if not shared:
+        return None
+    k = max(shared, key=lambda k: mass[k])
+    return bound[index[int(skin.joints[k])]] @ skin.inverse_binds[k]
+
+
+def _rest_space(
+    scene: Scene,
+    skin: Skin,
+    *,
+    mass: Array,  # [n]
+) -> Array | None:
+    """The same matrix [4, 4] where the mesh is bound in the rest pose, as more than half of its weight agrees."""
+    spaces, used = _spaces(scene, skin, mass)
+    mass = mass[used]
     scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)
     size = np.ptp(scene.rest[skin.joints[used], :3, 3], axis=0).max() + 1e-9
     turned = np.abs(spaces[:, None, :3, :3] - spaces[None, :, :3, :3]).max(axis=(-1, -2)) / scale[:, None]
     moved = np.abs(spaces[:, None, :3, 3] - spaces[None, :, :3, 3]).max(axis=-1) / size
     agreeing = ((turned < AGREEMENT) & (moved < AGREEMENT)) @ mass
-    if agreeing.max() > 0.5 * mass.sum():
-        return spaces[int(np.argmax(agreeing))]
-    return _upright_space(scene, skin.joints[used[0]], spaces=spaces, scale=scale, mass=mass, kept=index)
+    return spaces[int(np.argmax(agreeing))] if agreeing.max() > 0.5 * mass.sum() else None
+
+
+def _moved_with(scene: Scene, skin: Skin, mass: Array, bound: dict[int, Array], index: dict[int, int]) -> Array | None:
+    """How far [4, 4] the nearest bound joint above a skin stands from its rest pose; None where none is bound above."""
+    node = int(skin.joints[int(np.argmax(mass))])
+    while node >= 0 and index.get(node) not in bound:
+        node = int(scene.parents[node])
+    return bound[index[node]] @ np.linalg.inv(scene.rest[node]) if node >= 0 else None
+
+
+def _spaces(scene: Scene, skin: Skin, mass: Array) -> tuple[Array, Array]:
+    """Where each joint with weights would put the mesh at rest [n, 4, 4], and which [n] of the skin's joints it is."""
+    used = np.flatnonzero(mass)
+    return scene.rest[skin.joints[used]] @ skin.inverse_binds[used], used
 
 
 def _upright_space(
     scene: Scene,
-    joint: int,
+    skin: Skin,
     *,
-    spaces: Array,  # [n, 4, 4]
-    scale: Array,  # [n]
     mass: Array,  # [n]
     kept: dict[int, int],
 ) -> Array:
@@ -180,14 +224,16 @@ def _upright_space(
 
     Modelling tools bind in the skeleton's frame up to a change of axes and units; the joints' mean tells which.
     """
-    top = ancestor = int(joint)
+    spaces, used = _spaces(scene, skin, mass)
+    scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)
+    top = ancestor = int(skin.joints[used[0]])
     while ancestor >= 0:
         top = ancestor if ancestor in kept else top
         ancestor = int(scene.parents[ancestor])
     frame = int(scene.parents[top])
     frame_matrix = scene.rest[frame] if frame >= 0 else np.eye(4)
     frame_rotation = rotations_of(frame_matrix)
-    mean = np.tensordot(mass / scale, spaces[:, :3, :3], axes=1)
+    mean = np.tensordot(mass[used] / scale, spaces[:, :3, :3], axes=1)
     quarters = [
         np.diag(signs) @ np.eye(3)[list(order)]
         for order in itertools.permutations(range(3))

@@ -1,5 +1,6 @@
 """A rigged, textured character as every reader hands it on: one skeleton, one mesh, one atlas."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mua.arrays import Array
@@ -37,3 +38,4 @@ class Character:
     looseness: Array | None = None  # [V] 0 (skin) .. 1 (hanging cloth); None: the simulation estimates it
     notes: tuple[str, ...] = field(default=())  # decisions of the reader worth telling the user, a sentence each
     source: Source | None = None  # what the file held, to compare with; None: there is no file, or nothing to compare
+    roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it

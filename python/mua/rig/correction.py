@@ -57,7 +57,36 @@ def corrected(
 
 
 def _quarter_turn(scene: Scene, bind: Bind) -> int:
-    """Quarter turns about +Y that make the character face +Z, by the sides that its joint names tell."""
+    """Quarter turns about +Y that make the character face +Z, by the sides that its joints have.
+
+    What the file itself says of them goes before their names.
+    """
+    across = _across_by_roles(scene, bind)
+    if not across.any():
+        across = _across_by_names(scene, bind)
+    front = np.array([-across[2], across[0]])  # x and z of left cross up
+    length = np.linalg.norm(front)
+    if length < 1e-6 or front[1] / length >= FACING:
+        return 0
+    return int(np.round(-np.arctan2(front[0], front[1]) / (np.pi / 2))) % 4
+
+
+def _across_by_roles(scene: Scene, bind: Bind) -> Array:
+    """The summed way [3] from right joints to left ones, by the roles that the file gives them."""
+    places: dict[str, Array] = {}
+    for place, node in zip(bind.places, bind.nodes, strict=True):
+        if int(node) in scene.roles:
+            places.setdefault(scene.roles[int(node)], place)
+    across = np.zeros(3)
+    for role, place in places.items():
+        side, _, part = role.partition(" ")
+        if side == "left" and f"right {part}" in places:
+            across += place - places[f"right {part}"]
+    return across
+
+
+def _across_by_names(scene: Scene, bind: Bind) -> Array:
+    """The summed way [3] from right joints to left ones, by the joints' names."""
     names = [re.sub(r"_\d+$", "", scene.node_names[node].lower()) for node in bind.nodes]  # some tools number them
     index = {name: j for j, name in enumerate(names)}
     across = np.zeros(3)
@@ -66,8 +95,4 @@ def _quarter_turn(scene: Scene, bind: Bind) -> int:
             other = index.get(re.sub(left, right, name))
             if other is not None and other != j:
                 across += bind.places[j] - bind.places[other]
-    front = np.array([-across[2], across[0]])  # x and z of left cross up
-    length = np.linalg.norm(front)
-    if length < 1e-6 or front[1] / length >= FACING:
-        return 0
-    return int(np.round(-np.arctan2(front[0], front[1]) / (np.pi / 2))) % 4
+    return across

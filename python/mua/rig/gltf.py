@@ -1,39 +1,35 @@
-"""Characters from .glb and .gltf files."""
+"""Characters from .glb, .gltf and .vrm files."""
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from mua.arrays import Array
 from mua.rig.animation import Animation, bare_animation
 from mua.rig.assemble import Surfaces, assemble
-from mua.rig.gltf_animation import chain, compose, moved_nodes, read_animations
+from mua.rig.findings import Findings
+from mua.rig.gltf_animation import chain, moved_nodes, read_animations
 from mua.rig.gltf_document import Document, load
+from mua.rig.gltf_holders import Holders
 from mua.rig.gltf_materials import read_materials
 from mua.rig.gltf_mesh import read_parts
+from mua.rig.gltf_nodes import Tree, below, local_matrix, node_name, read_tree
+from mua.rig.gltf_vrm import Vrm, read_vrm
 from mua.rig.scene import Part, Scene, Skin
 
 
-@dataclass(frozen=True)
-class _Tree:
-    """The node hierarchy of a file."""
+def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+    """Read all skinned meshes of a .glb, .gltf or .vrm, with what hangs rigidly on their joints, and its clips.
 
-    parents: dict[int, int]  # child to parent
-    order: list[int]  # nodes of the whole file, parents first
-    shown: set[int]  # nodes of the scene that the file shows
-    world: Array  # [nodes, 4, 4] by glTF index
-
-
-def read_gltf(path: Path) -> Surfaces:
-    """Read all skinned meshes of a .glb or .gltf, with what hangs rigidly on their joints, and its clips.
-
+    Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node. `leave_out` names meshes,
+    nodes or materials that are not part of the character.
     Raises an InputError that names the field where the file is broken, needs an extension that is not read, or
-    holds no skinned mesh.
+    holds no mesh on a skeleton.
     """
     document = load(path)
-    return assemble(_meshes(document, _tree(document)), path)
+    return assemble(_meshes(document, read_tree(document)), path, leave_out=leave_out)
 
 
 def read_gltf_animation(path: Path) -> Animation:
@@ -42,43 +38,59 @@ def read_gltf_animation(path: Path) -> Animation:
     Raises an InputError where `read_gltf` does, except that a mesh may be missing where there are joints.
     """
     document = load(path)
-    tree = _tree(document)
+    tree = read_tree(document)
     scene = _meshes(document, tree)
     if any(len(part.faces) for part in scene.parts):
         rig = assemble(scene, path)
-        return Animation(rig.skeleton, rig.clips, ())
-    return bare_animation(_scene(document, tree, _bare_skins(document, tree)), path)
+        return Animation(rig.skeleton, rig.clips, (), rig.roles)
+    return bare_animation(_scene(document, tree, _bare_skins(document, tree), vrm=read_vrm(document)), path)
 
 
-def _meshes(document: Document, tree: _Tree) -> Scene:
-    materials, coordinates = read_materials(document)
+def _meshes(document: Document, tree: Tree) -> Scene:
+    """All that the file shows and that hangs on a joint, and a sentence on what is left out."""
+    vrm = read_vrm(document)
+    findings = Findings()
+    materials, coordinates = read_materials(document, findings)
     skins = _skins(document)
-    joints = {int(node) for skin in skins for node in skin.joints}
+    holders = Holders(document, tree, [*vrm.bones.values(), *(int(node) for skin in skins for node in skin.joints)])
     parts: list[Part] = []
-    notes: list[str] = []
-    for node in tree.order:
-        if node not in tree.shown or document.gltf.nodes[node].mesh is None:
-            continue
+    for node in _drawn(document, tree, vrm, findings):
         skin = document.gltf.nodes[node].skin
         if skin is None:
-            holder = _nearest(node, tree.parents, joints)
+            holder = holders.of(node)
             if holder is None:
-                notes.append(f"Mesh {_node_name(document, node)} hangs on no joint and is left out.")
+                findings.add("Meshes that hang on no joint are left out: {}.", node_name(document, node))
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             skin = len(skins) - 1
+            findings.add("Meshes that hang rigidly on a joint: {}.", node_name(document, node))
         else:
             document.item("skins", skin, field=f"nodes[{node}].skin")
-        parts += read_parts(
-            document, node, skin=skin, bones=len(skins[skin].joints), coordinates=coordinates, notes=notes
-        )
+        count = len(skins[skin].joints)
+        parts += read_parts(document, node, skin=skin, bones=count, coordinates=coordinates, findings=findings)
     used = sorted({part.skin for part in parts})
     parts = [replace(part, skin=used.index(part.skin)) for part in parts]
-    scene = _scene(document, tree, [skins[s] for s in used])
-    return replace(scene, parts=tuple(parts), materials=materials, notes=(*notes, *scene.notes))
+    bones = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them
+    kept = [skins[s] for s in used] + ([replace(bones, rigid=True)] if parts and vrm.bones else [])
+    scene = _scene(document, tree, kept, vrm=vrm)
+    return replace(scene, parts=tuple(parts), materials=materials, notes=(*vrm.notes, *findings.notes(), *scene.notes))
 
 
-def _bare_skins(document: Document, tree: _Tree) -> list[Skin]:
+def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list[int]:
+    """The nodes with a mesh that a viewer shows, parents first."""
+    drawn = []
+    for node in tree.order:
+        mesh = document.gltf.nodes[node].mesh
+        if node not in tree.shown or mesh is None:
+            continue
+        if node in tree.hidden or node in vrm.hidden_nodes or mesh in vrm.hidden_meshes:
+            findings.add("Meshes that the file hides are left out: {}.", node_name(document, node))
+            continue
+        drawn.append(node)
+    return drawn
+
+
+def _bare_skins(document: Document, tree: Tree) -> list[Skin]:
     """The file's skins, bound in the rest pose where they do not say how; without any, the tree that clips move most.
 
     Nodes that the rest pose scales to nothing are no joints.
@@ -90,39 +102,31 @@ def _bare_skins(document: Document, tree: _Tree) -> list[Skin]:
     ]
     if any(len(skin.joints) for skin in found):
         return [skin for skin in found if len(skin.joints)]
-    moved = Counter(_top(node, tree.parents) for node in moved_nodes(document))
+    moved = Counter([*tree.upwards(node)][-1] for node in moved_nodes(document))
     if not moved:
         return []
-    return [_at_rest(tree, _below(document, [max(moved, key=lambda top: moved[top])]))]
+    return [_at_rest(tree, below(document, [max(moved, key=lambda top: moved[top])]))]
 
 
-def _at_rest(tree: _Tree, nodes: list[int]) -> Skin:
+def _at_rest(tree: Tree, nodes: list[int]) -> Skin:
     solid = [node for node in nodes if abs(np.linalg.det(tree.world[node][:3, :3])) >= np.finfo(np.float32).tiny]
     return Skin(np.array(solid, int), np.linalg.inv(tree.world[solid]))
 
 
-def _top(node: int, parents: dict[int, int]) -> int:
-    while node in parents:
-        node = parents[node]
-    return node
-
-
-def _scene(document: Document, tree: _Tree, skins: list[Skin]) -> Scene:
+def _scene(document: Document, tree: Tree, skins: list[Skin], *, vrm: Vrm) -> Scene:
     """Keep the nodes that joints and their ancestors are, renumbered parents first, and sample the clips on them."""
     followed: set[int] = set()
     for skin in skins:
         for node in skin.joints:
-            while node is not None and int(node) not in followed:
-                followed.add(int(node))
-                node = tree.parents.get(int(node))
+            followed.update(tree.upwards(int(node)))
     nodes = [node for node in tree.order if node in followed]
     index = {node: n for n, node in enumerate(nodes)}
     parents = np.array([index[tree.parents[node]] if node in tree.parents else -1 for node in nodes], np.int32)
-    rest = np.array([_local(document, node) for node in nodes]).reshape(-1, 4, 4)
+    rest = np.array([local_matrix(document, node) for node in nodes]).reshape(-1, 4, 4)
     motions, left_out = read_animations(document, nodes, parents=parents, rest=rest)
     return Scene(
         name=document.path.stem,
-        node_names=tuple(_node_name(document, node) for node in nodes),
+        node_names=tuple(node_name(document, node) for node in nodes),
         parents=parents,
         rest=chain(rest, parents),
         skins=tuple(replace(skin, joints=np.array([index[int(node)] for node in skin.joints])) for skin in skins),
@@ -130,73 +134,8 @@ def _scene(document: Document, tree: _Tree, skins: list[Skin]) -> Scene:
         materials=(),
         motions=motions,
         notes=left_out,
+        roles={index[node]: role for node, role in vrm.roles.items() if node in index},
     )
-
-
-def _tree(document: Document) -> _Tree:
-    nodes = document.gltf.nodes or []
-    parents: dict[int, int] = {}
-    for n, node in enumerate(nodes):
-        for child in node.children or []:
-            document.item("nodes", child, field=f"nodes[{n}].children")
-            if child in parents:
-                raise document.error(f"nodes[{child}] is a child of both nodes[{parents[child]}] and nodes[{n}]")
-            parents[child] = n
-    order = _below(document, [n for n in range(len(nodes)) if n not in parents])
-    if len(order) < len(nodes):
-        raise document.error(f"nodes[{min(set(range(len(nodes))) - set(order))}] is its own ancestor")
-    scenes = document.gltf.scenes or []
-    shown = order
-    if scenes:
-        scene = document.item("scenes", document.gltf.scene or 0, field="scene")
-        for root in scene.nodes or []:
-            document.item("nodes", root, field="scenes.nodes")
-        shown = _below(document, list(scene.nodes or []))
-    world = np.zeros((len(nodes), 4, 4))
-    for n in order:
-        local = _local(document, n)
-        world[n] = world[parents[n]] @ local if n in parents else local
-    return _Tree(parents, order, set(shown), world)
-
-
-def _below(document: Document, roots: list[int]) -> list[int]:
-    """The nodes and all below them, parents first."""
-    order = []
-    waiting = roots[::-1]
-    while waiting:
-        node = waiting.pop()
-        order.append(node)
-        waiting += (document.gltf.nodes[node].children or [])[::-1]
-    return order
-
-
-def _local(document: Document, node: int) -> Array:
-    source = document.gltf.nodes[node]
-    fields = {"matrix": 16, "translation": 3, "rotation": 4, "scale": 3}
-    for name, count in fields.items():
-        value = getattr(source, name)
-        if value and (len(value) != count or not all(isinstance(v, int | float) and np.isfinite(v) for v in value)):
-            raise document.error(f"nodes[{node}].{name} is {value}, expected {count} finite numbers")
-    if source.matrix:
-        return np.array(source.matrix, float).reshape(4, 4).T
-    quaternion = np.array(source.rotation or [0, 0, 0, 1], float)
-    length = np.linalg.norm(quaternion)
-    if length == 0:
-        raise document.error(f"nodes[{node}].rotation is {source.rotation}, expected a unit quaternion")
-    translation = np.array(source.translation or [0, 0, 0], float)
-    return compose(translation, quaternion / length, np.array(source.scale or [1, 1, 1], float))
-
-
-def _node_name(document: Document, node: int) -> str:
-    return document.gltf.nodes[node].name or f"node{node}"
-
-
-def _nearest(node: int, parents: dict[int, int], joints: set[int]) -> int | None:
-    """The node itself or its nearest ancestor that is a joint."""
-    above: int | None = node
-    while above is not None and above not in joints:
-        above = parents.get(above)
-    return above
 
 
 def _skins(document: Document) -> list[Skin]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.rig.findings import Findings
 from mua.rig.gltf_document import Document
 from mua.rig.scene import Motion
 
@@ -53,22 +54,36 @@ def read_animations(
 ) -> tuple[tuple[Motion, ...], tuple[str, ...]]:
     """All clips of a file that move one of `nodes`, and a sentence for each that is left out."""
     index = {node: n for n, node in enumerate(nodes)}
-    motions, notes = [], []
+    motions, findings = [], Findings()
     for a, animation in enumerate(document.gltf.animations or []):
         name = animation.name or f"animation{a}"
         tracks = _tracks(document, animation, f"animations[{a}]", index=index)
+        if _morphs(document, animation, f"animations[{a}]"):
+            findings.add("The morph targets (a face, say) that move in these clips are not carried: {}.", name)
         if not tracks:
-            notes.append(f"Clip {name} moves no joint and is left out.")
+            findings.add("Clips that move no joint are left out: {}.", name)
             continue
         start = min(times[0] for _, _, times, _, _ in tracks)
         end = max(times[-1] for _, _, times, _, _ in tracks)
         if end - start < 0.5 / RATE:
-            notes.append(f"Clip {name} has no length and is left out.")
+            findings.add("Clips without length, single poses, are left out: {}.", name)
             continue
         frames = start + np.arange(int(np.floor((end - start) * RATE + 1e-3)) + 1) / RATE
         local = _local(document, tracks, frames, nodes=nodes, rest=rest)
         motions.append(Motion(name, RATE, chain(local, parents)))
-    return tuple(motions), tuple(notes)
+    return tuple(motions), findings.notes()
+
+
+def _morphs(document: Document, animation: Any, where: str) -> bool:
+    """Whether a clip changes the weights of morph targets."""
+    samplers = animation.samplers or []
+    for channel in animation.channels or []:
+        known = isinstance(channel.sampler, int) and 0 <= channel.sampler < len(samplers)
+        if known and channel.target is not None and channel.target.path == "weights":
+            field = f"{where}.samplers[{channel.sampler}].output"
+            if np.ptp(document.accessor(samplers[channel.sampler].output, field=field, types=("SCALAR",))) > 0:
+                return True
+    return False
 
 
 def _tracks(document: Document, animation: Any, where: str, *, index: dict[int, int]) -> list[tuple]:

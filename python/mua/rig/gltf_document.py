@@ -26,18 +26,26 @@ READ_EXTENSIONS = {
     "EXT_texture_webp",
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
+    "KHR_node_visibility",
+    "VRM",
 }
 # Extensions that change nothing which a base-colour texture or a skeleton could show.
-HARMLESS_EXTENSIONS = ("KHR_materials_", "KHR_lights_", "KHR_xmp", "EXT_lights_")
+HARMLESS_EXTENSIONS = ("KHR_materials_", "KHR_lights_", "KHR_xmp", "EXT_lights_", "VRMC_", "KHR_animation_pointer")
+ADVICE = {
+    "KHR_texture_basisu": "its pictures are KTX2; export it with PNG or JPEG pictures",
+    "EXT_texture_avif": "its pictures are AVIF; export it with PNG or JPEG pictures",
+    "EXT_mesh_gpu_instancing": "export it with its instances as nodes of their own",
+}
 MESHOPT = "EXT_meshopt_compression"
 
 
 class Document:
     """The parsed JSON of one file and the bytes that it points to; decoded views are kept."""
 
-    def __init__(self, path: Path, gltf: pygltflib.GLTF2, blob: bytes | None) -> None:
+    def __init__(self, path: Path, gltf: pygltflib.GLTF2, blob: bytes | None, raw: dict[str, Any]) -> None:
         self.path = path
         self.gltf = gltf
+        self.raw = raw  # the JSON itself, for fields that pygltflib does not know
         self._blob = blob
         self._buffers: dict[int, bytes] = {}
         self._views: dict[int, bytes] = {}
@@ -185,8 +193,9 @@ def load(path: Path) -> Document:
         raise InputError(f"{path}: the glTF JSON has a field of the wrong kind: {broken}") from broken
     for name in gltf.extensionsRequired or []:
         if name not in READ_EXTENSIONS and not name.startswith(HARMLESS_EXTENSIONS):
-            raise InputError(f"{path}: extensionsRequired names {name}, which is not supported")
-    return Document(path, gltf, blob)
+            advice = f"; {ADVICE[name]}" if name in ADVICE else ""
+            raise InputError(f"{path}: extensionsRequired names {name}, which is not supported{advice}")
+    return Document(path, gltf, blob, raw)
 
 
 def _check_structure(path: Path, raw: Any) -> None:

@@ -5,13 +5,16 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
+from mua.rig.findings import Findings
 from mua.rig.gltf_compression import decode_draco
 from mua.rig.gltf_document import Document
 from mua.rig.gltf_materials import Coordinates
+from mua.rig.gltf_nodes import node_name
 from mua.rig.scene import Part
 
 DRACO = "KHR_draco_mesh_compression"
 TRIANGLES, STRIP, FAN = 4, 5, 6
+TYPES = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",), "COLOR": ("VEC3", "VEC4")}
 
 
 def read_parts(
@@ -21,21 +24,20 @@ def read_parts(
     skin: int,
     bones: int,
     coordinates: tuple[Coordinates, ...],
-    notes: list[str],
+    findings: Findings,
 ) -> list[Part]:
-    """The primitives of a node's mesh, on a skin of `bones` joints; sentences on what is left out go to `notes`."""
+    """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `findings`."""
     source = document.gltf.nodes[node]
     mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
     name = mesh.name or f"mesh{source.mesh}"
+    morphs = document.raw["nodes"][node].get("weights") or mesh.weights or []  # pygltflib drops those of nodes
     parts = []
     for p, primitive in enumerate(mesh.primitives or []):
         where = f"meshes[{source.mesh}].primitives[{p}]"
         mode = TRIANGLES if primitive.mode is None else primitive.mode
         if mode not in (TRIANGLES, STRIP, FAN):
-            notes.append(f"Mesh {name} holds points or lines, which are left out.")
+            findings.add("Points and lines are left out, of: {}.", name)
             continue
-        if primitive.targets:
-            notes.append(f"The morph targets of mesh {name} are left out.")
         material = len(coordinates) - 1 if primitive.material is None else primitive.material
         if not 0 <= material < len(coordinates):
             raise document.error(f"{where}.material is {material}, but materials holds {len(coordinates) - 1} entries")
@@ -44,13 +46,17 @@ def read_parts(
         rigid = source.skin is None
         joints, weights = _influences(document, geometry, where, bones=bones, rigid=rigid)
         uv = geometry.get(f"TEXCOORD_{coordinates[material].texcoord}")
-        if uv is None:
-            notes.append(f"Mesh {name} has no texture coordinates.")
+        if uv is None and coordinates[material].needed:
+            findings.add("Meshes without the texture coordinates that their material asks for: {}.", name)
+        positions = geometry["POSITION"].astype(float)
+        if primitive.targets:
+            findings.add("Morph targets are not carried beyond their weights at rest, of: {}.", name)
+            positions += _morphed(document, primitive.targets, morphs, where, count=len(positions))
         parts.append(
             Part(
                 name=name,
                 group=node,
-                positions=geometry["POSITION"].astype(float),
+                positions=positions,
                 faces=faces,
                 uv=np.zeros((0, 2)) if uv is None else coordinates[material].apply(uv.astype(float)),
                 uv_faces=np.full_like(faces, -1) if uv is None else faces,
@@ -58,9 +64,40 @@ def read_parts(
                 skin=skin,
                 joints=joints,
                 weights=weights,
+                node=node_name(document, node),
+                colors=_colors(geometry, faces, coordinates[material]),
             )
         )
     return parts
+
+
+def _morphed(document: Document, targets: Any, weights: Any, where: str, *, count: int) -> Array:
+    """How far [V, 3] the targets move the vertices at these weights, of which missing ones are 0."""
+    if not isinstance(weights, list) or not all(isinstance(w, int | float) and np.isfinite(w) for w in weights):
+        raise document.error(f"{where} is morphed by the weights {weights}, expected finite numbers")
+    moved = np.zeros((count, 3))
+    for t, (target, weight) in enumerate(zip(targets, weights, strict=False)):
+        index = target.get("POSITION") if isinstance(target, dict) else target.POSITION
+        if weight and index is not None:
+            field = f"{where}.targets[{t}].POSITION"
+            offsets = document.accessor(index, field=field, types=("VEC3",))
+            if len(offsets) != count:
+                raise document.error(f"{field} holds {len(offsets)} elements for {count} vertices")
+            moved += weight * offsets
+    return moved
+
+
+def _colors(geometry: dict[str, Array], faces: Array, reads: Coordinates) -> Array | None:
+    """Linear colours and opacity [F, 3, 4] of the triangles' corners; None where there are none but white."""
+    colors = geometry.get("COLOR_0")
+    if colors is None or not reads.vertex_colors:
+        return None
+    if colors.dtype.kind in "iu":  # stored without the flag that says so, which the format asks for
+        colors = colors / np.iinfo(colors.dtype).max
+    rgba = np.ones((len(colors), 4))
+    channels = 3 if reads.opaque else colors.shape[1]
+    rgba[:, :channels] = np.clip(colors[:, :channels], 0, 1)
+    return None if (rgba == 1).all() else rgba[faces]
 
 
 def _geometry(document: Document, primitive: Any, where: str) -> dict[str, Array]:
@@ -68,7 +105,8 @@ def _geometry(document: Document, primitive: Any, where: str) -> dict[str, Array
     wanted = {
         name: accessor
         for name, accessor in vars(primitive.attributes).items()
-        if accessor is not None and name.split("_")[0] in ("POSITION", "TEXCOORD", "JOINTS", "WEIGHTS")
+        if accessor is not None
+        and (name.split("_")[0] in ("POSITION", "TEXCOORD", "JOINTS", "WEIGHTS") or name == "COLOR_0")
     }
     if "POSITION" not in wanted:
         raise document.error(f"{where}.attributes has no POSITION")
@@ -77,7 +115,7 @@ def _geometry(document: Document, primitive: Any, where: str) -> dict[str, Array
     geometry = dict(packed)
     for name, accessor in wanted.items():
         if name not in packed:
-            types = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",)}.get(name.split("_")[0], ("VEC4",))
+            types = TYPES.get(name.split("_")[0], ("VEC4",))
             geometry[name] = document.accessor(accessor, field=f"{where}.attributes.{name}", types=types)
     count = len(geometry["POSITION"])
     for name in wanted:

@@ -7,6 +7,9 @@ from PIL import Image
 
 from mua.arrays import Array
 
+STORED = np.arange(256) / 255
+LINEAR = np.where(STORED <= 0.04045, STORED / 12.92, ((STORED + 0.055) / 1.055) ** 2.4)  # of the sRGB bytes 0 to 255
+
 
 def decode_image(content: bytes) -> Array:
     """Decode a PNG, JPEG or WebP to [h, w, 4] uint8; raises ValueError where Pillow cannot."""
@@ -26,13 +29,35 @@ def tinted(image: Array, factor: Array) -> Array:
     """Multiply an sRGB picture [h, w, 4] uint8 by a linear colour factor [4] in 0..1."""
     if (np.asarray(factor) == 1).all():
         return image
-    stored = np.arange(256) / 255
-    linear = np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
     result = np.empty_like(image)
     for channel in range(3):
-        result[..., channel] = _encoded(linear * factor[channel])[image[..., channel]]
-    result[..., 3] = np.round(255 * np.clip(stored * factor[3], 0, 1)).astype(np.uint8)[image[..., 3]]
+        result[..., channel] = _encoded(LINEAR * factor[channel])[image[..., channel]]
+    result[..., 3] = np.round(255 * np.clip(STORED * factor[3], 0, 1)).astype(np.uint8)[image[..., 3]]
     return result
+
+
+def multiplied(colors: Array, factors: Array) -> Array:
+    """Multiply sRGB colours [n, 4] uint8 by a linear factor [n, 4] each."""
+    encoded = _encoded(LINEAR[colors[:, :3]] * factors[:, :3])
+    opacity = np.round(255 * np.clip(STORED[colors[:, 3]] * factors[:, 3], 0, 1)).astype(np.uint8)
+    return np.column_stack([encoded, opacity])
+
+
+def glowing(image: Array, glow: Array) -> Array:
+    """A picture [h, w, 4] uint8 that sends out the light of another, [h', w', 4] uint8 sRGB; both may be 1 x 1.
+
+    The brighter of both is taken in each channel: exporters often give the same picture as colour and as glow, and
+    their sum would burn out.
+    """
+    height, width = np.maximum(image.shape[:2], glow.shape[:2])
+    image, glow = (_resized(picture, width, height) for picture in (image, glow))
+    return np.dstack([np.maximum(image[..., :3], glow[..., :3]), image[..., 3]])
+
+
+def _resized(image: Array, width: int, height: int) -> Array:
+    if image.shape[:2] == (height, width):
+        return image
+    return np.asarray(Image.fromarray(image).resize((width, height), Image.Resampling.BILINEAR))
 
 
 def opaque(image: Array) -> Array:

@@ -1,5 +1,6 @@
 """One way in for characters of any file format."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
@@ -10,28 +11,36 @@ from mua.rig.detail import Detail
 from mua.rig.gltf import read_gltf, read_gltf_animation
 from mua.rig.usd import read_usd, read_usd_animation
 from mua.rig.uv import UvMode, build_atlas
+from mua.signature import refuse_foreign, require_kind
 
-GLTF = (".glb", ".gltf")
+GLTF = (".glb", ".gltf", ".vrm")
+GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh
 USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
 def read_surfaces(path: Path) -> Surfaces:
     """Read a rigged character by its suffix; raises an InputError where that is unknown or the file is missing."""
-    return read_gltf(path) if _checked_suffix(path) in GLTF else read_usd(path)
+    return read_gltf(path) if _checked_suffix(path, (*GLTF, *USD)) in GLTF else read_usd(path)
 
 
 def read_animation(path: Path) -> Animation:
     """Read a file's skeleton and clips by its suffix, with or without a mesh; raises as `read_surfaces` does."""
-    return read_gltf_animation(path) if _checked_suffix(path) in GLTF else read_usd_animation(path)
+    suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, *USD))
+    return read_usd_animation(path) if suffix in USD else read_gltf_animation(path)
 
 
-def _checked_suffix(path: Path) -> str:
+def _checked_suffix(path: Path, known: Sequence[str]) -> str:
     suffix = path.suffix.lower()
-    known = (*GLTF, *USD)
     if suffix not in known:
+        refuse_foreign(path)
         raise InputError(f"{path}: the suffix is {path.suffix or 'missing'}, expected one of {', '.join(known)}")
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
+    if suffix in USD:
+        kinds = ("a ZIP archive",) if suffix == ".usdz" else ("a USD file", "a ZIP archive")
+        require_kind(path, "a USD stage", kinds=kinds)
+    else:
+        require_kind(path, "a glTF file", kinds=("a glTF binary", "JSON"))
     return suffix
 
 

@@ -60,6 +60,12 @@ def rest_pose(source: Source, skeleton: Skeleton) -> Pose:
     return Pose(local, local_offsets(turned, placed, skeleton.parents))
 
 
+def roles_of(scene: Scene, rigged: Rigged) -> dict[str, str]:
+    """The body part of each joint of which the scene says it, by the joint's name."""
+    pairs = zip(rigged.skeleton.names, rigged.nodes, strict=True)
+    return {name: scene.roles[int(node)] for name, node in pairs if int(node) in scene.roles}
+
+
 def unique_names(names: list[str]) -> tuple[str, ...]:
     """The names, with a number after each that an earlier one took."""
     taken: dict[str, int] = {}

@@ -1,11 +1,15 @@
 """What a scene file holds of a character, before it becomes one surface on rigid joints; the readers fill it."""
 
-from dataclasses import dataclass
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.errors import InputError
 
 Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
 
@@ -43,6 +47,8 @@ class Part:
     skin: int
     joints: Array  # [N, K] int into the skin's joints
     weights: Array  # [N, K] float64, any scale
+    node: str = ""  # what the file calls the object that the mesh belongs to
+    colors: Array | None = None  # [F, 3, 4] linear colour and opacity of the corners, multiplied into the material
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,7 @@ class Scene:
     materials: tuple[Material, ...]
     motions: tuple[Motion, ...]
     notes: tuple[str, ...]
+    roles: Mapping[int, str] = field(default_factory=dict)  # node to body part, where the file itself says it
 
     def masses(self, skin: int) -> Array:
         """The summed weights [n] of each joint of a skin."""
@@ -83,3 +90,25 @@ class Source:
 
     scene: Scene
     nodes: Array  # [J] int, the node that each of the character's joints was
+
+
+def without(scene: Scene, names: Sequence[str], path: Path) -> Scene:
+    """The scene less the parts whose mesh, node or material has one of `names`, upper or lower case.
+
+    Raises an InputError that names `path` and the nearest names there are, where nothing is called so.
+    """
+    called = [(part.name, part.node, scene.materials[part.material].name) for part in scene.parts]
+    known = dict.fromkeys(name for row in called for name in row if name)
+    for name in names:
+        if name.lower() not in {there.lower() for there in known}:
+            lower = {there.lower(): there for there in known}
+            near = [lower[there] for there in difflib.get_close_matches(name.lower(), lower, n=3, cutoff=0.5)]
+            raise InputError(
+                f"{path}: --leave-out {name}: no mesh, node or material has this name; "
+                f"{'the nearest are' if near else 'there are'} {', '.join(near or list(known)[:8])}"
+            )
+    unwanted = {name.lower() for name in names}
+    kept = tuple(
+        part for part, row in zip(scene.parts, called, strict=True) if not unwanted & {name.lower() for name in row}
+    )
+    return replace(scene, parts=kept)

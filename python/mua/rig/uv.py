@@ -189,9 +189,12 @@ def _character(source: _Source, layout: _Layout, size: int) -> Character:
         vertices=surfaces.vertices, faces=surfaces.faces, uv=uv, uv_faces=uv_faces.reshape(-1, 3).astype(np.int32)
     )
     picture = surfaces.materials[surfaces.face_material[0]].image
-    if not layout.as_is or picture.shape[0] != picture.shape[1]:
+    if not layout.as_is or picture.shape[0] != picture.shape[1] or surfaces.corner_colors is not None:
         texels = build_texel_map(mesh, size)
-        picture = bake_texture(texels, source.corners, surfaces.face_material, materials=surfaces.materials)
+        colors = surfaces.corner_colors
+        picture = bake_texture(
+            texels, source.corners, surfaces.face_material, materials=surfaces.materials, colors=colors
+        )
     return Character(
         name=surfaces.name,
         skeleton=surfaces.skeleton,
@@ -202,6 +205,7 @@ def _character(source: _Source, layout: _Layout, size: int) -> Character:
         clips=surfaces.clips,
         notes=surfaces.notes + layout.notes,
         source=surfaces.source,
+        roles=surfaces.roles,
     )
 
 

@@ -1,0 +1,83 @@
+"""Skins that are bound apart from each other, and what the rest pose then decides."""
+
+from pathlib import Path
+
+import numpy as np
+from gltf_files import FLOAT_BOUND, POINTS, Glb, body, posed, read
+
+TURN = np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]], float)  # x to y to z to x
+
+
+def bound_elsewhere(glb: Glb, joints: list[int], moved: list[np.ndarray]) -> dict:
+    """A skin on `joints` whose mesh was bound where each is moved by a matrix of its own from its place at rest."""
+    binds = []
+    for joint, matrix in zip(joints, moved, strict=True):
+        rest = np.eye(4)
+        rest[1, 3] = 0.5 * joint
+        binds.append(np.linalg.inv(rest @ matrix))
+    return {"joints": joints, "inverseBindMatrices": glb.accessor(np.swapaxes(binds, 1, 2))}
+
+
+def shifted(*offset: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset
+    return matrix
+
+
+def glove(glb: Glb, joints: list[int], moved: list[np.ndarray]) -> None:
+    """A triangle shared by two joints, on a skin of its own."""
+    skin = len(glb.json["skins"])
+    glb.json["skins"].append(bound_elsewhere(glb, joints, moved))
+    attributes = {
+        "POSITION": glb.accessor([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]]),
+        "JOINTS_0": glb.accessor([[0, 1, 0, 0]] * 3, "u1"),
+        "WEIGHTS_0": glb.accessor([[0.5, 0.5, 0, 0]] * 3),
+    }
+    glb.json["meshes"].append({"name": f"glove{skin}", "primitives": [{"attributes": attributes}]})
+    glb.json["nodes"].append({"mesh": len(glb.json["meshes"]) - 1, "skin": skin})
+    glb.json["scenes"][0]["nodes"].append(len(glb.json["nodes"]) - 1)
+
+
+def test_body_of_rigid_parts_stays_where_the_rest_pose_has_it(tmp_path: Path) -> None:
+    """Two small skins, bound in another pose than the rest pose, say nothing of where the rigid body stands."""
+    glb = body()
+    glb.json["skins"] = []
+    glb.json["nodes"] = glb.json["nodes"][:3]
+    glb.json["nodes"].append({"name": "armour", "mesh": 0})
+    glb.json["nodes"][0]["children"] = [1, 3]
+    glb.json["scenes"] = [{"nodes": [0]}]
+    glove(glb, [0, 1], [TURN, shifted(0.3, 0, 0) @ TURN])
+    glove(glb, [1, 2], [TURN.T, shifted(0, 0, 0.4)])
+    surfaces = read(glb, tmp_path)
+    low, high = POINTS.min(axis=0), POINTS.max(axis=0)
+    armour = surfaces.vertices[(np.abs(surfaces.vertices - np.clip(surfaces.vertices, low, high)) < 1e-6).all(axis=1)]
+    np.testing.assert_allclose(np.ptp(armour, axis=0), np.ptp(POINTS, axis=0), atol=FLOAT_BOUND)
+    places = surfaces.skeleton.world(surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_translations)[1]
+    np.testing.assert_allclose(places, [[0, 0, 0], [0, 0.5, 0], [0, 1, 0]], atol=FLOAT_BOUND)
+    bind = surfaces.skeleton.bind_pose
+    np.testing.assert_allclose(posed(surfaces, bind.rotations, bind.translations), surfaces.vertices, atol=1e-7)
+
+
+def test_second_skin_of_one_joint_follows_the_body_into_its_bind_pose(tmp_path: Path) -> None:
+    """An eye on a joint of its own, bound at rest, stands at the head also where the body was bound otherwise."""
+    glb = body()
+    for node in (1, 2):  # spine and head bend after binding, so that no two joints agree on where the mesh is
+        glb.json["nodes"][node]["rotation"] = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
+    crown = np.arange(16) // 4 == 3
+    joints = np.zeros((16, 4), int)
+    joints[:, 0] = np.where(crown, 0, np.arange(16) // 4)  # nor does one of them hold half of it
+    glb.json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = glb.accessor(joints, "u1")
+    glb.json["nodes"].append({"name": "eye", "translation": [0, 0.3, 0]})
+    glb.json["nodes"][2]["children"] = [4]
+    eye = glb.accessor([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]])
+    ones = {"JOINTS_0": glb.accessor([[0] * 4] * 3, "u1"), "WEIGHTS_0": glb.accessor([[1, 0, 0, 0]] * 3)}
+    glb.json["meshes"].append({"name": "eye", "primitives": [{"attributes": {"POSITION": eye} | ones}]})
+    glb.json["skins"].append({"joints": [4], "inverseBindMatrices": glb.accessor([np.eye(4).reshape(-1)])})
+    glb.json["nodes"].append({"mesh": 1, "skin": 1})
+    glb.json["scenes"][0]["nodes"].append(5)
+    surfaces = read(glb, tmp_path)
+    worn = surfaces.skin_indices[:, 0] == surfaces.skeleton.names.index("eye")
+    head = surfaces.skeleton.world(surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_translations)[1][
+        surfaces.skeleton.names.index("head")
+    ]
+    np.testing.assert_allclose(surfaces.vertices[worn][0], head + np.array([0, 0.3, 0]), atol=FLOAT_BOUND)
