@@ -18,6 +18,7 @@ from mua.files import require_writable
 from mua.recording import PlannedClip, Recording, TeacherWriter, record
 from mua.rig.character import Character
 from mua.rig.detail import Detail
+from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.texel_density import describe_texels
 from mua.rig.uv import UvMode
 from mua.student.settings import Settings
@@ -38,6 +39,7 @@ class Order:
     mapping: Mapping[str, str] | None = None  # target joint to source joint
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
+    size: FigureSize = AS_FOUND
     storage: Storage = "f16"
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
@@ -45,7 +47,9 @@ class Order:
 def bake(order: Order, listener: Listener) -> Baked:
     """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it."""
     listener.stage("character")
-    character = load_character(order.character, uv=order.uv, seed=order.settings.seed, detail=order.detail)
+    character = load_character(
+        order.character, uv=order.uv, seed=order.settings.seed, detail=order.detail, size=order.size
+    )
     clips, notes = load_clips(character, order.motions, mapping=order.mapping)
     for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):
         listener.note(sentence)
@@ -85,6 +89,8 @@ def _record(order: Order, character: Character, planned: list[PlannedClip], list
 def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
     """Changes with everything that a recording depends on, so that no other order's frames are taken for these."""
     digest = hashlib.sha256(f"{__version__} {order.settings.texels} {order.settings.seed}".encode())
+    skeleton = character.skeleton
+    digest.update(skeleton.bind_rotations.tobytes() + skeleton.bind_translations.tobytes())
     for array in (character.mesh.vertices, character.mesh.uv, character.skin_weights, character.base_color):
         digest.update(array.tobytes())
     for clip in planned:

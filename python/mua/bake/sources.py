@@ -9,6 +9,7 @@ from mua.motion.load import counted, load_motion, unique_names
 from mua.motion.resample import resample
 from mua.rig.character import Character
 from mua.rig.detail import Detail
+from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.read import read_character
 from mua.rig.uv import UvMode
 from mua.teachers.procedural import procedural_character
@@ -17,11 +18,18 @@ RATE = 30.0  # frames per second of every clip, and of the window that the stude
 ATLAS = 1024  # texels of the base-colour atlas along a side
 
 
-def load_character(path: Path | None, *, uv: UvMode, seed: int, detail: Detail | None = None) -> Character:
-    """The character in the file at `path`, or the procedural one where no path is given."""
-    if path is None:
-        return procedural_character(seed=seed)
-    return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail)
+def load_character(
+    path: Path | None, *, uv: UvMode, seed: int, detail: Detail | None = None, size: FigureSize = AS_FOUND
+) -> Character:
+    """The character in the file at `path`, or the procedural one where no path is given.
+
+    Errors: InputError where a size is given for the procedural one.
+    """
+    if path is not None:
+        return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size)
+    if size != AS_FOUND:
+        raise InputError("--scale and --height are for a character from a file; give CHARACTER")
+    return procedural_character(seed=seed)
 
 
 def load_clips(

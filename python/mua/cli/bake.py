@@ -11,6 +11,7 @@ from mua.cli.failure import refusing
 from mua.errors import InputError
 from mua.motion.mapping import read_mapping
 from mua.rig.detail import read_detail
+from mua.rig.figure_size import FigureSize
 
 
 def main(
@@ -45,6 +46,8 @@ def main(
             help="How much finer to draw a part, as head=2; may be repeated: head, hands, arms, body, legs or feet."
         ),
     ] = [],  # noqa: B006 typer copies it
+    scale: Annotated[float | None, typer.Option(help="Multiplies the units of the character's file.")] = None,
+    height: Annotated[float | None, typer.Option(help="Metres that the character is made high.")] = None,
     recipe: Annotated[
         str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
     ] = "closed-form",
@@ -71,6 +74,7 @@ def main(
     if json is not None and not check:
         raise InputError("--json: is written by --check alone")
     joints = None if mapping is None else read_mapping(mapping)
+    size = FigureSize(scale=scale, height=height)
 
     if check:
         from mua.bake.check import CheckOrder
@@ -95,6 +99,7 @@ def main(
         mapping=joints,
         uv=uv,
         detail=finer,
+        size=size,
         storage=storage,
         device=choose_device(device),
     )

@@ -39,9 +39,10 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     carries = _body(scene)
     scene = replace(scene, parts=tuple(_stand_in(scene, skin, carries) for skin in range(len(scene.skins))))
     bind = bind_pose(scene)
-    scene, told = corrected(scene, bind, points=bind.places[bind.mass > 0])
+    scene, change = corrected(scene, bind, points=bind.places[bind.mass > 0])
     rigged = rigid_skeleton(scene, bind_pose(scene))
-    return Animation(rigged.skeleton, rigged.clips, (*scene.notes, *told, *rigged.notes), roles_of(scene, rigged))
+    notes = (*scene.notes, *change.size_notes, *change.notes, *rigged.notes)
+    return Animation(rigged.skeleton, rigged.clips, notes, roles_of(scene, rigged))
 
 
 def _stand_in(scene: Scene, skin: int, carries: Array) -> Part:

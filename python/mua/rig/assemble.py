@@ -20,6 +20,7 @@ from mua.rig.skeleton import Skeleton
 WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
 WEIGHT_STEP = 1e-5  # weights nearer than this are equal
 LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
+OTHER_SIZE = "--height METRES makes it another height; --scale FACTOR multiplies the units of the file."
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,8 @@ class Surfaces:
     source: Source | None = None  # what it was made of
     corner_colors: Array | None = None  # [F, 3, 4] linear, multiplied into the materials; None where all are white
     roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the file itself says it
+    unit: float = 1.0  # metres as which one metre of the file is taken
+    size_notes: tuple[str, ...] = ()  # those of the notes that say so
 
 
 @dataclass(frozen=True)
@@ -78,10 +81,11 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.ptp(used, axis=0).any():
         raise InputError(f"{path}: all vertices of the skinned meshes lie at {used[0].tolist()}, expected a surface")
-    scene, told = corrected(scene, bind, points=used)
-    if told:
+    scene, change = corrected(scene, bind, points=used)
+    if change.unit != 1 or change.notes:
         bind = bind_pose(scene)
         mesh = _merge(scene, bind)
+    size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
     mesh = _weld(mesh)
     rigged = rigid_skeleton(scene, bind)
     joint_of_node = np.zeros(len(scene.parents), np.int32)
@@ -100,10 +104,12 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
         skin_indices=indices,
         skin_weights=mesh.weights.astype(np.float32),
         clips=rigged.clips,
-        notes=(*scene.notes, *told, *mesh.notes, *rigged.notes),
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
         roles=roles_of(scene, rigged),
+        notes=(*scene.notes, *size_notes, *change.notes, *mesh.notes, *rigged.notes),
+        unit=change.unit,
+        size_notes=size_notes,
     )
 
 

@@ -1,7 +1,7 @@
 """A scene brought to a plausible height in metres and to facing +Z, where it does not say so itself."""
 
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,18 @@ from mua.rig.scene import Scene
 HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
 ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be another than it says
 UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
+POSSIBLE_HEIGHTS = (0.01, 100.0)  # metres: within them a splat's square millimetres fit the half floats of a GPU
+ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FACING = 0.5  # cosine between a character's front and +Z below which it is turned
+
+
+@dataclass(frozen=True)
+class Correction:
+    """What was changed, with a sentence for each change."""
+
+    unit: float  # metres as which one metre of the file is taken
+    size_notes: tuple[str, ...]
+    notes: tuple[str, ...]  # of all else
 
 
 def check_scales(scene: Scene, path: Path) -> None:
@@ -29,20 +40,12 @@ def corrected(
     bind: Bind,
     *,
     points: Array,  # [N, 3] what the scene shows in the bind pose, at least one
-) -> tuple[Scene, tuple[str, ...]]:
-    """The scene at a plausible height in metres and facing +Z, with a sentence for each change."""
+) -> tuple[Scene, Correction]:
+    """The scene at a plausible height in metres and facing +Z."""
     correction = np.eye(4)
     told = []
-    height = float(np.ptp(points[:, 1]))
-    if not ODD_HEIGHTS[0] <= height <= ODD_HEIGHTS[1]:
-        for unit in UNITS:
-            if HEIGHTS[0] <= height * unit <= HEIGHTS[1]:
-                correction[:3, :3] *= unit
-                told.append(
-                    f"The character is {height:.3g} units high; one unit is taken as {unit:g} m, not as 1 m, "
-                    f"which makes it {height * unit:.2f} m."
-                )
-                break
+    unit, size_notes = plausible_unit(float(np.ptp(points[:, 1])))
+    correction[:3, :3] *= unit
     turn = _quarter_turn(scene, bind)
     if turn:
         c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
@@ -50,10 +53,39 @@ def corrected(
         told.append(
             f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°."
         )
-    if not told:
-        return scene, ()
-    moved = tuple(replace(motion, worlds=correction @ motion.worlds) for motion in scene.motions)
-    return replace(scene, rest=correction @ scene.rest, motions=moved), tuple(told)
+    change = Correction(unit, size_notes, tuple(told))
+    if unit == 1 and not turn:
+        return scene, change
+    return carried(scene, correction), change
+
+
+def carried(
+    scene: Scene,
+    matrix: Array,  # [4, 4]
+) -> Scene:
+    """The scene as a whole moved, turned or scaled."""
+    moved = tuple(replace(motion, worlds=matrix @ motion.worlds) for motion in scene.motions)
+    return replace(scene, rest=matrix @ scene.rest, motions=moved)
+
+
+def plausible_unit(
+    height: float,  # in the file's units
+) -> tuple[float, tuple[str, ...]]:
+    """Metres as which one unit is taken, and a sentence where that is not 1 or leaves an unusual height."""
+    if ODD_HEIGHTS[0] <= height <= ODD_HEIGHTS[1]:
+        return 1.0, ()
+    for unit in UNITS:
+        if HEIGHTS[0] <= height * unit <= HEIGHTS[1]:
+            return unit, (
+                f"The character is {height:.3g} units high; one unit is taken as {unit:g} m, not as 1 m, "
+                f"which makes it {height * unit:.2f} m.",
+            )
+    if POSSIBLE_HEIGHTS[0] <= height <= POSSIBLE_HEIGHTS[1]:
+        return 1.0, (f"The character is {height:.3g} m high, as few creatures are, and is left so.",)
+    unit = ADULT / height if height > 0 else 1.0
+    return unit, (
+        f"The character is {height:.3g} m high by its file, as no person or creature is; it is made {ADULT} m high.",
+    )
 
 
 def _quarter_turn(scene: Scene, bind: Bind) -> int:

@@ -8,6 +8,7 @@ from mua.rig.animation import Animation
 from mua.rig.assemble import Surfaces
 from mua.rig.character import Character
 from mua.rig.detail import Detail
+from mua.rig.figure_size import AS_FOUND, FigureSize, resized
 from mua.rig.gltf import read_gltf, read_gltf_animation
 from mua.rig.usd import read_usd, read_usd_animation
 from mua.rig.uv import UvMode, build_atlas
@@ -18,9 +19,10 @@ GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh
 USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
-def read_surfaces(path: Path) -> Surfaces:
+def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND) -> Surfaces:
     """Read a rigged character by its suffix; raises an InputError where that is unknown or the file is missing."""
-    return read_gltf(path) if _checked_suffix(path, (*GLTF, *USD)) in GLTF else read_usd(path)
+    surfaces = read_gltf(path) if _checked_suffix(path, (*GLTF, *USD)) in GLTF else read_usd(path)
+    return resized(surfaces, size, path)
 
 
 def read_animation(path: Path) -> Animation:
@@ -45,7 +47,12 @@ def _checked_suffix(path: Path, known: Sequence[str]) -> str:
 
 
 def read_character(
-    path: Path, uv: UvMode = "auto", *, atlas_size: int = 2048, detail: Detail | None = None
+    path: Path,
+    uv: UvMode = "auto",
+    *,
+    atlas_size: int = 2048,
+    detail: Detail | None = None,
+    size: FigureSize = AS_FOUND,
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    return build_atlas(read_surfaces(path), uv=uv, size=atlas_size, detail=detail)
+    return build_atlas(read_surfaces(path, size=size), uv=uv, size=atlas_size, detail=detail)
