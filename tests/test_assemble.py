@@ -12,7 +12,8 @@ from mua import rotation
 from mua.errors import InputError
 from mua.rig.assemble import Surfaces, assemble, first_of_equal, limit_influences
 from mua.rig.correction import ADULT
-from mua.rig.figure_size import FigureSize, resized
+from mua.rig.figure_size import FigureSize
+from mua.rig.resize import resized
 from mua.rig.scene import Material, Motion, Part, Scene, Skin
 
 HERE = Path("body.glb")

@@ -1,9 +1,12 @@
 """Boxes hold what the avatar does."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 from synthetic_avatar import synthetic_avatar
 
-from mua.bounds import MARGIN, frame_boxes, playback_bounds, root_positions, union
+from mua.bounds import frame_boxes, margin, playback_bounds, root_positions, union
 from mua.decode import decode_clip_frame
 
 AVATAR = synthetic_avatar()
@@ -11,11 +14,17 @@ RIG, CLIP = AVATAR.rig, AVATAR.clips[0]
 
 
 def test_a_frames_box_is_the_skinned_template_and_a_margin() -> None:
+    around = margin(RIG)
     for index in (0, 6):
-        skinned = frame_boxes(RIG, CLIP)[index] + [[MARGIN] * 3, [-MARGIN] * 3]
+        skinned = frame_boxes(RIG, CLIP)[index] + [[around] * 3, [-around] * 3]
         mesh = decode_clip_frame(AVATAR, CLIP, frame=index, dtype=np.float64).mesh
         moved = np.abs(np.stack([mesh.min(axis=0), mesh.max(axis=0)]) - skinned)
-        assert moved.max() < MARGIN  # the student's own shape differs from the template by less
+        assert moved.max() < around  # the student's own shape differs from the template by less
+
+
+def test_the_margin_follows_the_figures_size() -> None:
+    tiny = replace(RIG, mesh=replace(RIG.mesh, vertices=RIG.mesh.vertices / 1000))
+    assert margin(tiny) == pytest.approx(margin(RIG) / 1000)
 
 
 def test_playback_bounds_hold_every_frame_about_its_root() -> None:

@@ -27,6 +27,14 @@ def test_the_whole_box_is_in_the_image_and_touches_its_margin(
     np.testing.assert_allclose(ndc(camera, BOX.mean(axis=0)[None]), 0, atol=ROUNDING)
 
 
+@pytest.mark.parametrize("size", [1.3e-3, 1.0, 22.0])
+def test_the_near_plane_lies_before_a_figure_of_any_size(size: float) -> None:
+    camera = orbit(size * BOX, screen=(64, 96))
+    corners = np.array(np.meshgrid(*(size * BOX).T)).reshape(3, -1)
+    depths = -(camera.view[:3, :3] @ corners + camera.view[:3, 3:])[2]
+    assert 0 < camera.near < 0.1 * depths.min()
+
+
 def test_azimuth_goes_round_to_the_left_and_elevation_up() -> None:
     middle = BOX.mean(axis=0)
     places = {(0, 0): [0, 0, 1], (np.pi / 2, 0): [1, 0, 0], (0, np.pi / 2): [0, 1, 0]}

@@ -10,7 +10,7 @@ from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.rig.rig import Rig
 
-MARGIN = 0.1  # metres that cloth may leave the skinned template
+MARGIN = 0.06  # of the figure's size, that cloth may leave the skinned template
 
 
 def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
@@ -21,12 +21,17 @@ def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
 
 def frame_boxes(rig: Rig, clip: Clip) -> Array:
     """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
-    boxes = []
+    boxes, around = [], margin(rig)
     for joints in rig.skeleton.skinning(clip.rotations, clip.translations):
         dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
         posed = rotation.dual_transform(dual, rig.mesh.vertices)
-        boxes.append([posed.min(axis=0) - MARGIN, posed.max(axis=0) + MARGIN])
+        boxes.append([posed.min(axis=0) - around, posed.max(axis=0) + around])
     return np.array(boxes)
+
+
+def margin(rig: Rig) -> float:
+    """How far the boxes reach beyond the skinned template, metres."""
+    return MARGIN * float(np.ptp(rig.mesh.vertices, axis=0).max())
 
 
 def root_positions(rig: Rig, clip: Clip) -> Array:

@@ -9,7 +9,8 @@ import numpy as np
 
 from mua.arrays import Array
 
-NEAR = 0.02  # metres
+NEAR = 0.02  # metres, at most
+NEAR_SHARE = 0.01  # of the distance of what is looked at: so near a small figure is seen whole
 FOV = float(np.radians(30))  # vertical; a portrait lens
 EYE_DISTANCE = 0.063  # metres, of an adult
 FILL = 0.92  # of the image's half size, that the framed box reaches
@@ -28,16 +29,22 @@ class Camera:
         """[3] world, metres."""
         return np.asarray(-self.view[:3, :3].T @ self.view[:3, 3])
 
+    @property
+    def near(self) -> float:
+        """Distance of the near plane, metres."""
+        return float(self.projection[2, 3]) / -2
+
 
 def perspective(
     fov: float,  # vertical, radians
     *,
     aspect: float,  # width / height
+    near: float = NEAR,  # metres
 ) -> Array:
     """Projection matrix [4, 4] with the far plane at infinity, clip z in -w..w."""
     focal = 1 / np.tan(fov / 2)
     matrix = np.diag([focal / aspect, focal, -1.0, 0.0])
-    matrix[2, 3], matrix[3, 2] = -2 * NEAR, -1
+    matrix[2, 3], matrix[3, 2] = -2 * near, -1
     return matrix
 
 
@@ -56,11 +63,16 @@ def orbit(
     corners = np.array(np.meshgrid(*np.transpose(bounds - middle))).reshape(3, -1)
     x, y, z = turn @ corners
     slope_x, slope_y = FILL / projection[0, 0], FILL / projection[1, 1]
-    distance = max(np.max(z + np.maximum(np.abs(x) / slope_x, np.abs(y) / slope_y)), NEAR)
+    distance = float(np.max(z + np.maximum(np.abs(x) / slope_x, np.abs(y) / slope_y))) or NEAR
     view = np.eye(4)
     view[:3, :3] = turn
     view[:3, 3] = [0, 0, -distance] - turn @ middle
-    return Camera(view, projection, screen)
+    return Camera(view, perspective(fov, aspect=screen[0] / screen[1], near=near_plane(distance)), screen)
+
+
+def near_plane(distance: float) -> float:
+    """Where the near plane lies of a camera that looks at something so far away; metres."""
+    return min(NEAR, NEAR_SHARE * distance)
 
 
 def stereo(

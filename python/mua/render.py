@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
+from mua.camera import Camera
 from mua.decode import Frame
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors, splat_draw
@@ -61,7 +61,7 @@ def projected(frame: Frame, camera: Camera) -> Projected:
         camera.view[None],
         camera.projection[None],
         screen=camera.screen,
-        near=NEAR,
+        near=camera.near,
         bounds=frame_bounds(frame),
     )
     colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], camera.position)

@@ -11,8 +11,7 @@ import wgpu
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.bounds import MARGIN as BOX_MARGIN
-from mua.bounds import frame_boxes
+from mua.bounds import frame_boxes, margin
 from mua.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
@@ -34,7 +33,7 @@ DARKNESS = 0.45  # of the ground in full shadow
 MASK_SIZE = 512  # samples along the shadow's square
 GROUND_FRAMES = 32  # of a clip, in which the lowest point is sought
 BELOW_GROUND = 0.1  # of these that may reach below it: captured feet stray, and others leap or climb
-MARGIN = 0.1  # metres round the shadow, so that its soft edge is not cut off
+MARGIN = 0.06  # of its size round the shadow, so that its soft edge is not cut off
 
 
 @dataclass(frozen=True)
@@ -163,7 +162,7 @@ def ground_height(rig: Rig, clip: Clip | None) -> float:
         return float(rig.mesh.vertices[:, 1].min(initial=0))
     frames = np.unique(np.linspace(0, len(clip) - 1, GROUND_FRAMES).astype(int))
     some = clip.cut(frames)
-    return float(np.quantile(frame_boxes(rig, some)[:, 0, 1], BELOW_GROUND)) + BOX_MARGIN
+    return float(np.quantile(frame_boxes(rig, some)[:, 0, 1], BELOW_GROUND)) + margin(rig)
 
 
 def shadow_area(
@@ -175,7 +174,7 @@ def shadow_area(
     light = np.array(LIGHT)
     places = corners - light * ((corners[:, 1:2] - ground) / light[1])
     low, high = places[:, [0, 2]].min(axis=0), places[:, [0, 2]].max(axis=0)
-    side = (high - low).max() + 2 * MARGIN
+    side = (high - low).max() * (1 + 2 * MARGIN)
     return np.array([*((low + high - side) / 2), side, ground])
 
 

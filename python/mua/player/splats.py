@@ -10,7 +10,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.bounds import union
-from mua.camera import NEAR, Camera
+from mua.camera import Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
 from mua.player.buffers import AvatarBuffers
@@ -104,7 +104,7 @@ class SplatFrame:
             bounds_low=np.append(low, 1),
             bounds_high=np.append(high, 1),
             screen=np.array(cameras[0].screen),
-            near=NEAR,
+            near=cameras[0].near,
             eyes=len(cameras),
             splat_count=self.splat_count,
         )

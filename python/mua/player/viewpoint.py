@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import FOV, NEAR, Camera, orbit
+from mua.camera import FOV, Camera, near_plane, orbit, perspective
 
 STEEPEST = float(np.radians(89))  # of the elevation, so that up stays up
-NEAREST, FARTHEST = 2 * NEAR, 100.0  # metres from the target
+NEAREST, FARTHEST = 0.01, 30.0  # times the distance from which all of the figure is seen
 ZOOM_STEP = 1.15  # of the distance, for one notch of the wheel
 TURN = float(np.radians(0.4))  # for one pixel of a drag
 
@@ -21,6 +21,7 @@ class Viewpoint:
     distance: float  # metres
     azimuth: float = 0.0  # radians, as mua.camera.orbit
     elevation: float = 0.0
+    framed: float = 3.5  # metres from which all of the figure is seen; those of a person
 
     def turned(self, right: float, down: float) -> "Viewpoint":
         """After a drag of so many pixels: the figure follows the mouse."""
@@ -29,7 +30,8 @@ class Viewpoint:
 
     def zoomed(self, notches: float) -> "Viewpoint":
         """Nearer by so many notches of the wheel, farther where negative."""
-        return replace(self, distance=float(np.clip(self.distance * ZOOM_STEP**-notches, NEAREST, FARTHEST)))
+        distance = np.clip(self.distance * ZOOM_STEP**-notches, NEAREST * self.framed, FARTHEST * self.framed)
+        return replace(self, distance=float(distance))
 
     def panned(self, right: float, down: float, *, height: int) -> "Viewpoint":
         """After a drag of so many pixels in a picture of `height`: what is at the target stays under the mouse."""
@@ -42,7 +44,8 @@ class Viewpoint:
         at = orbit(np.stack([self.target] * 2), screen=screen, azimuth=self.azimuth, elevation=self.elevation)
         view = at.view.copy()
         view[:3, 3] = [0, 0, -self.distance] - view[:3, :3] @ self.target
-        return replace(at, view=view)
+        projection = perspective(FOV, aspect=screen[0] / screen[1], near=near_plane(self.distance))
+        return replace(at, view=view, projection=projection)
 
 
 def framing(
@@ -51,4 +54,5 @@ def framing(
 ) -> Viewpoint:
     """From the front, at the distance from which all of a box is in the picture."""
     target = np.mean(bounds, axis=0)
-    return Viewpoint(target, float(np.linalg.norm(orbit(bounds, screen=screen).position - target)))
+    distance = float(np.linalg.norm(orbit(bounds, screen=screen).position - target))
+    return Viewpoint(target, distance, framed=distance)

@@ -9,12 +9,12 @@ import numpy as np
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig.bind_pose import Bind
+from mua.rig.figure_size import LEAST, MOST
 from mua.rig.scene import Scene
 
 HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
 ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be another than it says
 UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
-POSSIBLE_HEIGHTS = (0.01, 100.0)  # metres: within them a splat's square millimetres fit the half floats of a GPU
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
@@ -80,7 +80,7 @@ def plausible_unit(
                 f"The character is {height:.3g} units high; one unit is taken as {unit:g} m, not as 1 m, "
                 f"which makes it {height * unit:.2f} m.",
             )
-    if POSSIBLE_HEIGHTS[0] <= height <= POSSIBLE_HEIGHTS[1]:
+    if LEAST <= height <= MOST:
         return 1.0, (f"The character is {height:.3g} m high, as few creatures are, and is left so.",)
     unit = ADULT / height if height > 0 else 1.0
     return unit, (

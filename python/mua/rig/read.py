@@ -8,8 +8,9 @@ from mua.rig.animation import Animation
 from mua.rig.assemble import Surfaces
 from mua.rig.character import Character
 from mua.rig.detail import Detail
-from mua.rig.figure_size import AS_FOUND, FigureSize, resized
+from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.gltf import read_gltf, read_gltf_animation
+from mua.rig.resize import resized
 from mua.rig.usd import read_usd, read_usd_animation
 from mua.rig.uv import UvMode, build_atlas
 from mua.signature import refuse_foreign, require_kind
