@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
@@ -22,6 +22,8 @@ from mua.motion.match import JointPair, joint_pairs, match_joints, unmatched_tar
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
 from mua.rig.character import Character
+from mua.rig.detail import Detail
+from mua.rig.figure_size import AS_FOUND, FigureSize
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 
@@ -37,6 +39,8 @@ class CheckOrder:
     motions: tuple[Path, ...] = ()  # none: the character's own clips
     mapping: Mapping[str, str] | None = None  # target joint to source joint
     uv: Literal["keep", "unwrap", "auto"] = "auto"
+    detail: Detail = field(default_factory=dict)  # beyond what is finer by default
+    size: FigureSize = AS_FOUND
 
     def beside(self, ending: str) -> Path:
         return self.output.with_name(self.output.stem + ending)
@@ -62,7 +66,7 @@ def check(order: CheckOrder, listener: Listener) -> Check:
     """
     require_writable(order.output)
     listener.stage("character")
-    character = load_character(order.character, uv=order.uv, seed=order.seed)
+    character = load_character(order.character, uv=order.uv, seed=order.seed, detail=order.detail, size=order.size)
     listener.stage("motion")
     loaded = _loaded(order, character)
     qualities = tuple(measure_motion(m.source, character.skeleton, m.clip, m.matches) for m in loaded)

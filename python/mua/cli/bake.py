@@ -80,7 +80,7 @@ def main(
         from mua.bake.check import CheckOrder
         from mua.cli.check import check_and_show
 
-        looked_at = CheckOrder(output, settings.texels, seed, character, tuple(motion), joints, uv)
+        looked_at = CheckOrder(output, settings.texels, seed, character, tuple(motion), joints, uv, finer, size)
         check_and_show(looked_at, json)
         return
 

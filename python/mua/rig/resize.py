@@ -7,6 +7,7 @@ import numpy as np
 
 from mua.errors import InputError
 from mua.rig.assemble import Surfaces
+from mua.rig.correction import carried
 from mua.rig.figure_size import AS_FOUND, LEAST, MOST, FigureSize
 
 
@@ -30,12 +31,14 @@ def resized(surfaces: Surfaces, size: FigureSize, path: Path) -> Surfaces:
                 f"--scale {size.scale:g}: makes the character of {path} measure {extent:.3g} m, "
                 f"expected {LEAST:g} to {MOST:g}"
             )
-    skeleton = surfaces.skeleton
+    skeleton, source = surfaces.skeleton, surfaces.source
+    scaling = np.diag([factor, factor, factor, 1.0])
     return replace(
         surfaces,
         skeleton=replace(skeleton, bind_translations=factor * skeleton.bind_translations),
         vertices=factor * surfaces.vertices,
         clips=tuple(replace(clip, translations=factor * clip.translations) for clip in surfaces.clips),
+        source=None if source is None else replace(source, scene=carried(source.scene, scaling)),
         unit=factor * surfaces.unit,
         size_notes=(),
         notes=tuple(note for note in surfaces.notes if note not in surfaces.size_notes),
