@@ -63,3 +63,65 @@ def test_texture_that_is_no_image_is_named(tmp_path: Path) -> None:
     glb.json["images"][0]["bufferView"] = 0
     with pytest.raises(InputError, match=r"images\[0\] is not a PNG"):
         read(glb, tmp_path)
+
+
+def test_glow_is_seen_where_it_is_brighter_than_the_colour(tmp_path: Path) -> None:
+    picture = np.full((1, 1, 4), 188, np.uint8)  # sRGB 188 is half of the light of 255
+    glow = {"emissiveFactor": [1, 0, 0.1]}
+    (material,) = read(textured(picture, **glow), tmp_path).materials
+    np.testing.assert_allclose(material.image[0, 0], [255, 188, 188, 255], atol=1)
+
+
+def test_strength_multiplies_glow(tmp_path: Path) -> None:
+    strong = {"extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}}
+    glb = textured(np.zeros((1, 1, 4), np.uint8), emissiveFactor=[0.1, 1, 0], **strong)
+    (material,) = read(glb, tmp_path).materials
+    np.testing.assert_allclose(material.image[0, 0], [188, 255, 0, 255], atol=1)
+
+
+def test_glowing_picture_lights_a_material_without_one(tmp_path: Path) -> None:
+    glb = textured(PICTURE, emissiveFactor=[1, 1, 1], emissiveTexture={"index": 0})
+    glb.json["materials"][0]["pbrMetallicRoughness"] = {"baseColorFactor": [0, 0, 0, 1]}
+    (material,) = read(glb, tmp_path).materials
+    np.testing.assert_array_equal(material.image[..., :3], PICTURE[..., :3])
+    assert (material.wrap_u, material.wrap_v) == ("clamp", "mirror")
+
+
+def test_glow_that_lies_elsewhere_than_the_colour_is_named(tmp_path: Path) -> None:
+    moved = {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}}
+    surfaces = read(textured(PICTURE, emissiveFactor=[1, 1, 1], emissiveTexture=moved), tmp_path)
+    np.testing.assert_array_equal(surfaces.materials[0].image[..., :3], PICTURE[..., :3])
+    assert "Glow that is mapped otherwise than the base colour is left out, of materials: cloth." in surfaces.notes
+
+
+def test_unlit_materials_and_variants_are_named(tmp_path: Path) -> None:
+    glb = textured(PICTURE, extensions={"KHR_materials_unlit": {}})
+    glb.json["extensions"] = {"KHR_materials_variants": {"variants": [{"name": "night"}, {"name": "day"}]}}
+    told = read(glb, tmp_path).notes
+    assert "Materials that ask for no light are shaded like the others: cloth." in told
+    assert "The file's material variants are left out, its default is drawn: night, day." in told
+
+
+def test_compressed_pictures_are_refused_with_advice(tmp_path: Path) -> None:
+    glb = textured(PICTURE)
+    glb.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
+    with pytest.raises(InputError, match=r"textures\[0\] is a KTX2 picture .* export it with PNG or JPEG"):
+        read(glb, tmp_path)
+    glb.json["extensionsRequired"] = ["KHR_texture_basisu"]
+    with pytest.raises(InputError, match=r"its pictures are KTX2; export it with PNG or JPEG"):
+        read(glb, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"emissiveFactor": [1, 1]}, r"materials\[0\]\.emissiveFactor is \[1\.0, 1\.0\]"),
+        (
+            {"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": "x"}}},
+            "emissiveStrength is x, expected a number",
+        ),
+    ],
+)
+def test_broken_glow_is_named(tmp_path: Path, fields: dict, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        read(textured(PICTURE, **fields), tmp_path)

@@ -1,6 +1,7 @@
 """Triangles and skin weights of glTF meshes."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,12 +12,16 @@ from gltf_files import (
     POINTS,
     TRIANGLES,
     UV,
+    Glb,
     assert_is_column,
     body,
     primitive,
     read,
     weighted,
 )
+
+from mua.errors import InputError
+from mua.rig.read import read_character
 
 
 def test_reads_positions_weights_and_texture_coordinates(tmp_path: Path) -> None:
@@ -107,3 +112,86 @@ def test_second_set_of_influences_counts(tmp_path: Path) -> None:
     surfaces = read(glb, tmp_path)
     assert (surfaces.skin_indices[:, 0] == 2).all()
     np.testing.assert_allclose(np.unique(surfaces.skin_weights[:, 0]), [0.75, 1])
+
+
+RAMP = np.linspace(0, 1, len(POINTS) * 4).reshape(-1, 4)
+
+
+def with_colors(values: Any, dtype: str = "f4", **fields: Any) -> Glb:
+    glb = body()
+    primitive(glb)["attributes"]["COLOR_0"] = glb.accessor(values, dtype, **fields)
+    return glb
+
+
+def test_vertex_colours_reach_the_corners_of_triangles(tmp_path: Path) -> None:
+    surfaces = read(with_colors(RAMP[:, :3]), tmp_path)
+    np.testing.assert_allclose(surfaces.corner_colors[..., :3], RAMP[TRIANGLES][..., :3], atol=1e-7)
+    assert (surfaces.corner_colors[..., 3] == 1).all()
+
+
+@pytest.mark.parametrize("fields", [{"normalized": True}, {}])
+def test_vertex_colours_in_bytes_are_brought_to_one(tmp_path: Path, fields: dict[str, Any]) -> None:
+    surfaces = read(with_colors(np.round(RAMP * 255), "u1", **fields), tmp_path)
+    np.testing.assert_allclose(surfaces.corner_colors[..., :3], RAMP[TRIANGLES][..., :3], atol=0.5 / 255)
+
+
+def test_opacity_of_vertices_counts_where_the_material_is_not_opaque(tmp_path: Path) -> None:
+    for mode, expected in (("OPAQUE", np.ones_like(RAMP)), ("BLEND", RAMP)):
+        glb = with_colors(RAMP)
+        glb.json["materials"] = [{"alphaMode": mode}]
+        primitive(glb)["material"] = 0
+        surfaces = read(glb, tmp_path)
+        np.testing.assert_allclose(surfaces.corner_colors[..., 3], expected[TRIANGLES][..., 3], atol=1e-7)
+
+
+def test_white_vertices_leave_no_colours(tmp_path: Path) -> None:
+    assert read(with_colors(np.ones((len(POINTS), 3))), tmp_path).corner_colors is None
+
+
+def test_toon_material_does_not_look_at_vertex_colours(tmp_path: Path) -> None:
+    glb = with_colors(RAMP)
+    glb.json["materials"] = [{"extensions": {"VRMC_materials_mtoon": {}}}]
+    primitive(glb)["material"] = 0
+    assert read(glb, tmp_path).corner_colors is None
+
+
+def test_vertex_colours_end_in_the_atlas(tmp_path: Path) -> None:
+    """A ramp of red up the column: half of its light, sRGB 188, is at half of its height."""
+    red = np.ones((len(POINTS), 3))
+    red[:, 0] = POINTS[:, 1] / 1.5
+    with_colors(red).save(tmp_path / "body.glb")
+    character = read_character(tmp_path / "body.glb", atlas_size=64)
+    mesh = character.mesh
+    corners = mesh.uv[mesh.uv_faces].mean(axis=1)
+    rows, columns = (np.clip(corners[:, axis] * 64, 0, 63).astype(int) for axis in (1, 0))
+    light = (character.base_color[rows, columns, 0] / 255.0) ** 2.2
+    height = mesh.vertices[mesh.faces].mean(axis=1)[:, 1] / 1.5
+    np.testing.assert_allclose(light, height, atol=0.08)  # a texel of 64 away, and 2.2 for the exact curve
+    assert (character.base_color[..., 1] == 255).all()
+
+
+def morphed(glb: Glb, *, mesh: list[float] | None, node: list[float] | None) -> Glb:
+    """Two targets: one moves all by 1 m along X, one by 1 m along Z."""
+    primitive(glb)["targets"] = [{"POSITION": glb.accessor(np.tile(row, (16, 1)))} for row in ([1, 0, 0], [0, 0, 1])]
+    glb.json["meshes"][0] |= {} if mesh is None else {"weights": mesh}
+    glb.json["nodes"][3] |= {} if node is None else {"weights": node}
+    return glb
+
+
+@pytest.mark.parametrize(
+    ("mesh", "node", "moved"),
+    [(None, None, [0, 0, 0]), ([0.5, 0], None, [0.5, 0, 0]), ([0.5, 0], [0, 0.25], [0, 0, 0.25])],
+)
+def test_morph_targets_stand_at_their_weights_at_rest(tmp_path: Path, mesh: Any, node: Any, moved: Any) -> None:
+    surfaces = read(morphed(body(), mesh=mesh, node=node), tmp_path)
+    np.testing.assert_allclose(surfaces.vertices[surfaces.faces], (POINTS + moved)[TRIANGLES], atol=FLOAT_BOUND)
+    assert surfaces.notes == ("Morph targets are not carried beyond their weights at rest, of: body.",)
+
+
+def test_broken_morph_targets_are_named(tmp_path: Path) -> None:
+    glb = morphed(body(), mesh=[1, 0], node=None)
+    primitive(glb)["targets"][0]["POSITION"] = glb.accessor([[0, 0, 0]])
+    with pytest.raises(InputError, match=r"targets\[0\]\.POSITION holds 1 elements for 16 vertices"):
+        read(glb, tmp_path)
+    with pytest.raises(InputError, match="is morphed by the weights"):
+        read(morphed(body(), mesh=None, node=["a"]), tmp_path)

@@ -70,3 +70,15 @@ def test_lists_pairs_and_what_is_left_over() -> None:
     assert unmatched_target(target, matches) == ("Tail",)
     assert unmatched_target(target, matches, weighted=[0, 1]) == ()
     assert unmatched_source(source, matches) == ("Prop",)
+
+
+def test_what_a_file_says_of_its_joints_goes_before_their_names() -> None:
+    named = chain("Hips", "Spine", "Neck", "Head")
+    odd = chain("bone1", "bone2", "bone3", "bone4")
+    said = {"bone1": "hips", "bone2": "spine", "bone3": "neck", "bone4": "head"}
+    alike = dict(enumerate(zip(range(4), range(4), strict=True)))
+    assert match_joints(named, odd, target_said=said).chains == alike
+    assert match_joints(odd, named, source_said=said).chains == alike
+    crossed = match_joints(named, named, target_said={"Neck": "head", "Head": "neck"})
+    assert crossed.chains == alike | {2: (3, 3), 3: (2, 2)}
+    assert crossed.roles["spine"] == (1,)

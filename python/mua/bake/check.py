@@ -41,6 +41,7 @@ class CheckOrder:
     uv: Literal["keep", "unwrap", "auto"] = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND
+    leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
 
     def beside(self, ending: str) -> Path:
         return self.output.with_name(self.output.stem + ending)
@@ -66,7 +67,14 @@ def check(order: CheckOrder, listener: Listener) -> Check:
     """
     require_writable(order.output)
     listener.stage("character")
-    character = load_character(order.character, uv=order.uv, seed=order.seed, detail=order.detail, size=order.size)
+    character = load_character(
+        order.character,
+        uv=order.uv,
+        seed=order.seed,
+        detail=order.detail,
+        size=order.size,
+        leave_out=order.leave_out,
+    )
     listener.stage("motion")
     loaded = _loaded(order, character)
     qualities = tuple(measure_motion(m.source, character.skeleton, m.clip, m.matches) for m in loaded)
@@ -139,7 +147,9 @@ def _loaded(order: CheckOrder, character: Character) -> list[LoadedMotion]:
         matches = match_joints(skeleton, skeleton)
         return [LoadedMotion(clip, SourceMotion(skeleton, clip), matches, ()) for clip in character.clips]
     return [
-        motion for path in order.motions for motion in load_motions(path, skeleton, mapping=order.mapping, rate=RATE)
+        motion
+        for path in order.motions
+        for motion in load_motions(path, skeleton, mapping=order.mapping, rate=RATE, said=character.roles)
     ]
 
 

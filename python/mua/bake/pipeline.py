@@ -37,6 +37,7 @@ class Order:
     motions: tuple[Path, ...] = ()  # none: the character's own clips
     hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
     mapping: Mapping[str, str] | None = None  # target joint to source joint
+    leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND
@@ -48,7 +49,12 @@ def bake(order: Order, listener: Listener) -> Baked:
     """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it."""
     listener.stage("character")
     character = load_character(
-        order.character, uv=order.uv, seed=order.settings.seed, detail=order.detail, size=order.size
+        order.character,
+        uv=order.uv,
+        seed=order.settings.seed,
+        detail=order.detail,
+        size=order.size,
+        leave_out=order.leave_out,
     )
     clips, notes = load_clips(character, order.motions, mapping=order.mapping)
     for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):

@@ -19,16 +19,24 @@ ATLAS = 1024  # texels of the base-colour atlas along a side
 
 
 def load_character(
-    path: Path | None, *, uv: UvMode, seed: int, detail: Detail | None = None, size: FigureSize = AS_FOUND
+    path: Path | None,
+    *,
+    uv: UvMode,
+    seed: int,
+    detail: Detail | None = None,
+    size: FigureSize = AS_FOUND,
+    leave_out: Sequence[str] = (),
 ) -> Character:
-    """The character in the file at `path`, or the procedural one where no path is given.
+    """The character in the file at `path` less what `leave_out` names, or the procedural one where no path is given.
 
-    Errors: InputError where a size is given for the procedural one.
+    Errors: InputError where a size, or something to leave out, is given for the procedural one.
     """
     if path is not None:
-        return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size)
+        return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, leave_out=leave_out)
     if size != AS_FOUND:
         raise InputError("--scale and --height are for a character from a file; give CHARACTER")
+    if leave_out:
+        raise InputError(f"--leave-out {leave_out[0]}: is for a character from a file; give CHARACTER")
     return procedural_character(seed=seed)
 
 
@@ -49,7 +57,7 @@ def load_clips(
     clips: list[Clip] = []
     notes: list[str] = []
     for path in motions:
-        loaded, told = load_motion(path, character.skeleton, mapping=mapping, rate=RATE)
+        loaded, told = load_motion(path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles)
         clips += loaded
         notes += told
     return unique_names(clips), list(counted(notes, clips))

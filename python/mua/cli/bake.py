@@ -36,6 +36,10 @@ def main(
         list[str],
         typer.Option(help="Clip that the file holds for playback, may be repeated; or all, none, or how many."),
     ] = ["all"],  # noqa: B006 typer copies it
+    leave_out: Annotated[
+        list[str],
+        typer.Option(help="Mesh, node or material of the file that is no part of the character, may be repeated."),
+    ] = [],  # noqa: B006 typer copies it
     mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: target joint to source joint.")] = None,
     uv: Annotated[
         Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
@@ -80,7 +84,9 @@ def main(
         from mua.bake.check import CheckOrder
         from mua.cli.check import check_and_show
 
-        looked_at = CheckOrder(output, settings.texels, seed, character, tuple(motion), joints, uv, finer, size)
+        looked_at = CheckOrder(
+            output, settings.texels, seed, character, tuple(motion), joints, uv, finer, size, tuple(leave_out)
+        )
         check_and_show(looked_at, json)
         return
 
@@ -97,6 +103,7 @@ def main(
         hold_out=tuple(hold_out),
         clips=tuple(clips),
         mapping=joints,
+        leave_out=tuple(leave_out),
         uv=uv,
         detail=finer,
         size=size,

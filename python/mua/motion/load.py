@@ -30,21 +30,27 @@ def load_motion(
     *,
     mapping: Mapping[str, str] | None,  # joint of `skeleton` to joint of the file, before any match by name
     rate: float,  # frames per second of the clips returned
+    said: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
 ) -> tuple[list[Clip], tuple[str, ...]]:
     """The clips of a motion file, or of every file of a directory, on `skeleton`, and notes of each clip for the user.
 
     Motion on the very same skeleton is taken as it stands; any other is retargeted.
     Errors: InputError naming the file where it cannot be read or none of its joints is matched.
     """
-    loaded = load_motions(path, skeleton, mapping=mapping, rate=rate)
+    loaded = load_motions(path, skeleton, mapping=mapping, rate=rate, said=said)
     return [motion.clip for motion in loaded], tuple(note for motion in loaded for note in motion.notes)
 
 
 def load_motions(
-    path: Path, skeleton: Skeleton, *, mapping: Mapping[str, str] | None, rate: float
+    path: Path,
+    skeleton: Skeleton,
+    *,
+    mapping: Mapping[str, str] | None,
+    rate: float,
+    said: Mapping[str, str] | None = None,
 ) -> list[LoadedMotion]:
     """The same, each clip with the motion that it was made from and the joints that were matched."""
-    return [_put_on(path, source, skeleton, mapping=mapping, rate=rate) for source in read_motion(path)]
+    return [_put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said) for source in read_motion(path)]
 
 
 def same_joints(a: Skeleton, b: Skeleton) -> bool:
@@ -74,13 +80,19 @@ def counted(notes: Sequence[str], clips: Sequence[Clip]) -> tuple[str, ...]:
 
 
 def _put_on(
-    path: Path, source: SourceMotion, skeleton: Skeleton, *, mapping: Mapping[str, str] | None, rate: float
+    path: Path,
+    source: SourceMotion,
+    skeleton: Skeleton,
+    *,
+    mapping: Mapping[str, str] | None,
+    rate: float,
+    said: Mapping[str, str] | None,
 ) -> LoadedMotion:
     try:
         if same_joints(source.skeleton, skeleton):
-            matches = match_joints(source.skeleton, skeleton)
+            matches = match_joints(source.skeleton, skeleton, source_said=source.said, target_said=said)
             return LoadedMotion(resample(source.clip, rate), source, matches, source.notes)
-        matches = match_joints(source.skeleton, skeleton, mapping)
+        matches = match_joints(source.skeleton, skeleton, mapping, source_said=source.said, target_said=said)
         clip, notes = retarget_matched(source, skeleton, matches, rate=rate)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -31,14 +31,18 @@ def match_joints(
     source: Skeleton,
     target: Skeleton,
     mapping: Mapping[str, str] | None = None,  # target to source joint names
+    *,
+    source_said: Mapping[str, str] | None = None,  # joint name to role, where the source's file itself says it
+    target_said: Mapping[str, str] | None = None,
 ) -> Matches:
     """Find the source chain that moves each target joint: by `mapping`, then by role, then by equal names.
 
+    What a file says of its joints' roles goes before what their names tell.
     Chains of different length share their joints in proportion.
     Errors: InputError if `mapping` names an unknown joint or if nothing but the root matches.
     """
     chains = _match_equal_names(source, target)
-    source_roles, target_roles = roles(source), roles(target)
+    source_roles, target_roles = _roles(source, source_said or {}), _roles(target, target_said or {})
     for role, joints in target_roles.items():
         chain = source_roles.get(role, ())
         for i, joint in enumerate(joints):
@@ -54,6 +58,18 @@ def match_joints(
             f"({_sample(target)}); give a mapping file of target and source joint names"
         )
     return Matches(chains, target_roles)
+
+
+def _roles(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
+    """Joints of every role, by what the file says, else by their names; a joint has no two roles."""
+    by_name = roles(skeleton)
+    told: dict[str, tuple[int, ...]] = {}
+    for joint, name in enumerate(skeleton.names):
+        if name in said:
+            told[said[name]] = (*told.get(said[name], ()), joint)
+    taken = {joint for joints in told.values() for joint in joints}
+    left = {role: tuple(j for j in joints if j not in taken) for role, joints in by_name.items() if role not in told}
+    return {role: joints for role, joints in left.items() if joints} | told
 
 
 @dataclass(frozen=True)

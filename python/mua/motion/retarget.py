@@ -39,7 +39,9 @@ def retarget(
     mapping: target joint names to source joint names, before any match by name. Joints that nothing matches keep their
     bind rotation. Errors: InputError if no joint name matches or `mapping` names an unknown joint.
     """
-    return retarget_matched(source, target, match_joints(source.skeleton, target, mapping), rate=rate)
+    return retarget_matched(
+        source, target, match_joints(source.skeleton, target, mapping, source_said=source.said), rate=rate
+    )
 
 
 def retarget_matched(

@@ -1,6 +1,7 @@
 """Motion as a file holds it: a clip on the file's own skeleton, not yet on the character's."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from mua.motion.clip import Clip
 from mua.rig.skeleton import Skeleton
@@ -13,3 +14,4 @@ class SourceMotion:
     skeleton: Skeleton
     clip: Clip
     notes: tuple[str, ...] = ()  # decisions of the reader worth telling the user, a sentence each
+    said: Mapping[str, str] = field(default_factory=dict)  # joint to role, where the file itself says it

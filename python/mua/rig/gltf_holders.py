@@ -9,7 +9,7 @@ from mua.rig.gltf_animation import moved_nodes
 from mua.rig.gltf_document import Document
 from mua.rig.gltf_nodes import Tree
 
-NEAR = 0.25  # of the skeleton's size: a moved mesh this far around the joints is still part of the character
+NEAR = 0.5  # of the skeleton's size: a moved mesh this far around the joints is still part of the character
 
 
 class Holders:

@@ -20,10 +20,13 @@ GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh
 USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
-def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND) -> Surfaces:
-    """Read a rigged character by its suffix; raises an InputError where that is unknown or the file is missing."""
-    surfaces = read_gltf(path) if _checked_suffix(path, (*GLTF, *USD)) in GLTF else read_usd(path)
-    return resized(surfaces, size, path)
+def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequence[str] = ()) -> Surfaces:
+    """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
+
+    Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
+    """
+    read = read_gltf if _checked_suffix(path, (*GLTF, *USD)) in GLTF else read_usd
+    return resized(read(path, leave_out=leave_out), size, path)
 
 
 def read_animation(path: Path) -> Animation:
@@ -54,6 +57,8 @@ def read_character(
     atlas_size: int = 2048,
     detail: Detail | None = None,
     size: FigureSize = AS_FOUND,
+    leave_out: Sequence[str] = (),
 ) -> Character:
     """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
-    return build_atlas(read_surfaces(path, size=size), uv=uv, size=atlas_size, detail=detail)
+    surfaces = read_surfaces(path, size=size, leave_out=leave_out)
+    return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)

@@ -1,5 +1,6 @@
 """Characters from .usd, .usda, .usdc and .usdz files, by UsdSkel."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,12 +30,13 @@ class _Bones:
     binds: Array  # [J, 4, 4]
 
 
-def read_usd(path: Path) -> Surfaces:
+def read_usd(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
     """Read all skinned meshes of a stage, in metres and Y up, and the animation bound to their skeletons.
 
+    `leave_out` names meshes or materials that are not part of the character.
     Raises an InputError that names the prim and attribute where the stage is broken or holds no skinned mesh.
     """
-    return assemble(_meshes(_opened(path), path), path)
+    return assemble(_meshes(_opened(path), path), path, leave_out=leave_out)
 
 
 def read_usd_animation(path: Path) -> Animation:

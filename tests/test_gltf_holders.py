@@ -1,0 +1,172 @@
+"""Meshes without a skin: what they hang on, what is left out, and what a user leaves out."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from gltf_files import (
+    FLOAT_BOUND,
+    HALF_TURN,
+    TRIANGLES,
+    UV,
+    Glb,
+    animate,
+    assert_is_column,
+    body,
+    posed,
+    primitive,
+    read,
+)
+from gltf_files import POINTS as COLUMN
+
+from mua.errors import InputError
+from mua.rig.read import read_surfaces
+
+BLOCK = COLUMN * 0.2
+
+
+def block(glb: Glb, name: str, *, at: tuple[float, float, float], parent: int | None, size: float = 1) -> int:
+    """A node with a small column as its mesh; returns its index."""
+    points = BLOCK * size
+    attributes = {
+        "POSITION": glb.accessor(points, min=points.min(axis=0).tolist(), max=points.max(axis=0).tolist()),
+        "TEXCOORD_0": glb.accessor(UV),
+    }
+    primitives = [{"attributes": attributes, "indices": glb.accessor(TRIANGLES.reshape(-1), "u2")}]
+    glb.json.setdefault("meshes", []).append({"name": f"{name} mesh", "primitives": primitives})
+    nodes = glb.json.setdefault("nodes", [])
+    nodes.append({"name": name, "mesh": len(glb.json["meshes"]) - 1, "translation": list(at)})
+    if parent is None:
+        glb.json.setdefault("scenes", [{"nodes": []}])[0]["nodes"].append(len(nodes) - 1)
+    else:
+        nodes[parent].setdefault("children", []).append(len(nodes) - 1)
+    return len(nodes) - 1
+
+
+def turn(glb: Glb, node: int) -> None:
+    animate(glb, node, "rotation", times=[0.0, 1.0], values=HALF_TURN)
+
+
+def robot() -> Glb:
+    """A torso that stands still, with an arm and a hand that turn, on a node of its own; a floor beside it."""
+    glb = Glb()
+    glb.json["nodes"] = [{"name": "robot"}]
+    glb.json["scenes"] = [{"nodes": [0]}]
+    torso = block(glb, "torso", at=(0, 1, 0), parent=0)
+    arm = block(glb, "arm", at=(0.5, 0, 0), parent=torso)
+    turn(glb, arm)
+    turn(glb, block(glb, "hand", at=(0, 0.3, 0), parent=arm))
+    turn(glb, block(glb, "head", at=(0, 0.3, 0), parent=torso))
+    block(glb, "floor", at=(0, 0, 0), parent=None, size=50)
+    return glb
+
+
+def test_robot_of_rigid_parts_is_a_character(tmp_path: Path) -> None:
+    surfaces = read(robot(), tmp_path)
+    assert set(surfaces.skeleton.names) >= {"torso", "arm", "hand", "head"}
+    low, high = surfaces.vertices.min(axis=0), surfaces.vertices.max(axis=0)
+    np.testing.assert_allclose([low, high], [[-0.04, 1, -0.02], [0.54, 1.6, 0.02]], atol=FLOAT_BOUND)
+    assert "Meshes that hang on no joint are left out: floor." in surfaces.notes
+    (clip,) = surfaces.clips
+    half = posed(surfaces, clip.rotations[15], clip.translations[15])
+    hand = surfaces.skin_indices[:, 0] == surfaces.skeleton.names.index("hand")
+    # the arm has turned by 90 degrees to -X, and the hand by another 90 downwards
+    reach = half[hand].mean(axis=0) - [0.5, 1, 0]
+    np.testing.assert_allclose(reach, [-0.3, -0.15, 0], atol=FLOAT_BOUND)
+
+
+def test_robot_with_names_of_sides_is_turned_to_the_front(tmp_path: Path) -> None:
+    glb = robot()
+    glb.json["nodes"][2]["name"] = "arm.R"
+    turn(glb, block(glb, "arm.L", at=(-0.5, 0, 0), parent=1))
+    assert any("turned by 180°" in note for note in read(glb, tmp_path).notes)
+
+
+def test_part_that_clips_move_below_a_joint_is_a_joint_of_its_own(tmp_path: Path) -> None:
+    glb = body()
+    turn(glb, block(glb, "jaw", at=(0, 0.2, 0), parent=2))
+    block(glb, "hat", at=(0, 0.4, 0), parent=2)
+    surfaces = read(glb, tmp_path)
+    assert surfaces.skeleton.names == ("hips", "spine", "head", "jaw")
+    parents = dict(zip(surfaces.skeleton.names, surfaces.skeleton.parents, strict=True))
+    assert parents["jaw"] == 2
+    assert "Meshes that hang rigidly on a joint: jaw, hat." in surfaces.notes
+
+
+@pytest.mark.parametrize(
+    ("at", "size", "taken"), [((0.4, 1, 0), 1, True), ((9, 0, 0), 1, False), ((0, 0, 0), 99, False)]
+)
+def test_moving_mesh_beside_the_skeleton_is_taken_where_it_is_near(
+    tmp_path: Path, at: Any, size: float, taken: bool
+) -> None:
+    glb = body()
+    turn(glb, block(glb, "drone", at=at, parent=None, size=size))
+    surfaces = read(glb, tmp_path)
+    assert ("drone" in surfaces.skeleton.names) is taken
+    told = "hang rigidly on a joint" if taken else "hang on no joint and are left out"
+    assert any("drone" in note for note in surfaces.notes), told
+
+
+def test_second_skinned_root_is_part_of_the_character(tmp_path: Path) -> None:
+    """A tail on two joints of its own, which share no ancestor with the body's."""
+    glb = body()
+    glb.json["nodes"] += [{"name": "tail", "translation": [0, 0.2, -0.5], "children": [5]}, {"name": "tip"}]
+    binds = np.tile(np.eye(4), (2, 1, 1))
+    binds[:, :3, 3] = [0, -0.2, 0.5]
+    glb.json["skins"].append({"joints": [4, 5], "inverseBindMatrices": glb.accessor(binds.swapaxes(1, 2))})
+    attributes = {
+        "POSITION": glb.accessor([[0, 0.2, -0.5], [0.1, 0.2, -0.5], [0, 0.3, -0.5]]),
+        "JOINTS_0": glb.accessor([[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0]], "u1"),
+        "WEIGHTS_0": glb.accessor([[1, 0, 0, 0]] * 3),
+    }
+    glb.json["meshes"].append({"name": "tail", "primitives": [{"attributes": attributes}]})
+    glb.json["nodes"].append({"mesh": 1, "skin": 1})
+    glb.json["scenes"][0]["nodes"] += [4, 6]
+    turn(glb, 4)
+    animate(glb, 1, "rotation", times=[0.0, 1.0], values=HALF_TURN)
+    surfaces = read(glb, tmp_path)
+    assert surfaces.skeleton.names == ("hips", "spine", "head", "tail", "tip")
+    tail = surfaces.skin_indices[:, 0] >= 3
+    assert tail.sum() == 3
+    (clip,) = surfaces.clips
+    turned = posed(surfaces, clip.rotations[-1], clip.translations[-1])
+    np.testing.assert_allclose(sorted(turned[tail][:, 0]), [-0.1, 0, 0], atol=FLOAT_BOUND)
+
+
+def test_nodes_that_the_file_hides_are_left_out(tmp_path: Path) -> None:
+    glb = body()
+    holder = len(glb.json["nodes"])
+    glb.json["nodes"].append({"name": "kit", "extensions": {"KHR_node_visibility": {"visible": False}}})
+    glb.json["nodes"][2]["children"] = [holder]
+    block(glb, "sword", at=(0, 0, 0), parent=holder)
+    glb.json["extensionsRequired"] = ["KHR_node_visibility"]
+    surfaces = read(glb, tmp_path)
+    assert_is_column(surfaces)
+    assert surfaces.notes == ("Meshes that the file hides are left out: sword.",)
+
+
+@pytest.mark.parametrize("name", ["sword", "SWORD MESH", "steel"])
+def test_mesh_node_or_material_is_left_out_by_name(tmp_path: Path, name: str) -> None:
+    glb = body()
+    block(glb, "sword", at=(0, 0, 0), parent=2)
+    glb.json["materials"] = [{"name": "steel"}, {"name": "cloth"}]
+    glb.json["meshes"][1]["primitives"][0]["material"] = 0
+    primitive(glb)["material"] = 1
+    surfaces = read_surfaces(glb.save(tmp_path / "body.glb"), leave_out=[name])
+    assert_is_column(surfaces)
+
+
+def test_unknown_name_to_leave_out_is_refused_with_the_nearest(tmp_path: Path) -> None:
+    glb = body()
+    block(glb, "Sword_1H", at=(0, 0, 0), parent=2)
+    path = glb.save(tmp_path / "body.glb")
+    with pytest.raises(InputError, match=r"--leave-out swrd: no mesh, node or material has this name; .*Sword_1H"):
+        read_surfaces(path, leave_out=["swrd"])
+    with pytest.raises(InputError, match=r"there are .*body"):
+        read_surfaces(path, leave_out=["###"])
+
+
+def test_leaving_out_everything_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no skinned mesh"):
+        read_surfaces(body().save(tmp_path / "body.glb"), leave_out=["body"])
