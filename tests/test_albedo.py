@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from mua.rig.filtering import CLEAR, TRACE
 from mua.texture.albedo import sample_albedo
 
 SINGLE = 8 * float(np.finfo(np.float32).eps)  # four products of values up to 1
@@ -12,10 +13,15 @@ SINGLE = 8 * float(np.finfo(np.float32).eps)  # four products of values up to 1
 @pytest.mark.parametrize("side", [1, 7, 16])
 def test_bilinear_as_scipy_samples(side: int) -> None:
     rng = np.random.default_rng(side)
-    atlas = rng.integers(0, 256, (side, side, 4), dtype=np.uint8)
+    atlas = rng.integers(CLEAR, 256, (side, side, 4), dtype=np.uint8)
     uv = rng.random((50, 2))
     places = np.stack([uv[:, 1], uv[:, 0]]) * side - 0.5
-    channels = [map_coordinates(atlas[..., c] / 255, places, order=1, mode="nearest") for c in range(4)]
+    alpha = (atlas[..., 3:] + TRACE) / 255
+    planes = np.concatenate([atlas[..., :3] / 255 * alpha, atlas[..., 3:] / 255], axis=2)
+    channels = [map_coordinates(planes[..., c], places, order=1, mode="nearest") for c in range(4)]
+    channels[:3] = [
+        channel / map_coordinates(alpha[..., 0], places, order=1, mode="nearest") for channel in channels[:3]
+    ]
     position = 2 * side * float(np.finfo(np.float32).eps)  # weights are rounded to float32
     np.testing.assert_allclose(sample_albedo(atlas, uv, 32), np.stack(channels, axis=1), atol=SINGLE + position)
 

@@ -21,6 +21,21 @@ def test_masked_texture_keeps_its_alpha_times_the_factor(tmp_path: Path) -> None
     model = {"baseColorFactor": [1, 1, 1, 0.5]}
     (material,) = read(textured(PICTURE, alphaMode="MASK", model=model), tmp_path).materials
     np.testing.assert_array_equal(material.image[..., 3], np.round(PICTURE[..., 3] * 0.5))
+    assert (material.alpha_mode, material.alpha_cutoff) == ("mask", 0.5)
+
+
+def test_reads_alpha_modes_and_cutoffs(tmp_path: Path) -> None:
+    (cut,) = read(textured(PICTURE, alphaMode="MASK", alphaCutoff=0.25), tmp_path).materials
+    assert (cut.alpha_mode, cut.alpha_cutoff) == ("mask", 0.25)
+    assert read(textured(PICTURE, alphaMode="BLEND"), tmp_path).materials[0].alpha_mode == "blend"
+    assert read(textured(PICTURE), tmp_path).materials[0].alpha_mode == "opaque"
+
+
+def test_names_what_is_no_alpha_mode(tmp_path: Path) -> None:
+    with pytest.raises(
+        InputError, match=r"materials\[0\].alphaMode is 'MULTIPLY', expected one of OPAQUE, MASK, BLEND"
+    ):
+        read(textured(PICTURE, alphaMode="MULTIPLY"), tmp_path)
 
 
 def test_factor_is_multiplied_in_linear_light(tmp_path: Path) -> None:

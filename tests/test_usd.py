@@ -195,6 +195,16 @@ def test_texture_keeps_rows_and_turns_v_down(character: Path) -> None:
     assert surfaces.uv[surfaces.uv_faces[top]][..., 1].min() == pytest.approx(0, abs=1e-6)
 
 
+def test_an_opacity_threshold_makes_a_mask(character: Path) -> None:
+    assert read_surfaces(character).materials[0].alpha_mode == "blend"
+    stage = Usd.Stage.Open(str(character))
+    shader = UsdShade.Shader.Get(stage, "/Man/Skin/Surface")
+    shader.CreateInput("opacityThreshold", Sdf.ValueTypeNames.Float).Set(0.25)
+    stage.Save()
+    (material,) = read_surfaces(character).materials
+    assert (material.alpha_mode, material.alpha_cutoff) == ("mask", 0.25)
+
+
 def test_texture_inside_a_package_is_read(tmp_path: Path, character: Path) -> None:
     package = tmp_path / "man.usdz"
     UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(character)), str(package))

@@ -6,89 +6,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from patches import patch, plain, points, ramp, surfaces_of, texels_and_colours, uv_map
 from scipy import ndimage
 
-from mua.arrays import Array
-from mua.rig.assemble import Surfaces
 from mua.rig.bake_texture import bake_texture
-from mua.rig.character import Character
 from mua.rig.charts import areas, find_charts, isometric, pack, signed_areas
 from mua.rig.read import read_surfaces
 from mua.rig.scene import Material, Wrap
-from mua.rig.skeleton import Skeleton
-from mua.rig.texel_map import TexelMap, build_texel_map
+from mua.rig.texel_map import build_texel_map
 from mua.rig.uv import build_atlas
 
 ROUNDED = 1  # a colour of a linear ramp is exact before it is rounded to a byte, once in the ramp and once in the atlas
 LENGTH_BOUND = 1e-9  # float64 of metres through a handful of products and an eigendecomposition
 SNAPPED = 0.1  # xatlas snaps the extent of a chart to whole texels of the square that it packs in
-ONE_JOINT = Skeleton(
-    names=("root",),
-    parents=np.array([-1], np.int32),
-    bind_rotations=np.array([[1.0, 0, 0, 0]]),
-    bind_translations=np.zeros((1, 3)),
-    root=0,
-)
-
-
-def patch(cells: int, *, at: float, uv: Array, width: float = 1.0) -> tuple[Array, Array, Array]:
-    """A square of `cells` x `cells` quads in the plane x = at .. at + width, its UV the 2 x 2 map (and shift) `uv`."""
-    line = np.linspace(0, 1, cells + 1)
-    grid = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    vertices = np.column_stack([grid[:, 0] * width + at, grid[:, 1] * width, np.zeros(len(grid))])
-    corner = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
-    lower = np.stack([corner, corner + 1, corner + cells + 1], axis=1)
-    upper = np.stack([corner + 1, corner + cells + 2, corner + cells + 1], axis=1)
-    return vertices, np.concatenate([lower, upper]), grid @ uv[:2] + uv[2]
-
-
-def surfaces_of(*patches: tuple[Array, Array, Array], images: tuple[Array, ...], wrap: Wrap = "repeat") -> Surfaces:
-    """Patches as one character; patch k uses image k, or the last."""
-    starts = np.cumsum([0] + [len(p[0]) for p in patches])
-    faces = np.concatenate([p[1] + start for p, start in zip(patches, starts, strict=False)]).astype(np.int32)
-    vertices = np.concatenate([p[0] for p in patches])
-    material = np.repeat(np.arange(len(patches)), [len(p[1]) for p in patches])
-    return Surfaces(
-        name="patches",
-        skeleton=ONE_JOINT,
-        vertices=vertices,
-        faces=faces,
-        uv=np.concatenate([p[2] for p in patches]),
-        uv_faces=faces,
-        face_material=np.minimum(material, len(images) - 1).astype(np.int32),
-        materials=tuple(Material(f"material {k}", image, wrap, wrap) for k, image in enumerate(images)),
-        skin_indices=np.zeros((len(vertices), 8), np.int32),
-        skin_weights=np.tile(np.array([1, 0, 0, 0, 0, 0, 0, 0], np.float32), (len(vertices), 1)),
-        clips=(),
-        notes=("An earlier note.",),
-    )
-
-
-def ramp(size: int) -> Array:
-    """Red grows with u, green with v; both are linear, so that bilinear sampling is exact away from the border."""
-    centre = (np.arange(size) + 0.5) / size * 255
-    image = np.zeros((size, size, 4), np.uint8)
-    image[..., 0], image[..., 1], image[..., 2], image[..., 3] = np.rint(centre), np.rint(centre)[:, None], 7, 200
-    return image
-
-
-def plain(*color: int) -> Array:
-    return np.array(color, np.uint8).reshape(1, 1, 4)
-
-
-def uv_map(u: float, v: float, *, at: tuple[float, float]) -> Array:
-    """Rows of a map that scales a patch to u x v and moves it."""
-    return np.array([[u, 0], [0, v], at])
-
-
-def texels_and_colours(character: Character) -> tuple[TexelMap, Array]:
-    texels = build_texel_map(character.mesh, len(character.base_color))
-    return texels, character.base_color.reshape(-1, 4)[texels.texels].astype(int)
-
-
-def points(character: Character, texels: TexelMap) -> Array:
-    corners = character.mesh.vertices[character.mesh.faces[texels.triangles]]
-    return np.einsum("nk,nkd->nd", texels.barycentrics, corners)
 
 
 def test_keep_leaves_a_clean_layout_and_its_picture_as_they_are() -> None:
@@ -263,6 +193,7 @@ def test_a_folded_sliver_stays_in_its_chart() -> None:
 def test_sampling_follows_the_materials_wrap(wrap: Wrap, mode: str) -> None:
     rng = np.random.default_rng(0)
     image = rng.integers(0, 256, (5, 7, 4), dtype=np.uint8)
+    image[..., 3] = 255
     corners = np.array([[[-2.2, -1.7], [3.1, -1.7], [-2.2, 2.9]], [[3.1, -1.7], [3.1, 2.9], [-2.2, 2.9]]])
     square = np.array([[[0, 0], [1, 0], [0, 1]], [[1, 0], [1, 1], [0, 1]]], float)
     vertices, faces, uv = patch(1, at=0, uv=uv_map(1, 1, at=(0, 0)))
@@ -291,7 +222,7 @@ def test_a_picture_finer_than_the_atlas_is_averaged_without_the_colour_of_what_i
     checks = np.zeros((64, 64, 4), np.uint8)
     checks[::2, ::2] = checks[1::2, 1::2] = (90, 60, 30, 254)
     whole = uv_map(1, 1, at=(0, 0))
-    surfaces = surfaces_of(patch(1, at=0, uv=whole), patch(1, at=2, uv=whole), images=(checks, plain(0, 0, 0, 0)))
+    surfaces = surfaces_of(patch(1, at=0, uv=whole), patch(1, at=2, uv=whole), images=(checks, plain(0, 0, 0, 9)))
     character = build_atlas(surfaces, uv="keep", size=32)
     texels, colours = texels_and_colours(character)
     of_checks = points(character, texels)[:, 0] < 1.5

@@ -10,6 +10,8 @@ from PIL import Image
 from mua.arrays import Array
 from mua.camera import Camera
 from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
+from mua.rig.filtering import bled
+from mua.rig.opacity import EDGE, cut_out
 from mua.rig.scene import Material, Part
 
 SAMPLES = 3  # along a side of a pixel; an odd number, so that no coverage is exactly one half
@@ -114,7 +116,7 @@ def _piece(part: Part, material: Material) -> _Piece:
 
 
 def _texture(context: moderngl.Context, material: Material) -> moderngl.Texture:
-    image = material.image
+    image = cut_out(material, EDGE) if material.alpha_mode == "mask" else bled(material.image)
     factor = -(-max(image.shape[:2]) // LARGEST)
     if factor > 1:
         image = np.asarray(Image.fromarray(image).reduce(factor))

@@ -1,13 +1,14 @@
 """Carries textures over from the UVs that a file came with to the UVs of the atlas."""
 
 import numpy as np
-from PIL import Image
 from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
 from mua.rig.charts import areas
+from mua.rig.filtering import bilinear, bled, reduced
+from mua.rig.opacity import cut_out
 from mua.rig.pictures import multiplied
-from mua.rig.scene import Material, Wrap
+from mua.rig.scene import Material, Wrap, wrapped
 from mua.rig.texel_map import TexelMap
 
 
@@ -30,7 +31,7 @@ def bake_texture(
         rows = face_material[texels.triangles] == index
         if rows.any():
             picture[texels.texels[rows]] = _sample(
-                _averaged(material.image, corners[face_material == index], int(rows.sum())),
+                _averaged(material, corners[face_material == index], int(rows.sum())),
                 points[rows],
                 wraps=(material.wrap_u, material.wrap_v),
             )
@@ -43,14 +44,15 @@ def bake_texture(
 
 
 def _averaged(
-    image: Array,  # [h, w, 4] uint8
+    material: Material,
     corners: Array,  # [F, 3, 2] UV of the triangles that use it
     wanted: int,  # texels that these triangles have in the atlas
 ) -> Array:
-    """The picture reduced by the whole factor by which it is finer than the atlas: [h', w', 4] uint8."""
-    texels = areas(corners).sum() * image.shape[0] * image.shape[1]
-    factor = int(np.sqrt(texels / wanted))
-    return np.asarray(Image.fromarray(image).reduce(factor)) if factor > 1 else image
+    """Its picture reduced by the whole factor by which it is finer than the atlas, no colour in it foreign: uint8."""
+    image, used = material.image, areas(corners).sum()
+    if material.alpha_mode == "mask":
+        image = cut_out(material, np.sqrt(used * image.shape[0] * image.shape[1] / wanted))
+    return bled(reduced(image, int(np.sqrt(used * image.shape[0] * image.shape[1] / wanted))))
 
 
 def _sample(
@@ -63,22 +65,9 @@ def _sample(
     height, width = image.shape[:2]
     place = points * (width, height) - 0.5
     first = np.floor(place).astype(np.int64)
-    right, down = (place - first).T[:, :, None]
-    columns = [_wrapped(first[:, 0] + step, width, wraps[0]) for step in (0, 1)]
-    rows = [_wrapped(first[:, 1] + step, height, wraps[1]) for step in (0, 1)]
-    upper = image[rows[0], columns[0]] * (1 - right) + image[rows[0], columns[1]] * right
-    lower = image[rows[1], columns[0]] * (1 - right) + image[rows[1], columns[1]] * right
-    return np.rint(upper * (1 - down) + lower * down).astype(np.uint8)
-
-
-def _wrapped(index: Array, count: int, wrap: Wrap) -> Array:
-    """Texel indices brought into 0..count - 1 as the material's sampler does."""
-    if wrap == "repeat":
-        return index % count
-    if wrap == "mirror":
-        there = index % (2 * count)
-        return np.minimum(there, 2 * count - 1 - there)
-    return np.clip(index, 0, count - 1)
+    columns = wrapped(first[:, 0], width, wraps[0]), wrapped(first[:, 0] + 1, width, wraps[0])
+    rows = wrapped(first[:, 1], height, wraps[1]), wrapped(first[:, 1] + 1, height, wraps[1])
+    return np.rint(bilinear(image, rows, columns, place - first)).astype(np.uint8)
 
 
 def _fill_from_nearest(

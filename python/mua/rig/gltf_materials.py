@@ -10,9 +10,10 @@ from mua.rig import pictures
 from mua.rig.findings import Findings
 from mua.rig.gltf_document import Document
 from mua.rig.gltf_vrm import is_toon
-from mua.rig.scene import Material, Wrap
+from mua.rig.scene import AlphaMode, Material, Wrap
 
 WRAPS: dict[int, Wrap] = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
+ALPHA_MODES: dict[str, AlphaMode] = {"OPAQUE": "opaque", "MASK": "mask", "BLEND": "blend"}
 REPEAT: tuple[Wrap, Wrap] = ("repeat", "repeat")
 WEBP = "EXT_texture_webp"
 TRANSFORM = "KHR_texture_transform"
@@ -78,9 +79,9 @@ def _material(document: Document, index: int, material: Any, findings: Findings)
             image = pictures.glowing(image, glow)
         else:
             findings.add("Glow that is mapped otherwise than the base colour is left out, of materials: {}.", name)
-    opaque = (material.alphaMode or "OPAQUE") == "OPAQUE"
-    image = pictures.opaque(image) if opaque else image
-    return Material(name, image, *wraps), replace(reads, opaque=opaque, vertex_colors=not is_toon(material))
+    read = _with_opacity(Material(name, image, *wraps), material, document, where)
+    opaque = read.alpha_mode == "opaque"
+    return read, replace(reads, opaque=opaque, vertex_colors=not is_toon(material))
 
 
 def _emission(document: Document, material: Any, where: str) -> tuple[Array | None, tuple[Wrap, Wrap], Coordinates]:
@@ -99,6 +100,16 @@ def _emission(document: Document, material: Any, where: str) -> tuple[Array | No
     info = vars(material.emissiveTexture)
     image, wraps = _picture(document, info, f"{where} emissive texture")
     return pictures.tinted(image, factor), wraps, _coordinates(document, info, where)
+
+
+def _with_opacity(read: Material, material: Any, document: Document, where: str) -> Material:
+    """The material with the alpha that its mode asks for."""
+    mode = ALPHA_MODES.get(material.alphaMode or "OPAQUE")
+    if mode is None:
+        raise document.error(f"{where}.alphaMode is {material.alphaMode!r}, expected one of {', '.join(ALPHA_MODES)}")
+    cutoff = 0.5 if material.alphaCutoff is None else material.alphaCutoff
+    image = pictures.opaque(read.image) if mode == "opaque" else read.image
+    return replace(read, image=image, alpha_mode=mode, alpha_cutoff=float(cutoff))
 
 
 def _base_color(material: Any) -> tuple[Any, dict[str, Any] | None]:

@@ -12,6 +12,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 
 Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
+AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,18 @@ class Material:
     image: Array  # [h, w, 4] uint8 sRGB, at least 1 x 1; alpha is opacity (255 where the material is opaque)
     wrap_u: Wrap = "repeat"
     wrap_v: Wrap = "repeat"
+    alpha_mode: AlphaMode = "blend"  # mask: solid where alpha is at least the cut-off, clear elsewhere
+    alpha_cutoff: float = 0.5
+
+
+def wrapped(index: Array, count: int, wrap: Wrap) -> Array:
+    """Texel indices brought into 0..count - 1 as a material's sampler does."""
+    if wrap == "repeat":
+        return index % count
+    if wrap == "mirror":
+        there = index % (2 * count)
+        return np.minimum(there, 2 * count - 1 - there)
+    return np.clip(index, 0, count - 1)
 
 
 @dataclass(frozen=True)

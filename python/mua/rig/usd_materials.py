@@ -43,6 +43,9 @@ def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path) -> Look:
         look = Look(Material(name, pictures.flat(np.array([*color, opacity]))))
     else:
         look = _textured(name, source[0], path)
+    threshold = float(_value(shader, "opacityThreshold", default=0.0)[0])
+    if threshold > 0:
+        look = replace(look, material=replace(look.material, alpha_mode="mask", alpha_cutoff=threshold))
     if alpha_source is not None:
         alpha = _picture(alpha_source[0], path)[..., CHANNELS[alpha_source[1]]]
         return replace(look, material=replace(look.material, image=_with_alpha(look.material.image, alpha)))

@@ -12,6 +12,7 @@ from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
 from mua.rig.charts import areas, even, find_charts, overlapping, pack, starved, unwrap
 from mua.rig.detail import Detail, factors, split_by_factor
+from mua.rig.opacity import without_unseen
 from mua.rig.texel_map import build_texel_map, cover
 
 UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]
@@ -52,7 +53,7 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
 
     The picture is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
-    source = _read(surfaces)
+    source = _read(without_unseen(surfaces))
     if uv == "keep":
         layout = _keep(source)
         trouble = _trouble(source, layout)
@@ -60,7 +61,7 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
         layout = _Layout(layout.corners, layout.as_is, told)
     else:
         wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
-        anew = wound | source.starved if uv == "auto" else np.ones(len(surfaces.faces), bool)
+        anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
         layout = _lay_out(source, anew, detail or {})
     return _character(source, layout, size)
 
@@ -188,8 +189,10 @@ def _character(source: _Source, layout: _Layout, size: int) -> Character:
     mesh = Mesh(
         vertices=surfaces.vertices, faces=surfaces.faces, uv=uv, uv_faces=uv_faces.reshape(-1, 3).astype(np.int32)
     )
-    picture = surfaces.materials[surfaces.face_material[0]].image
-    if not layout.as_is or picture.shape[0] != picture.shape[1] or surfaces.corner_colors is not None:
+    material = surfaces.materials[surfaces.face_material[0]]
+    picture = material.image
+    made = not layout.as_is or surfaces.corner_colors is not None or material.alpha_mode == "mask"
+    if made or picture.shape[0] != picture.shape[1]:
         texels = build_texel_map(mesh, size)
         colors = surfaces.corner_colors
         picture = bake_texture(

@@ -14,7 +14,8 @@ from mua.texture.sh import LINEAR
 from mua.texture.stretch import SurfelStretch
 from mua.texture.surfels import rest_surfels
 
-MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1; of one whose alpha is 0, the negative
+MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1
+MOST_CLEAR = 6.0  # negative logit of one whose alpha is 0: below what changes an 8-bit image, so that it is not drawn
 SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
 
 
@@ -39,7 +40,7 @@ class SurfaceTexels:
         )
         self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.rotations)
         alpha = np.clip(albedo[:, 3], 1e-6, 1 - 1e-6)
-        self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_OPAQUE, MOST_OPAQUE)
+        self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_CLEAR, MOST_OPAQUE)
 
     def texture(
         self,
