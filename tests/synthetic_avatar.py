@@ -28,7 +28,7 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4") -> Avatar:
     """The same avatar for the same arguments; all tensors float32, wavelet taps and UV float64."""
     rng = np.random.default_rng(seed)
     rig = synthetic_rig()
-    encoding = PoseEncoding(joints=(1, 2), rate=24.0)
+    encoding = PoseEncoding(joints=(1, 2), rate=24.0, translated=(2,))
     scale = rng.uniform(0.5, 2, encoding.width).astype(np.float32)
     taps = pywt.Wavelet(wavelet)
     vertices = rig.mesh.vertices.astype(np.float32)
@@ -79,11 +79,13 @@ def synthetic_rig() -> Rig:
 
 
 def synthetic_clip(skeleton: Skeleton, rng: np.random.Generator, *, frames: int = 7) -> Clip:
-    """Random smooth turning of every joint while the root drifts."""
+    """Random smooth turning of every joint while the root drifts and the last joint moves in its parent."""
     axes = rotation.normalize(rng.normal(size=(len(skeleton.names), 3)))
     angles = 0.6 * np.sin(np.arange(frames)[:, None] / 2 + np.arange(len(skeleton.names)))
     drift = skeleton.bind_translations[skeleton.root] + np.arange(frames)[:, None] * [0.02, 0, 0.05]
-    return Clip("wave", 24.0, rotation.from_axis_angle(axes, angles), skeleton.with_root(drift))
+    translations = skeleton.with_root(drift)
+    translations[:, -1] += 0.1 * np.sin(np.arange(frames)[:, None] / [2, 3, 4])
+    return Clip("wave", 24.0, rotation.from_axis_angle(axes, angles), translations)
 
 
 def _texel_map(mesh: Mesh) -> TexelMap:

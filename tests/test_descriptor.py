@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from mua import rotation
 from mua.motion.clip import Clip
-from mua.motion.descriptor import choose_joints, describe, describe_window, heading_of, normalization
+from mua.motion.descriptor import choose_joints, choose_translated, describe, describe_window, heading_of, normalization
 from mua.motion.encoding import PoseEncoding
 from mua.rig.skeleton import Skeleton
 
@@ -58,15 +58,18 @@ def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: i
         parts += [back @ (position_g - position), *(back @ turn_g).T[:2]]
         for j in encoding.joints:
             parts += [*matrix(clip.rotations[g, j]).T[:2]]
+        for j in encoding.translated:
+            parts += [clip.translations[g, j] - skeleton.bind_translations[j]]
     return np.concatenate(parts)
 
 
 @pytest.mark.parametrize("heading", [True, False])
 @pytest.mark.parametrize(("window", "joints"), [(3, (2, 4)), (1, (3,)), (5, ()), (9, (2, 3, 4))])
+@pytest.mark.parametrize("translated", [(), (3,), (2, 4)])
 def test_holds_what_the_encoding_declares(
-    skeleton: Skeleton, clip: Clip, heading: bool, window: int, joints: tuple[int, ...]
+    skeleton: Skeleton, clip: Clip, heading: bool, window: int, joints: tuple[int, ...], translated: tuple[int, ...]
 ) -> None:
-    encoding = PoseEncoding(joints, 30.0, window, heading)
+    encoding = PoseEncoding(joints, 30.0, window, heading, translated)
     found = describe(skeleton, encoding, clip.rotations, clip.translations)
     assert found.shape == (FRAMES, encoding.width)
     assert found.dtype == np.float64
@@ -76,7 +79,7 @@ def test_holds_what_the_encoding_declares(
 
 @pytest.mark.parametrize("heading", [True, False])
 def test_a_window_gives_the_numbers_of_its_clip(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
-    encoding = PoseEncoding((2, 3), 30.0, 3, heading)
+    encoding = PoseEncoding((2, 3), 30.0, 3, heading, (4,))
     whole = describe(skeleton, encoding, clip.rotations, clip.translations)
     for f in range(FRAMES):
         newest_first = np.maximum(f - np.arange(3), 0)
@@ -107,7 +110,7 @@ def moved(skeleton: Skeleton, clip: Clip, yaw: float, shift: np.ndarray) -> Clip
 
 @pytest.mark.parametrize("heading", [True, False])
 def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, heading: bool) -> None:
-    encoding = PoseEncoding((2, 3), 30.0, 3, heading)
+    encoding = PoseEncoding((2, 3), 30.0, 3, heading, (3, 4))
     elsewhere = moved(skeleton, clip, 0.0, np.array([5.0, -2, 3]))
     found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translations)
     np.testing.assert_allclose(found, describe(skeleton, encoding, clip.rotations, clip.translations), atol=BOUND)
@@ -116,7 +119,7 @@ def test_does_not_depend_on_the_place(skeleton: Skeleton, clip: Clip, heading: b
 def test_depends_on_the_facing_only_without_heading(skeleton: Skeleton, clip: Clip) -> None:
     elsewhere = moved(skeleton, clip, 2.5, np.array([5.0, -2, 3]))
     for heading in (True, False):
-        encoding = PoseEncoding((2, 3), 30.0, 3, heading)
+        encoding = PoseEncoding((2, 3), 30.0, 3, heading, (3, 4))
         found = describe(skeleton, encoding, elsewhere.rotations, elsewhere.translations)
         here = describe(skeleton, encoding, clip.rotations, clip.translations)
         assert (np.abs(found - here).max() < BOUND) == heading
@@ -148,6 +151,18 @@ def test_chooses_a_joint_that_differs_between_still_clips(skeleton: Skeleton) ->
     other[:, 3] = rotation.multiply(still[:, 3], np.array([np.cos(0.2), 0, np.sin(0.2), 0]))
     clips = [Clip("a", 30.0, still, np.zeros((3, 5, 3))), Clip("b", 30.0, other, np.zeros((3, 5, 3)))]
     assert choose_joints(skeleton, clips, np.ones(5, dtype=bool)) == (3,)
+
+
+def test_chooses_what_is_translated_below_the_root_and_used(skeleton: Skeleton) -> None:
+    """Above the root, a translation moves the whole character, which is no matter of its shape."""
+    rotations = np.tile(skeleton.bind_rotations, (40, 1, 1))
+    translations = np.tile(skeleton.bind_translations, (40, 1, 1))
+    wave = np.sin(np.arange(40) * 2 * np.pi / 40)  # standard deviation sqrt(1/2)
+    for joint, share in ((0, 1.0), (1, 1.0), (2, 1.3e-3), (3, 1.5e-3), (4, 1.0)):
+        translations[:, joint, 2] += share * skeleton.size * wave
+    halves = [Clip("a", 30.0, rotations[:20], translations[:20]), Clip("b", 30.0, rotations[20:], translations[20:])]
+    assert choose_translated(skeleton, halves, np.ones(5, dtype=bool)) == (3, 4)
+    assert choose_translated(skeleton, halves, np.array([1, 1, 1, 1, 0], dtype=bool)) == (3,)
 
 
 def test_normalizes_but_does_not_stretch_constant_columns() -> None:

@@ -80,6 +80,17 @@ def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_
                 assert torch.equal(own, torch.full((6,), 0.5 ** int(joint_steps(rig.skeleton, seen)[part, column])))
 
 
+def test_what_a_joint_is_translated_fades_as_its_rotation_does() -> None:
+    """Also of a joint that moves without turning: it is a part, too."""
+    rig = synthetic_rig()
+    parts = body_parts(rig, PoseEncoding(joints=(1,), rate=30, window=2, translated=(1, 2)))
+    steps = joint_steps(rig.skeleton, [0, 1, 2])
+    entries = [0] * 9 + [1] * 6 + [1] * 3 + [2] * 3
+    expected = steps[:, entries]
+    expected[:, :9] = np.minimum(expected[:, :9], 1)
+    assert parts.steps.tolist() == np.tile(expected, 2).tolist()
+
+
 def test_a_sample_belongs_to_the_part_that_most_of_its_texels_hang_on() -> None:
     image = np.zeros((4, 6, 3))
     image[0, 0, 2] = 1.0

@@ -11,13 +11,15 @@ import pytest
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
+from mua.asset.flatbuffer import parse
 from mua.asset.read import decode_tree, load, parse_checked, read
-from mua.asset.tensors import Storage
+from mua.asset.tensors import Storage, stored
 from mua.asset.write import encode, write
 from mua.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
 GOLDEN = ROOT / "tests" / "golden" / "synthetic.muaavatar"
+VERSION_1 = GOLDEN.with_name("version_1.muaavatar")
 F16_RELATIVE = 2.0**-11  # half a unit in the last place of 11 significant bits
 F16_SMALLEST = 2.0**-25  # half the spacing of subnormals
 
@@ -93,6 +95,48 @@ def test_tensor_bytes_start_at_multiples_of_16() -> None:
 def test_golden_file_reads_and_writes_back_to_the_same_bytes() -> None:
     content = GOLDEN.read_bytes()
     assert encode(read(GOLDEN), storage="f32") == content
+
+
+def test_a_file_of_version_1_reads_and_moves_the_root_alone() -> None:
+    assert (load(VERSION_1)["version_major"], load(GOLDEN)["version_major"]) == (1, 2)
+    avatar = read(VERSION_1)
+    assert avatar.encoding.translated == ()
+    bound = avatar.rig.skeleton.bind_translations[1:]
+    for clip in avatar.clips:
+        np.testing.assert_array_equal(clip.translations[:, 1:], np.tile(bound, (len(clip), 1, 1)))
+        assert np.ptp(clip.translations[:, 0], axis=0).any()
+
+
+def test_an_avatar_whose_joints_only_turn_holds_no_more_than_version_1() -> None:
+    content = bytearray(VERSION_1.read_bytes())
+    at, checksum = (parse(bytes(content))["_at"][name] for name in ("version_major", "crc32"))
+    content[at] = 2
+    content[checksum : checksum + 4] = bytes(4)
+    written = bytearray(encode(read(VERSION_1), storage="f32"))
+    written[checksum : checksum + 4] = bytes(4)
+    assert written == content
+
+
+def test_translations_of_joints_come_back(tmp_path: Path) -> None:
+    avatar = synthetic_avatar()
+    write(tmp_path / "a.muaavatar", avatar)
+    found = read(tmp_path / "a.muaavatar")
+    assert found.encoding == avatar.encoding
+    for clip, expected in zip(found.clips, avatar.clips, strict=True):
+        np.testing.assert_array_equal(clip.translations, expected.translations.astype(np.float32))
+
+
+def test_a_joint_that_one_clip_translates_is_stored_for_all(tmp_path: Path) -> None:
+    """Whether or not the descriptor tells it."""
+    avatar = synthetic_avatar()
+    (clip,) = avatar.clips
+    moved, still = clip.translations.copy(), clip.translations.copy()
+    moved[3, 1, 2] += 1e-3
+    clips = tuple(dataclasses.replace(clip, translations=each) for each in (still, moved))
+    write(tmp_path / "a.muaavatar", dataclasses.replace(avatar, clips=clips))
+    assert stored(load(tmp_path / "a.muaavatar")["skeleton"]["translated"], "").tolist() == [1, 2]
+    for found, expected in zip(read(tmp_path / "a.muaavatar").clips, clips, strict=True):
+        np.testing.assert_array_equal(found.translations, expected.translations.astype(np.float32))
 
 
 def test_refused_avatar_leaves_the_earlier_file(tmp_path: Path) -> None:

@@ -49,8 +49,9 @@ namespace Mua.Editor
             Row(
                 text, "descriptor",
                 Format(
-                    "{0} numbers: {1} frames at {2} a second, root and {3} joints, {4}", encoding.Width, encoding.Window,
-                    Short(encoding.Rate), encoding.Joints.Length,
+                    "{0} numbers: {1} frames at {2} a second, root and {3} joints, {4} translated, {5}",
+                    encoding.Width, encoding.Window, Short(encoding.Rate), encoding.Joints.Length,
+                    encoding.Translated.Length,
                     encoding.Heading ? "heading removed" : "world heading"));
             Row(
                 text, "template",

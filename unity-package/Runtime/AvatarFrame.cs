@@ -96,22 +96,22 @@ namespace Mua
         /// device at once.
         /// </summary>
         /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
-        /// <param name="translations">[k, 3] local translations of the root joint, metres.</param>
+        /// <param name="translations">[k, J, 3] local joint translations, metres.</param>
         /// <param name="place">From the avatar's space to the right-handed world.</param>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
             in DualQuaternion place)
         {
-            Decode(commands, rotations, translations, rotations, Vector3D.Load(translations, 0), place);
+            Decode(commands, rotations, translations, rotations, translations, place);
         }
 
-        /// <summary>The same, in a pose [J, 4] and [3] other than the window's newest.</summary>
+        /// <summary>The same, in a pose [J, 4] and [J, 3] other than the window's newest.</summary>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
-            ReadOnlySpan<double> pose, Vector3D translation, in DualQuaternion place)
+            ReadOnlySpan<double> pose, ReadOnlySpan<double> offsets, in DualQuaternion place)
         {
             WriteDescriptor(rotations, translations);
-            WritePose(pose, translation, place);
+            WritePose(pose, offsets, place);
             Coarse(commands);
             Branch(commands, Avatar.Geometry, GeometryStart);
             Branch(commands, Avatar.Appearance, AppearanceStart);
@@ -119,11 +119,12 @@ namespace Mua
             IsDecoded = true;
         }
 
-        /// <summary>Appends what moves the last decoded avatar into another pose: [J, 4] and [3] as for Decode.</summary>
+        /// <summary>Appends what moves the last decoded avatar into another pose: [J, 4] and [J, 3] as for Decode.</summary>
         public void Repose(
-            CommandBuffer commands, ReadOnlySpan<double> rotations, Vector3D translation, in DualQuaternion place)
+            CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
+            in DualQuaternion place)
         {
-            WritePose(rotations, translation, place);
+            WritePose(rotations, translations, place);
             Pose(commands);
         }
 
@@ -158,9 +159,10 @@ namespace Mua
             descriptor.SetData(descriptorValues);
         }
 
-        private void WritePose(ReadOnlySpan<double> rotations, Vector3D translation, in DualQuaternion place)
+        private void WritePose(
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, in DualQuaternion place)
         {
-            skeleton.Set(rotations.Slice(0, 2 * jointValues.Length), translation);
+            skeleton.Set(rotations, translations);
             skeleton.WriteSkinning(place, MemoryMarshal.Cast<Vector4, float>(new Span<Vector4>(jointValues)));
             Joints.SetData(jointValues);
             WriteBounds(place);

@@ -17,7 +17,8 @@ namespace Mua
         private readonly Transform root;
         private readonly Transform[] joints; // null where there is none
         private readonly double[] turned; // [J, 4] rotations in the root's space
-        private readonly double[] placed; // [J, 3] positions there, metres; of the joints above the root joint
+        private readonly double[] placed; // [J, 3] positions there, metres
+        private readonly bool[] moves; // [J] whether a joint's place is read, and not that of the bind pose
 
         /// <summary>InvalidOperationException where no transform below `root` has a joint's name.</summary>
         public AvatarJoints(Skeleton skeleton, Transform root)
@@ -27,6 +28,12 @@ namespace Mua
             joints = new Transform[skeleton.JointCount];
             turned = new double[4 * skeleton.JointCount];
             placed = new double[3 * skeleton.JointCount];
+            moves = new bool[skeleton.JointCount];
+            moves[skeleton.Root] = true;
+            foreach (int joint in skeleton.Translated)
+            {
+                moves[joint] = true;
+            }
             int found = Find();
             if (found == 0 || joints[skeleton.Root] == null)
             {
@@ -43,8 +50,8 @@ namespace Mua
         /// <summary>Whether the transforms are still there.</summary>
         public bool Alive => root != null && joints[skeleton.Root] != null;
 
-        /// <summary>Local rotations [J, 4] and root translation [3], metres, of this moment.</summary>
-        public void Read(Span<double> rotations, Span<double> translation)
+        /// <summary>Local rotations [J, 4] and translations [J, 3], metres, of this moment.</summary>
+        public void Read(Span<double> rotations, Span<double> translations)
         {
             root.GetPositionAndRotation(out Vector3 origin, out Quaternion turn);
             Quaternion back = Quaternion.Inverse(turn);
@@ -61,12 +68,14 @@ namespace Mua
                 QuaternionD world = above * local;
                 world.Store(turned, joint);
                 Vector3D start = parent < 0 ? new Vector3D() : Vector3D.Load(placed, parent);
-                if (joint == skeleton.Root)
+                Vector3D offset = Vector3D.Load(skeleton.BindTranslations, joint);
+                if (moves[joint] && joints[joint] != null)
                 {
                     Vector3D at = AvatarSpace.Position(back * (joints[joint].position - origin));
-                    above.Conjugate.Rotate(at - start).Store(translation, 0);
+                    offset = above.Conjugate.Rotate(at - start);
                 }
-                (start + above.Rotate(Vector3D.Load(skeleton.BindTranslations, joint))).Store(placed, joint);
+                offset.Store(translations, joint);
+                (start + above.Rotate(offset)).Store(placed, joint);
             }
         }
 

@@ -49,7 +49,7 @@ namespace Mua
             names = new string[clips.Length];
             for (int i = 0; i < clips.Length; i++)
             {
-                clips[i] = new ClipSampler(avatar.Clips[i], avatar.Skeleton.JointCount, avatar.Encoding.Rate);
+                clips[i] = new ClipSampler(avatar.Clips[i], avatar.Skeleton, avatar.Encoding.Rate);
                 names[i] = clips[i].Name;
             }
         }

@@ -17,10 +17,11 @@ namespace Mua
         private readonly int frames;
         private readonly double rate;
         private readonly double[] window; // [k, J, 4] newest first
-        private readonly double[] windowTranslations; // [k, 3]
+        private readonly double[] windowTranslations; // [k, J, 3]
         private readonly double[] current; // [J, 4]
+        private readonly double[] currentTranslations; // [J, 3]
         private readonly double[] next; // [J, 4]
-        private readonly double[] translations = new double[6]; // of current and next
+        private readonly double[] nextTranslations; // [J, 3]
         private ClipSampler clip; // of the window; null where it is of transforms
         private int index = -1; // frame of the clip, newest of the window
         private double newest; // seconds; of the window's newest pose of transforms
@@ -32,22 +33,24 @@ namespace Mua
             frames = avatar.Encoding.Window;
             rate = avatar.Encoding.Rate;
             window = new double[4 * frames * skeleton.JointCount];
-            windowTranslations = new double[3 * frames];
+            windowTranslations = new double[3 * frames * skeleton.JointCount];
             current = new double[4 * skeleton.JointCount];
+            currentTranslations = new double[3 * skeleton.JointCount];
             next = new double[4 * skeleton.JointCount];
+            nextTranslations = new double[3 * skeleton.JointCount];
         }
 
         /// <summary>[k, J, 4] local rotations, newest first.</summary>
         public ReadOnlySpan<double> Window => window;
 
-        /// <summary>[k, 3] local translations of the root joint, metres.</summary>
+        /// <summary>[k, J, 3] local translations, metres.</summary>
         public ReadOnlySpan<double> WindowTranslations => windowTranslations;
 
         /// <summary>[J, 4] local rotations of this moment.</summary>
         public ReadOnlySpan<double> Current => current;
 
-        /// <summary>Local translation of the root joint of this moment, metres.</summary>
-        public Vector3D CurrentTranslation => Vector3D.Load(translations, 0);
+        /// <summary>[J, 3] local translations of this moment, metres.</summary>
+        public ReadOnlySpan<double> CurrentTranslations => currentTranslations;
 
         /// <summary>Whether the window is another than that of the last decode; who decodes it sets this back.</summary>
         public bool IsFresh { get; set; }
@@ -60,7 +63,7 @@ namespace Mua
                 return;
             }
             skeleton.BindRotations.CopyTo(current, 0);
-            skeleton.BindTranslation.Store(translations, 0);
+            skeleton.BindTranslations.CopyTo(currentTranslations, 0);
             Fill();
             clip = null;
         }
@@ -79,11 +82,11 @@ namespace Mua
                 IsFresh = true;
             }
             new ReadOnlySpan<double>(window, 0, current.Length).CopyTo(current);
-            new ReadOnlySpan<double>(windowTranslations, 0, 3).CopyTo(translations);
+            new ReadOnlySpan<double>(windowTranslations, 0, currentTranslations.Length).CopyTo(currentTranslations);
             double t = position - frame;
             if (t > 0 && frame + 1 < source.FrameCount)
             {
-                source.ReadFrame(frame + 1, next, new Span<double>(translations, 3, 3));
+                source.ReadFrame(frame + 1, next, nextTranslations);
                 Approach(t);
             }
         }
@@ -91,7 +94,7 @@ namespace Mua
         /// <summary>The transforms as they are at a time; the window takes one pose in each frame of the avatar's rate.</summary>
         public void Sample(AvatarJoints joints, double seconds)
         {
-            joints.Read(current, translations);
+            joints.Read(current, currentTranslations);
             double age = (seconds - newest) * rate;
             if (!started || age < 0 || age > LongestGap)
             {
@@ -123,9 +126,9 @@ namespace Mua
             {
                 QuaternionD a = QuaternionD.Load(current, joint), b = QuaternionD.Load(next, joint);
                 QuaternionD.Slerp(a, b, t).Store(current, joint);
+                Vector3D from = Vector3D.Load(currentTranslations, joint), to = Vector3D.Load(nextTranslations, joint);
+                (from + t * (to - from)).Store(currentTranslations, joint);
             }
-            Vector3D from = Vector3D.Load(translations, 0), to = Vector3D.Load(translations, 1);
-            (from + t * (to - from)).Store(translations, 0);
         }
 
         private void Fill()
@@ -133,7 +136,7 @@ namespace Mua
             for (int age = 0; age < frames; age++)
             {
                 current.CopyTo(window, age * current.Length);
-                CurrentTranslation.Store(windowTranslations, age);
+                currentTranslations.CopyTo(windowTranslations, age * currentTranslations.Length);
             }
             started = true;
             index = -1;
@@ -143,9 +146,10 @@ namespace Mua
         private void Push()
         {
             Array.Copy(window, 0, window, current.Length, window.Length - current.Length);
-            Array.Copy(windowTranslations, 0, windowTranslations, 3, windowTranslations.Length - 3);
+            int moved = currentTranslations.Length;
+            Array.Copy(windowTranslations, 0, windowTranslations, moved, windowTranslations.Length - moved);
             current.CopyTo(window, 0);
-            CurrentTranslation.Store(windowTranslations, 0);
+            currentTranslations.CopyTo(windowTranslations, 0);
             IsFresh = true;
         }
     }

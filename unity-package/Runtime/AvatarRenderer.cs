@@ -156,11 +156,11 @@ namespace Mua
             if (pose.IsFresh)
             {
                 Decoded.Decode(
-                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslation, placement.Value);
+                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value);
             }
             else if (hasMoved)
             {
-                Decoded.Repose(commands, pose.Current, pose.CurrentTranslation, placement.Value);
+                Decoded.Repose(commands, pose.Current, pose.CurrentTranslations, placement.Value);
             }
             pose.IsFresh = false;
             hasMoved = false;

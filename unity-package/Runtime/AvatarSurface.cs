@@ -187,7 +187,7 @@ namespace Mua
         {
             var turned = new double[4 * skeleton.JointCount];
             var placed = new double[3 * skeleton.JointCount];
-            skeleton.World(skeleton.BindRotations, skeleton.BindTranslation, turned, placed);
+            skeleton.World(skeleton.BindRotations, skeleton.BindTranslations, turned, placed);
             var positions = new Vector4[skeleton.JointCount];
             for (int joint = 0; joint < positions.Length; joint++)
             {

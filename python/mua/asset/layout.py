@@ -37,6 +37,7 @@ TABLES = {
         Field("bind_translations", "Tensor", required=True),
         Field("bind_inverse", "Tensor", required=True),
         Field("root", "uint"),
+        Field("translated", "Tensor"),
     ),
     "PoseEncoding": (
         Field("joints", "Tensor", required=True),
@@ -47,6 +48,7 @@ TABLES = {
         Field("heading", "bool"),
         Field("mean", "Tensor", required=True),
         Field("scale", "Tensor", required=True),
+        Field("translated", "Tensor"),
     ),
     "Template": (
         Field("faces", "Tensor", required=True),
@@ -93,6 +95,7 @@ TABLES = {
         Field("rate", "float"),
         Field("rotations", "Tensor", required=True),
         Field("translation", "Tensor", required=True),
+        Field("translations", "Tensor"),
     ),
     "Avatar": (
         Field("version_major", "ushort"),

@@ -76,7 +76,8 @@ def decode_tree(tree: Tree) -> Avatar:
     Errors: FormatError with code `shape`, `type`, `range`, `finite` or `value` and the field's path.
     """
     skeleton = _skeleton(tree["skeleton"])
-    encoding, normalization = _encoding(tree["encoding"], skeleton)
+    translated = _translated(tree["skeleton"], "skeleton.translated", skeleton)
+    encoding, normalization = _encoding(tree["encoding"], skeleton, translated)
     wavelet = _wavelet(tree["wavelet"])
     coarse = _coarse(tree["coarse"], encoding.width)
     rig = _rig(tree, skeleton, coarse.mean)
@@ -99,7 +100,7 @@ def decode_tree(tree: Tree) -> Avatar:
         geometry=branches[0],
         appearance=branches[1],
         wavelet=wavelet,
-        clips=tuple(_clip(clip, f"clips[{i}]", skeleton) for i, clip in enumerate(tree["clips"])),
+        clips=tuple(_clip(clip, f"clips[{i}]", skeleton, translated) for i, clip in enumerate(tree["clips"])),
         bounds=_bounds(tree["bounds"]),
         thumbnail=_thumbnail(tree["thumbnail"]),
         notes=tree["notes"],
@@ -142,10 +143,23 @@ def _unit(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
     return rotation.normalize(q)
 
 
-def _encoding(tree: Tree, skeleton: Skeleton) -> tuple[PoseEncoding, Normalization]:
+def _translated(tree: Tree, path: str, skeleton: Skeleton) -> Array:
+    """Joints beside the root that move in their parents; none in a file that names none."""
+    if "translated" not in tree:
+        return np.zeros(0, dtype=np.int32)
+    joints = indices(tree["translated"], path, (None,), 0, len(skeleton.names))
+    if np.any(np.diff(joints) <= 0) or skeleton.root in joints:
+        _refuse(path, "joints must ascend and leave out the root")
+    return joints
+
+
+def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> tuple[PoseEncoding, Normalization]:
     joints = indices(tree["joints"], "encoding.joints", (None,), 0, len(skeleton.names))
     if np.any(np.diff(joints) <= 0) or skeleton.root in joints:
         _refuse("encoding.joints", "joints must ascend and leave out the root")
+    translated = _translated(tree, "encoding.translated", skeleton)
+    if not np.isin(translated, among).all():
+        _refuse("encoding.translated", "joints must be among the skeleton's translated ones")
     if not 1 <= tree["window"] <= 16:
         _refuse("encoding.window", f"{tree['window']} frames, expected 1 to 16")
     encoding = PoseEncoding(
@@ -153,6 +167,7 @@ def _encoding(tree: Tree, skeleton: Skeleton) -> tuple[PoseEncoding, Normalizati
         rate=_rate(tree["rate"], "encoding.rate"),
         window=tree["window"],
         heading=tree["heading"],
+        translated=tuple(int(j) for j in translated),
     )
     scale = reals(tree["scale"], "encoding.scale", (encoding.width,))
     if scale.min() <= 0:
@@ -258,17 +273,20 @@ def _detail(tree: Tree, path: str, channels: int, size: int) -> DetailBand:
     )
 
 
-def _clip(tree: Tree, path: str, skeleton: Skeleton) -> Clip:
+def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array) -> Clip:
     rotations = _unit(tree["rotations"], f"{path}.rotations", (None, len(skeleton.names), 4))
     if not len(rotations):
         _refuse(f"{path}.rotations", "a clip needs at least one frame")
-    translation = reals(tree["translation"], f"{path}.translation", (len(rotations), 3))
-    return Clip(
-        name=tree["name"],
-        rate=_rate(tree["rate"], f"{path}.rate"),
-        rotations=rotations,
-        translations=skeleton.with_root(translation),
-    )
+    translations = skeleton.with_root(reals(tree["translation"], f"{path}.translation", (len(rotations), 3)))
+    if len(translated) or "translations" in tree:
+        translations[:, translated] = _translations(tree, f"{path}.translations", (len(rotations), len(translated), 3))
+    return Clip(tree["name"], _rate(tree["rate"], f"{path}.rate"), rotations, translations)
+
+
+def _translations(tree: Tree, path: str, shape: tuple[int, ...]) -> Array:
+    if "translations" not in tree:
+        raise FormatError("missing", path, f"absent, but the skeleton names {shape[1]} translated joints")
+    return reals(tree["translations"], path, shape)
 
 
 def _bounds(tensor: Tree) -> Array:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mua.arrays import Array
 from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Mlp
 from mua.asset.flatbuffer import VERSION, Tree, build, parse
 from mua.asset.read import decode_tree, parse_checked
@@ -42,6 +43,7 @@ def seal(content: bytes) -> bytes:
 
 
 def _avatar(avatar: Avatar, storage: Storage) -> Tree:
+    translated = _translated(avatar)
     return {
         "version_major": VERSION[0],
         "version_minor": VERSION[1],
@@ -50,7 +52,7 @@ def _avatar(avatar: Avatar, storage: Storage) -> Tree:
         "name": avatar.name,
         "producer": avatar.producer,
         "notes": avatar.notes,
-        "skeleton": _skeleton(avatar.rig.skeleton),
+        "skeleton": _skeleton(avatar.rig.skeleton, translated),
         "encoding": _encoding(avatar.encoding, avatar.normalization),
         "template": _template(avatar.rig),
         "texels": {
@@ -68,13 +70,23 @@ def _avatar(avatar: Avatar, storage: Storage) -> Tree:
         "coarse": _coarse(avatar.coarse, storage),
         "geometry": _branch(avatar.geometry, storage, static=_half(storage)),  # i8 moves texels visibly
         "appearance": _branch(avatar.appearance, storage, static=storage),
-        "clips": [_clip(clip, avatar.rig.skeleton.root, storage) for clip in avatar.clips],
+        "clips": [_clip(clip, avatar.rig.skeleton, translated, storage) for clip in avatar.clips],
         "bounds": pack(avatar.bounds),
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
     }
 
 
-def _skeleton(skeleton: Skeleton) -> Tree:
+def _translated(avatar: Avatar) -> Array:
+    """Joints beside the root that a clip holds elsewhere than in the bind pose, or that the descriptor tells."""
+    skeleton = avatar.rig.skeleton
+    moved = np.isin(np.arange(len(skeleton.names)), avatar.encoding.translated)
+    for clip in avatar.clips:
+        moved |= (np.float32(clip.translations) != np.float32(skeleton.bind_translations)).any(axis=(0, 2))
+    moved[skeleton.root] = False
+    return np.flatnonzero(moved)
+
+
+def _skeleton(skeleton: Skeleton, translated: Array) -> Tree:
     return {
         "names": list(skeleton.names),
         "parents": pack_indices(skeleton.parents),
@@ -82,6 +94,7 @@ def _skeleton(skeleton: Skeleton) -> Tree:
         "bind_translations": pack(skeleton.bind_translations),
         "bind_inverse": pack(skeleton.bind_inverse),
         "root": skeleton.root,
+        **_joints(translated),
     }
 
 
@@ -95,7 +108,13 @@ def _encoding(encoding: PoseEncoding, normalization: Normalization) -> Tree:
         "heading": encoding.heading,
         "mean": pack(normalization.mean),
         "scale": pack(normalization.scale),
+        **_joints(np.array(encoding.translated)),
     }
+
+
+def _joints(translated: Array) -> Tree:
+    """Absent where there are none."""
+    return {"translated": pack_indices(translated)} if len(translated) else {}
 
 
 def _template(rig: Rig) -> Tree:
@@ -140,14 +159,14 @@ def _detail(band: DetailBand, storage: Storage) -> Tree:
     }
 
 
-def _clip(clip: Clip, root: int, storage: Storage) -> Tree:
-    rotations = pack(clip.rotations, _half(storage))
-    return {
+def _clip(clip: Clip, skeleton: Skeleton, translated: Array, storage: Storage) -> Tree:
+    tree = {
         "name": clip.name,
         "rate": clip.rate,
-        "rotations": rotations,
-        "translation": pack(clip.translations[:, root]),
+        "rotations": pack(clip.rotations, _half(storage)),
+        "translation": pack(clip.translations[:, skeleton.root]),
     }
+    return {**tree, "translations": pack(clip.translations[:, translated])} if len(translated) else tree
 
 
 def _half(storage: Storage) -> Storage:

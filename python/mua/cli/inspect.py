@@ -45,7 +45,8 @@ def _summary(file: Path, tree: Tree, avatar: Avatar) -> Table:
         "notes": avatar.notes,
         "skeleton": f"{len(skeleton.names)} joints, root {skeleton.names[skeleton.root]}",
         "descriptor": f"{encoding.width} numbers: {encoding.window} frames at {encoding.rate:g} a second, "
-        f"root and {len(encoding.joints)} joints, {'heading removed' if encoding.heading else 'world heading'}",
+        f"root and {len(encoding.joints)} joints, {len(encoding.translated)} translated, "
+        f"{'heading removed' if encoding.heading else 'world heading'}",
         "template": f"{len(avatar.rig.mesh.vertices)} vertices, {len(avatar.rig.mesh.faces)} triangles, "
         f"{len(avatar.coarse.basis)} PCA components",
         "texels": f"{len(texels.texels)} of {texels.size} x {texels.size}",

@@ -12,6 +12,7 @@ from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.skeleton import Skeleton
 
 STILL = np.radians(0.1)  # standard deviation below which a joint counts as not moving
+MOVES = 1e-3  # of the character's size; standard deviation below which a joint counts as not translated
 SCALE_FLOOR = 1e-3  # a millimetre, or 0.06 degrees: columns that vary less are not stretched to unit variance
 
 
@@ -21,7 +22,7 @@ class _Frames:
 
     position: Array  # [F, 3] world position of the root, metres
     turn: Array  # [F, 4] world rotation of the root relative to bind
-    joints: Array  # [F, 6 n] local rotations of the encoded joints
+    joints: Array  # [F, 6 n + 3 m] local rotations and translations of the encoded joints
 
 
 def describe(
@@ -61,6 +62,20 @@ def choose_joints(
     return tuple(int(j) for j in np.flatnonzero(varies & used) if j != skeleton.root)
 
 
+def choose_translated(
+    skeleton: Skeleton,
+    clips: Sequence[Clip],
+    used: Array,  # [J] bool, as for choose_joints
+) -> tuple[int, ...]:
+    """Joints whose local translation is encoded: those in use, not above the root, where it varies over all `clips`.
+
+    What is above the root moves the whole character, of which the descriptor tells the root's path alone.
+    """
+    varies = np.concatenate([clip.translations for clip in clips]).std(axis=0).max(axis=-1) > MOVES * skeleton.size
+    above = set(skeleton.ancestors(skeleton.root))
+    return tuple(int(j) for j in np.flatnonzero(varies & used) if j != skeleton.root and j not in above)
+
+
 def normalization(descriptors: Array) -> Normalization:
     """Mean and scale of descriptors [N, k D]; columns that hardly vary keep scale 1."""
     deviation = descriptors.std(axis=0)
@@ -79,10 +94,13 @@ def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, transl
     rotations, translations = np.asarray(rotations, dtype=float), np.asarray(translations, dtype=float)
     turned, position = _root_world(skeleton, rotations, translations)
     bind, _ = _root_world(skeleton, skeleton.bind_rotations, skeleton.bind_translations)
+    turns = rotation.to_6d(rotations[:, list(encoding.joints)])
+    moved = list(encoding.translated)
+    moves = translations[:, moved] - skeleton.bind_translations[moved]
     return _Frames(
         position=position,
         turn=rotation.multiply(turned, rotation.conjugate(bind)),
-        joints=rotation.to_6d(rotations[:, list(encoding.joints)]).reshape(len(rotations), -1),
+        joints=np.concatenate([turns.reshape(len(rotations), -1), moves.reshape(len(rotations), -1)], axis=-1),
     )
 
 

@@ -10,7 +10,8 @@ class PoseEncoding:
     """The declared form of the motion descriptor, stored in every recording and asset.
 
     Per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3),
-    the root joint's world rotation relative to its bind rotation (6D), then the local rotations of `joints` (6D each).
+    the root joint's world rotation relative to its bind rotation (6D), then the local rotations of `joints` (6D each)
+    and the local translations of `translated` relative to those of the bind pose (3 each), metres.
     With `heading`, root positions and rotations are turned back by the yaw of frame f.
     """
 
@@ -18,11 +19,12 @@ class PoseEncoding:
     rate: float  # frames per second between the frames of a window
     window: int = 3  # k
     heading: bool = True
+    translated: tuple[int, ...] = ()  # joints whose translation is encoded, ascending, root excluded
 
     @property
     def width(self) -> int:
         """k x D, the length of a descriptor."""
-        return self.window * (9 + 6 * len(self.joints))
+        return self.window * (9 + 6 * len(self.joints) + 3 * len(self.translated))
 
     def frames(self, index: int) -> list[int]:
         """The frames of the window that ends at `index`, newest first; before its first frame, a clip is held still."""

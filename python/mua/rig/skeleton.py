@@ -40,6 +40,19 @@ class Skeleton:
         """[J, 8] dual quaternions from the bind pose's world space to each joint's own."""
         return rotation.dual_inverse(rotation.dual_from_rigid(*self.world(self.bind_rotations, self.bind_translations)))
 
+    @property
+    def size(self) -> float:
+        """The longest side of the box around the joints of the bind pose, metres; 1 where they are in one point."""
+        _, places = self.world(self.bind_rotations, self.bind_translations)
+        return float(np.ptp(places, axis=0).max()) or 1.0
+
+    def ancestors(self, joint: int) -> list[int]:
+        """The joints above one, nearest first."""
+        found = []
+        while (joint := int(self.parents[joint])) >= 0:
+            found.append(joint)
+        return found
+
     def with_root(
         self,
         translation: Array,  # [..., 3] local translation of the root joint, metres

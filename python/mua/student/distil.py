@@ -13,7 +13,7 @@ from torch import Tensor
 from mua import __version__
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.descriptor import choose_joints, describe, normalization
+from mua.motion.descriptor import choose_joints, choose_translated, describe, normalization
 from mua.motion.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -112,8 +112,13 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     if not recording.count():
         raise InputError(f"recording {recording.directory}: holds no training frame, expected at least one")
     skeleton = recording.rig.skeleton
-    joints = choose_joints(skeleton, training, moving_joints(recording.rig))
-    encoding = PoseEncoding(joints, rate=recording.rate, heading=settings.generalisation.heading)
+    used = moving_joints(recording.rig)
+    encoding = PoseEncoding(
+        choose_joints(skeleton, training, used),
+        rate=recording.rate,
+        heading=settings.generalisation.heading,
+        translated=choose_translated(skeleton, training, used),
+    )
     descriptors = describe_frames(recording, encoding)
     student = Student(
         settings,

@@ -56,7 +56,7 @@ class Locality:
 
 def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     """The parts of a character, one for each encoded joint that some sample hangs on."""
-    seen = [rig.skeleton.root, *encoding.joints]
+    seen = [rig.skeleton.root, *sorted({*encoding.joints, *encoding.translated})]
     steps = joint_steps(rig.skeleton, seen)
     steps[:, 0] = np.minimum(steps[:, 0], 1)  # the root, where the body goes and how it leans, is near every part
     weights = np.zeros((len(rig.mesh.vertices), len(seen)))
@@ -67,7 +67,8 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     image: Array = np.zeros((texels.size**2, len(seen)))
     image[texels.texels] = np.einsum("nvp,nv->np", corners, texels.barycentrics)
     image = image.reshape(texels.size, texels.size, -1)
-    width = [0] * 9 + [column for column in range(1, len(seen)) for _ in range(6)]
+    width = [0] * 9 + [seen.index(j) for j in encoding.joints for _ in range(6)]
+    width += [seen.index(j) for j in encoding.translated for _ in range(3)]
     return Parts(
         steps=torch.from_numpy(steps[:, width * encoding.window]),
         coarse=torch.from_numpy(sample_owners(image, LL_TEXELS)),

@@ -235,21 +235,21 @@ namespace Mua
             Transform[] rig = MakeRig(avatar);
             var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
             var read = new double[4 * rig.Length];
-            var translation = new double[3];
-            joints.Read(read, translation);
-            var clip = new ClipSampler(avatar.Clips[0], rig.Length, avatar.Encoding.Rate);
+            var translations = new double[3 * rig.Length];
+            joints.Read(read, translations);
+            var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
             var wanted = new double[4 * rig.Length];
-            var wantedTranslation = new double[3];
-            clip.ReadFrame(2, wanted, wantedTranslation);
+            var wantedTranslations = new double[3 * rig.Length];
+            clip.ReadFrame(2, wanted, wantedTranslations);
             double turned = 0, moved = 0;
             for (int i = 0; i < rig.Length; i++)
             {
                 QuaternionD a = QuaternionD.Load(read, i), b = QuaternionD.Load(wanted, i);
                 turned = Math.Max(turned, 1 - Math.Abs(a.W * b.W + a.X * b.X + a.Y * b.Y + a.Z * b.Z));
             }
-            for (int i = 0; i < 3; i++)
+            for (int i = 0; i < translations.Length; i++)
             {
-                moved = Math.Max(moved, Math.Abs(translation[i] - wantedTranslation[i]));
+                moved = Math.Max(moved, Math.Abs(translations[i] - wantedTranslations[i]));
             }
             Say("turned", turned);
             Say("translated", moved);
@@ -290,19 +290,18 @@ namespace Mua
         private static Transform[] MakeRig(AvatarFile avatar)
         {
             Skeleton skeleton = avatar.Skeleton;
-            var clip = new ClipSampler(avatar.Clips[0], skeleton.JointCount, avatar.Encoding.Rate);
+            var clip = new ClipSampler(avatar.Clips[0], skeleton, avatar.Encoding.Rate);
             var rotations = new double[4 * skeleton.JointCount];
-            var translation = new double[3];
-            clip.ReadFrame(2, rotations, translation);
+            var translations = new double[3 * skeleton.JointCount];
+            clip.ReadFrame(2, rotations, translations);
             GameObject root = Make("rig");
             root.transform.SetPositionAndRotation(new Vector3(3, -1, 2), Quaternion.Euler(10, 200, -30));
             var rig = new Transform[skeleton.JointCount];
             for (int i = 0; i < rig.Length; i++)
             {
                 rig[i] = new GameObject(skeleton.Names[i]).transform;
-                Vector3D at = i == skeleton.Root ? Vector3D.Load(translation, 0) : Vector3D.Load(skeleton.BindTranslations, i);
                 rig[i].SetParent(skeleton.Parents[i] < 0 ? root.transform : rig[skeleton.Parents[i]], false);
-                rig[i].localPosition = AvatarSpace.Position(at);
+                rig[i].localPosition = AvatarSpace.Position(Vector3D.Load(translations, i));
                 rig[i].localRotation = AvatarSpace.Rotation(QuaternionD.Load(rotations, i));
             }
             return rig;

@@ -159,6 +159,8 @@ internal static class FormatProgram
         Print("skeleton.bind_translations", avatar.Skeleton.BindTranslations);
         Print("skeleton.bind_inverse", avatar.Skeleton.BindInverse);
         Print("skeleton.root", new[] { avatar.Skeleton.Root });
+        Print("skeleton.translated", avatar.Skeleton.Translated);
+        Print("encoding.translated", avatar.Encoding.Translated);
         Print("encoding.joints", avatar.Encoding.Joints);
         Print("encoding.rate", new[] { avatar.Encoding.Rate });
         Print("encoding.window", new[] { avatar.Encoding.Window, avatar.Encoding.Heading ? 1 : 0 });
@@ -199,6 +201,10 @@ internal static class FormatProgram
         {
             add("clips." + i + ".rotations", avatar.Clips[i].Rotations);
             add("clips." + i + ".translation", avatar.Clips[i].Translation);
+            if (avatar.Clips[i].Translations != null)
+            {
+                add("clips." + i + ".translations", avatar.Clips[i].Translations);
+            }
         }
         return tensors;
     }

@@ -33,9 +33,9 @@ namespace Mua
             {
             }
             Frame = new AvatarFrame(resources, Buffers);
-            Clip = new ClipSampler(file.Clips[0], file.Skeleton.JointCount, file.Encoding.Rate);
+            Clip = new ClipSampler(file.Clips[0], file.Skeleton, file.Encoding.Rate);
             rotations = new double[4 * file.Encoding.Window * file.Skeleton.JointCount];
-            translations = new double[3 * file.Encoding.Window];
+            translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
         }
 
         public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place)

@@ -20,14 +20,14 @@ internal static class MotionProgram
         AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(arguments[0]));
         int joints = avatar.Skeleton.JointCount, window = avatar.Encoding.Window;
         var rotations = new double[4 * joints * window];
-        var translations = new double[3 * window];
+        var translations = new double[3 * joints * window];
         var inputs = new float[avatar.Encoding.Width];
         var skinning = new float[8 * joints];
         var descriptor = new Descriptor(avatar.Skeleton, avatar.Encoding);
         var pose = new SkeletonPose(avatar.Skeleton);
         foreach (Clip clip in avatar.Clips)
         {
-            var sampler = new ClipSampler(clip, joints, avatar.Encoding.Rate);
+            var sampler = new ClipSampler(clip, avatar.Skeleton, avatar.Encoding.Rate);
             Console.WriteLine("frames " + sampler.FrameCount);
             for (int frame = 0; frame < sampler.FrameCount; frame++)
             {
@@ -60,7 +60,7 @@ internal static class MotionProgram
     {
         sampler.ReadWindow(frame, window, rotations, translations);
         descriptor.Write(rotations, translations, inputs);
-        pose.Set(new ReadOnlySpan<double>(rotations, 0, pose.Turned.Length), Vector3D.Load(translations, 0));
+        pose.Set(rotations, translations);
         pose.WriteSkinning(Place, skinning);
     }
 

@@ -37,7 +37,7 @@ namespace Mua.Format
             avatar.Producer = tree.Text("producer");
             avatar.Notes = tree.Text("notes");
             avatar.Skeleton = rig.Skeleton(tree.Child("skeleton"));
-            avatar.Encoding = Encoding(tree.Child("encoding"), avatar.Skeleton);
+            avatar.Encoding = Encoding(tree.Child("encoding"), avatar.Skeleton, rig);
             avatar.Wavelet = Wavelet(tree.Child("wavelet"));
             int width = avatar.Encoding.Width, levels = avatar.Wavelet.Levels;
             avatar.Coarse = Coarse(tree.Child("coarse"), width);
@@ -55,22 +55,23 @@ namespace Mua.Format
             {
                 throw Refusal.Of("geometry.details", "more levels of detail than the wavelet's {0}", levels);
             }
-            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton.JointCount);
+            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton);
             avatar.Bounds = Bounds(tree.Child("bounds"));
             avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
             return avatar;
         }
 
-        private PoseEncoding Encoding(Table tree, Skeleton skeleton)
+        private PoseEncoding Encoding(Table tree, Skeleton skeleton, RigDecoder rig)
         {
             Tensor joints = tensors.Indices(tree.Child("joints"), "encoding.joints", 0, skeleton.JointCount, Any);
             var encoding = new PoseEncoding { Joints = joints.Integers.ToArray() };
-            for (int i = 0; i < encoding.Joints.Length; i++)
+            RigDecoder.RequireBesideRoot(encoding.Joints, "encoding.joints", skeleton.Root);
+            encoding.Translated = rig.Translated(tree, "encoding.translated", skeleton);
+            foreach (int joint in encoding.Translated)
             {
-                bool ascends = i == 0 || encoding.Joints[i - 1] < encoding.Joints[i];
-                if (!ascends || encoding.Joints[i] == skeleton.Root)
+                if (Array.BinarySearch(skeleton.Translated, joint) < 0)
                 {
-                    throw Refusal.Of("encoding.joints", "joints must ascend and leave out the root");
+                    throw Refusal.Of("encoding.translated", "joints must be among the skeleton's translated ones");
                 }
             }
             long window = tree.Number("window");
@@ -188,18 +189,19 @@ namespace Mua.Format
             };
         }
 
-        private Clip[] Clips(Table[] tree, int joints)
+        private Clip[] Clips(Table[] tree, Skeleton skeleton)
         {
             var clips = new Clip[tree.Length];
             for (int i = 0; i < clips.Length; i++)
             {
-                clips[i] = Clip(tree[i], "clips[" + i + "]", joints);
+                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton);
             }
             return clips;
         }
 
-        private Clip Clip(Table tree, string path, int joints)
+        private Clip Clip(Table tree, string path, Skeleton skeleton)
         {
+            int joints = skeleton.JointCount;
             Tensor rotations = tensors.Reals(tree.Child("rotations"), path + ".rotations", Any, joints, 4);
             RigDecoder.RequireUnit(rotations, path + ".rotations");
             if (rotations.Shape[0] == 0)
@@ -210,11 +212,23 @@ namespace Mua.Format
                 tree.Child("translation"), path + ".translation", rotations.Shape[0], 3);
             return new Clip
             {
+                Translations = Translations(tree, path + ".translations", rotations.Shape[0], skeleton.Translated.Length),
                 Name = tree.Text("name"),
                 Rate = Rate(tree, path + ".rate"),
                 Rotations = rotations,
                 Translation = translation,
             };
+        }
+
+        private Tensor Translations(Table tree, string path, int frames, int joints)
+        {
+            Table stored = tree.Child("translations");
+            if (stored == null && joints > 0)
+            {
+                throw new AvatarFormatException(
+                    "missing", path, "absent, but the skeleton names " + joints + " translated joints");
+            }
+            return stored == null ? null : tensors.Reals(stored, path, frames, joints, 3);
         }
 
         private float[] Bounds(Table tree)

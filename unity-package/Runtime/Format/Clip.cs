@@ -14,6 +14,9 @@ namespace Mua.Format
         /// <summary>[F, 3] local translation of the root joint, metres.</summary>
         public Tensor Translation { get; internal set; }
 
+        /// <summary>[F, M, 3] local translations of the skeleton's translated joints, metres; null where it has none.</summary>
+        public Tensor Translations { get; internal set; }
+
         /// <summary>F.</summary>
         public int FrameCount => Rotations.Shape[0];
     }

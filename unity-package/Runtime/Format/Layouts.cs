@@ -23,7 +23,8 @@ namespace Mua.Format
             new Field("bind_rotations", Kind.Table, required: true, table: Tensor),
             new Field("bind_translations", Kind.Table, required: true, table: Tensor),
             new Field("bind_inverse", Kind.Table, required: true, table: Tensor),
-            new Field("root", Kind.U32));
+            new Field("root", Kind.U32),
+            new Field("translated", Kind.Table, table: Tensor));
 
         public static readonly Layout PoseEncoding = new Layout(
             new Field("joints", Kind.Table, required: true, table: Tensor),
@@ -33,7 +34,8 @@ namespace Mua.Format
             new Field("rate", Kind.F32),
             new Field("heading", Kind.Flag),
             new Field("mean", Kind.Table, required: true, table: Tensor),
-            new Field("scale", Kind.Table, required: true, table: Tensor));
+            new Field("scale", Kind.Table, required: true, table: Tensor),
+            new Field("translated", Kind.Table, table: Tensor));
 
         public static readonly Layout Template = new Layout(
             new Field("faces", Kind.Table, required: true, table: Tensor),
@@ -79,7 +81,8 @@ namespace Mua.Format
             new Field("name", Kind.Text, required: true),
             new Field("rate", Kind.F32),
             new Field("rotations", Kind.Table, required: true, table: Tensor),
-            new Field("translation", Kind.Table, required: true, table: Tensor));
+            new Field("translation", Kind.Table, required: true, table: Tensor),
+            new Field("translations", Kind.Table, table: Tensor));
 
         public static readonly Layout Avatar = new Layout(
             new Field("version_major", Kind.U16),

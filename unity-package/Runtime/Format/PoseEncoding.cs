@@ -3,10 +3,13 @@ namespace Mua.Format
     /// <summary>How a window of poses becomes the descriptor that the MLPs read (schemas/README.md, step 1).</summary>
     public sealed class PoseEncoding
     {
-        private const int RootNumbers = 9, JointNumbers = 6;
+        private const int RootNumbers = 9, JointNumbers = 6, TranslationNumbers = 3;
 
         /// <summary>[S] joints encoded beside the root, ascending.</summary>
         public int[] Joints { get; internal set; }
+
+        /// <summary>[T] joints whose translation is encoded, ascending; of the skeleton's translated ones.</summary>
+        public int[] Translated { get; internal set; }
 
         /// <summary>Frames per second between the frames of a window.</summary>
         public float Rate { get; internal set; }
@@ -24,7 +27,7 @@ namespace Mua.Format
         public float[] Scale { get; internal set; }
 
         /// <summary>Numbers that one frame adds to a descriptor.</summary>
-        public int FrameWidth => RootNumbers + JointNumbers * Joints.Length;
+        public int FrameWidth => RootNumbers + JointNumbers * Joints.Length + TranslationNumbers * Translated.Length;
 
         /// <summary>Length of a descriptor.</summary>
         public int Width => Window * FrameWidth;

@@ -51,7 +51,33 @@ namespace Mua.Format
             var skeleton = new Skeleton(names, parents, rotations, translations, (int)root);
             RequireInverse(
                 skeleton, tensors.Reals(tree.Child("bind_inverse"), "skeleton.bind_inverse", count, 8));
+            skeleton.Translated = Translated(tree, "skeleton.translated", skeleton);
             return skeleton;
+        }
+
+        /// <summary>Joints beside the root that move in their parents; none in a file that names none.</summary>
+        public int[] Translated(Table tree, string path, Skeleton skeleton)
+        {
+            Table stored = tree.Child("translated");
+            if (stored == null)
+            {
+                return new int[0];
+            }
+            int[] joints = tensors.Indices(stored, path, 0, skeleton.JointCount, Any).Integers.ToArray();
+            RequireBesideRoot(joints, path, skeleton.Root);
+            return joints;
+        }
+
+        /// <summary>Refuses joints that do not ascend, or the root among them.</summary>
+        public static void RequireBesideRoot(int[] joints, string path, int root)
+        {
+            for (int i = 0; i < joints.Length; i++)
+            {
+                if ((i > 0 && joints[i] <= joints[i - 1]) || joints[i] == root)
+                {
+                    throw Refusal.Of(path, "joints must ascend and leave out the root");
+                }
+            }
         }
 
         public Template Template(Table tree, int vertices, int joints)

@@ -19,8 +19,11 @@ namespace Mua.Format
         /// <summary>[J, 8] dual quaternions from the bind pose's world to each joint.</summary>
         public double[] BindInverse { get; }
 
-        /// <summary>The joint that carries the animated translation.</summary>
+        /// <summary>The joint whose path is the character's.</summary>
         public int Root { get; }
+
+        /// <summary>[M] joints beside the root that move in their parents, ascending.</summary>
+        public int[] Translated { get; internal set; } = new int[0];
 
         public int JointCount => Parents.Length;
 
@@ -35,20 +38,17 @@ namespace Mua.Format
             InvertBind();
         }
 
-        /// <summary>Local translation of the root joint in the bind pose, metres.</summary>
-        public Vector3D BindTranslation => Vector3D.Load(BindTranslations, Root);
-
         /// <summary>
-        /// Forward kinematics: world rotations [J, 4] and positions [J, 3], metres, of local rotations [J, 4] and the
-        /// local translation of the root joint.
+        /// Forward kinematics: world rotations [J, 4] and positions [J, 3], metres, of local rotations [J, 4] and
+        /// local translations [J, 3].
         /// </summary>
         public void World(
-            ReadOnlySpan<double> rotations, Vector3D translation, Span<double> turned, Span<double> placed)
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, Span<double> turned, Span<double> placed)
         {
             for (int joint = 0; joint < Parents.Length; joint++)
             {
                 QuaternionD rotation = QuaternionD.Load(rotations, joint);
-                Vector3D offset = joint == Root ? translation : Vector3D.Load(BindTranslations, joint);
+                Vector3D offset = Vector3D.Load(translations, joint);
                 int parent = Parents[joint];
                 if (parent >= 0)
                 {
@@ -65,7 +65,7 @@ namespace Mua.Format
         {
             var turned = new double[4 * JointCount];
             var placed = new double[3 * JointCount];
-            World(BindRotations, BindTranslation, turned, placed);
+            World(BindRotations, BindTranslations, turned, placed);
             for (int joint = 0; joint < JointCount; joint++)
             {
                 QuaternionD rotation = QuaternionD.Load(turned, joint);

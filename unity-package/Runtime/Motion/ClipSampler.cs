@@ -11,14 +11,14 @@ namespace Mua.Motion
         private const double LastFrameSlack = 1e-6; // frames by which rounding may place the end before the last sample
 
         private readonly Clip clip;
-        private readonly int joints;
+        private readonly Skeleton skeleton;
         private readonly double step; // frames of the clip for one of ours
 
-        /// <summary>Samples `clip` of a skeleton of `joints` joints at `rate` frames per second.</summary>
-        public ClipSampler(Clip clip, int joints, double rate)
+        /// <summary>Samples `clip` of `skeleton` at `rate` frames per second.</summary>
+        public ClipSampler(Clip clip, Skeleton skeleton, double rate)
         {
             this.clip = clip;
-            this.joints = joints;
+            this.skeleton = skeleton;
             Rate = rate;
             step = clip.Rate / rate;
             int last = clip.FrameCount - 1;
@@ -42,26 +42,27 @@ namespace Mua.Motion
         }
 
         /// <summary>
-        /// The window of `frames` frames that ends at `index`, newest first: local rotations [frames, J, 4] and root
-        /// translations [frames, 3], metres. Before its first frame, a clip is held still.
+        /// The window of `frames` frames that ends at `index`, newest first: local rotations [frames, J, 4] and
+        /// translations [frames, J, 3], metres. Before its first frame, a clip is held still.
         /// </summary>
         public void ReadWindow(int index, int frames, Span<double> rotations, Span<double> translations)
         {
+            int joints = skeleton.JointCount;
             for (int age = 0; age < frames; age++)
             {
-                Span<double> pose = rotations.Slice(4 * joints * age, 4 * joints);
-                ReadFrame(Math.Max(index - age, 0), pose, translations.Slice(3 * age, 3));
+                Span<double> turns = rotations.Slice(4 * joints * age, 4 * joints);
+                ReadFrame(Math.Max(index - age, 0), turns, translations.Slice(3 * joints * age, 3 * joints));
             }
         }
 
-        /// <summary>Local rotations [J, 4] and root translation [3], metres, of one frame.</summary>
-        public void ReadFrame(int index, Span<double> rotations, Span<double> translation)
+        /// <summary>Local rotations [J, 4] and translations [J, 3], metres, of one frame.</summary>
+        public void ReadFrame(int index, Span<double> rotations, Span<double> translations)
         {
             int last = clip.FrameCount - 1;
             double time = IsPlain ? index : Math.Min(index * step, last);
             int before = (int)time, after = Math.Min(before + 1, last);
             double t = time - before;
-            for (int joint = 0; joint < joints; joint++)
+            for (int joint = 0; joint < skeleton.JointCount; joint++)
             {
                 QuaternionD rotation = Rotation(before, joint);
                 if (!IsPlain)
@@ -70,16 +71,31 @@ namespace Mua.Motion
                 }
                 rotation.Store(rotations, joint);
             }
-            for (int axis = 0; axis < 3; axis++)
+            skeleton.BindTranslations.CopyTo(translations);
+            Translation(clip.Translation, before, after, t).Store(translations, skeleton.Root);
+            for (int i = 0, count = skeleton.Translated.Length; i < count; i++)
             {
-                float from = clip.Translation.Read(3 * before + axis), to = clip.Translation.Read(3 * after + axis);
-                translation[axis] = IsPlain ? from : from + t * (float)(to - from); // the reference subtracts floats
+                Vector3D moved = Translation(clip.Translations, before * count + i, after * count + i, t);
+                moved.Store(translations, skeleton.Translated[i]);
             }
+        }
+
+        private Vector3D Translation(Tensor stored, int before, int after, double t)
+        {
+            return new Vector3D(
+                Number(stored, 3 * before, 3 * after, t), Number(stored, 3 * before + 1, 3 * after + 1, t),
+                Number(stored, 3 * before + 2, 3 * after + 2, t));
+        }
+
+        private double Number(Tensor stored, int before, int after, double t)
+        {
+            float from = stored.Read(before), to = stored.Read(after);
+            return IsPlain ? from : from + t * (float)(to - from); // the reference subtracts floats
         }
 
         private QuaternionD Rotation(int frame, int joint)
         {
-            int at = 4 * (frame * joints + joint);
+            int at = 4 * (frame * skeleton.JointCount + joint);
             Tensor q = clip.Rotations;
             return new QuaternionD(q.Read(at), q.Read(at + 1), q.Read(at + 2), q.Read(at + 3)).Normalized();
         }

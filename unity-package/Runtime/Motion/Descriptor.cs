@@ -18,7 +18,7 @@ namespace Mua.Motion
         {
             this.skeleton = skeleton;
             this.encoding = encoding;
-            RootWorld(skeleton.BindRotations, skeleton.BindTranslation, out QuaternionD bind, out Vector3D _);
+            RootWorld(skeleton.BindRotations, skeleton.BindTranslations, out QuaternionD bind, out Vector3D _);
             bindBack = bind.Conjugate;
         }
 
@@ -26,18 +26,19 @@ namespace Mua.Motion
         public int Width => encoding.Width;
 
         /// <summary>
-        /// From local rotations [k, J, 4], unit, and local root translations [k, 3], metres, both newest first, to
+        /// From local rotations [k, J, 4], unit, and local translations [k, J, 3], metres, both newest first, to
         /// `target` [Width], what the first layers read.
         /// </summary>
         public void Write(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, Span<float> target)
         {
-            int joints = 4 * skeleton.JointCount, at = 0;
+            int joints = skeleton.JointCount, at = 0;
             var origin = new Vector3D();
             QuaternionD back = QuaternionD.Identity;
             for (int age = 0; age < encoding.Window; age++)
             {
-                ReadOnlySpan<double> pose = rotations.Slice(joints * age, joints);
-                RootWorld(pose, Vector3D.Load(translations, age), out QuaternionD turned, out Vector3D position);
+                ReadOnlySpan<double> pose = rotations.Slice(4 * joints * age, 4 * joints);
+                ReadOnlySpan<double> offsets = translations.Slice(3 * joints * age, 3 * joints);
+                RootWorld(pose, offsets, out QuaternionD turned, out Vector3D position);
                 QuaternionD turn = turned * bindBack;
                 if (age == 0)
                 {
@@ -56,6 +57,10 @@ namespace Mua.Motion
                 {
                     PutColumns(QuaternionD.Load(pose, joint), target, ref at);
                 }
+                foreach (int joint in encoding.Translated)
+                {
+                    Put(Vector3D.Load(offsets, joint) - Vector3D.Load(skeleton.BindTranslations, joint), target, ref at);
+                }
             }
         }
 
@@ -68,15 +73,16 @@ namespace Mua.Motion
 
         /// <summary>World rotation and position of the root joint alone.</summary>
         private void RootWorld(
-            ReadOnlySpan<double> rotations, Vector3D translation, out QuaternionD turned, out Vector3D position)
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, out QuaternionD turned,
+            out Vector3D position)
         {
             turned = QuaternionD.Load(rotations, skeleton.Root);
-            position = translation;
+            position = Vector3D.Load(translations, skeleton.Root);
             for (int joint = skeleton.Parents[skeleton.Root]; joint >= 0; joint = skeleton.Parents[joint])
             {
                 QuaternionD above = QuaternionD.Load(rotations, joint);
                 turned = above * turned;
-                position = Vector3D.Load(skeleton.BindTranslations, joint) + above.Rotate(position);
+                position = Vector3D.Load(translations, joint) + above.Rotate(position);
             }
         }
 

@@ -19,16 +19,16 @@ namespace Mua.Motion
             this.skeleton = skeleton;
             Turned = new double[4 * skeleton.JointCount];
             Placed = new double[3 * skeleton.JointCount];
-            Set(skeleton.BindRotations, skeleton.BindTranslation);
+            Set(skeleton.BindRotations, skeleton.BindTranslations);
         }
 
         /// <summary>World position of the root joint, metres.</summary>
         public Vector3D RootPosition => Vector3D.Load(Placed, skeleton.Root);
 
-        /// <summary>Takes local rotations [J, 4], unit, and the local translation of the root joint, metres.</summary>
-        public void Set(ReadOnlySpan<double> rotations, Vector3D translation)
+        /// <summary>Takes local rotations [J, 4], unit, and local translations [J, 3], metres.</summary>
+        public void Set(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations)
         {
-            skeleton.World(rotations, translation, Turned, Placed);
+            skeleton.World(rotations, translations, Turned, Placed);
         }
 
         /// <summary>What carries bind-pose points to the posed world with one joint.</summary>
