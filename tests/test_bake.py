@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import torch
 from PIL import Image
+from recordings import content
 from silent import Silent
 
 from mua.asset import read, write
@@ -108,8 +109,10 @@ def test_decoded_file_equals_the_torch_student(baked: Baked, tmp_path: Path, sto
         assert np.abs(posed.canonical - mesh).max() <= bound * np.abs(mesh).max()
 
 
-def test_same_order_gives_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
-    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, torch.device("cpu")), Silent())
+def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
+    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, torch.device("cpu"), jobs=2), Silent())
+    (mine,), (theirs,) = (list(path.glob("recording-*")) for path in (tmp_path / "work", baked.output.parent / "work"))
+    assert content(mine) == content(theirs)
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mua.cli.bake_options import check_inputs, check_output, check_settings
+from mua.cli.bake_options import check_inputs, check_jobs, check_output, check_settings
 from mua.errors import InputError
 
 HEAVY = {"torch", "warp", "pxr", "scipy"}
@@ -24,6 +24,13 @@ HEAVY = {"torch", "warp", "pxr", "scipy"}
 def test_a_number_that_no_bake_can_have_is_refused(options: dict[str, int], sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         check_settings("tiny", "closed-form", **({"seed": 0, "frames": None, "texels": None} | options))
+
+
+def test_no_processes_are_refused_and_all_cores_the_default() -> None:
+    with pytest.raises(InputError, match="--jobs 0: expected at least 1"):
+        check_jobs(0)
+    assert check_jobs(3) == 3
+    assert check_jobs(None) >= 1
 
 
 def test_numbers_override_the_preset() -> None:

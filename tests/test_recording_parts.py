@@ -12,17 +12,16 @@ from synthetic_avatar import synthetic_rig
 from together import errors, start
 
 from mua.errors import InputError
-from mua.motion.clip import Clip
-from mua.recording import PlannedClip, Recording, TeacherWriter, record
-from mua.recording.parts import divide, join_parts, part_directory, record_part
+from mua.recording import PlannedClip, Recording, TeacherWriter, parts, record
+from mua.recording.parts import divide, join_parts, part_directory, record_share, share
 from mua.texture.channels import CHANNELS
 
 
-def record_parts(directory: Path, parts: int) -> None:
-    for part in range(parts):
+def record_parts(directory: Path, processes: int) -> None:
+    for rank in range(processes):
         teacher = FormulaTeacher(synthetic_rig())
         planned = plan(teacher.rig)
-        record_part(teacher, planned, directory, part=part, parts=parts, rate=RATE, shard_frames=4)
+        record_share(teacher, planned, directory, rank=rank, count=processes, rate=RATE, shard_frames=4)
 
 
 def assert_same(joined: Recording, whole: Recording) -> None:
@@ -62,17 +61,18 @@ def test_two_processes_record_what_one_does(whole: Recording, tmp_path: Path) ->
     assert not list(tmp_path.glob(".*.part*"))
 
 
-@pytest.mark.parametrize("parts", [1, 3, 5])
-def test_any_number_of_parts_makes_the_recording(whole: Recording, tmp_path: Path, parts: int) -> None:
-    record_parts(tmp_path / "joined", parts)
-    join_parts(tmp_path / "joined", plan(synthetic_rig()), parts=parts)
-    assert_same(Recording(tmp_path / "joined"), whole)
+def test_any_number_of_processes_makes_the_same_files(whole: Recording, tmp_path: Path) -> None:
+    for processes in (1, 2, 5):
+        record_parts(tmp_path / f"{processes}", processes)
+        join_parts(tmp_path / f"{processes}", plan(synthetic_rig()))
+    assert_same(Recording(tmp_path / "1"), whole)
+    assert content(tmp_path / "1") == content(tmp_path / "2") == content(tmp_path / "5")
 
 
 def test_a_writer_goes_on_with_what_was_joined(tmp_path: Path) -> None:
     directory, rig = tmp_path / "joined", synthetic_rig()
     record_parts(directory, 2)
-    join_parts(directory, plan(rig), parts=2)
+    join_parts(directory, plan(rig))
     mean, frames = Recording(directory).mean_texture(), Recording(directory).count()
     teacher = FormulaTeacher(rig)
     more = PlannedClip(clip(rig, "jump", 3), held_out=False, wanted=frozenset({0}))
@@ -116,10 +116,10 @@ def test_death_at_any_step_of_joining_leaves_the_parts_or_the_whole(
         shutil.copytree(tmp_path / "parts", directory.parent)
         budget[0] = step
         try:
-            join_parts(directory, plan(synthetic_rig()), parts=2)
+            join_parts(directory, plan(synthetic_rig()))
         except Killed:
             budget[0] = 0
-            join_parts(directory, plan(synthetic_rig()), parts=2)
+            join_parts(directory, plan(synthetic_rig()))
             assert_same(Recording(directory), whole)
         else:
             break
@@ -129,21 +129,21 @@ def test_death_at_any_step_of_joining_leaves_the_parts_or_the_whole(
 def test_refuses_a_part_that_is_missing_unfinished_or_of_another_teacher(tmp_path: Path) -> None:
     directory, planned = tmp_path / "joined", plan(synthetic_rig())
     record_parts(directory, 2)
-    first, second = (part_directory(directory, part, 2) for part in range(2))
+    first, second = (part_directory(directory, part, 3) for part in range(2))
     kept = content(first)
     shutil.move(second, tmp_path / "aside")
-    with pytest.raises(InputError, match=r"joined.part-2-of-2: not a recording"):
-        join_parts(directory, planned, parts=2)
+    with pytest.raises(InputError, match=r"joined.part-2-of-3: not a recording"):
+        join_parts(directory, planned)
     teacher = FormulaTeacher(synthetic_rig())
     with TeacherWriter(second, teacher.rig, rate=RATE) as writer:
         writer.refer_to(teacher.frame(planned[0].clip, 0).texture)
-    with pytest.raises(InputError, match=r"part-2-of-2: clip 'turn' is unfinished"):
-        join_parts(directory, planned, parts=2)
+    with pytest.raises(InputError, match=r"part-2-of-3: clip 'turn' is unfinished"):
+        join_parts(directory, planned)
     shutil.rmtree(second)
     with TeacherWriter(second, teacher.rig, rate=RATE) as writer:
-        record(teacher, planned[1:], writer)
-    with pytest.raises(InputError, match=r"part-2-of-2: is of another teacher than .*part-1-of-2"):
-        join_parts(directory, planned, parts=2)
+        record(teacher, planned[1:2], writer)
+    with pytest.raises(InputError, match=r"part-2-of-3: is of another teacher than .*part-1-of-3"):
+        join_parts(directory, planned)
     assert content(first) == kept
     assert not directory.exists()
 
@@ -156,19 +156,31 @@ def test_refuses_another_reference(tmp_path: Path) -> None:
             writer.refer_to(teacher.frame(walk, 2).texture)
 
 
-def test_clips_stay_in_order_and_are_shared_by_their_length() -> None:
+def planned(lengths: list[int]) -> list[PlannedClip]:
     rig = synthetic_rig()
+    clips = [clip(rig, str(number), max(length, 1)).cut(slice(length)) for number, length in enumerate(lengths)]
+    return [PlannedClip(one, held_out=False, wanted=frozenset()) for one in clips]
 
-    def names(lengths: list[int], parts: int) -> list[list[str]]:
-        clips = [clip(rig, str(number), max(length, 1)) for number, length in enumerate(lengths)]
-        cut = [c.cut(slice(n)) for c, n in zip(clips, lengths, strict=True)]
-        return [[p.clip.name for p in part] for part in divide([planned(c) for c in cut], parts)]
 
-    def planned(one: Clip) -> PlannedClip:
-        return PlannedClip(one, held_out=False, wanted=frozenset())
+def names(lengths: list[int]) -> list[list[str]]:
+    return [[p.clip.name for p in part] for part in divide(planned(lengths))]
 
-    assert names([10, 10, 10, 10], 2) == [["0", "1"], ["2", "3"]]
-    assert names([30, 10, 10, 10], 2) == [["0"], ["1", "2", "3"]]
-    assert names([5], 3) == [[], ["0"], []]
-    assert names([5, 0], 2) == [[], ["0", "1"]]  # the middle of the one, and what follows it
-    assert names([], 2) == [[], []]
+
+def test_every_clip_is_a_part_while_there_are_few() -> None:
+    assert names([10, 0, 30]) == [["0"], ["1"], ["2"]]
+    with pytest.raises(InputError, match="plan: holds no clip"):
+        divide([])
+
+
+def test_of_many_clips_consecutive_ones_make_parts_of_about_one_length(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parts, "MOST_PARTS", 2)
+    assert names([10, 10, 10, 10]) == [["0", "1"], ["2", "3"]]
+    assert names([30, 10, 10, 10]) == [["0"], ["1", "2", "3"]]
+    assert names([5, 0, 0]) == [["0", "1", "2"]]  # an empty part is none
+
+
+def test_each_process_takes_the_longest_part_that_is_left_when_it_has_the_least_to_do() -> None:
+    divided = divide(planned([5, 40, 20, 15]))
+    assert share(divided, 0, 2) == [1]
+    assert share(divided, 1, 2) == [2, 3, 0]
+    assert [share(divided, rank, 9) for rank in range(5)] == [[1], [2], [3], [0], []]

@@ -5,6 +5,7 @@ import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from recordings import RATE, FormulaTeacher, clip, content, plan, write
 from synthetic_avatar import synthetic_rig
@@ -45,6 +46,27 @@ def test_resuming_asks_the_teacher_only_for_what_is_missing(tmp_path: Path) -> N
     assert teacher.computed == [("walk", index) for index in range(4, 10)]
     assert heard == [4, 5, 6, 7, 8, 9, 10]
     assert Recording(tmp_path).count() == 10
+
+
+def test_a_teacher_plays_a_clip_no_further_than_to_the_last_frame_that_is_wanted(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    played: list[tuple[str, int]] = []
+
+    class Listened(FormulaTeacher):
+        def frames(self, clip, wanted):  # type: ignore[no-untyped-def]
+            for index, frame in enumerate(super().frames(clip, wanted)):
+                played.append((clip.name, index))
+                yield frame
+
+    planned = [
+        PlannedClip(clip(rig, "walk", 10), held_out=False, wanted=frozenset({1, 3})),
+        PlannedClip(clip(rig, "still", 7), held_out=True, wanted=frozenset()),
+    ]
+    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+        record(Listened(rig), planned, writer)
+    assert played == [("walk", index) for index in range(4)]
+    assert [len(own) for own in Recording(tmp_path).clips] == [10, 7]
+    np.testing.assert_array_equal(Recording(tmp_path).clips[0].rotations, planned[0].clip.rotations)
 
 
 def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:

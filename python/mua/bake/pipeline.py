@@ -2,7 +2,8 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import torch
@@ -15,7 +16,8 @@ from mua.bake.playback import ALL, choose
 from mua.bake.report import STAND_IN
 from mua.bake.sources import RATE, load_character, load_clips
 from mua.files import require_writable
-from mua.recording import PlannedClip, Recording, TeacherWriter, record
+from mua.recording import PlannedClip, Recording
+from mua.recording.workers import record_by_workers
 from mua.rig.character import Character
 from mua.rig.detail import Detail
 from mua.rig.figure_size import AS_FOUND, FigureSize
@@ -42,6 +44,7 @@ class Order:
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND
     storage: Storage = "f16"
+    jobs: int = 1  # processes that record side by side
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
 
@@ -83,18 +86,22 @@ def bake(order: Order, listener: Listener) -> Baked:
 def _record(order: Order, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:
     """The teacher's recording, taken up where an earlier run of the same order left it."""
     directory = order.work / f"recording-{_key(order, character, planned)}"
-    listener.stage("teacher")
-    teacher = SimulatedTeacher(character, texels=order.settings.texels, seed=order.settings.seed)
     listener.stage("recording")
     total = sum(len(clip.wanted) for clip in planned)
-    with TeacherWriter(directory, teacher.rig, rate=RATE) as writer:
-        record(teacher, planned, writer, progress=lambda done: listener.step(done, total))
+    record_by_workers(
+        partial(SimulatedTeacher, replace(character, clips=()), texels=order.settings.texels, seed=order.settings.seed),
+        planned,
+        directory,
+        jobs=order.jobs,
+        rate=RATE,
+        progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
+    )
     return Recording(directory)
 
 
 def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
     """Changes with everything that a recording depends on, so that no other order's frames are taken for these."""
-    digest = hashlib.sha256(f"{__version__} {order.settings.texels} {order.settings.seed}".encode())
+    digest = hashlib.sha256(f"{__version__} in parts {order.settings.texels} {order.settings.seed}".encode())
     skeleton = character.skeleton
     digest.update(skeleton.bind_rotations.tobytes() + skeleton.bind_translations.tobytes())
     for array in (character.mesh.vertices, character.mesh.uv, character.skin_weights, character.base_color):

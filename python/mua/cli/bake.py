@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import typer
 from rich.console import Console
 
-from mua.cli.bake_options import check_inputs, check_output, check_settings
+from mua.cli.bake_options import check_inputs, check_jobs, check_output, check_settings
 from mua.cli.failure import refusing
 from mua.errors import InputError
 from mua.motion.mapping import read_mapping
@@ -60,6 +60,9 @@ def main(
     ] = "f16",
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
     device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
+    jobs: Annotated[
+        int | None, typer.Option(help="Processes that record side by side; as many as there are cores if left out.")
+    ] = None,
     work: Annotated[Path | None, typer.Option(help="Work directory; beside the output if left out.")] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Only compare splats and motion with their sources, in seconds.")
@@ -74,6 +77,7 @@ def main(
     work = output.with_suffix(".work") if work is None else work
     finer = read_detail(detail, uv=uv)
     check_inputs(character, motion)
+    jobs = check_jobs(jobs)
     made = check_output(output, work)
     if json is not None and not check:
         raise InputError("--json: is written by --check alone")
@@ -108,6 +112,7 @@ def main(
         detail=finer,
         size=size,
         storage=storage,
+        jobs=jobs,
         device=choose_device(device),
     )
     console = Console()

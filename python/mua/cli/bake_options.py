@@ -1,5 +1,6 @@
 """What the options of mua-bake may be; asked before anything is loaded, so that a wrong one costs no time."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -33,6 +34,20 @@ def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
     for motion in motions:
         if not motion.exists():
             raise InputError(f"--motion {motion}: there is no such file or directory")
+
+
+def check_jobs(jobs: int | None) -> int:
+    """How many processes; raises InputError where it is none."""
+    if jobs is not None and jobs < 1:
+        raise InputError(f"--jobs {jobs}: expected at least 1")
+    return cores() if jobs is None else jobs
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def check_output(output: Path, work: Path) -> list[Path]:

@@ -1,7 +1,8 @@
-"""One recording by several processes: each records some of the clips as a part, and the parts are joined.
+"""One recording in parts: runs of clips that any number of processes record side by side, and that are then joined.
 
 A part is a recording like any other, in a directory beside the final one. All parts store differences from the same
-texture, so that joining is no more than listing the shards one after the other and adding up the sums.
+texture, so that joining is no more than listing the shards one after the other and adding up the sums. How a plan is
+divided follows from the plan alone: whoever records the parts, the joined recording has the same bytes.
 """
 
 import os
@@ -9,6 +10,7 @@ import shutil
 import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -36,13 +38,42 @@ from mua.recording.writer import TeacherWriter
 from mua.teachers.teacher import Teacher, TeacherFrame
 from mua.texture.channels import CHANNELS
 
+MOST_PARTS = 64  # each has a copy of rig and reference until it is joined
 
-def divide(plan: Sequence[PlannedClip], parts: int) -> list[list[PlannedClip]]:
-    """Split a plan into consecutive runs of clips of about as many frames each; with few clips some are empty."""
+
+def divide(plan: Sequence[PlannedClip]) -> list[list[PlannedClip]]:
+    """Split a plan into parts: a clip each, or consecutive clips of about as many frames each where there are many.
+
+    Raises InputError where there is no clip.
+    """
+    if not plan:
+        raise InputError("plan: holds no clip, expected at least one")
+    count = min(len(plan), MOST_PARTS)
     lengths = np.array([len(planned.clip) for planned in plan])
     middles = np.cumsum(lengths) - lengths / 2
-    owners = (middles * parts / max(lengths.sum(), 1)).astype(int).clip(max=parts - 1)
-    return [[planned for planned, owner in zip(plan, owners, strict=True) if owner == part] for part in range(parts)]
+    owners = (middles * count / max(lengths.sum(), 1)).astype(int).clip(max=count - 1)
+    if count == len(plan):
+        owners = np.arange(count)
+    parts = [[planned for planned, owner in zip(plan, owners, strict=True) if owner == part] for part in range(count)]
+    return [part for part in parts if part]
+
+
+def longest_first(parts: Sequence[Sequence[PlannedClip]]) -> list[int]:
+    """The order in which parts are taken up, so that no long one is left to a single process at the end."""
+    lengths = [sum(len(planned.clip) for planned in part) for part in parts]
+    return sorted(range(len(parts)), key=lambda part: (-lengths[part], part))
+
+
+def share(parts: Sequence[Sequence[PlannedClip]], rank: int, count: int) -> list[int]:
+    """The parts that one of `count` processes records: each in turn goes to who has the least to do so far."""
+    loads = np.zeros(count)
+    mine = []
+    for part in longest_first(parts):
+        owner = int(np.argmin(loads))
+        loads[owner] += sum(len(planned.clip) for planned in parts[part])
+        if owner == rank:
+            mine.append(part)
+    return mine
 
 
 def record_together(
@@ -54,39 +85,75 @@ def record_together(
     rate: float,
     progress: Callable[[int], None] = lambda done: None,
 ) -> None:
-    """Record a plan by all processes at once, each its part; the first one joins them when the last has ended.
+    """Record a plan by all processes at once, each its share; the first one joins the parts when the last has ended.
 
-    `progress` hears how many wanted frames of its own part a process has recorded. Raises InputError as
+    `progress` hears how many wanted frames of its own share a process has recorded. Raises InputError as
     `TeacherWriter`, `record` and `join_parts` do.
     """
     meet = processes.meeting()
-    record_part(teacher, plan, directory, part=processes.rank, parts=processes.count, rate=rate, progress=progress)
+    record_share(teacher, plan, directory, rank=processes.rank, count=processes.count, rate=rate, progress=progress)
     meet()
     if processes.first:
-        join_parts(directory, plan, parts=processes.count)
+        join_parts(directory, plan)
     meet()
 
 
-def record_part(
+def record_share(
     teacher: Teacher,
     plan: Sequence[PlannedClip],  # the whole of it, the same in all processes
     directory: Path,  # of the joined recording
     *,
-    part: int,  # which one this process records, from 0
-    parts: int,
+    rank: int,  # which of the processes this is, from 0
+    count: int,
     rate: float,
     shard_frames: int = 32,
     progress: Callable[[int], None] = lambda done: None,
 ) -> None:
-    """Record one part of a plan, going on where an earlier run stopped; nothing where the parts are joined already."""
-    if (directory / HEADER).exists():
+    """Record one process's share of a plan; nothing where the parts are joined already."""
+    if is_joined(directory):
         return
-    with TeacherWriter(
-        part_directory(directory, part, parts), teacher.rig, rate=rate, shard_frames=shard_frames
-    ) as own:
+    parts, reference = divide(plan), cache(lambda: first_texture(teacher, plan))
+    done = 0
+    for part in share(parts, rank, count):
+        before = done
+
+        def hear(own: int, before: int = before) -> None:
+            nonlocal done
+            done = before + own
+            progress(done)
+
+        target = part_directory(directory, part, len(parts))
+        record_part(
+            teacher, parts[part], target, reference=reference, rate=rate, shard_frames=shard_frames, progress=hear
+        )
+
+
+def record_part(
+    teacher: Teacher,
+    clips: Sequence[PlannedClip],  # of the part
+    directory: Path,  # of the part
+    *,
+    reference: Callable[[], Array],  # the texture that all parts refer to; asked for where a part begins
+    rate: float,
+    shard_frames: int = 32,
+    progress: Callable[[int], None] = lambda done: None,
+) -> None:
+    """Record a part, going on where an earlier run stopped."""
+    with TeacherWriter(directory, teacher.rig, rate=rate, shard_frames=shard_frames) as own:
         if not own.has_reference:
-            own.refer_to(first_texture(teacher, plan))
-        record(teacher, divide(plan, parts)[part], own, progress=progress)
+            own.refer_to(reference())
+        record(teacher, clips, own, progress=progress)
+
+
+def is_joined(directory: Path) -> bool:
+    return (directory / HEADER).exists()
+
+
+def recorded(clips: Sequence[PlannedClip], directory: Path) -> tuple[int, bool]:
+    """How many frames of a part are safely stored, and whether that is all of it."""
+    indices = read_indices(directory)
+    complete = {name for index in indices for name in index.complete}
+    return sum(index.frames for index in indices), all(planned.clip.name in complete for planned in clips)
 
 
 def first_texture(teacher: Teacher, plan: Sequence[PlannedClip]) -> Array:
@@ -100,18 +167,20 @@ def first_texture(teacher: Teacher, plan: Sequence[PlannedClip]) -> Array:
 
 
 def part_directory(directory: Path, part: int, parts: int) -> Path:
+    """Where one of so many parts is recorded, counted from 0."""
     return directory.with_name(f"{directory.name}.part-{part + 1}-of-{parts}")
 
 
-def join_parts(directory: Path, plan: Sequence[PlannedClip], *, parts: int) -> None:
+def join_parts(directory: Path, plan: Sequence[PlannedClip]) -> None:
     """Make one recording of all parts of a plan, its clips in the plan's order, and remove the parts.
 
     A kill leaves the parts or the whole. Raises InputError where a part is missing, unfinished or of another teacher;
     the parts stay as they are.
     """
-    sources = [part_directory(directory, part, parts) for part in range(parts)]
-    if not (directory / HEADER).exists():
-        _check(sources, divide(plan, parts))
+    parts = divide(plan)
+    sources = [part_directory(directory, part, len(parts)) for part in range(len(parts))]
+    if not is_joined(directory):
+        _check(sources, parts)
         hidden = directory.with_name(f".{directory.name}.part")
         shutil.rmtree(hidden, ignore_errors=True)
         (hidden / SHARDS).mkdir(parents=True)

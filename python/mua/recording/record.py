@@ -1,11 +1,12 @@
 """Recording a teacher of this package: the loop between `Teacher` and `TeacherWriter`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.recording.writer import TeacherWriter
+from mua.rig.skeleton import Pose
 from mua.teachers.teacher import Teacher, TeacherFrame
 
 
@@ -43,8 +44,7 @@ def record(
         writer.start_clip(name, held_out=planned.held_out)
         stored = writer.next_frame(name)
         wanted = frozenset(index for index in planned.wanted if index >= stored)
-        frames = teacher.frames(planned.clip, wanted) if stored < len(planned.clip) else ()
-        for index, frame in enumerate(frames):
+        for index, frame in enumerate(_played(teacher, planned.clip, wanted)):
             if index < stored:
                 continue
             if isinstance(frame, TeacherFrame):
@@ -55,6 +55,14 @@ def record(
             else:
                 writer.add(frame)
     writer.finish()
+
+
+def _played(teacher: Teacher, clip: Clip, wanted: frozenset[int]) -> Iterator[TeacherFrame | Pose]:
+    """All frames of a clip; the teacher plays it no further than to the last that is wanted."""
+    until = max(wanted, default=-1) + 1
+    if until:
+        yield from teacher.frames(clip.cut(slice(until)), wanted)
+    yield from (clip.pose(index) for index in range(until, len(clip)))
 
 
 def _check(planned: PlannedClip, writer: TeacherWriter) -> None:

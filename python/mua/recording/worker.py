@@ -1,0 +1,70 @@
+"""A process that records parts of a plan for the one that started it (mua.recording.workers).
+
+It reads a job and then numbers of parts from standard input, and says on standard output what it has done.
+"""
+
+import os
+import pickle
+import queue
+import signal
+import threading
+from functools import cache
+from typing import IO, Any
+
+import torch
+
+from mua.errors import InputError
+from mua.recording.parts import divide, first_texture, part_directory, record_part
+from mua.recording.workers import ENDED, FAILED, RECORDED, Job
+
+
+def main() -> None:
+    """Record what is asked for until standard input ends or says that no part is left."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the parent too, which ends this process
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what libraries print must not come between the answers
+    torch.set_num_threads(1)
+    asked: queue.Queue[Any] = queue.Queue()
+    threading.Thread(target=_listen, args=(os.fdopen(os.dup(0), "rb"), asked), daemon=True).start()
+    try:
+        _record(asked, answers)
+    except InputError as error:
+        _tell(answers, FAILED, str(error))
+    except MemoryError:
+        _tell(answers, FAILED, "a process that records has too little memory; --jobs 1 takes the least")
+    os._exit(0)  # past the thread that still listens
+
+
+def _record(asked: "queue.Queue[Any]", answers: IO[bytes]) -> None:
+    job: Job = asked.get()
+    teacher, parts = job.teacher(), divide(job.plan)
+    reference = cache(lambda: first_texture(teacher, job.plan))
+    _tell(answers, ENDED, None)
+    while (part := asked.get()) is not None:
+        record_part(
+            teacher,
+            parts[part],
+            part_directory(job.directory, part, len(parts)),
+            reference=reference,
+            rate=job.rate,
+            progress=lambda done: _tell(answers, RECORDED, done),
+        )
+        _tell(answers, ENDED, part)
+
+
+def _listen(requests: IO[bytes], asked: "queue.Queue[Any]") -> None:
+    """Take up requests; with the parent gone nobody may go on writing what its next run writes."""
+    try:
+        while True:
+            asked.put(pickle.load(requests))
+    except (EOFError, OSError, pickle.UnpicklingError):
+        os._exit(1)
+
+
+def _tell(answers: IO[bytes], kind: str, value: object) -> None:
+    pickle.dump((kind, value), answers)
+    answers.flush()
+
+
+if __name__ == "__main__":
+    main()

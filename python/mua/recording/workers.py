@@ -1,0 +1,164 @@
+"""A recording by worker processes on this machine: each takes the next part of the plan until none is left.
+
+Workers are processes of their own and not forks: neither Warp nor torch survives one. Each computes with one thread,
+so that the bytes do not depend on how many work side by side, and ends when its standard input does: with its parent.
+"""
+
+import os
+import pickle
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mua.errors import InputError
+from mua.recording.parts import divide, is_joined, join_parts, longest_first, part_directory, recorded
+from mua.recording.record import PlannedClip
+from mua.teachers.teacher import Teacher
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+ENDED, FAILED, RECORDED = "ended", "failed", "recorded"  # what a worker tells
+
+
+@dataclass(frozen=True)
+class Job:
+    """All that a worker is told at its start."""
+
+    teacher: Callable[[], Teacher]  # makes one; pickles
+    plan: Sequence[PlannedClip]
+    directory: Path  # of the joined recording
+    rate: float
+
+
+@dataclass
+class _Worker:
+    process: "subprocess.Popen[bytes]"
+    listener: threading.Thread | None = None
+    part: int | None = None  # at work on
+    idle: bool = False  # told that no part is left
+
+    def end(self) -> None:
+        """End it at once."""
+        self.process.kill()
+        self.process.wait()
+        if self.listener is not None:
+            self.listener.join()  # what it reads has ended
+        for pipe in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):  # of what it was told and never read
+                if pipe is not None:
+                    pipe.close()
+
+
+@dataclass
+class _Crew:
+    """The workers, what they tell and how far each part is."""
+
+    job: Job
+    heard: "queue.Queue[tuple[_Worker, Any]]" = field(default_factory=queue.Queue)
+    workers: list[_Worker] = field(default_factory=list)
+    done: dict[int, int] = field(default_factory=dict)  # recorded frames of each part
+
+    def hire(self) -> None:
+        """Start a worker; raises InputError where the machine has no room for it."""
+        environment = os.environ | dict.fromkeys(THREADS, "1")
+        command = [sys.executable, "-m", "mua.recording.worker"]
+        try:
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+        except OSError as error:
+            raise InputError(f"a process to record with cannot be started ({error.strerror})") from error
+        worker = _Worker(process)
+        self.workers.append(worker)
+        worker.listener = threading.Thread(target=self._listen, args=(worker,), daemon=True)
+        worker.listener.start()
+
+    def tell(self, worker: _Worker, message: object) -> None:
+        assert worker.process.stdin is not None
+        with suppress(OSError):  # it has ended, which is heard of where it is listened to
+            pickle.dump(message, worker.process.stdin)
+            worker.process.stdin.flush()
+
+    def dismiss(self) -> None:
+        """End all workers, at once: what they have not stored is recorded again by the next run."""
+        for worker in self.workers:
+            worker.end()
+
+    def _listen(self, worker: _Worker) -> None:
+        """Give a worker its job, then hear what it says; in a thread, as it reads the job once it has loaded all."""
+        assert worker.process.stdout is not None
+        self.tell(worker, self.job)
+        try:
+            while True:
+                self.heard.put((worker, pickle.load(worker.process.stdout)))
+        except (EOFError, OSError, pickle.UnpicklingError):
+            self.heard.put((worker, None))
+
+
+def record_by_workers(
+    teacher: Callable[[], Teacher],  # makes one; pickles
+    plan: Sequence[PlannedClip],
+    directory: Path,
+    *,
+    jobs: int,  # processes at most
+    rate: float,
+    progress: Callable[[int, int], None] = lambda done, workers: None,
+) -> None:
+    """Record a plan by processes side by side, going on where an earlier run stopped, and join its parts.
+
+    `progress` hears how many of all wanted frames are recorded, and by how many processes. Raises InputError as
+    `TeacherWriter`, `record` and `join_parts` do, and where a worker ends before its work does.
+    """
+    parts = divide(plan)
+    if not is_joined(directory):
+        directory.parent.mkdir(parents=True, exist_ok=True)
+        crew = _Crew(Job(teacher, plan, directory, rate))
+        left = [part for part in longest_first(parts) if not _finished(crew, parts, part)]
+        try:
+            for _ in range(min(jobs, len(left))):
+                crew.hire()
+            _work_off(crew, left, progress)
+        finally:
+            crew.dismiss()
+    join_parts(directory, plan)
+
+
+def _finished(crew: _Crew, parts: Sequence[Sequence[PlannedClip]], part: int) -> bool:
+    frames, finished = recorded(parts[part], part_directory(crew.job.directory, part, len(parts)))
+    crew.done[part] = frames
+    return finished
+
+
+def _work_off(crew: _Crew, left: list[int], progress: Callable[[int, int], None]) -> None:
+    """Hand out parts until all have ended."""
+    progress(sum(crew.done.values()), len(crew.workers))
+    waiting, running = list(left), len(left)
+    while running:
+        worker, told = crew.heard.get()
+        if told is None and worker.idle:
+            continue
+        if told is None:
+            raise InputError(_lost(worker))
+        kind, value = told
+        if kind == FAILED:
+            raise InputError(value)
+        if kind == RECORDED and worker.part is not None:
+            crew.done[worker.part] = value
+            progress(sum(crew.done.values()), len(crew.workers))
+        if kind == ENDED:  # also said once when a worker is ready
+            running -= worker.part is not None
+            worker.part = waiting.pop(0) if waiting else None
+            worker.idle = worker.part is None
+            crew.tell(worker, worker.part)
+
+
+def _lost(worker: _Worker) -> str:
+    status = worker.process.wait()
+    how = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
+    return (
+        f"a process that records {how}, perhaps for want of memory; the same command goes on from what is stored, "
+        "--jobs 1 takes the least memory"
+    )
