@@ -9,7 +9,7 @@ import pytest
 from mua.cli.bake_options import check_inputs, check_jobs, check_output, check_settings
 from mua.errors import InputError
 
-HEAVY = {"torch", "warp", "pxr", "scipy"}
+HEAVY = {"torch", "warp", "pxr"}
 
 
 @pytest.mark.parametrize(
