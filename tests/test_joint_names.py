@@ -1,5 +1,8 @@
 """Body parts behind joint names of many habits."""
 
+import functools
+import re
+
 import numpy as np
 import pytest
 
@@ -34,15 +37,37 @@ def chain(*names: str) -> Skeleton:
         (("J_Bip_L_Shoulder", "J_Bip_L_UpperArm", "J_Bip_L_LowerArm", "J_Bip_L_Hand"), ARM),
         (("Bip01 L Clavicle", "Bip01 L UpperArm", "Bip01 L Forearm", "Bip01 L Hand"), ARM),
         (("Armature|leftshoulder", "leftarm", "leftforearm", "lefthand"), ARM),
+        (("Bip01 L Thigh", "Bip01 L Calf", "Bip01 L Foot", "Bip01 L Toe0"), LEG),
+        (("ValveBiped.Bip01_L_Thigh", "ValveBiped.Bip01_L_Calf", "ValveBiped.Bip01_L_Foot", "Bip01_L_Toe0"), LEG),
+        (("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftToe"), LEG),
+        (("UpperLeg_L", "LowerLeg_L", "Foot_L", "Toes_L"), LEG),
+        (("Shoulder_L", "UpperArm_L", "LowerArm_L", "Hand_L"), ARM),
+        (("LeftHip", "LeftKnee", "LeftAnkle", "LeftToe"), LEG),
+        (("LeftCollar", "LeftShoulder", "LeftElbow", "LeftWrist"), ARM),
+        (("L_Hip", "L_Knee", "L_Ankle", "L_Foot"), LEG),
+        (("L_Collar", "L_Shoulder", "L_Elbow", "L_Wrist"), ARM),
+        (("HipLeft", "KneeLeft", "AnkleLeft", "FootLeft"), LEG),
+        (("CLAVICLE_LEFT", "SHOULDER_LEFT", "ELBOW_LEFT", "WRIST_LEFT"), ARM),
+        (("Hip_L", "Knee_L", "Ankle_L", "Toes_L"), LEG),
+        (("Scapula_L", "Shoulder_L", "Elbow_L", "Wrist_L"), ARM),
+        (("lThighBend", "lShin", "lFoot", "lToe"), LEG),
+        (("lCollar", "lShldrBend", "lForearmBend", "lHand"), ARM),
+        (("upperleg01.L", "lowerleg01.L", "foot.L", "toe1-1.L"), LEG),
+        (("clavicle.L", "upperarm01.L", "lowerarm01.L", "wrist.L"), ARM),
+        (("upperleg.l", "lowerleg.l", "foot.l", "toes.l"), LEG),
+        (("J_Bip_L_UpperLeg", "J_Bip_L_LowerLeg", "J_Bip_L_Foot", "J_Bip_L_ToeBase"), LEG),
+        (("CC_Base_L_Thigh", "CC_Base_L_Calf", "CC_Base_L_Foot", "CC_Base_L_ToeBase"), LEG),
+        (("L_legUpper0001_bind_JNT", "L_legLower0001_bind_JNT", "L_foot0001_bind_JNT", "L_foot0002_bind_JNT"), LEG),
+        (("L_clavicle_bind_JNT", "L_armUpper0001_bind_JNT", "L_armLower0001_bind_JNT", "L_hand0001_bind_JNT"), ARM),
     ],
 )
 def test_knows_limbs_by_many_names(names: tuple[str, ...], expected: tuple[str, ...]) -> None:
     found = roles(chain("Hips", *names))
     assert [found[role] for role in expected] == [(1,), (2,), (3,), (4,)]
-    mirrored = tuple(
-        name.replace("left", "right").replace("Left", "Right").replace("_l", "_r").replace(".L", ".R") for name in names
-    )
-    if mirrored != names and "Bip" not in names[0]:
+    swapped = {"left": "right", "Left": "Right", "LEFT": "RIGHT", "_l": "_r", ".l": ".r", ".L": ".R", "_L": "_R"}
+    mirrored = tuple(functools.reduce(lambda name, old: name.replace(old, swapped[old]), swapped, n) for n in names)
+    mirrored = tuple(re.sub(r"^l(?=[A-Zchfrt])|^L(?=_)", lambda m: "rR"[m[0] == "L"], name) for name in mirrored)
+    if mirrored != names and "Bip" not in names[0] and "JNT" not in names[0]:
         assert {role.replace("left", "right") for role in expected} <= set(roles(chain("Hips", *mirrored)))
 
 
@@ -64,5 +89,49 @@ def test_knows_fingers() -> None:
         ("thumb_01_l", "thumb_02_l", "thumb_03_l"),
         ("left_thumb1", "left_thumb2", "left_thumb3"),
         ("LeftThumbProximal", "LeftThumbIntermediate", "LeftThumbDistal"),
+        ("Bip01 L Finger0", "Bip01 L Finger01", "Bip01 L Finger02"),
+        ("finger1-1.L", "finger1-2.L", "finger1-3.L"),
     ):
         assert roles(chain("Hips", "LeftHand", *names))["left thumb"] == (2, 3, 4)
+
+
+def tree(**parents: str) -> Skeleton:
+    """Joints by name with the names of their parents, empty for none; `__` stands for a space."""
+    names = tuple(parents)
+    above = np.array([names.index(parent) if parent else -1 for parent in parents.values()], dtype=np.int32)
+    root = names.index("Hips") if "Hips" in names else 0
+    return Skeleton(names, above, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), root=root)
+
+
+def test_twist_joints_take_no_part_in_limbs() -> None:
+    rig = tree(
+        pelvis="",
+        L_thigh="pelvis",
+        L_thigh2="L_thigh",
+        L_thigh_twist="L_thigh",
+        L_shin="L_thigh",
+        upperarm_twist_l="pelvis",
+    )
+    assert roles(rig)["left thigh"] == (1,)
+    assert "left upper_arm" not in roles(rig)
+
+
+def test_a_spine_that_carries_legs_and_head_gives_hips_neck_and_head() -> None:
+    """Rigify's deforming bones: spine, spine.001 and so on from the hips to the head."""
+    rig = tree(
+        spine="", spine1="spine", spine2="spine1", spine3="spine2", spine4="spine3", spine5="spine4",
+        thigh_L="spine", thigh_R="spine", upper_arm_L="spine2", upper_arm_R="spine2",
+    )  # fmt: skip
+    found = roles(rig)
+    assert (found["hips"], found["spine"], found["neck"], found["head"]) == ((0,), (1, 2), (3, 4), (5,))
+
+
+def test_hips_beside_the_legs_give_way_to_what_carries_both() -> None:
+    rig = tree(Root="", Hips="Root", Abdomen="Hips", thigh_L="Root", thigh_R="Root")
+    assert roles(rig)["hips"] == (0, 1)
+
+
+def test_roles_that_a_file_states_win_over_names() -> None:
+    rig = chain("Hips", "LeftArm", "Tube1", "Tube2")
+    found = roles(rig, {"Tube1": "left upper_arm", "Tube2": "left forearm"})
+    assert (found["left upper_arm"], found["left forearm"]) == ((2,), (3,))

@@ -1,10 +1,13 @@
 """How chains of joints pair up, what is left over, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from people import person
 
 from mua.errors import InputError
-from mua.motion.match import joint_pairs, match_joints, unmatched_source, unmatched_target
+from mua.motion.match import joint_pairs, match_joints, require_limbs, unmatched_source, unmatched_target
 from mua.rig.skeleton import Skeleton
 
 
@@ -70,6 +73,55 @@ def test_lists_pairs_and_what_is_left_over() -> None:
     assert unmatched_target(target, matches) == ("Tail",)
     assert unmatched_target(target, matches, weighted=[0, 1]) == ()
     assert unmatched_source(source, matches) == ("Prop",)
+
+
+def renamed(skeleton: Skeleton, **names: str) -> Skeleton:
+    """The skeleton with parts of its joint names replaced."""
+    given = tuple(skeleton.names)
+    for old, new in names.items():
+        given = tuple(name.replace(old, new) for name in given)
+    return replace(skeleton, names=given)
+
+
+def other_habit(skeleton: Skeleton) -> Skeleton:
+    """The same joints by names that none of the skeleton's equals."""
+    return replace(skeleton, names=tuple(f"mixamorig_{name}" for name in skeleton.names))
+
+
+@pytest.mark.parametrize(
+    ("hidden", "words"),
+    [
+        ({"LeftUpLeg": "a", "RightUpLeg": "b"}, "left leg and right leg"),
+        ({"RightForeArm": "c"}, "the right arm of"),
+        ({"Spine": "d"}, "the spine of"),
+    ],
+)
+def test_refuses_where_a_limb_or_the_spine_is_missing_and_points_at_the_mapping(
+    hidden: dict[str, str], words: str
+) -> None:
+    whole = other_habit(person())
+    for source, target in ((renamed(person(), **hidden), whole), (whole, renamed(person(), **hidden))):
+        with pytest.raises(InputError, match=rf"{words}.*--mapping"):
+            require_limbs(source, target, match_joints(source, target))
+
+
+def test_asks_no_limbs_of_rigs_of_one_kind_and_of_whole_people() -> None:
+    fox = chain("b_Root", "b_Hip", "b_Leg01", "b_Tail01", "b_Tail02")
+    require_limbs(fox, fox, match_joints(fox, fox))
+    require_limbs(person(), other_habit(person()), match_joints(person(), other_habit(person())))
+
+
+def test_a_mapped_joint_takes_the_role_of_what_moves_it() -> None:
+    source, target = person(), renamed(other_habit(person()), LeftForeArm="Tube")
+    matches = match_joints(source, target, {"mixamorig_Tube": "LeftForeArm"})
+    assert matches.ends("left forearm") == (target.names.index("mixamorig_Tube"), source.names.index("LeftForeArm"))
+    require_limbs(source, target, matches)
+
+
+def test_roles_of_the_file_match_joints_whose_names_say_nothing() -> None:
+    source, target = person(), renamed(other_habit(person()), LeftForeArm="Tube")
+    matches = match_joints(source, target, target_said={"mixamorig_Tube": "left forearm"})
+    assert matches.ends("left forearm") == (target.names.index("mixamorig_Tube"), source.names.index("LeftForeArm"))
 
 
 def test_what_a_file_says_of_its_joints_goes_before_their_names() -> None:

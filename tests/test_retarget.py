@@ -226,6 +226,22 @@ def test_bone_aligned_rest_poses_give_what_a_standing_one_gives(heading: float) 
     assert quality.facing_degrees < ESTIMATE_BOUND
 
 
+def test_feet_that_hang_on_controls_stay_at_the_shins_end() -> None:
+    """Rigs for inverse kinematics: feet and legs below the root, hips beside them."""
+    source, plain = person(), person(size=0.8)
+    names = ("Root", *plain.names)
+    _, at = plain.world(plain.bind_rotations, plain.bind_translations)
+    at = np.concatenate([np.zeros((1, 3)), at])
+    loose = ("Hips", "LeftUpLeg", "RightUpLeg", "LeftFoot", "RightFoot")
+    parents = np.concatenate([[-1], plain.parents + 1]).astype(np.int32)
+    parents[[names.index(name) for name in loose]] = 0
+    offsets = at - np.where(parents[:, None] < 0, 0, at[parents])
+    target = Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), offsets, root=1)
+    found, _ = retarget(SourceMotion(source, walk(source)), target)
+    expected, _ = retarget(SourceMotion(source, walk(source)), plain)
+    np.testing.assert_allclose(world(target, found)[1][:, 1:], world(plain, expected)[1], atol=POSITION_BOUND)
+
+
 @pytest.mark.parametrize("flat", [{0}, {1}, {2}, {0, 1}, {1, 2}, {0, 1, 2}])
 def test_skeletons_without_some_extent_still_give_rotations(flat: set[int]) -> None:
     """Rest poses as broken exporters write them: all joints in one plane, on one line, in one point."""

@@ -4,7 +4,8 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.rest import SIDES, Rest
+from mua.motion.joint_names import SIDES, ancestors
+from mua.motion.rest import IDENTITY, Rest, Y
 
 SOLES = ("foot", "toe")
 STANDING = 0.05  # quantile over frames of the lower foot's height that counts as standing
@@ -12,23 +13,59 @@ ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 
 LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stands and stays where it is
 
 
-def root_translation(rest: Rest, rotations: Array, source_at: Array, *, honest: bool) -> tuple[Array, list[str]]:
-    """Local translation [F, 3] of the target's root that carries the hips along the source's path, and notes."""
+CARRIED_BY = (("forearm", "upper_arm"), ("hand", "forearm"), ("shin", "thigh"), ("foot", "shin"))
+
+
+def placed(rest: Rest, rotations: Array, source_at: Array, *, honest: bool) -> tuple[Array, list[str]]:
+    """Local translations [F, T, 3] of the target that carry its hips along the source's path, and notes.
+
+    honest: whether the source's rest pose shows a body, and so how high its feet stand.
+    """
     target, matches = rest.target, rest.matches
-    turned, at = target.world(rotations, np.broadcast_to(target.bind_translations, (*rotations.shape[:-1], 3)))
+    translations = np.tile(target.bind_translations, (len(rotations), 1, 1))
+    turned, at = target.world(rotations, translations)
     scale, leg = _leg_scale(rest)
     legs = [joint for side in SIDES if (joint := rest.joint(f"{side} thigh")) is not None]
     hips = legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]
     if not hips:
-        return np.tile(target.bind_translations[target.root], (len(rotations), 1)), ["no hips; it stays in place."]
+        return translations, ["no hips; it stays in place."]
     path = scale * source_at[:, [matches.chains[joint][0] for joint in hips]].mean(axis=1)
+    mover = _mover(rest)
+    parent = int(target.parents[mover])
+    above = turned[:, parent] if parent >= 0 else np.broadcast_to(IDENTITY, turned[:, 0].shape)
+
+    def moved(shift: Array) -> Array:
+        led = translations.copy()
+        led[:, mover] += rotation.rotate(rotation.conjugate(above), shift)
+        return _attached(rest, rotations, led)
+
     shift = path - at[:, hips].mean(axis=1)
-    lift, notes = _lift(rest, at + shift[:, None], source_at if honest else None, scale, leg)
-    shift[:, 1] += lift
-    parent = target.parents[target.root]
-    if parent >= 0:
-        shift = rotation.rotate(rotation.conjugate(turned[:, parent]), shift)
-    return target.bind_translations[target.root] + shift, notes
+    _, at = target.world(rotations, moved(shift))
+    lift, notes = _lift(rest, at, source_at if honest else None, scale, leg)
+    return moved(shift + lift * Y), notes
+
+
+def _mover(rest: Rest) -> int:
+    """The joint whose translation moves the whole body: the skeleton's root, or hips that carry it too."""
+    root, hips = rest.target.root, rest.matches.roles["hips"][0]
+    return hips if hips in ancestors(rest.target, root) else root
+
+
+def _attached(rest: Rest, rotations: Array, translations: Array) -> Array:
+    """Translations [F, T, 3] after which hands and feet that hang on no limb (rigs for IK) are at the limb's end."""
+    target = rest.target
+    for role, carrier in ((f"{side} {part}", f"{side} {limb}") for part, limb in CARRIED_BY for side in SIDES):
+        joint, limb = rest.joint(role), rest.joint(carrier)
+        if joint is None or limb is None or limb in ancestors(target, joint):
+            continue
+        parent = int(target.parents[joint])
+        turned, at = target.world(rotations, translations)
+        since = rotation.multiply(turned[:, limb], rotation.conjugate(rest.target_turned[limb]))
+        wanted = at[:, limb] + rotation.rotate(since, rest.target_at[joint] - rest.target_at[limb])
+        if parent >= 0:
+            wanted = rotation.rotate(rotation.conjugate(turned[:, parent]), wanted - at[:, parent])
+        translations[:, joint] = wanted
+    return translations
 
 
 def _leg_scale(rest: Rest) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
-from mua.motion.match import Matches, match_joints
+from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.read import read_motion
 from mua.motion.resample import resample
 from mua.motion.retarget import retarget_matched
@@ -35,7 +35,7 @@ def load_motion(
     """The clips of a motion file, or of every file of a directory, on `skeleton`, and notes of each clip for the user.
 
     Motion on the very same skeleton is taken as it stands; any other is retargeted.
-    Errors: InputError naming the file where it cannot be read or none of its joints is matched.
+    Errors: InputError naming the file where it cannot be read or moves no arm, leg or spine of the character.
     """
     loaded = load_motions(path, skeleton, mapping=mapping, rate=rate, said=said)
     return [motion.clip for motion in loaded], tuple(note for motion in loaded for note in motion.notes)
@@ -93,6 +93,8 @@ def _put_on(
             matches = match_joints(source.skeleton, skeleton, source_said=source.said, target_said=said)
             return LoadedMotion(resample(source.clip, rate), source, matches, source.notes)
         matches = match_joints(source.skeleton, skeleton, mapping, source_said=source.said, target_said=said)
+        if not mapping:
+            require_limbs(source.skeleton, skeleton, matches)
         clip, notes = retarget_matched(source, skeleton, matches, rate=rate)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.joint_names import NAMESPACE, Roles, roles
+from mua.motion.joint_names import NAMESPACE, SIDES, Roles
+from mua.motion.joint_names import roles as find_roles
 from mua.rig.skeleton import Skeleton
 
 
@@ -42,13 +43,14 @@ def match_joints(
     Errors: InputError if `mapping` names an unknown joint or if nothing but the root matches.
     """
     chains = _match_equal_names(source, target)
-    source_roles, target_roles = _roles(source, source_said or {}), _roles(target, target_said or {})
+    source_roles, target_roles = find_roles(source, source_said), find_roles(target, target_said)
     for role, joints in target_roles.items():
         chain = source_roles.get(role, ())
         for i, joint in enumerate(joints):
             if chain:
                 first, end = i * len(chain) // len(joints), -(-(i + 1) * len(chain) // len(joints))
                 chains[joint] = chain[first], chain[end - 1]
+    target_roles = _with_mapped(source, target, target_roles, source_roles, mapping or {})
     for target_name, source_name in (mapping or {}).items():
         chosen = _index(source, source_name, "source")
         chains[_index(target, target_name, "target")] = chosen, chosen
@@ -60,16 +62,57 @@ def match_joints(
     return Matches(chains, target_roles)
 
 
-def _roles(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
-    """Joints of every role, by what the file says, else by their names; a joint has no two roles."""
-    by_name = roles(skeleton)
-    told: dict[str, tuple[int, ...]] = {}
-    for joint, name in enumerate(skeleton.names):
-        if name in said:
-            told[said[name]] = (*told.get(said[name], ()), joint)
-    taken = {joint for joints in told.values() for joint in joints}
-    left = {role: tuple(j for j in joints if j not in taken) for role, joints in by_name.items() if role not in told}
-    return {role: joints for role, joints in left.items() if joints} | told
+def _with_mapped(
+    source: Skeleton, target: Skeleton, found: Roles, source_roles: Roles, mapping: Mapping[str, str]
+) -> Roles:
+    """The target's roles, with those that mapped joints take over from the source joint that moves them."""
+    parts = {source.names[joint]: role for role, joints in source_roles.items() for joint in joints}
+    known = {joint for joints in found.values() for joint in joints}
+    added: dict[str, list[int]] = {}
+    for target_name, source_name in mapping.items():
+        role = parts.get(source_name)
+        if role and target_name in target.names and (joint := target.names.index(target_name)) not in known:
+            added.setdefault(role, []).append(joint)
+    return found | {role: tuple(sorted(joints)) for role, joints in added.items() if role not in found}
+
+
+LIMBS = {
+    **{f"{side} arm": (f"{side} upper_arm", f"{side} forearm") for side in SIDES},
+    **{f"{side} leg": (f"{side} thigh", f"{side} shin") for side in SIDES},
+    "spine": ("spine",),
+}
+SAME_RIG = 0.8  # of the target's joints: with as many equal names, motion and character are of one kind of rig
+
+
+def missing_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> tuple[str, ...]:
+    """Limbs without which motion is no likeness of its source; none between rigs of one kind, people or not."""
+    if len(_match_equal_names(source, target)) >= SAME_RIG * len(target.names):
+        return ()
+    missing = [limb for limb, roles in LIMBS.items() if any(matches.ends(role) is None for role in roles)]
+    if "spine" in missing and "spine" not in matches.roles and _has_no_spine(target, matches.roles):
+        missing.remove("spine")
+    return tuple(missing)
+
+
+def require_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> None:
+    """Errors: InputError that names the limbs of the character that nothing of the motion moves."""
+    missing = missing_limbs(source, target, matches)
+    if missing:
+        raise InputError(
+            f"motion: nothing of the source ({_sample(source)}) is known to move the {_listed(missing)} of the "
+            f"character ({_sample(target)}); pair their joints in a mapping file and give it with --mapping "
+            "(mua-bake --check writes one to start from)"
+        )
+
+
+def _has_no_spine(skeleton: Skeleton, found: Roles) -> bool:
+    """Whether arms or head grow straight out of the hips."""
+    tops = [found[role][0] for role in ("left shoulder", "left upper_arm", "neck", "head") if role in found]
+    return bool(tops) and all(int(skeleton.parents[joint]) in found["hips"] for joint in tops[:1])
+
+
+def _listed(words: tuple[str, ...]) -> str:
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
 @dataclass(frozen=True)

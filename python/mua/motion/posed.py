@@ -16,6 +16,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import planted
+from mua.motion.joint_names import FINGERS, ROLES, ancestors
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.trunk import AROUND, AT_EASE, Trunk, degrees, leaned, nearest_axis, trunk_of, unit
 
@@ -25,7 +26,8 @@ UPPER = {"upper_arm": "forearm", "thigh": "shin"}
 LOWER = {"forearm": ("upper_arm", "hand"), "shin": ("thigh", "foot")}
 LEVEL = 35.0  # degrees: a sole that stands farther from what its bones say stands on something other than the floor
 NODDED = 45.0  # degrees: a bone of the head farther from upright than a head is held is no measure of it
-FINGERS = ("thumb", "index", "middle", "ring", "pinky")
+_CARRIERS = {"hand": "forearm", "foot": "shin"}  # for rigs whose hands and feet hang on nothing but controls
+_OUTWARDS = {role: i for i, role in enumerate(ROLES)}
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ def posed_calibrations(
     frames = _Frames(rest, turned, at, rate, bind, trunk, upright)
     found: dict[int, Array] = {}
     parts = {joint: role for role, joints in rest.matches.roles.items() for joint in joints}
-    for joint in sorted(rest.matches.chains):
+    for joint in sorted(rest.matches.chains, key=lambda joint: (_OUTWARDS.get(parts.get(joint, ""), 0), joint)):
         found[joint] = _calibration(frames, joint, parts.get(joint, ""), found)
     return found
 
@@ -200,10 +202,12 @@ def _as_above(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
 
 def _world(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
     """Rotations [F, 4] from the target's bind world to the source's world that the part above a joint shows."""
-    above = int(frames.rest.target.parents[joint])
-    while above >= 0 and above not in found:
-        above = int(frames.rest.target.parents[above])
-    if above < 0:
+    part = next((role for role, joints in frames.rest.matches.roles.items() if joint in joints), "")
+    side, _, part = part.rpartition(" ")
+    carriers = (frames.rest.joint(f"{side} {_CARRIERS.get(part)}"), frames.rest.joint("hips"))
+    chain = [*ancestors(frames.rest.target, joint), *carriers]
+    above = next((joint for joint in chain if joint in found), None)
+    if above is None:
         return np.tile(IDENTITY, (len(frames.at), 1))
     return rotation.multiply(frames.moving(above), found[above])
 

@@ -18,8 +18,8 @@ from mua import rotation
 from mua.arrays import Array
 from mua.motion.clip import Clip
 from mua.motion.descriptor import heading_of
-from mua.motion.floor import root_translation
-from mua.motion.match import Matches, match_joints
+from mua.motion.floor import placed
+from mua.motion.match import Matches, match_joints, missing_limbs, require_limbs
 from mua.motion.posed import posed_calibrations
 from mua.motion.resample import resample
 from mua.motion.rest import IDENTITY, Rest, body_turn, rest_calibrations, rest_of
@@ -32,22 +32,28 @@ TELLING = ("hips", "spine", "left thigh", "right thigh", "left shin", "right shi
 
 
 def retarget(
-    source: SourceMotion, target: Skeleton, *, mapping: Mapping[str, str] | None = None, rate: float = 30.0
+    source: SourceMotion,
+    target: Skeleton,
+    *,
+    mapping: Mapping[str, str] | None = None,
+    rate: float = 30.0,
 ) -> tuple[Clip, tuple[str, ...]]:
     """Return the motion of `source` on `target` at `rate` frames per second, and notes worth telling the user.
 
     mapping: target joint names to source joint names, before any match by name. Joints that nothing matches keep their
-    bind rotation. Errors: InputError if no joint name matches or `mapping` names an unknown joint.
+    bind rotation. Errors: InputError if an arm, a leg or the spine is not matched and no `mapping` is given, or if
+    `mapping` names an unknown joint.
     """
-    return retarget_matched(
-        source, target, match_joints(source.skeleton, target, mapping, source_said=source.said), rate=rate
-    )
+    matches = match_joints(source.skeleton, target, mapping, source_said=source.said)
+    if not mapping:
+        require_limbs(source.skeleton, target, matches)
+    return retarget_matched(source, target, matches, rate=rate)
 
 
 def retarget_matched(
     source: SourceMotion, target: Skeleton, matches: Matches, *, rate: float = 30.0
 ) -> tuple[Clip, tuple[str, ...]]:
-    """The same for joints that are matched already."""
+    """The same for joints that are matched already; limbs that are not are noted."""
     rest = rest_of(source.skeleton, target, matches)
     clip = resample(source.clip, rate)
     turned, at = source.skeleton.world(clip.rotations, clip.translations)
@@ -59,13 +65,15 @@ def retarget_matched(
     if not honest:
         calibrations, facing = posed, IDENTITY
     rotations = _local_rotations(rest, calibrations, rotation.multiply(facing, turned))
-    translation, notes = root_translation(rest, rotations, rotation.rotate(facing, at), honest=honest)
+    translations, notes = placed(rest, rotations, rotation.rotate(facing, at), honest=honest)
     notes = [f"{clip.name}: {note}" for note in notes]
+    if missing := missing_limbs(source.skeleton, target, matches):
+        notes.append(f"Nothing of the motion moves {' and '.join(missing)}.")
     if unmatched := len(target.names) - len(matches.chains):
         notes.append(
             f"{unmatched} of {len(target.names)} joints match none of the motion and keep their bind rotation."
         )
-    return Clip(clip.name, rate, rotations, target.with_root(translation)), (*source.notes, *notes)
+    return Clip(clip.name, rate, rotations, translations), (*source.notes, *notes)
 
 
 def _contradicts(rest: Rest, by_rest: Mapping[int, Array], by_pose: Mapping[int, Array]) -> bool:
