@@ -12,6 +12,7 @@ from mua.motion.clip import Clip
 from mua.rig.bind_pose import Bind, bind_pose
 from mua.rig.character import MAX_INFLUENCES
 from mua.rig.correction import check_scales, corrected
+from mua.rig.findings import UNHELD
 from mua.rig.rigid_skeleton import rigid_skeleton, roles_of
 from mua.rig.scene import Material, Part, Scene, Source, without
 from mua.rig.scene import Wrap as Wrap  # part of what Surfaces says to the atlas
@@ -73,7 +74,9 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     """
     scene = without(scene, leave_out, path)
     if not any(len(part.faces) for part in scene.parts):
-        raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character")
+        still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
+        advice = "; what has no skeleton can be rigged in Blender or by Mixamo" if still else ""
+        raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character{advice}")
     check_scales(scene, path)
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
     bind = bind_pose(scene)

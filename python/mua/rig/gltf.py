@@ -9,7 +9,7 @@ import numpy as np
 
 from mua.rig.animation import Animation, bare_animation
 from mua.rig.assemble import Surfaces, assemble
-from mua.rig.findings import Findings
+from mua.rig.findings import UNHELD, Findings
 from mua.rig.gltf_animation import chain, moved_nodes, read_animations
 from mua.rig.gltf_document import Document, load
 from mua.rig.gltf_holders import Holders
@@ -59,7 +59,7 @@ def _meshes(document: Document, tree: Tree) -> Scene:
         if skin is None:
             holder = holders.of(node)
             if holder is None:
-                findings.add("Meshes that hang on no joint are left out: {}.", node_name(document, node))
+                findings.add(UNHELD, node_name(document, node))
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             skin = len(skins) - 1

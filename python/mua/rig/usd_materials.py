@@ -1,4 +1,4 @@
-"""Base colour of USD materials: UsdPreviewSurface with UsdUVTexture, or displayColor.
+"""Base colour and glow of USD materials: UsdPreviewSurface with UsdUVTexture or a primvar, or displayColor.
 
 UsdPreviewSurface specification (https://openusd.org/release/spec_usdpreviewsurface.html). Image rows are kept as in
 glTF; texture coordinates, whose v points up in USD, are turned by whoever reads them.
@@ -15,6 +15,7 @@ from pxr import Ar, Sdf, Usd, UsdGeom, UsdShade
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig import pictures
+from mua.rig.findings import Findings
 from mua.rig.scene import Material, Wrap
 
 WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp"}
@@ -28,17 +29,49 @@ class Look:
     material: Material
     primvar: str | None = None
     matrix: Array | None = None
+    needed: bool = False  # there is a picture, which the coordinates place
+    color_primvar: str | None = None  # of the mesh, multiplied in
+    opacity_primvar: str | None = None
 
 
-def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path) -> Look:
-    """The look of a mesh or of one of its subsets `prim`."""
+def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, findings: Findings) -> Look:
+    """The look of a mesh or of one of its subsets `prim`; what is not drawn goes to `findings`."""
     material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     shader = material.ComputeSurfaceSource()[0] if material else None
     if not shader:
-        return Look(Material(prim.GetName(), pictures.flat(_display_color(mesh))))
-    name = material.GetPrim().GetName()
+        return _display_look(mesh, prim)
+    look = _surface_look(material.GetPrim().GetName(), shader, path)
+    glow, source = _value(shader, "emissiveColor", default=(0, 0, 0))
+    if source is None:
+        picture = pictures.flat(np.array([*glow, 1]))
+    else:
+        textured = _textured(look.material.name, source[0], path)
+        picture = textured.material.image
+        if not look.needed:
+            image = look.material.image
+            look = replace(textured, material=replace(textured.material, image=image), color_primvar=look.color_primvar)
+        elif not _same_place(look, textured):
+            sentence = "Glow that is mapped otherwise than the base colour is left out, of materials: {}."
+            findings.add(sentence, look.material.name)
+            return look
+    if not picture[..., :3].any():
+        return look
+    return replace(look, material=replace(look.material, image=pictures.glowing(look.material.image, picture)))
+
+
+def _same_place(look: Look, other: Look) -> bool:
+    """Whether two textures lie at the same place of the surface."""
+    here, there = (np.eye(2, 3) if one.matrix is None else one.matrix for one in (look, other))
+    wraps = [(one.material.wrap_u, one.material.wrap_v) for one in (look, other)]
+    return look.primvar == other.primvar and wraps[0] == wraps[1] and bool(np.allclose(here, there))
+
+
+def _surface_look(name: str, shader: UsdShade.Shader, path: Path) -> Look:
+    """Diffuse colour and opacity of a UsdPreviewSurface."""
     opacity, alpha_source = _value(shader, "opacity", default=1.0)
     color, source = _value(shader, "diffuseColor", default=(0.18, 0.18, 0.18))
+    if isinstance(color, str):
+        return Look(Material(name, pictures.flat(np.array([1, 1, 1, opacity]))), color_primvar=color)
     if source is None:
         look = Look(Material(name, pictures.flat(np.array([*color, opacity]))))
     else:
@@ -55,13 +88,22 @@ def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path) -> Look:
     return replace(look, material=replace(look.material, image=image))
 
 
-def _display_color(mesh: UsdGeom.Mesh) -> Array:
-    colors = mesh.GetDisplayColorAttr().Get(Usd.TimeCode.EarliestTime())
-    return np.array([*(np.mean(np.array(colors), axis=0) if colors else (0.5, 0.5, 0.5)), 1.0])
+def _display_look(mesh: UsdGeom.Mesh, prim: Usd.Prim) -> Look:
+    """The look of a mesh without a material: its displayColor and displayOpacity, constant or over the surface."""
+    color, opacity = UsdGeom.PrimvarsAPI(mesh), mesh.GetDisplayOpacityPrimvar()
+    found = color.FindPrimvarWithInheritance("displayColor")
+    values = np.array(found.ComputeFlattened(Usd.TimeCode.EarliestTime()) if found and found.HasValue() else [], float)
+    varies = len(values) > 1
+    flat = [1, 1, 1] if varies else values.reshape(-1, 3)[0] if len(values) else [0.5, 0.5, 0.5]
+    return Look(
+        Material(prim.GetName(), pictures.flat(np.array([*flat, 1.0]))),
+        color_primvar="displayColor" if varies else None,
+        opacity_primvar="displayOpacity" if opacity and opacity.HasValue() else None,
+    )
 
 
 def _value(shader: UsdShade.Shader, name: str, *, default: Any) -> tuple[Any, tuple[UsdShade.Shader, str] | None]:
-    """An input's constant, and the texture (with its output) that it is connected to instead."""
+    """An input's constant or, as a string, the primvar that it reads; and the texture (with its output), if any."""
     given = shader.GetInput(name)
     if not given:
         return default, None
@@ -69,6 +111,8 @@ def _value(shader: UsdShade.Shader, name: str, *, default: Any) -> tuple[Any, tu
         producer = UsdShade.Shader(attribute.GetPrim())
         if producer and producer.GetIdAttr().Get() == "UsdUVTexture":
             return default, (producer, attribute.GetBaseName())
+        if producer and producer.GetIdAttr().Get() == "UsdPrimvarReader_float3":
+            return str(_constant(producer, "varname", "displayColor")), None
         constant = attribute.Get(Usd.TimeCode.EarliestTime())
         if constant is not None:
             return constant, None
@@ -87,7 +131,7 @@ def _textured(name: str, texture: UsdShade.Shader, path: Path) -> Look:
         matrix = np.array([[c * su, -s * sv, du], [s * su, c * sv, dv]])
         reader = _source(reader, "in")
     primvar = None if reader is None else str(_constant(reader, "varname", "st"))
-    return Look(Material(name, image, wraps[0], wraps[1]), primvar, matrix)
+    return Look(Material(name, image, wraps[0], wraps[1]), primvar, matrix, needed=True)
 
 
 def _source(shader: UsdShade.Shader, name: str) -> UsdShade.Shader | None:
