@@ -5,12 +5,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 import typer
 from PIL import Image
+from silent import Silent
+from test_bake import SMALL
 from test_likeness import column_file
 from typer.testing import CliRunner
 
+from mua.bake.pipeline import Order, bake
 from mua.cli.bake import main
+from mua.contact_sheet import CAPTION, CELL
 from mua.errors import InputError
 from mua.motion.mapping import read_mapping
 
@@ -54,6 +59,25 @@ def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -
     text = run("--check", "--texels", 64, "-o", tmp_path / "a.muaavatar")
     assert "nothing to compare" in text
     assert not list(tmp_path.iterdir())
+
+
+def test_a_bake_tells_the_likeness_and_its_contact_sheet_begins_with_it(tmp_path: Path) -> None:
+    told: list[str] = []
+
+    class Hearing(Silent):
+        def note(self, sentence: str) -> None:
+            told.append(sentence)
+
+    cpu = torch.device("cpu")
+    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, cpu, character=column_file(tmp_path))
+    baked = bake(order, Hearing())
+    assert any(sentence.startswith("Splats beside the source: silhouettes overlap by") for sentence in told)
+    with Image.open(baked.sheet) as sheet:
+        strip = CELL[1] + CAPTION
+        assert sheet.height % strip == 0
+        pictures = np.asarray(sheet)[CAPTION : 2 * strip, :, :].astype(int)
+    source, splats = pictures[: CELL[1], : CELL[0]], pictures[: CELL[1], CELL[0] : 2 * CELL[0]]
+    assert np.count_nonzero((source == 255).all(axis=-1) != (splats == 255).all(axis=-1)) < 0.1 * source[..., 0].size
 
 
 def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:

@@ -100,6 +100,13 @@ def test_what_is_half_transparent_lies_over_what_is_behind(context: moderngl.Con
     np.testing.assert_allclose(behind[4, 4], [0, 1, 0, 1], atol=2 * EIGHT_BITS)
 
 
+def test_corner_colours_multiply_the_picture_as_light(context: moderngl.Context) -> None:
+    part = replace(card(depth=0), colors=np.tile([0.5, 1, 0, 0.5], (2, 3, 1)))
+    image = drawn(context, [part], [plain(255, 188, 255, 255)])
+    half = 188 / 255  # as sRGB, of half the light
+    np.testing.assert_allclose(image[4, 4], np.array([half, half, 0, 1]) * 0.5, atol=2 * EIGHT_BITS)
+
+
 def test_a_pixel_is_covered_by_the_share_of_its_samples(context: moderngl.Context) -> None:
     image = drawn(
         context, [card(depth=0, low=-1 / 27)], [plain(255, 255, 255, 255)]

@@ -8,6 +8,8 @@ from PIL import Image, ImageDraw, ImageFont
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.decode import decode_clip_frame, pose_splats
+from mua.likeness.compare import Likeness
+from mua.likeness.sheet import worst_strips
 from mua.portrait import portrait
 from mua.recording import WholeFrame
 from mua.render import render, to_bytes
@@ -19,9 +21,11 @@ COLUMNS = 2  # frames beside each other
 TITLES = ("teacher", "student", f"difference x{GAIN}")
 
 
-def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame]) -> Image.Image:
-    """One picture with three cells for each frame."""
-    strips = [_strip(avatar, frame) for frame in frames]
+def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, likeness: Likeness | None = None) -> Image.Image:
+    """One picture with three cells for each frame, below those of the source beside the splats where there are any."""
+    strips = [] if likeness is None else worst_strips(likeness, CELL)
+    strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
+    strips += [_strip(avatar, frame) for frame in frames]
     blank = np.full_like(strips[0], 255)
     strips += [blank] * (-len(strips) % COLUMNS)
     rows = [np.hstack(strips[i : i + COLUMNS]) for i in range(0, len(strips), COLUMNS)]

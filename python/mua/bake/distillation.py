@@ -20,6 +20,7 @@ from mua.contact_sheet import contact_sheet
 from mua.errors import InputError
 from mua.evaluate import Errors, evaluate
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
+from mua.likeness.compare import Likeness
 from mua.motion.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -54,6 +55,7 @@ class Distillation:
     clips: tuple[Clip, ...] | None = None  # of the character, whole; None: those of the recording, their ends joined
     playback: tuple[str, ...] = (playback.ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
+    likeness: Likeness | None = None  # of the character, for the contact sheet
     processes: Processes = ALONE  # that train together; the first of them writes
 
     @property
@@ -137,7 +139,7 @@ def finish(order: Distillation, student: Student, recording: Recording, listener
         return Baked({}, order.output, stored, None, None)
     errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
     baked = Baked(errors, order.output, stored, order.beside("_contact_sheet.png"), order.beside("_errors.md"))
-    _picture(order.beside("_contact_sheet.png"), avatar, recording)
+    _picture(order.beside("_contact_sheet.png"), avatar, recording, order.likeness)
     write_bytes(order.beside("_errors.md"), report.markdown(errors, teacher=order.teacher).encode())
     told = report.as_json(errors, teacher=order.teacher, held_out=starts)
     write_bytes(order.beside("_errors.json"), told.encode())
@@ -161,11 +163,11 @@ def _within_memory(order: Distillation) -> Iterator[None]:
         ) from error
 
 
-def _picture(path: Path, avatar: Avatar, recording: Recording) -> None:
+def _picture(path: Path, avatar: Avatar, recording: Recording, likeness: Likeness | None) -> None:
     """Write the contact sheet, of held-out frames where there are any."""
     unseen = sum(1 for _ in recording.whole_frames(held_out=True))
     step = max((unseen or recording.whole_count) // SHEET_FRAMES, 1)
     frames = recording.whole_frames(held_out=unseen > 0)  # one at a time: hundreds would not fit into memory
     chosen = itertools.islice(frames, step // 2, step // 2 + step * SHEET_FRAMES, step)
     with replacing(path) as temporary:
-        contact_sheet(avatar, chosen).save(temporary)
+        contact_sheet(avatar, chosen, likeness=likeness).save(temporary)

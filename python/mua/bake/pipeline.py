@@ -10,12 +10,16 @@ import torch
 
 from mua import __version__
 from mua.asset.tensors import Storage
+from mua.bake.check import likeness_of
 from mua.bake.distillation import Baked, Distillation, Listener, finish, teach
 from mua.bake.plan import plan, split
 from mua.bake.playback import ALL, choose
 from mua.bake.report import STAND_IN
 from mua.bake.sources import RATE, load_character, load_clips
 from mua.files import require_writable
+from mua.likeness import told
+from mua.likeness.compare import Likeness
+from mua.motion.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
 from mua.rig.character import Character
@@ -67,6 +71,8 @@ def bake(order: Order, listener: Listener) -> Baked:
     choose(clips, order.clips)  # before hours of work
 
     require_writable(order.output)
+    likeness = _likeness(character, clips, order.settings.texels, listener)
+    character = replace(character, source=None)  # its textures may be large
     recording = _record(order, character, planned, listener)
     distillation = Distillation(
         output=order.output,
@@ -78,9 +84,21 @@ def bake(order: Order, listener: Listener) -> Baked:
         clips=tuple(clips),
         playback=order.clips,
         storage=order.storage,
+        likeness=likeness,
     )
     student = teach(distillation, recording, listener)
     return finish(distillation, student, recording, listener)
+
+
+def _likeness(character: Character, clips: list[Clip], texels: int, listener: Listener) -> Likeness | None:
+    """The source beside the splats, told in a sentence; None where there is no source or nothing to draw with."""
+    if character.source is None:
+        return None
+    listener.stage("likeness")
+    likeness, warnings = likeness_of(character, clips, texels=texels)
+    for sentence in (*([] if likeness is None else [told.summary(likeness)]), *warnings):
+        listener.note(sentence)
+    return likeness
 
 
 def _record(order: Order, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:

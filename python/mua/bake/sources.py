@@ -5,7 +5,8 @@ from pathlib import Path
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
-from mua.motion.load import counted, load_motion, unique_names
+from mua.motion.load import counted, load_motions, unique_names
+from mua.motion.quality import measure_motion
 from mua.motion.resample import resample
 from mua.rig.character import Character
 from mua.rig.detail import Detail
@@ -57,7 +58,8 @@ def load_clips(
     clips: list[Clip] = []
     notes: list[str] = []
     for path in motions:
-        loaded, told = load_motion(path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles)
-        clips += loaded
-        notes += told
+        for loaded in load_motions(path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles):
+            quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
+            clips.append(loaded.clip)
+            notes += (*loaded.notes, *quality.flaws)
     return unique_names(clips), list(counted(notes, clips))

@@ -24,8 +24,10 @@ VERTEX = """
 uniform mat4 matrix;
 in vec3 place;
 in vec2 coordinates;
+in vec4 factor; // linear
 out vec2 uv;
-void main() { uv = coordinates; gl_Position = matrix * vec4(place, 1.0); }
+out vec4 tint;
+void main() { uv = coordinates; tint = factor; gl_Position = matrix * vec4(place, 1.0); }
 """
 FRAGMENT = """
 #version 330
@@ -33,11 +35,15 @@ uniform sampler2D picture;
 uniform bvec2 mirrored;
 uniform bool solid; // draw what hides all behind it, else the rest
 in vec2 uv;
+in vec4 tint;
 out vec4 color;
+vec3 linear(vec3 s) { return mix(pow((s + 0.055) / 1.055, vec3(2.4)), s / 12.92, lessThan(s, vec3(0.04045))); }
+vec3 srgb(vec3 l) { return mix(1.055 * pow(l, vec3(1.0 / 2.4)) - 0.055, l * 12.92, lessThan(l, vec3(0.0031308))); }
 void main()
 {
     vec2 at = mix(uv, 1.0 - abs(mod(uv, 2.0) - 1.0), mirrored);
     vec4 texel = textureGrad(picture, at, dFdx(uv), dFdy(uv));
+    texel = vec4(srgb(linear(texel.rgb) * tint.rgb), texel.a * tint.a);
     if ((texel.a >= SOLID) != solid) discard;
     color = vec4(texel.rgb * texel.a, texel.a);
 }
@@ -49,7 +55,7 @@ class _Piece:
     """The triangles of one part on the device."""
 
     corners: Array  # [3 F] int, vertices of the part
-    coordinates: Array  # [3 F, 2] float32
+    inputs: Array  # [3 F, 6] float32, texture coordinates and the colour that multiplies the texture
     material: int
     clear: bool  # something of its material shows what is behind
 
@@ -103,16 +109,20 @@ class Painter:
         self._textures[piece.material].use()
         set_uniform(self._program, "mirrored", (material.wrap_u == "mirror", material.wrap_v == "mirror"))
         set_uniform(self._program, "solid", solid)
-        rows = np.concatenate([corners, piece.coordinates], axis=1)[order]
-        draw(self._program, rows, "3f 2f", ("place", "coordinates"), mode=moderngl.TRIANGLES)
+        rows = np.concatenate([corners, piece.inputs], axis=1)[order]
+        draw(self._program, rows, "3f 2f 4f", ("place", "coordinates", "factor"), mode=moderngl.TRIANGLES)
 
 
 def _piece(part: Part, material: Material) -> _Piece:
     corners = part.faces.ravel()
-    coordinates = np.zeros((len(corners), 2), np.float32)
+    inputs = np.ones((len(corners), 6), np.float32)
     mapped = part.uv_faces.ravel() >= 0
-    coordinates[mapped] = part.uv[part.uv_faces.ravel()[mapped]]
-    return _Piece(corners, coordinates, part.material, clear=bool(material.image[..., 3].min() < 255 * SOLID))
+    inputs[:, :2] = 0
+    inputs[mapped, :2] = part.uv[part.uv_faces.ravel()[mapped]]
+    if part.colors is not None:
+        inputs[:, 2:] = part.colors.reshape(-1, 4)
+    clear = material.image[..., 3].min() * inputs[:, 5].min(initial=1) < 255 * SOLID
+    return _Piece(corners, inputs, part.material, bool(clear))
 
 
 def _texture(context: moderngl.Context, material: Material) -> moderngl.Texture:

@@ -4,7 +4,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mua.arrays import Array
-from mua.likeness.compare import Likeness, PoseLikeness, Shot
+from mua.likeness.compare import SCREEN, Likeness, PoseLikeness, Shot
 from mua.render import to_bytes
 
 GAIN = 4  # the difference is shown this many times as strong
@@ -15,25 +15,28 @@ MARK = 14  # pixels from the middle of the worst place to the frame around it
 
 def likeness_sheet(likeness: Likeness) -> Image.Image:
     """Three cells for every view of every pose; a frame marks the worst place of each view."""
-    rows = strips(likeness)
+    rows = [_strip(pose, shot) for pose in likeness.poses for shot in pose.shots]
     rows += [np.full_like(rows[0], 255)] * (-len(rows) % COLUMNS)
     return Image.fromarray(np.vstack([np.hstack(rows[i : i + COLUMNS]) for i in range(0, len(rows), COLUMNS)]))
 
 
-def strips(likeness: Likeness) -> list[Array]:
-    """For each view, source, splats and difference [h, 3 w, 3] uint8 under a caption."""
-    return [_strip(pose, shot) for pose in likeness.poses for shot in pose.shots]
+def worst_strips(
+    likeness: Likeness,
+    cell: tuple[int, int],  # width, height, pixels
+) -> list[Array]:
+    """For each pose its worst view: source, splats and difference [h, 3 w, 3] uint8 under a caption."""
+    return [_strip(pose, pose.worst, cell) for pose in likeness.poses]
 
 
-def _strip(pose: PoseLikeness, shot: Shot) -> Array:
-    shown = [image[..., :3] + 1 - image[..., 3:] for image in (shot.source, shot.splats)]
-    difference = 1 - GAIN * np.abs(np.clip(shown[0], 0, 1) - np.clip(shown[1], 0, 1))
+def _strip(pose: PoseLikeness, shot: Shot, cell: tuple[int, int] = SCREEN) -> Array:
+    scale = min(cell[0] / SCREEN[0], cell[1] / SCREEN[1])
+    shown = [_fitted(image, cell, scale) for image in (shot.source, shot.splats)]
+    difference = 1 - GAIN * np.abs(shown[0] - shown[1])
     picture = Image.fromarray(np.hstack([to_bytes(image) for image in (*shown, difference)]))
-    width = shot.source.shape[1]
     draw = ImageDraw.Draw(picture)
-    column, row = shot.place
-    for cell in range(3):
-        middle = column + cell * width
+    column, row = (scale * place for place in shot.place)
+    for i in range(3):
+        middle = column + i * cell[0]
         draw.rectangle((middle - MARK, row - MARK, middle + MARK, row + MARK), outline="red")
     found = shot.agreement
     titles = (
@@ -41,7 +44,22 @@ def _strip(pose: PoseLikeness, shot: Shot) -> Array:
         f"splats: overlap {100 * found.iou:.1f} %, {found.psnr:.1f} dB",
         f"difference x{GAIN}; frame: worst, at {shot.joint}",
     )
-    return np.vstack([_caption(titles, width), np.asarray(picture)])
+    return np.vstack([_caption(titles, cell[0]), np.asarray(picture)])
+
+
+def _fitted(
+    image: Array,  # [H, W, 4] premultiplied sRGB and alpha
+    cell: tuple[int, int],
+    scale: float,
+) -> Array:
+    """The image over white, [h, w, 3] in 0..1, at the top left of a cell."""
+    shown = np.clip(image[..., :3] + 1 - image[..., 3:], 0, 1)
+    if scale != 1:
+        size = round(scale * SCREEN[0]), round(scale * SCREEN[1])
+        shown = np.asarray(Image.fromarray(to_bytes(shown)).resize(size), np.float32) / 255
+    filled = np.ones((cell[1], cell[0], 3), np.float32)
+    filled[: shown.shape[0], : shown.shape[1]] = shown
+    return filled
 
 
 def _caption(titles: tuple[str, ...], width: int) -> Array:

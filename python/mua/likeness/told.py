@@ -8,6 +8,14 @@ GOOD_IOU = 0.97
 GOOD_PSNR = 30.0  # decibels
 
 
+def summary(likeness: Likeness) -> str:
+    """The figures in a sentence."""
+    return (
+        f"Splats beside the source: silhouettes overlap by {100 * likeness.iou:.1f} %, colours inside differ "
+        f"by {likeness.psnr:.1f} dB in the worst of {len(likeness.poses)} poses."
+    )
+
+
 def sentences(likeness: Likeness) -> tuple[str, ...]:
     """What is poor, a sentence each; none where all is well."""
     told = []
