@@ -65,6 +65,12 @@ def test_a_character_that_shows_nothing_is_refused() -> None:
         without_unseen(card(plain(9, 9, 9, 0), "blend", behind=False))
 
 
+def test_a_character_without_texture_coordinates_is_kept_whole() -> None:
+    surfaces = surfaces_of(patch(2, at=0, uv=WHOLE), images=(plain(9, 9, 9, 255),))
+    bare = replace(surfaces, uv=np.zeros((0, 2)), uv_faces=np.full_like(surfaces.uv_faces, -1))
+    assert without_unseen(bare) is bare
+
+
 def test_what_is_solid_is_left_as_it_is() -> None:
     surfaces = surfaces_of(patch(2, at=0, uv=WHOLE), images=(ramp(8),))
     assert without_unseen(surfaces) is surfaces

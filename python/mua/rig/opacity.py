@@ -28,7 +28,10 @@ def without_unseen(surfaces: Surfaces) -> Surfaces:
     hidden = []
     for index, material in enumerate(surfaces.materials):
         faces = np.flatnonzero(surfaces.face_material == index)
-        seen[faces] = _seen(material, surfaces.uv[surfaces.uv_faces[faces]], surfaces.uv_faces[faces, 0] >= 0)
+        mapped = surfaces.uv_faces[faces, 0] >= 0
+        corners = np.zeros((len(faces), 3, 2))
+        corners[mapped] = surfaces.uv[surfaces.uv_faces[faces[mapped]]]
+        seen[faces] = _seen(material, corners, mapped)
         if len(faces) and not seen[faces].any():
             hidden.append(f"Material {material.name} shows nothing (its alpha is 0) and is left out.")
     if seen.all():
