@@ -206,6 +206,36 @@ def test_joints_moved_by_controls_hang_on_what_carries_them() -> None:
     assert "hang on others" in surfaces.notes[0]
 
 
+def test_joints_that_leave_their_places_are_followed() -> None:
+    """Limbs that grow longer, a head that comes off: no joint of the file carries them, and none needs to."""
+    motion = moving(BIND, PARENTS)
+    worlds = motion.worlds.copy()
+    for joint in (2, 4):
+        worlds[:, joint] = np.stack([at(0.05 * f, 0.1 * f, -0.02 * joint * f) for f in range(9)]) @ worlds[:, joint]
+    whole = scene(motions=(replace(motion, worlds=worlds),))
+    surfaces = assemble(whole, HERE)
+    assert_follows(whole, surfaces)
+    assert surfaces.notes == ()
+
+
+def test_what_is_steered_from_above_the_root_is_led_by_the_body() -> None:
+    """A foot that hangs beside the travelling hips, as rigs with inverse kinematics have it."""
+    parents = np.array([-1, 0, 1, 1, 0])
+    motion = moving(BIND, parents, hips=False)
+    worlds = motion.worlds.copy()
+    for f in range(9):
+        worlds[f, 1:4] = at(0.2 * f, 0, 0) @ worlds[f, 1:4]
+        worlds[f, 4] = at(0.2 * f, 0, 0.3 * np.sin(f)) @ worlds[f, 4]
+    weighted = replace(part(), joints=1 + part().joints % 4)
+    whole = scene(parents=parents, parts=(weighted,), motions=(replace(motion, worlds=worlds),))
+    surfaces = assemble(whole, HERE)
+    assert_follows(whole, surfaces)
+    skeleton = surfaces.skeleton
+    assert skeleton.names[skeleton.root] == NAMES[1]
+    assert skeleton.root in skeleton.ancestors(skeleton.names.index(NAMES[4]))
+    assert surfaces.notes == ("1 joints hang on others than in the file, as the clips show.",)
+
+
 def test_parents_come_before_children() -> None:
     parents = assemble(scene(motions=(moving(BIND, PARENTS),)), HERE).skeleton.parents
     assert all(parent < joint for joint, parent in enumerate(parents))

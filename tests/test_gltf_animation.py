@@ -40,15 +40,34 @@ def test_motion_above_the_skeleton_moves_its_root(tmp_path: Path) -> None:
     assert surfaces.skeleton.root == hips
 
 
-def test_dropped_translation_and_scale_are_told(tmp_path: Path) -> None:
+def test_every_joint_moves_as_its_source(tmp_path: Path) -> None:
+    glb = body()
+    animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
+    animate(glb, 1, "rotation", times=[0.0, 1.0], values=HALF_TURN)
+    animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0.25, 0.75, 0]])
+    surfaces = read(glb, tmp_path)
+    (clip,) = surfaces.clips
+    np.testing.assert_allclose(clip.translations[15, 2], [0.125, 0.625, 0], atol=FLOAT_BOUND)
+    np.testing.assert_array_equal(clip.translations[:, 1], np.tile(surfaces.skeleton.bind_translations[1], (31, 1)))
+    positions = surfaces.skeleton.world(clip.rotations, clip.translations)[1]
+    np.testing.assert_allclose(positions[-1, 2], [1 - 0.25, 0.5 - 0.75, 0], atol=1e-6)  # half a turn about Z
+    assert surfaces.notes == ()
+
+
+def test_a_shift_too_small_to_see_is_not_kept(tmp_path: Path) -> None:
+    glb = body()
+    animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0.00005, 0.5, 0]])
+    surfaces = read(glb, tmp_path)
+    (clip,) = surfaces.clips
+    np.testing.assert_array_equal(clip.translations, np.tile(surfaces.skeleton.bind_translations, (31, 1, 1)))
+
+
+def test_dropped_scale_is_told(tmp_path: Path) -> None:
     glb = body()
     animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
     animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0, 0.51, 0]])
     animate(glb, 2, "scale", times=[0.0, 1.0], values=[[1, 1, 1], [1.5, 1, 1]])
-    assert read(glb, tmp_path).notes == (
-        "Translations of joints other than hips are dropped; the largest is 10 mm, of head in clip wave.",
-        "Animated scales are dropped; the largest is 50 %, of head in clip wave.",
-    )
+    assert read(glb, tmp_path).notes == ("Animated scales are dropped; the largest is 50 %, of head in clip wave.",)
 
 
 def test_step_holds_and_cubic_passes_its_keys() -> None:

@@ -20,7 +20,7 @@ from mua.rig.skeleton import Skeleton
 UNITS = (1.0, 0.01, 0.001, 0.1, 0.0254)  # metres per unit, the likeliest first
 PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child to giant
 TYPICAL_SPAN = 2.35
-STRETCH = 0.01  # of the span: how far a bone may stretch before dropping it is worth a note
+HELD = 1e-4  # of the span: a joint whose place in its parent changes by less keeps the mean
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
 Z_UP_TO_Y_UP = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0])  # a quarter turn about X
 
@@ -163,17 +163,14 @@ def _assemble(path: Path, nodes: list[_Node], rate: float, values: Array, scale:
     )
     rotations, positions = _decode_channels(nodes, values)
     root = _moving_root(skeleton, positions)
-    translation, carried = _root_translation(skeleton, rotations, positions, root)
+    leads = [root, *skeleton.ancestors(root)]
+    moves = np.ptp(positions, axis=0).max(axis=-1) > HELD * span
+    moves[leads] = True
     rest = positions.mean(axis=0)
-    rest[carried] = offsets[carried]
-    stretched = [
-        j for j in range(len(nodes)) if j not in carried and np.ptp(positions[:, j], axis=0).max() > STRETCH * span
-    ]
+    rest[leads] = offsets[leads]
     skeleton = replace(skeleton, bind_translations=rest * scale, root=root)
-    clip = Clip(path.stem, rate, rotations, skeleton.with_root(translation * scale))
+    clip = Clip(path.stem, rate, rotations, np.where(moves[:, None], positions, rest) * scale)
     notes = []
-    if stretched:
-        notes.append(f"{path.name}: bones that stretch keep their mean length: {_listed(skeleton, stretched)}.")
     if _is_z_up(skeleton, clip):
         skeleton, clip = _turn(skeleton, clip, Z_UP_TO_Y_UP)
         notes.append(f"{path.name}: Z is up; turned to Y up.")
@@ -214,19 +211,6 @@ def _moving_root(skeleton: Skeleton, positions: Array) -> int:
     while not moves[root] and np.count_nonzero(skeleton.parents == root) == 1:
         root += 1  # an only child follows its parent in the file
     return root if hips == 0 and moves[root] else hips
-
-
-def _root_translation(skeleton: Skeleton, rotations: Array, positions: Array, root: int) -> tuple[Array, list[int]]:
-    """Local translation [F, 3] of `root`, with the movement of the joints above it folded in; and all these joints."""
-    translation, carried = positions[:, root].copy(), [root]
-    turn = np.array([1.0, 0, 0, 0])  # from the space above a joint to that of the root's parent
-    joint = int(skeleton.parents[root])
-    while joint >= 0:
-        carried.append(joint)
-        turn = rotation.multiply(turn, rotation.conjugate(rotations[:, joint]))
-        translation += rotation.rotate(turn, positions[:, joint] - skeleton.bind_translations[joint])
-        joint = int(skeleton.parents[joint])
-    return translation, carried
 
 
 def _span(nodes: list[_Node]) -> float:
@@ -274,7 +258,3 @@ def _turn(skeleton: Skeleton, clip: Clip, turn: Array) -> tuple[Skeleton, Clip]:
     translations[:, top] = rotation.rotate(turn, translations[:, top])
     skeleton = replace(skeleton, bind_rotations=bind_rotations, bind_translations=bind_translations)
     return skeleton, replace(clip, rotations=rotations, translations=translations)
-
-
-def _listed(skeleton: Skeleton, joints: list[int]) -> str:
-    return ", ".join(skeleton.names[j] for j in joints)

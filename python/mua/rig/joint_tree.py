@@ -35,19 +35,36 @@ def find_root(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> in
 
 
 def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> tuple[Bind, tuple[str, ...]]:
-    """Hang joints that no bound joint carries on the one whose side they keep in every clip.
+    """Hang joints on those that carry them: by the clips, and so that the root leads all that the mesh hangs on.
 
-    Controls, which then carry nothing, are left out. Where a joint keeps to no other, or there are no clips, the
-    file's hierarchy stays. Returns the joints and a sentence on what changed.
+    Returns the joints and a sentence on what changed.
     """
-    if not motions:
-        return bind, ()
-    stray = _Stray(bind, motions)
-    above = [_with_ancestors(j, bind.parents) for j in range(len(names))]
-    orphans = {
-        j for j, parent in enumerate(bind.parents) if bind.trusted[j] and not _is_carried(j, parent, bind, stray)
-    }
     root = find_root(names, bind, motions=motions)
+    stray = _Stray(bind, motions)
+    parents, kept = _by_clips(bind, root, stray) if motions else _as_filed(bind)
+    parents = _led(bind, parents, root, stray) if kept[root] else parents
+    moved, left_out = int(np.count_nonzero((parents != bind.parents) & kept)), int(np.count_nonzero(~kept))
+    if not moved and not left_out:
+        return bind, ()
+    parts = [f"{moved} joints hang on others than in the file, as the clips show"] if moved else []
+    parts += [f"{left_out} joints without weights and without a bind pose are left out"] if left_out else []
+    return _ordered(bind, parents, kept), (" and ".join(parts) + ".",)
+
+
+def _as_filed(bind: Bind) -> tuple[Array, Array]:
+    return bind.parents.copy(), np.ones(len(bind.parents), bool)
+
+
+def _by_clips(bind: Bind, root: int, stray: "_Stray") -> tuple[Array, Array]:
+    """Parents [J] and which joints [J] are kept: joints that no bound joint carries go beside whom they keep in clips.
+
+    Controls, which then carry nothing, are left out. A joint that keeps to no other stays where the file has it, if
+    that is in the body; else the whole file's hierarchy stays.
+    """
+    above = [_with_ancestors(j, bind.parents) for j in range(len(bind.parents))]
+    carries = mass_below(bind) > 0 if bind.mass.any() else bind.trusted
+    weighted = np.flatnonzero(bind.trusted & carries).tolist()
+    orphans = {j for j in weighted if not _is_carried(j, int(bind.parents[j]), bind, stray)}
     top = root if bind.trusted[root] else min(orphans, key=lambda j: (len(above[j]), j))
     orphans -= set(above[top])
     attached = [
@@ -55,26 +72,41 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
         for j in np.flatnonzero(bind.trusted)
         if not orphans & set(above[j]) and (top in above[j] or j in above[top])
     ]
+    body = {j for j in attached if top in above[j]}
     parents = bind.parents.copy()
-    moved = len(orphans)
     while orphans:
-        distances = {j: stray(j, attached) for j in sorted(orphans)}
-        child = min(distances, key=lambda j: distances[j].min())
-        least = distances[child].min()
-        if least > LEAVES:
-            return bind, ()
-        apart = np.linalg.norm(bind.places[attached] - bind.places[child], axis=1)
-        parents[child] = attached[int(np.argmin(np.where(distances[child] <= least + TIE, apart, np.inf)))]
+        distances = {j: stray(j, attached).min() for j in sorted(orphans)}
+        child = min(distances, key=lambda j: distances[j])
+        stays = [j for j in distances if parents[j] in body]
+        if distances[child] <= LEAVES:
+            parents[child] = _holder(child, attached, bind, stray)
+        elif stays:
+            child = stays[0]
+        else:
+            return _as_filed(bind)
         orphans.remove(child)
-        attached += [int(j) for j in np.flatnonzero(bind.trusted) if child in above[j] and not orphans & set(above[j])]
-    kept = _kept(bind, parents)
-    left_out = len(names) - len(kept.nodes)
-    if not moved and not left_out:
-        return bind, ()
-    return kept, (
-        f"{moved} joints hang on others than in the file, as the clips show, and {left_out} without weights and "
-        f"without a bind pose are left out.",
-    )
+        joined = [int(j) for j in np.flatnonzero(bind.trusted) if child in above[j] and not orphans & set(above[j])]
+        attached += joined
+        body |= set(joined) if parents[child] in body else set()
+    return parents, bind.trusted
+
+
+def _led(bind: Bind, parents: Array, root: int, stray: "_Stray") -> Array:
+    """Parents [J] so that what the mesh hangs on is led by the root: feet that a rig steers from above it, say.
+
+    Such a joint goes where it strays least. What keeps its place beside a joint above the root stays there.
+    """
+    leads = _with_ancestors(root, parents)
+    body = [j for j in range(len(parents)) if root in _with_ancestors(j, parents)]
+    carries = mass_below(bind) > 0
+    led = parents.copy()
+    for joint in np.flatnonzero(carries).tolist():
+        parent = int(parents[joint])
+        if joint in leads or not (parent < 0 or parent in leads[1:]):
+            continue
+        if parent < 0 or stray(joint, [parent])[0] > LEAVES:
+            led[joint] = _holder(joint, body, bind, stray)
+    return led
 
 
 class _Stray:
@@ -83,12 +115,12 @@ class _Stray:
     FRAMES = 200  # enough to see a joint leave, whatever the length of the clips
 
     def __init__(self, bind: Bind, motions: list[RigidMotion]) -> None:
-        total = sum(len(motion.positions) for motion in motions)
-        step = max(1, total // self.FRAMES)
-        self._rotations = np.concatenate([motion.rotations for motion in motions])[::step]
-        self._positions = np.concatenate([motion.positions for motion in motions])[::step]
         self._bind_rotations = rotations_of(bind.matrices)
         self._places = bind.places
+        step = max(1, sum(len(motion.positions) for motion in motions) // self.FRAMES)
+        turned = [motion.rotations for motion in motions] or [self._bind_rotations[None]]
+        placed = [motion.positions for motion in motions] or [self._places[None]]
+        self._rotations, self._positions = (np.concatenate(found)[::step] for found in (turned, placed))
         self._size = _size(bind)
 
     def __call__(self, joint: int, holders: list[int]) -> Array:
@@ -112,16 +144,23 @@ def _is_carried(joint: int, parent: int, bind: Bind, stray: _Stray) -> bool:
     return parent >= 0 and bool(bind.trusted[parent]) and bool(stray(joint, [int(parent)])[0] <= LEAVES)
 
 
-def _kept(bind: Bind, parents: Array) -> Bind:
-    """The trusted joints under their new parents [J], parents before children."""
-    above = [[a for a in _with_ancestors(j, parents) if bind.trusted[a]] for j in range(len(parents))]
-    order = sorted(np.flatnonzero(bind.trusted).tolist(), key=lambda j: [*reversed(above[j])])
+def _holder(joint: int, holders: list[int], bind: Bind, stray: "_Stray") -> int:
+    """The joint of `holders` from whose side `joint` strays least; of about equal ones, the nearest."""
+    distances = stray(joint, holders)
+    apart = np.linalg.norm(bind.places[holders] - bind.places[joint], axis=1)
+    return holders[int(np.argmin(np.where(distances <= distances.min() + TIE, apart, np.inf)))]
+
+
+def _ordered(bind: Bind, parents: Array, kept: Array) -> Bind:
+    """The kept [J] joints under their new parents [J], parents before children."""
+    above = [[a for a in _with_ancestors(j, parents) if kept[a]] for j in range(len(parents))]
+    order = sorted(np.flatnonzero(kept).tolist(), key=lambda j: [*reversed(above[j])])
     rank = {j: n for n, j in enumerate(order)}
-    kept = np.array([rank[above[j][1]] if len(above[j]) > 1 else -1 for j in order], np.int32)
+    found = np.array([rank[above[j][1]] if len(above[j]) > 1 else -1 for j in order], np.int32)
     columns = {
         name: getattr(bind, name)[order] for name in ("nodes", "matrices", "stretch", "places", "mass", "trusted")
     }
-    return Bind(parents=kept, **columns)
+    return Bind(parents=found, **columns)
 
 
 def _with_ancestors(joint: int, parents: Array) -> list[int]:

@@ -1,4 +1,4 @@
-"""A scene's joints and clips as a skeleton whose joints only rotate, and whose root also moves."""
+"""A scene's joints and clips as a skeleton of rigid joints, which turn and move in their parents."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,8 @@ from mua.rig.rigid_motion import RigidMotion, local_offsets, local_rotations, ri
 from mua.rig.scene import Motion, Scene, Source
 from mua.rig.skeleton import Pose, Skeleton
 
-TOLD_MILLIMETRES = 1.0  # a smaller loss is not worth a sentence
+HELD = 1e-4  # of the character's size: a joint that leaves its bind place in its parent by less keeps it
+EXACT = 1e-6  # the same for root and joints above it, which move all others
 TOLD_SCALE = 0.01
 
 
@@ -28,7 +29,7 @@ class Rigged:
 
 
 def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
-    """Make the scene's joints rigid: rotations only, and a translation of the root."""
+    """Make the scene's joints rigid: rotations, and translations wherever a clip moves what the mesh hangs on."""
     motions = [rigid_motion(motion, bind) for motion in scene.motions]
     bind, told = reattached([scene.node_names[node] for node in bind.nodes], bind, motions=motions)
     if told:
@@ -42,11 +43,13 @@ def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
         bind_translations=local_offsets(bind_world, bind.places, bind.parents),
         root=find_root(list(names), bind, motions=motions),
     )
+    offsets = [local_offsets(motion.rotations, motion.positions, bind.parents) for motion in motions]
+    moved = _moved(skeleton, bind, offsets)
     clips = []
-    for source, motion in zip(scene.motions, motions, strict=True):
+    for source, motion, offset in zip(scene.motions, motions, offsets, strict=True):
         local = rotation.from_matrix(local_rotations(motion.rotations, bind.parents))
-        at = _root_translation(skeleton, local, motion.positions)
-        clips.append(Clip(source.name, source.rate, local, skeleton.with_root(at)))
+        translations = np.where(moved[:, None], offset, skeleton.bind_translations)
+        clips.append(Clip(source.name, source.rate, local, translations))
     return Rigged(skeleton, bind.nodes, tuple(clips), (*told, *_losses(scene, skeleton, bind=bind, motions=motions)))
 
 
@@ -76,37 +79,25 @@ def unique_names(names: list[str]) -> tuple[str, ...]:
     return tuple(unique)
 
 
-def _root_translation(skeleton: Skeleton, local: Array, positions: Array) -> Array:
-    """Root translations [F, 3] that put the root joint where the source has it, whatever stands above it."""
-    parent = skeleton.parents[skeleton.root]
-    if parent < 0:
-        return positions[:, skeleton.root]
-    turned, placed = skeleton.world(local, skeleton.with_root(np.zeros((len(local), 3))))
-    return rotation.rotate(rotation.conjugate(turned[:, parent]), positions[:, skeleton.root] - placed[:, parent])
+def _moved(skeleton: Skeleton, bind: Bind, offsets: list[Array]) -> Array:
+    """Joints [J] that some clip holds elsewhere in their parents than the bind pose, of those that carry the mesh."""
+    apart = np.zeros(len(skeleton.names))
+    for offset in offsets:
+        apart = np.maximum(apart, np.linalg.norm(offset - skeleton.bind_translations, axis=-1).max(axis=0))
+    leads = np.isin(np.arange(len(apart)), [skeleton.root, *skeleton.ancestors(skeleton.root)])
+    carries = leads | (mass_below(bind) > 0) if bind.mass.any() else np.ones(len(apart), bool)
+    moved = carries & (apart > np.where(leads, EXACT, HELD) * skeleton.size)
+    moved[skeleton.root] = True
+    return moved
 
 
 def _losses(scene: Scene, skeleton: Skeleton, *, bind: Bind, motions: list[RigidMotion]) -> tuple[str, ...]:
-    """Sentences on the largest translation and scale that rigid joints do not follow."""
-    carries = mass_below(bind) > 0
-    exact = skeleton.root  # the root is where the source has it, whatever is lost above
-    while exact >= 0:
-        carries[exact] = False
-        exact = int(skeleton.parents[exact])
-    shifts, scales = [(0.0, "", "")], [(0.0, "", "")]
+    """A sentence on the largest scale that rigid joints do not follow."""
+    scales = [(0.0, "", "")]
     for source, motion in zip(scene.motions, motions, strict=True):
-        offsets = local_offsets(motion.rotations, motion.positions, bind.parents)
-        apart = np.linalg.norm(offsets - skeleton.bind_translations, axis=-1).max(axis=0) * carries
         scaled = motion.scales.max(axis=0) * (bind.mass > 0)
-        shifts.append((float(apart.max()), skeleton.names[int(apart.argmax())], source.name))
         scales.append((float(scaled.max()), skeleton.names[int(scaled.argmax())], source.name))
-    notes = []
-    shift, joint, clip = max(shifts)
-    if shift * 1000 > TOLD_MILLIMETRES:
-        notes.append(
-            f"Translations of joints other than {skeleton.names[skeleton.root]} are dropped; "
-            f"the largest is {shift * 1000:.0f} mm, of {joint} in clip {clip}."
-        )
     scale, joint, clip = max(scales)
-    if scale > TOLD_SCALE:
-        notes.append(f"Animated scales are dropped; the largest is {100 * scale:.0f} %, of {joint} in clip {clip}.")
-    return tuple(notes)
+    if scale <= TOLD_SCALE:
+        return ()
+    return (f"Animated scales are dropped; the largest is {100 * scale:.0f} %, of {joint} in clip {clip}.",)
