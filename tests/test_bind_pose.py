@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy as np
-from gltf_files import FLOAT_BOUND, POINTS, Glb, body, posed, read
+from gltf_files import BONES, FLOAT_BOUND, POINTS, TRIANGLES, Glb, body, posed, read, weighted
 
 TURN = np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]], float)  # x to y to z to x
 
@@ -81,3 +81,24 @@ def test_second_skin_of_one_joint_follows_the_body_into_its_bind_pose(tmp_path: 
         surfaces.skeleton.names.index("head")
     ]
     np.testing.assert_allclose(surfaces.vertices[worn][0], head + np.array([0, 0.3, 0]), atol=FLOAT_BOUND)
+
+
+def test_meshes_bound_together_are_placed_together(tmp_path: Path) -> None:
+    """Each ring is a mesh with a skin of its own that lists all joints; at rest spine and head bend."""
+    glb = body()
+    (whole,) = glb.json["meshes"][0]["primitives"]
+    glb.json["meshes"] = []
+    triangles = TRIANGLES.reshape(-1, 3)
+    for bone in range(3):
+        own = triangles[(BONES[triangles] == bone).any(axis=1)]
+        joints = glb.accessor(weighted(np.full(len(POINTS), bone))[0], "u1")
+        attributes = whole["attributes"] | {"JOINTS_0": joints}
+        primitives = [{"attributes": attributes, "indices": glb.accessor(own.reshape(-1), "u2")}]
+        glb.json["meshes"].append({"name": f"ring{bone}", "primitives": primitives})
+    glb.json["skins"] = [dict(glb.json["skins"][0]) for _ in range(3)]
+    glb.json["nodes"] = glb.json["nodes"][:3] + [{"mesh": bone, "skin": bone} for bone in range(3)]
+    glb.json["scenes"] = [{"nodes": [0, 3, 4, 5]}]
+    for node in (1, 2):
+        glb.json["nodes"][node]["rotation"] = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
+    surfaces = read(glb, tmp_path)
+    np.testing.assert_allclose(np.ptp(surfaces.vertices, axis=0), np.ptp(POINTS, axis=0), atol=FLOAT_BOUND)

@@ -11,8 +11,8 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.rig.scene import Scene, Skin
+from mua.rig.skin_groups import alike, grouped
 
-AGREEMENT = 1e-3  # relative difference below which two joints put the mesh at the same place
 ANIMATED = 1e-4  # change of a local matrix, relative to the character, below which a node counts as static
 STRETCHED = 1e-3  # scale of a joint between bind and rest pose below which nothing is folded into the mesh
 OFFSET_TRUST = 0.02  # of the character's size: how far a joint without weights may bind from its place at rest
@@ -131,20 +131,15 @@ def _file_binds(scene: Scene, index: dict[int, int]) -> tuple[dict[int, Array], 
     """
     bound: dict[int, Array] = {}
     proposed: dict[int, Array] = {}
-    masses = {s: scene.masses(s) for s in range(len(scene.skins))}
-    skinned = [s for s in sorted(masses, key=lambda s: -masses[s].sum()) if not scene.skins[s].rigid]
-    guessed = 2 * sum(masses[s].sum() for s in skinned) < sum(mass.sum() for mass in masses.values())
-    for s in skinned:
-        skin, mass = scene.skins[s], masses[s]
-        if not mass.any():
-            continue
-        space = _shared_space(skin, mass=mass, bound=bound, index=index)
-        if space is None:
-            space = _rest_space(scene, skin, mass=mass)
-            beside = np.eye(4) if space is None or not bound else _moved_with(scene, skin, mass, bound, index)
-            if (space is None and (bound or guessed)) or beside is None:
-                return _rest_binds(scene, index)
-            space = _upright_space(scene, skin, mass=mass, kept=index) if space is None else beside @ space
+    groups = grouped(scene)
+    skinned = sum(float(mass.sum()) for _, mass in groups)
+    minor = 2 * skinned < sum(scene.masses(s).sum() for s in range(len(scene.skins)))
+    for skin, mass in groups:
+        space = _rest_space(scene, skin, mass=mass)
+        beside = np.eye(4) if space is None or not bound else _moved_with(scene, skin, mass, bound, index)
+        if (space is None and (bound or minor)) or beside is None:
+            return _rest_binds(scene, index)
+        space = _upright_space(scene, skin, mass=mass, kept=index) if space is None else beside @ space
         for node, matrix, joint_mass in zip(skin.joints, space @ np.linalg.inv(skin.inverse_binds), mass, strict=True):
             (bound if joint_mass > 0 else proposed).setdefault(index[int(node)], matrix)
     return bound, proposed
@@ -167,21 +162,6 @@ def _by_descendants(bound: dict[int, Array], parents: Array) -> dict[int, int]:
     return towards
 
 
-def _shared_space(
-    skin: Skin,
-    *,
-    mass: Array,  # [n]
-    bound: dict[int, Array],
-    index: dict[int, int],
-) -> Array | None:
-    """The matrix [4, 4] from a skin's mesh space to the bind-pose world, by a joint that is bound already."""
-    shared = [k for k, node in enumerate(skin.joints) if mass[k] > 0 and index[int(node)] in bound]
-    if not shared:
-        return None
-    k = max(shared, key=lambda k: mass[k])
-    return bound[index[int(skin.joints[k])]] @ skin.inverse_binds[k]
-
-
 def _rest_space(
     scene: Scene,
     skin: Skin,
@@ -193,9 +173,7 @@ def _rest_space(
     mass = mass[used]
     scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)
     size = np.ptp(scene.rest[skin.joints[used], :3, 3], axis=0).max() + 1e-9
-    turned = np.abs(spaces[:, None, :3, :3] - spaces[None, :, :3, :3]).max(axis=(-1, -2)) / scale[:, None]
-    moved = np.abs(spaces[:, None, :3, 3] - spaces[None, :, :3, 3]).max(axis=-1) / size
-    agreeing = ((turned < AGREEMENT) & (moved < AGREEMENT)) @ mass
+    agreeing = alike(spaces, scale, size=size) @ mass
     return spaces[int(np.argmax(agreeing))] if agreeing.max() > 0.5 * mass.sum() else None
 
 
