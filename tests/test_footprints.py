@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from mua.rig.character import Mesh
+from mua.rig.surface_points import spread_points
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.texture.coverage import coverage
-from mua.texture.footprints import TexelPoints, _spread
+from mua.texture.footprints import TexelPoints
 from mua.texture.surfels import SPREAD, Surfels, rest_surfels
 
 SIZE = 48
@@ -55,7 +56,7 @@ def apart(*meshes: Mesh) -> Mesh:
 def least_coverage(mesh: Mesh) -> float:
     """Of points well inside the surface's outline."""
     _, found, places = laid(mesh)
-    triangles, barycentrics = _spread(mesh, 4000)
+    triangles, barycentrics = spread_points(mesh, 4000)
     points = np.einsum("nk,nkc->nc", barycentrics, mesh.vertices[mesh.faces[triangles]])
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     inner = np.all((points >= low + 0.05 * (high - low)) & (points <= high - 0.05 * (high - low)), axis=1)

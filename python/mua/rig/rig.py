@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from mua.arrays import Array
+from mua.rig.carriers import carry_texels
 from mua.rig.character import Character, Mesh
 from mua.rig.skeleton import Skeleton
 from mua.rig.template import make_template
-from mua.rig.texel_map import TexelMap, build_texel_map
+from mua.rig.texel_map import TexelMap
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,6 @@ def build_rig(character: Character, *, texels: int, template_vertices: int = 500
         mesh=template.mesh,
         skin_indices=template.skin_indices,
         skin_weights=template.skin_weights,
-        texels=build_texel_map(template.mesh, texels),
+        texels=carry_texels(character, template, size=texels).texels,
     )
     return rig, template.source_vertices

@@ -27,6 +27,7 @@ class Template:
     skin_indices: Array  # [V, 8] int32
     skin_weights: Array  # [V, 8] float32, rows sum to 1
     source_vertices: Array  # [V] int32 into the dense mesh's vertices
+    source_uv: Array  # [T] int32 into the dense mesh's UVs
 
 
 def make_template(character: Character, *, vertices: int = 5000) -> Template:
@@ -50,6 +51,7 @@ def make_template(character: Character, *, vertices: int = 5000) -> Template:
         skin_indices=character.skin_indices[kept],
         skin_weights=character.skin_weights[kept],
         source_vertices=kept.astype(np.int32),
+        source_uv=uv_kept.astype(np.int32),
     )
 
 

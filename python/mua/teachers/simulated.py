@@ -15,11 +15,11 @@ from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.motion.descriptor import heading_of
+from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.rig.template import make_template
-from mua.rig.texel_map import build_texel_map
 from mua.teachers.bones import figure_scale, fit_bones
 from mua.teachers.folds import Folds
 from mua.teachers.looseness import estimate_looseness
@@ -41,12 +41,13 @@ class SimulatedTeacher:
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
         mesh = character.mesh
         template = make_template(character, vertices=template_vertices)
+        carried = carry_texels(character, template, size=texels)
         self.rig = Rig(
             skeleton=character.skeleton,
             mesh=template.mesh,
             skin_indices=template.skin_indices,
             skin_weights=template.skin_weights,
-            texels=build_texel_map(template.mesh, texels),
+            texels=carried.texels,
         )
         self._character = character
         self._template = template.source_vertices

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.rig.charts import areas, find_charts
+from mua.rig.surface_points import face_normals, interpolate, spread_points
 
 SLIT = 2.5  # times its texel's footprint that the step to a neighbour may span; a longer one crosses a slit in a chart
 COARSEST = 8.0  # times the median footprint that a texel may have: beyond it a surfel is fog about its few triangles
@@ -39,7 +40,7 @@ class TexelPoints:
     @property
     def places(self) -> Array:
         """[N, 3] metres."""
-        return _interpolate(self.mesh.vertices, self.mesh.faces[self.triangles], self.barycentrics)
+        return interpolate(self.mesh.vertices, self.mesh.faces[self.triangles], self.barycentrics)
 
 
 def neighbour_steps(
@@ -78,10 +79,10 @@ def sample_surface(
     What lies on another triangle than its texel and farther away than FAR steps is bare: nothing near shows it.
     """
     mesh, places = points.mesh, points.places
-    normals = _normals(mesh)
-    triangles, barycentrics = _spread(mesh, SAMPLES * len(points.texels))
-    at = _interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
-    column, row = (_interpolate(mesh.uv, mesh.uv_faces[triangles], barycentrics) * points.size).astype(np.int64).T
+    normals = face_normals(mesh)
+    triangles, barycentrics = spread_points(mesh, SAMPLES * len(points.texels))
+    at = interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
+    column, row = (interpolate(mesh.uv, mesh.uv_faces[triangles], barycentrics) * points.size).astype(np.int64).T
     row_of_texel = np.full(points.size**2, -1, np.int64)
     row_of_texel[points.texels] = np.arange(len(points.texels))
     inside = (column >= 0) & (column < points.size) & (row >= 0) & (row < points.size)
@@ -125,24 +126,3 @@ def neighbours(texels: Array, size: int) -> tuple[tuple[Array, Array], tuple[Arr
     pairs = [(grid[:, :-1].ravel(), grid[:, 1:].ravel()), (grid[:-1].ravel(), grid[1:].ravel())]
     along_u, along_v = ((a[(a >= 0) & (b >= 0)], b[(a >= 0) & (b >= 0)]) for a, b in pairs)
     return along_u, along_v
-
-
-def _spread(mesh: Mesh, count: int) -> tuple[Array, Array]:
-    """Triangles [S] and barycentrics [S, 3] of points at equal shares of the area, the same at every call."""
-    total = np.cumsum(areas(mesh.vertices[mesh.faces]))
-    shares = (np.arange(count) + 0.5) * (total[-1] / max(count, 1)) if len(total) else np.empty(0)
-    triangles = np.minimum(np.searchsorted(total, shares), max(len(total) - 1, 0))
-    # The two-dimensional golden ratio (Roberts 2018, https://extremelearning.com.au) spreads points in the triangles.
-    a, b = (np.arange(count)[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
-    folded = a + b > 1
-    a, b = np.where(folded, 1 - a, a), np.where(folded, 1 - b, b)
-    return triangles, np.stack([1 - a - b, a, b], axis=1)
-
-
-def _normals(mesh: Mesh) -> Array:
-    a, b, c = mesh.vertices[mesh.faces].swapaxes(0, 1)
-    return np.cross(b - a, c - a)
-
-
-def _interpolate(values: Array, corners: Array, barycentrics: Array) -> Array:
-    return np.asarray(np.einsum("nk,nkc->nc", barycentrics, values[corners]))

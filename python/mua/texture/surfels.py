@@ -9,6 +9,7 @@ from scipy.sparse import csgraph
 from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Mesh
+from mua.rig.surface_points import interpolate
 from mua.texture.footprints import TexelPoints, neighbour_steps, neighbours, sample_surface, spreads
 
 SPREAD = 0.65  # standard deviation over the distance of neighbouring texels: between four, 97 % is covered
@@ -43,8 +44,8 @@ def rest_surfels(
     weighted, area = _weighted_steps(mesh, size)
     at_corners = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, area], axis=1), len(mesh.uv))
     means = at_corners[:, :6] / np.maximum(at_corners[:, 6:], 1e-12)
-    steps = _interpolate(means, mesh.uv_faces[triangles], barycentrics)
-    normals = _interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
+    steps = interpolate(means, mesh.uv_faces[triangles], barycentrics)
+    normals = interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
     along_u, along_v = steps[:, :3], steps[:, 3:]
     upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
     frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
@@ -173,11 +174,6 @@ def _weighted_steps(mesh: Mesh, size: int) -> tuple[Array, Array]:
 def _sum_at_corners(faces: Array, values: Array, count: int) -> Array:
     """Sums [count, c] over the faces around each corner of the values [F, c] of the faces."""
     return np.stack([np.bincount(faces.ravel(), np.repeat(column, 3), count) for column in values.T], axis=1)
-
-
-def _interpolate(values: Array, corners: Array, barycentrics: Array) -> Array:
-    """Values [N, c] at barycentric points of triangles whose corners [N, 3] index `values`."""
-    return np.asarray(np.einsum("nk,nkc->nc", barycentrics, values[corners]))
 
 
 def _frames(tangents: Array, normals: Array) -> Array:

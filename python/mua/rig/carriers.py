@@ -1,0 +1,146 @@
+"""Which triangle of a template carries each texel of the dense surface that the template stands for.
+
+The texels are those of the dense surface. Decimation moves the borders of charts and bridges what lies near in
+space, so that the triangle under a texel in the texture may belong to another piece of surface, or move with other
+joints; such a texel goes to the nearest triangle of its own kind.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import csgraph
+from scipy.spatial import cKDTree
+
+from mua.arrays import Array
+from mua.rig.character import Character, Mesh
+from mua.rig.surface_points import face_normals, interpolate, nearest_barycentrics, spread_points
+from mua.rig.template import Template
+from mua.rig.texel_map import TexelMap, build_texel_map
+
+SKIN_REACH = 0.15  # of the figure's size: how far a point lies wrong in a pose that is moved by other joints altogether
+OTHER_PIECE = 0.02  # of the figure's size: what another UV piece counts for, as pieces part where surfaces end
+OTHER_SIDE = 0.05  # of the figure's size: what a triangle counts for that faces the other way
+ACCEPTED = 0.01  # of the figure's size: the triangle under a texel that carries it no worse is taken without a search
+FAR = 0.05  # of the figure's size: a texel that is carried worse is a stray
+CANDIDATES = 12  # points of the template that a texel chooses from
+SAMPLES = 8  # points for each triangle of the template
+SKIN_DIRECTIONS = 8  # of the space of weights, in which neighbours are sought
+AT_ONCE = 2000  # texels that choose together
+
+
+@dataclass(frozen=True)
+class Carried:
+    """The texels of a dense surface on its template."""
+
+    texels: TexelMap  # triangles and barycentrics are the template's
+    cost: Array  # [N] how far off each texel is carried, of the figure's size: distance, skin, side and piece
+    moved: int  # texels that another triangle carries than the one under them in the texture
+
+    @property
+    def strays(self) -> Array:
+        """[N] bool, texels that nothing of the template carries well."""
+        return self.cost > FAR
+
+
+def carry_texels(character: Character, template: Template, *, size: int) -> Carried:
+    """Give each texel of a character's `size` x `size` texture the triangle of the template that carries it."""
+    dense, under = build_texel_map(character.mesh, size), build_texel_map(template.mesh, size)
+    if not len(dense.texels):
+        return Carried(dense, np.zeros(0), 0)
+    surfaces = _Surfaces(character, template)
+    row_of_texel = np.full(size * size, -1, np.int64)
+    row_of_texel[under.texels] = np.arange(len(under.texels))
+    rows = row_of_texel[dense.texels]
+    there = rows >= 0
+    triangles = np.where(there, under.triangles[rows], 0)
+    barycentrics = np.where(there[:, None], under.barycentrics[rows], [1.0, 0, 0])
+    cost = np.where(there, surfaces.cost(dense.triangles, dense.barycentrics, triangles, barycentrics), np.inf)
+    poor, moved = np.flatnonzero(cost > ACCEPTED), 0
+    for start in range(0, len(poor), AT_ONCE):
+        part = poor[start : start + AT_ONCE]
+        choice, points, least = surfaces.best(dense.triangles[part], dense.barycentrics[part])
+        better = least < cost[part]
+        chosen = part[better]
+        triangles[chosen], barycentrics[chosen], cost[chosen] = choice[better], points[better], least[better]
+        moved += len(chosen)
+    texels = replace(dense, triangles=triangles.astype(np.int32), barycentrics=barycentrics.astype(np.float32))
+    return Carried(texels, cost, moved)
+
+
+class _Surfaces:
+    """A dense surface beside its template, lengths as shares of the figure's size."""
+
+    def __init__(self, character: Character, template: Template) -> None:
+        mesh, coarse = character.mesh, template.mesh
+        scale = float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
+        self._dense, self._coarse = (replace(m, vertices=m.vertices / scale) for m in (mesh, coarse))
+        self._dense_normals, self._coarse_normals = face_normals(mesh), face_normals(coarse)
+        self._dense_pieces, self._coarse_pieces = _pieces(mesh, template)
+        self._weights = _weights(character)
+        self._coarse_weights = self._weights[template.source_vertices]
+        self._directions = _directions(self._weights)
+        self._samples, at = spread_points(coarse, SAMPLES * len(coarse.faces))
+        self._tree = cKDTree(self._features(self._coarse, self._coarse_weights, self._samples, at))
+
+    def cost(
+        self,
+        triangles: Array,  # [N] of the dense surface
+        barycentrics: Array,  # [N, 3]
+        carriers: Array,  # [N] triangles of the template
+        points: Array,  # [N, 3]
+    ) -> Array:
+        """How far off the points of the dense surface are carried [N]."""
+        own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
+        corners = self._coarse.faces[carriers]
+        away = np.linalg.norm(interpolate(self._coarse.vertices, corners, points) - own, axis=1)
+        skin = interpolate(self._weights, self._dense.faces[triangles], barycentrics)
+        skin = np.abs(skin - interpolate(self._coarse_weights, corners, points)).sum(axis=1) / 2
+        facing = np.sum(self._dense_normals[triangles] * self._coarse_normals[carriers], axis=1)
+        other = self._dense_pieces[triangles] != self._coarse_pieces[carriers]
+        return np.asarray(away + SKIN_REACH * skin + OTHER_SIDE * (facing < 0) + OTHER_PIECE * other)
+
+    def best(self, triangles: Array, barycentrics: Array) -> tuple[Array, Array, Array]:
+        """The triangles of the template [N] that carry points best, where on them [N, 3], and the cost [N]."""
+        own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
+        features = self._features(self._dense, self._weights, triangles, barycentrics)
+        nearest = self._tree.query(features, k=min(CANDIDATES, len(self._samples)))[1].reshape(len(triangles), -1)
+        carriers = self._samples[nearest]  # [N, k]
+        points = nearest_barycentrics(own[:, None], self._coarse.vertices[self._coarse.faces[carriers]])
+        count = carriers.shape[1]
+        repeated = np.repeat(triangles, count), np.repeat(barycentrics, count, axis=0)
+        cost = self.cost(*repeated, carriers.ravel(), points.reshape(-1, 3)).reshape(carriers.shape)
+        rows, best = np.arange(len(triangles)), np.argmin(cost, axis=1)
+        return carriers[rows, best], points[rows, best], cost[rows, best]
+
+    def _features(self, mesh: Mesh, weights: Array, triangles: Array, barycentrics: Array) -> Array:
+        """Places [N, 3 + n] in a space in which what belongs together lies near."""
+        places = interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
+        skin = interpolate(weights @ self._directions, mesh.faces[triangles], barycentrics)
+        return np.concatenate([places, SKIN_REACH / 2 * skin], axis=1)
+
+
+def _weights(character: Character) -> Array:
+    """The vertices' weights over all joints [V, J]."""
+    weights = np.zeros((len(character.skin_weights), int(character.skin_indices.max(initial=0)) + 1))
+    np.add.at(weights, (np.arange(len(weights))[:, None], character.skin_indices), character.skin_weights)
+    return weights
+
+
+def _directions(weights: Array) -> Array:
+    """The principal directions [J, n] of weights [V, J]."""
+    centred = weights - weights.mean(axis=0)
+    return np.asarray(np.linalg.eigh(centred.T @ centred)[1][:, -SKIN_DIRECTIONS:])
+
+
+def _pieces(mesh: Mesh, template: Template) -> tuple[Array, Array]:
+    """The connected pieces in texture space that the triangles [F] of a mesh and those of its template belong to."""
+    keys = mesh.faces.astype(np.int64) * len(mesh.uv) + mesh.uv_faces  # a vertex once for each of its UVs
+    nodes, corners = np.unique(keys, return_inverse=True)
+    corners = corners.reshape(-1, 3)
+    links = sparse.coo_matrix((np.ones(corners.size), (corners.ravel(), np.roll(corners, 1, axis=1).ravel())))
+    piece = csgraph.connected_components(sparse.csr_matrix(links, shape=(len(nodes), len(nodes))), directed=False)[1]
+    kept = template.mesh
+    own = template.source_vertices[kept.faces[:, 0]].astype(np.int64) * len(mesh.uv)
+    own += template.source_uv[kept.uv_faces[:, 0]]
+    return piece[corners[:, 0]], piece[np.searchsorted(nodes, own)]
