@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 DEMO := build/demo
 
-.PHONY: demo test test-long check package setup clean
+.PHONY: demo test test-long gallery check package setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -17,6 +17,11 @@ test: setup check
 
 test-long: setup
 	$(BIN)/pytest -m long
+
+# The characters of tools/gallery.toml, from a folder: GALLERY=folder make gallery; GALLERY_FLAGS=--bake bakes them too.
+gallery: setup
+	@test -n "$(GALLERY)" || { echo "GALLERY=folder make gallery: the folder with the files of tools/gallery.toml" >&2; exit 1; }
+	$(BIN)/python tools/gallery.py $(GALLERY) $(GALLERY_FLAGS)
 
 check: setup
 	$(BIN)/ruff check

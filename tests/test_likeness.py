@@ -225,7 +225,7 @@ def test_agreement_counts_half_covered_pixels_and_colours_where_both_are() -> No
 
 def test_equal_and_empty_pictures_have_bounded_figures() -> None:
     assert Agreement(4, 0, 0, 0.0).psnr == MOST_DECIBELS
-    assert Agreement(0, 0, 0, 0.0).iou == 1.0
+    assert Agreement(0, 0, 0, 0.0).iou == 0.0
     assert Agreement(0, 3, 0, 0.0).psnr == 0.0
 
 

@@ -24,9 +24,9 @@ class Agreement:
 
     @property
     def iou(self) -> float:
-        """Overlap of the silhouettes: common pixels over all pixels of either; 1 where both pictures are empty."""
+        """Overlap of the silhouettes: common pixels over all pixels of either; 0 where both pictures are empty."""
         either = self.common + self.missing + self.beyond
-        return self.common / either if either else 1.0
+        return self.common / either if either else 0.0
 
     @property
     def psnr(self) -> float:
