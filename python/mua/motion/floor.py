@@ -4,11 +4,13 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.motion.contacts import STANDING, planted
 from mua.motion.joint_names import SIDES, ancestors
 from mua.motion.rest import IDENTITY, Rest, Y
 
 SOLES = ("foot", "toe")
-STANDING = 0.05  # quantile over frames of the lower foot's height that counts as standing
+GOING = 0.2  # legs per second of the hips above standing feet from which these show how far a step carries
+LIKELY = 1.5  # times the ratio of the legs: paces beyond it come from feet that do not stand
 ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
 LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stands and stays where it is
 
@@ -16,20 +18,22 @@ LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stand
 CARRIED_BY = (("forearm", "upper_arm"), ("hand", "forearm"), ("shin", "thigh"), ("foot", "shin"))
 
 
-def placed(rest: Rest, rotations: Array, source_at: Array, *, honest: bool) -> tuple[Array, list[str]]:
+def placed(rest: Rest, rotations: Array, source_at: Array, *, rate: float, honest: bool) -> tuple[Array, list[str]]:
     """Local translations [F, T, 3] of the target that carry its hips along the source's path, and notes.
 
     honest: whether the source's rest pose shows a body, and so how high its feet stand.
     """
     target, matches = rest.target, rest.matches
     translations = np.tile(target.bind_translations, (len(rotations), 1, 1))
-    turned, at = target.world(rotations, translations)
+    turned, at = target.world(rotations, attached(rest, rotations, translations.copy()))
     scale, leg = _leg_scale(rest)
     legs = [joint for side in SIDES if (joint := rest.joint(f"{side} thigh")) is not None]
     hips = legs if len(legs) == 2 else [joint for joint in (rest.joint("hips"),) if joint is not None]
     if not hips:
         return translations, ["no hips; it stays in place."]
-    path = scale * source_at[:, [matches.chains[joint][0] for joint in hips]].mean(axis=1)
+    path = source_at[:, [matches.chains[joint][0] for joint in hips]].mean(axis=1)
+    pace = _pace(rest, at - at[:, hips].mean(axis=1)[:, None], source_at, path, rate=rate, scale=scale, leg=leg)
+    path = path * np.array([pace, scale, pace])
     mover = _mover(rest)
     parent = int(target.parents[mover])
     above = turned[:, parent] if parent >= 0 else np.broadcast_to(IDENTITY, turned[:, 0].shape)
@@ -37,12 +41,32 @@ def placed(rest: Rest, rotations: Array, source_at: Array, *, honest: bool) -> t
     def moved(shift: Array) -> Array:
         led = translations.copy()
         led[:, mover] += rotation.rotate(rotation.conjugate(above), shift)
-        return _attached(rest, rotations, led)
+        return attached(rest, rotations, led)
 
     shift = path - at[:, hips].mean(axis=1)
     _, at = target.world(rotations, moved(shift))
     lift, notes = _lift(rest, at, source_at if honest else None, scale, leg)
     return moved(shift + lift * Y), notes
+
+
+def _pace(rest: Rest, at: Array, source_at: Array, path: Array, *, rate: float, scale: float, leg: float) -> float:
+    """How much farther along the floor the target's hips go than the source's, so that standing feet stand.
+
+    at: target's joints relative to its hips [F, T, 3]. path: the source's hips [F, 3]. A standing foot goes backwards
+    below the hips as fast as they go forward; `scale`, by the legs' lengths, where no foot does.
+    """
+    ends = [pair for side in SIDES for part in SOLES if (pair := rest.matches.ends(f"{side} {part}")) is not None]
+    if not ends or len(at) < 2:
+        return scale
+    targets, sources = (list(joints) for joints in zip(*ends, strict=True))
+    stands = planted(source_at[:, sources], rate, leg / scale)
+    over = np.array([0, 2])
+    below = source_at[:, sources] - path[:, None]
+    back, source_back = (np.gradient(feet[..., over], axis=0)[stands] for feet in (at[:, targets], below))
+    if np.sum(source_back**2) <= np.count_nonzero(stands) * (GOING * leg / scale / rate) ** 2:
+        return scale
+    pace = float(np.sum(source_back * back) / np.sum(source_back**2))
+    return pace if scale / LIKELY < pace < scale * LIKELY else scale
 
 
 def _mover(rest: Rest) -> int:
@@ -51,7 +75,7 @@ def _mover(rest: Rest) -> int:
     return hips if hips in ancestors(rest.target, root) else root
 
 
-def _attached(rest: Rest, rotations: Array, translations: Array) -> Array:
+def attached(rest: Rest, rotations: Array, translations: Array) -> Array:
     """Translations [F, T, 3] after which hands and feet that hang on no limb (rigs for IK) are at the limb's end."""
     target = rest.target
     for role, carrier in ((f"{side} {part}", f"{side} {limb}") for part, limb in CARRIED_BY for side in SIDES):

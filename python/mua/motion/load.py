@@ -7,6 +7,7 @@ from pathlib import Path
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.motion.match import Matches, match_joints, require_limbs
+from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
 from mua.motion.resample import resample
 from mua.motion.retarget import retarget_matched
@@ -31,13 +32,14 @@ def load_motion(
     mapping: Mapping[str, str] | None,  # joint of `skeleton` to joint of the file, before any match by name
     rate: float,  # frames per second of the clips returned
     said: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
+    feet: Feet = "auto",  # whether standing feet are held in place
 ) -> tuple[list[Clip], tuple[str, ...]]:
     """The clips of a motion file, or of every file of a directory, on `skeleton`, and notes of each clip for the user.
 
     Motion on the very same skeleton is taken as it stands; any other is retargeted.
     Errors: InputError naming the file where it cannot be read or moves no arm, leg or spine of the character.
     """
-    loaded = load_motions(path, skeleton, mapping=mapping, rate=rate, said=said)
+    loaded = load_motions(path, skeleton, mapping=mapping, rate=rate, said=said, feet=feet)
     return [motion.clip for motion in loaded], tuple(note for motion in loaded for note in motion.notes)
 
 
@@ -48,9 +50,13 @@ def load_motions(
     mapping: Mapping[str, str] | None,
     rate: float,
     said: Mapping[str, str] | None = None,
+    feet: Feet = "auto",
 ) -> list[LoadedMotion]:
     """The same, each clip with the motion that it was made from and the joints that were matched."""
-    return [_put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said) for source in read_motion(path)]
+    return [
+        _put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said, feet=feet)
+        for source in read_motion(path)
+    ]
 
 
 def same_joints(a: Skeleton, b: Skeleton) -> bool:
@@ -87,6 +93,7 @@ def _put_on(
     mapping: Mapping[str, str] | None,
     rate: float,
     said: Mapping[str, str] | None,
+    feet: Feet,
 ) -> LoadedMotion:
     try:
         if same_joints(source.skeleton, skeleton):
@@ -96,6 +103,7 @@ def _put_on(
         if not mapping:
             require_limbs(source.skeleton, skeleton, matches)
         clip, notes = retarget_matched(source, skeleton, matches, rate=rate)
+        clip, held = plant_feet(source, skeleton, clip, matches, feet=feet)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    return LoadedMotion(clip, source, matches, notes)
+    return LoadedMotion(clip, source, matches, (*notes, *held))

@@ -65,7 +65,7 @@ def retarget_matched(
     if not honest:
         calibrations, facing = posed, IDENTITY
     rotations = _local_rotations(rest, calibrations, rotation.multiply(facing, turned))
-    translations, notes = placed(rest, rotations, rotation.rotate(facing, at), honest=honest)
+    translations, notes = placed(rest, rotations, rotation.rotate(facing, at), rate=rate, honest=honest)
     notes = [f"{clip.name}: {note}" for note in notes]
     if missing := missing_limbs(source.skeleton, target, matches):
         notes.append(f"Nothing of the motion moves {' and '.join(missing)}.")
