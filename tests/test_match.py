@@ -53,8 +53,9 @@ def test_prefers_the_mapping() -> None:
 
 
 def test_says_so_where_no_name_matches() -> None:
+    source, target = chain("Bone0", "Bone1"), chain("Hips", "LeftArm")
     with pytest.raises(InputError, match=r"Bone1.*LeftArm.*mapping file"):
-        match_joints(chain("Bone0", "Bone1"), chain("Hips", "LeftArm"))
+        require_limbs(source, target, match_joints(source, target))
 
 
 def test_rejects_a_mapping_of_unknown_joints() -> None:

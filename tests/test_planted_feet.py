@@ -15,6 +15,7 @@ from mua.motion.source import SourceMotion
 from mua.rig.skeleton import Skeleton
 
 ROUNDING = 1e-9  # turns through some ten products of rotations
+STRETCH = 0.03  # metres by which a foot rises where the leg is too short to reach
 SMALL = 4.0  # degrees by which a limb may turn so that a foot stands
 
 
@@ -49,7 +50,7 @@ def test_standing_feet_of_other_legs_stand() -> None:
     turned = np.sum(world(target, kept)[0][:, feet] * world(target, held)[0][:, feet], axis=-1)
     np.testing.assert_allclose(np.abs(turned), 1, atol=ROUNDING)
     height = np.abs(world(target, kept)[1][:, feet, 1] - world(target, held)[1][:, feet, 1])
-    assert height.max() < 0.01
+    assert height.max() < STRETCH
 
 
 def test_no_foot_jumps_where_it_begins_or_ends_to_stand() -> None:

@@ -18,7 +18,8 @@ from mua.likeness.sheet import likeness_sheet
 from mua.motion.clip import Clip
 from mua.motion.load import LoadedMotion, load_motions
 from mua.motion.mapping import write_mapping
-from mua.motion.match import JointPair, joint_pairs, match_joints, unmatched_target
+from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
+from mua.motion.planted_feet import Feet
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
 from mua.rig.character import Character
@@ -42,6 +43,7 @@ class CheckOrder:
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
     size: FigureSize = AS_FOUND
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
+    feet: Feet = "auto"  # whether feet are held where the motion's feet stand
 
     def beside(self, ending: str) -> Path:
         return self.output.with_name(self.output.stem + ending)
@@ -86,7 +88,7 @@ def check(order: CheckOrder, listener: Listener) -> Check:
     if likeness is not None:
         written.append(order.beside("_check.png"))
         write_sheet(written[0], likeness)
-    if pairs:
+    if pairs or unmatched:
         written.append(order.beside("_mapping.json"))
         write_mapping(written[-1], pairs, unmatched)
     return Check(
@@ -95,7 +97,11 @@ def check(order: CheckOrder, listener: Listener) -> Check:
         matched=pairs,
         unmatched=unmatched,
         notes=tuple(dict.fromkeys((*character.notes, *(note for m in loaded for note in m.notes)))),
-        warnings=(*warnings, *(flaw for quality in qualities for flaw in quality.flaws)),
+        warnings=(
+            *_refusals(order, character, loaded),
+            *warnings,
+            *(flaw for quality in qualities for flaw in quality.flaws),
+        ),
         written=tuple(written),
     )
 
@@ -149,8 +155,21 @@ def _loaded(order: CheckOrder, character: Character) -> list[LoadedMotion]:
     return [
         motion
         for path in order.motions
-        for motion in load_motions(path, skeleton, mapping=order.mapping, rate=RATE, said=character.roles)
+        for motion in load_motions(
+            path, skeleton, mapping=order.mapping, rate=RATE, said=character.roles, feet=order.feet, refuse=False
+        )
     ]
+
+
+def _refusals(order: CheckOrder, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
+    """Why a bake would refuse the motions, each reason once."""
+    found = []
+    for motion in loaded if order.motions and not order.mapping else ():
+        try:
+            require_limbs(motion.source.skeleton, character.skeleton, motion.matches)
+        except InputError as error:
+            found.append(str(error))
+    return tuple(dict.fromkeys(found))
 
 
 def _matched(character: Character, loaded: Sequence[LoadedMotion]) -> tuple[tuple[JointPair, ...], tuple[str, ...]]:

@@ -20,6 +20,7 @@ from mua.files import require_writable
 from mua.likeness import told
 from mua.likeness.compare import Likeness
 from mua.motion.clip import Clip
+from mua.motion.planted_feet import Feet
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
 from mua.rig.character import Character
@@ -43,6 +44,7 @@ class Order:
     motions: tuple[Path, ...] = ()  # none: the character's own clips
     hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
     mapping: Mapping[str, str] | None = None  # target joint to source joint
+    feet: Feet = "auto"  # whether feet are held where the motion's feet stand
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default
@@ -63,7 +65,7 @@ def bake(order: Order, listener: Listener) -> Baked:
         size=order.size,
         leave_out=order.leave_out,
     )
-    clips, notes = load_clips(character, order.motions, mapping=order.mapping)
+    clips, notes = load_clips(character, order.motions, mapping=order.mapping, feet=order.feet)
     for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):
         listener.note(sentence)
     training, held = split(clips, order.hold_out)

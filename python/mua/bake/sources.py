@@ -6,6 +6,7 @@ from pathlib import Path
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.motion.load import counted, load_motions, unique_names
+from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
 from mua.motion.resample import resample
 from mua.rig.character import Character
@@ -46,6 +47,7 @@ def load_clips(
     motions: Sequence[Path],
     *,
     mapping: Mapping[str, str] | None,
+    feet: Feet = "auto",
 ) -> tuple[list[Clip], list[str]]:
     """The clips of `motions` put on the character, or the character's own; and what is worth telling of them.
 
@@ -58,7 +60,9 @@ def load_clips(
     clips: list[Clip] = []
     notes: list[str] = []
     for path in motions:
-        for loaded in load_motions(path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles):
+        for loaded in load_motions(
+            path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles, feet=feet
+        ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
             clips.append(loaded.clip)
             notes += (*loaded.notes, *quality.flaws)

@@ -41,6 +41,10 @@ def main(
         typer.Option(help="Mesh, node or material of the file that is no part of the character, may be repeated."),
     ] = [],  # noqa: B006 typer copies it
     mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: target joint to source joint.")] = None,
+    feet: Annotated[
+        Literal["auto", "keep", "plant"],
+        typer.Option(help="Hold feet where the motion's feet stand: where they would slide, never, or always."),
+    ] = "auto",
     uv: Annotated[
         Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
     ] = "auto",
@@ -89,7 +93,7 @@ def main(
         from mua.cli.check import check_and_show
 
         looked_at = CheckOrder(
-            output, settings.texels, seed, character, tuple(motion), joints, uv, finer, size, tuple(leave_out)
+            output, settings.texels, seed, character, tuple(motion), joints, uv, finer, size, tuple(leave_out), feet
         )
         check_and_show(looked_at, json)
         return
@@ -107,6 +111,7 @@ def main(
         hold_out=tuple(hold_out),
         clips=tuple(clips),
         mapping=joints,
+        feet=feet,
         leave_out=tuple(leave_out),
         uv=uv,
         detail=finer,

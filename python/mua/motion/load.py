@@ -51,10 +51,11 @@ def load_motions(
     rate: float,
     said: Mapping[str, str] | None = None,
     feet: Feet = "auto",
+    refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
 ) -> list[LoadedMotion]:
     """The same, each clip with the motion that it was made from and the joints that were matched."""
     return [
-        _put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said, feet=feet)
+        _put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said, feet=feet, refuse=refuse and not mapping)
         for source in read_motion(path)
     ]
 
@@ -94,13 +95,14 @@ def _put_on(
     rate: float,
     said: Mapping[str, str] | None,
     feet: Feet,
+    refuse: bool,
 ) -> LoadedMotion:
     try:
         if same_joints(source.skeleton, skeleton):
             matches = match_joints(source.skeleton, skeleton, source_said=source.said, target_said=said)
             return LoadedMotion(resample(source.clip, rate), source, matches, source.notes)
         matches = match_joints(source.skeleton, skeleton, mapping, source_said=source.said, target_said=said)
-        if not mapping:
+        if refuse:
             require_limbs(source.skeleton, skeleton, matches)
         clip, notes = retarget_matched(source, skeleton, matches, rate=rate)
         clip, held = plant_feet(source, skeleton, clip, matches, feet=feet)

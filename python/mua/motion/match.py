@@ -40,7 +40,7 @@ def match_joints(
 
     What a file says of its joints' roles goes before what their names tell.
     Chains of different length share their joints in proportion.
-    Errors: InputError if `mapping` names an unknown joint or if nothing but the root matches.
+    Errors: InputError if `mapping` names an unknown joint.
     """
     chains = _match_equal_names(source, target)
     source_roles, target_roles = find_roles(source, source_said), find_roles(target, target_said)
@@ -54,11 +54,6 @@ def match_joints(
     for target_name, source_name in (mapping or {}).items():
         chosen = _index(source, source_name, "source")
         chains[_index(target, target_name, "target")] = chosen, chosen
-    if not mapping and not set(chains) - set(target_roles["hips"]) and _plain(source) != _plain(target):
-        raise InputError(
-            f"motion: no joint name of the source ({_sample(source)}) matches one of the character "
-            f"({_sample(target)}); give a mapping file of target and source joint names"
-        )
     return Matches(chains, target_roles)
 
 
@@ -96,6 +91,12 @@ def missing_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> tuple
 
 def require_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> None:
     """Errors: InputError that names the limbs of the character that nothing of the motion moves."""
+    if not set(matches.chains) - set(matches.roles["hips"]) and _plain(source) != _plain(target):
+        raise InputError(
+            f"motion: no joint name of the source ({_sample(source)}) matches one of the character "
+            f"({_sample(target)}); pair their joints in a mapping file and give it with --mapping "
+            "(mua-bake --check writes one to start from)"
+        )
     missing = missing_limbs(source, target, matches)
     if missing:
         raise InputError(
