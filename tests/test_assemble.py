@@ -15,6 +15,7 @@ from mua.rig.correction import ADULT
 from mua.rig.figure_size import FigureSize
 from mua.rig.resize import resized
 from mua.rig.scene import Material, Motion, Part, Scene, Skin
+from mua.teachers.simulated import stretched
 
 HERE = Path("body.glb")
 GREY = Material("grey", np.full((1, 1, 4), 128, np.uint8))
@@ -216,6 +217,28 @@ def test_joints_that_leave_their_places_are_followed() -> None:
     surfaces = assemble(whole, HERE)
     assert_follows(whole, surfaces)
     assert surfaces.notes == ()
+
+
+def test_scaled_joints_stretch_the_surface_as_in_the_source() -> None:
+    """Squash and stretch of joints that also turn, with vertices of one joint each, which no blending blurs."""
+    motion = moving(BIND, PARENTS)
+    squash = np.stack([np.diag([1 + 0.02 * f, 1 - 0.04 * f, 1 + 0.02 * f, 1]) for f in range(9)])
+    worlds = motion.worlds.copy()
+    worlds[:, 1] = worlds[:, 1] @ squash
+    for child in (2, 3, 4):  # what hangs on a scaled joint is scaled and moved with it
+        worlds[:, child] = worlds[:, 1] @ np.linalg.inv(motion.worlds[:, 1]) @ motion.worlds[:, child]
+    rigid = replace(part(), weights=np.tile([1.0, 0.0], (30, 1)))
+    whole = scene(parts=(rigid,), motions=(replace(motion, worlds=worlds),))
+    surfaces = assemble(whole, HERE)
+    (clip,) = surfaces.clips
+    assert clip.stretches is not None
+    assert clip.stretches.joints.tolist() == [1, 2, 3, 4]
+    for frame in (0, 4, 8):
+        vertices = stretched(surfaces, clip.stretches, frame, surfaces.vertices)  # type: ignore[arg-type]
+        shaped = replace(surfaces, vertices=vertices)
+        ours = posed(shaped, clip.rotations[frame], clip.translations[frame])[surfaces.faces]
+        np.testing.assert_allclose(ours, skinned(whole, frame), atol=WEIGHT_BOUND)
+    assert "the largest is 32 %" in surfaces.notes[-1]
 
 
 def test_what_is_steered_from_above_the_root_is_led_by_the_body() -> None:

@@ -62,12 +62,19 @@ def test_a_shift_too_small_to_see_is_not_kept(tmp_path: Path) -> None:
     np.testing.assert_array_equal(clip.translations, np.tile(surfaces.skeleton.bind_translations, (31, 1, 1)))
 
 
-def test_dropped_scale_is_told(tmp_path: Path) -> None:
+def test_scales_are_kept_for_the_mesh_and_told(tmp_path: Path) -> None:
     glb = body()
     animate(glb, 0, "translation", times=[0.0, 1.0], values=[[0, 0, 0], [1, 0, 0]])
     animate(glb, 2, "translation", times=[0.0, 1.0], values=[[0, 0.5, 0], [0, 0.51, 0]])
     animate(glb, 2, "scale", times=[0.0, 1.0], values=[[1, 1, 1], [1.5, 1, 1]])
-    assert read(glb, tmp_path).notes == ("Animated scales are dropped; the largest is 50 %, of head in clip wave.",)
+    surfaces = read(glb, tmp_path)
+    (clip,) = surfaces.clips
+    assert clip.stretches is not None
+    assert clip.stretches.joints.tolist() == [2]
+    np.testing.assert_allclose(clip.stretches.matrices[-1, 0], np.diag([1.5, 1, 1]), atol=1e-6)
+    (note,) = surfaces.notes
+    assert note.startswith("Animated scales go into the mesh")
+    assert note.endswith("the largest is 50 %, of head in clip wave.")
 
 
 def test_step_holds_and_cubic_passes_its_keys() -> None:

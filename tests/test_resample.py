@@ -1,10 +1,12 @@
 """Resampling against scipy's Slerp and numpy's interp."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
-from mua.motion.clip import Clip
+from mua.motion.clip import Clip, Stretches
 from mua.motion.resample import resample
 
 BOUND = 64 * np.finfo(float).eps  # a slerp is some dozens of operations on numbers up to 1
@@ -49,6 +51,19 @@ def test_goes_the_short_way_round() -> None:
     half = np.array([[1.0, 0, 0, 0], [-np.cos(0.1), -np.sin(0.1), 0, 0]])[:, None]
     found = resample(Clip("clip", 1.0, half, np.zeros((2, 1, 3))), 2.0)
     np.testing.assert_allclose(np.abs(found.rotations[1, 0]), [np.cos(0.05), np.sin(0.05), 0, 0], atol=BOUND)
+
+
+def test_stretches_go_between_frames_as_translations_do() -> None:
+    clip = random_clip(5, rate=30.0)
+    matrices = np.random.default_rng(1).normal(size=(5, 2, 3, 3))
+    clip = replace(clip, stretches=Stretches(np.array([0, 2]), matrices))
+    found = resample(clip, 60.0).stretches
+    assert found is not None
+    np.testing.assert_array_equal(found.matrices[::2], matrices)
+    np.testing.assert_allclose(found.matrices[1], (matrices[0] + matrices[1]) / 2, atol=BOUND)
+    kept = clip.cut(slice(1, 3)).stretches
+    assert kept is not None
+    np.testing.assert_array_equal(kept.matrices, matrices[1:3])
 
 
 def test_keeps_a_single_frame() -> None:

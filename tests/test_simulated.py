@@ -8,7 +8,7 @@ from tube import still, swing, tube
 
 from mua import rotation
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
-from mua.motion.clip import Clip
+from mua.motion.clip import Clip, Stretches
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
@@ -70,18 +70,42 @@ def test_in_the_bind_pose_splats_lie_on_the_surface(teacher: SimulatedTeacher) -
     np.testing.assert_allclose(frame.mesh, rig.mesh.vertices, atol=SINGLE)
 
 
-def test_mesh_offsets_and_texel_transforms_rebuild_the_simulated_surface() -> None:
-    """Splats at vertices of the template have no interpolation between them and the simulation."""
-    character = tube(rings=SIZE // 2 + 1, sides=7, looseness=0.6)
+def at_vertices(looseness: float) -> tuple[Character, SimulatedTeacher, np.ndarray, np.ndarray]:
+    """A tube with a texel at each vertex: which of the teacher's texels these are, and whose vertex each is."""
+    character = tube(rings=SIZE // 2 + 1, sides=7, looseness=looseness)
     size = 2 * SIZE
     uv = (np.round(character.mesh.uv * size - 0.5) + 0.5) / size  # vertices in the middle of texels
     character = replace(character, mesh=replace(character.mesh, uv=uv))
     teacher = SimulatedTeacher(character, texels=size)
-    rig, clip = teacher.rig, swing(character)
+    rig = teacher.rig
     at_vertex = rig.texels.barycentrics.max(axis=1) > 1 - 1e-6
     corner = rig.texels.barycentrics[at_vertex].argmax(axis=1)
     vertex = rig.mesh.faces[rig.texels.triangles[at_vertex], corner]
     assert len(np.unique(vertex)) == len(rig.mesh.vertices)
+    return character, teacher, at_vertex, vertex
+
+
+def test_a_squash_of_the_source_is_in_the_surface() -> None:
+    """The whole body 30 % flatter, as a scaled joint above all makes it: every joint scales, and stands nearer."""
+    character, teacher, at_vertex, vertex = at_vertices(looseness=0.0)
+    squash = np.diag([1.2, 0.7, 1.2])
+    held = still(character, frames=2)
+    translations = np.stack([held.translations[0], held.translations[0] @ squash])
+    matrices = np.stack([np.tile(np.eye(3), (3, 1, 1)), np.tile(squash, (3, 1, 1))])
+    clip = replace(held, translations=translations, stretches=Stretches(np.arange(3), matrices))
+    rest, flat = whole_frames(teacher, clip)
+    assert np.abs(flat.mesh - rest.mesh).max() > 0.05  # long deformation is the mesh's
+    for frame, shape in ((rest, np.eye(3)), (flat, squash)):
+        expected = character.mesh.vertices[vertex] @ shape
+        np.testing.assert_allclose(posed(teacher.rig, frame)[0][at_vertex], expected, atol=SINGLE)
+    spread = ATTRIBUTES["scale"]
+    assert (flat.texture[:, spread] - rest.texture[:, spread]).max() > np.log(1.1)  # splats widen with their surface
+
+
+def test_mesh_offsets_and_texel_transforms_rebuild_the_simulated_surface() -> None:
+    """Splats at vertices of the template have no interpolation between them and the simulation."""
+    character, teacher, at_vertex, vertex = at_vertices(looseness=0.6)
+    rig, clip = teacher.rig, swing(character)
     moved = simulated_vertices(character, clip)
     for frame, expected in zip(whole_frames(teacher, clip), moved, strict=True):
         np.testing.assert_allclose(posed(rig, frame)[0][at_vertex], expected[vertex], atol=SINGLE)

@@ -129,4 +129,6 @@ def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
     for clip in planned:
         digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
         digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
+        if clip.clip.stretches is not None:
+            digest.update(clip.clip.stretches.joints.tobytes() + clip.clip.stretches.matrices.tobytes())
     return digest.hexdigest()[:12]

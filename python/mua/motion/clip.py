@@ -1,6 +1,6 @@
 """A clip of motion on one skeleton."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 from mua.arrays import Array
@@ -8,13 +8,25 @@ from mua.rig.skeleton import Pose
 
 
 @dataclass(frozen=True)
+class Stretches:
+    """What rigid joints cannot carry: some scale or shear the surface about themselves, before they move it."""
+
+    joints: Array  # [K] int, ascending
+    matrices: Array  # [F, K, 3, 3] in the axes of the bind pose; the identity does nothing
+
+
+@dataclass(frozen=True)
 class Clip:
-    """Poses at a steady rate; local rotations and translations of every joint."""
+    """Poses at a steady rate; local rotations and translations of every joint.
+
+    Stretches are for teachers alone, who put them into the surface; no file holds them.
+    """
 
     name: str
     rate: float  # frames per second
     rotations: Array  # [F, J, 4] local joint rotations, unit, wxyz
     translations: Array  # [F, J, 3] local joint translations, metres
+    stretches: Stretches | None = field(default=None, kw_only=True)
 
     def __len__(self) -> int:
         return len(self.rotations)
@@ -24,4 +36,8 @@ class Clip:
 
     def cut(self, frames: slice | Array) -> Self:
         """The same clip with these frames alone."""
-        return replace(self, rotations=self.rotations[frames], translations=self.translations[frames])
+        kept = self.stretches
+        stretches = None if kept is None else replace(kept, matrices=kept.matrices[frames])
+        return replace(
+            self, rotations=self.rotations[frames], translations=self.translations[frames], stretches=stretches
+        )

@@ -1,8 +1,11 @@
-"""Resample a clip to another rate: rotations along the shorter arc, translations linearly."""
+"""Resample a clip to another rate: rotations along the shorter arc, all else linearly."""
+
+from dataclasses import replace
 
 import numpy as np
 
 from mua import rotation
+from mua.arrays import Array
 from mua.motion.clip import Clip
 
 LAST_FRAME_SLACK = 1e-6  # frames by which rounding may place the end of a clip before its last sample
@@ -18,10 +21,16 @@ def resample(clip: Clip, rate: float) -> Clip:
     before = times.astype(int)
     after = np.minimum(before + 1, last)
     t = times - before
+
+    def between(values: Array) -> Array:
+        steps = t.reshape(-1, *[1] * (values.ndim - 1))
+        return np.asarray(values[before] + steps * (values[after] - values[before]))
+
+    kept = clip.stretches
     return Clip(
         name=clip.name,
         rate=rate,
         rotations=rotation.slerp(clip.rotations[before], clip.rotations[after], t[:, None]),
-        translations=clip.translations[before]
-        + t[:, None, None] * (clip.translations[after] - clip.translations[before]),
+        translations=between(clip.translations),
+        stretches=None if kept is None else replace(kept, matrices=between(kept.matrices)),
     )

@@ -15,7 +15,12 @@ class RigidMotion:
 
     rotations: Array  # [F, J, 3, 3]
     positions: Array  # [F, J, 3] metres
-    scales: Array  # [F, J] largest deviation of a scale from that of the rest pose, relative
+    stretches: Array  # [F, J, 3, 3] what is left of the deformation: the surface's stretch about each joint, bind axes
+
+    @property
+    def scales(self) -> Array:
+        """Largest deviation [F, J] of a scale from that of the rest pose, relative."""
+        return np.asarray(np.abs(self.stretches - np.eye(3)).max(axis=(-1, -2)))
 
 
 def rigid_motion(motion: Motion, bind: Bind) -> RigidMotion:
@@ -24,8 +29,7 @@ def rigid_motion(motion: Motion, bind: Bind) -> RigidMotion:
     deformation = worlds @ np.linalg.inv(bind.matrices)
     turned = rotations_of(deformation)
     residual = np.swapaxes(turned, -1, -2) @ deformation[..., :3, :3] @ np.linalg.inv(bind.stretch)
-    scales = np.abs(residual - np.eye(3)).max(axis=(-1, -2))
-    return RigidMotion(turned @ rotations_of(bind.matrices), worlds[..., :3, 3], scales)
+    return RigidMotion(turned @ rotations_of(bind.matrices), worlds[..., :3, 3], residual)
 
 
 def local_rotations(world: Array, parents: Array) -> Array:

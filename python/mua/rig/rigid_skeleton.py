@@ -6,7 +6,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
+from mua.motion.clip import Clip, Stretches
 from mua.rig.bind_pose import Bind, bind_pose, rotations_of
 from mua.rig.joint_tree import find_root, mass_below, reattached
 from mua.rig.rigid_motion import RigidMotion, local_offsets, local_rotations, rigid_motion
@@ -14,6 +14,7 @@ from mua.rig.scene import Motion, Scene, Source
 from mua.rig.skeleton import Pose, Skeleton
 
 HELD = 1e-4  # of the character's size: a joint that leaves its bind place in its parent by less keeps it
+STRETCHED = 1e-3  # of a scale of 1: a joint that scales the surface by less is taken to be rigid
 EXACT = 1e-6  # the same for root and joints above it, which move all others
 TOLD_SCALE = 0.01
 
@@ -49,8 +50,11 @@ def rigid_skeleton(scene: Scene, bind: Bind) -> Rigged:
     for source, motion, offset in zip(scene.motions, motions, offsets, strict=True):
         local = rotation.from_matrix(local_rotations(motion.rotations, bind.parents))
         translations = np.where(moved[:, None], offset, skeleton.bind_translations)
-        clips.append(Clip(source.name, source.rate, local, translations))
-    return Rigged(skeleton, bind.nodes, tuple(clips), (*told, *_losses(scene, skeleton, bind=bind, motions=motions)))
+        stretches = _stretches(motion, bind)
+        clips.append(Clip(source.name, source.rate, local, translations, stretches=stretches))
+    return Rigged(
+        skeleton, bind.nodes, tuple(clips), (*told, *_told_scale(scene, skeleton, bind=bind, motions=motions))
+    )
 
 
 def rest_pose(source: Source, skeleton: Skeleton) -> Pose:
@@ -79,6 +83,12 @@ def unique_names(names: list[str]) -> tuple[str, ...]:
     return tuple(unique)
 
 
+def _stretches(motion: RigidMotion, bind: Bind) -> Stretches | None:
+    """How the joints that hold the mesh stretch it, None where none does."""
+    joints = np.flatnonzero((motion.scales.max(axis=0) > STRETCHED) & (bind.mass > 0))
+    return Stretches(joints, motion.stretches[:, joints]) if len(joints) else None
+
+
 def _moved(skeleton: Skeleton, bind: Bind, offsets: list[Array]) -> Array:
     """Joints [J] that some clip holds elsewhere in their parents than the bind pose, of those that carry the mesh."""
     apart = np.zeros(len(skeleton.names))
@@ -91,8 +101,8 @@ def _moved(skeleton: Skeleton, bind: Bind, offsets: list[Array]) -> Array:
     return moved
 
 
-def _losses(scene: Scene, skeleton: Skeleton, *, bind: Bind, motions: list[RigidMotion]) -> tuple[str, ...]:
-    """A sentence on the largest scale that rigid joints do not follow."""
+def _told_scale(scene: Scene, skeleton: Skeleton, *, bind: Bind, motions: list[RigidMotion]) -> tuple[str, ...]:
+    """A sentence on the largest scale, which rigid joints do not carry."""
     scales = [(0.0, "", "")]
     for source, motion in zip(scene.motions, motions, strict=True):
         scaled = motion.scales.max(axis=0) * (bind.mass > 0)
@@ -100,4 +110,7 @@ def _losses(scene: Scene, skeleton: Skeleton, *, bind: Bind, motions: list[Rigid
     scale, joint, clip = max(scales)
     if scale <= TOLD_SCALE:
         return ()
-    return (f"Animated scales are dropped; the largest is {100 * scale:.0f} %, of {joint} in clip {clip}.",)
+    return (
+        f"Animated scales go into the mesh, and so only into what is baked; the largest is {100 * scale:.0f} %, of "
+        f"{joint} in clip {clip}.",
+    )

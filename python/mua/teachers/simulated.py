@@ -3,7 +3,8 @@
 It stands in for a captured teacher. Its surface is defined in canonical space: the simulated vertices are brought
 back to the bind pose by the dual quaternions that skinned them, and a texel lies at a fixed point of that surface.
 What of the deformation is longer than about 20 cm goes into the canonical mesh, the rest into the texels' offsets;
-posed by T_tex, both together are the teacher's surface.
+posed by T_tex, both together are the teacher's surface. Scales that a clip animates, which rigid joints do not carry,
+are put on in canonical space, after the dynamics.
 """
 
 from collections.abc import Container, Iterator
@@ -13,7 +14,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
-from mua.motion.clip import Clip
+from mua.motion.clip import Clip, Stretches
 from mua.motion.descriptor import heading_of
 from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
@@ -74,6 +75,9 @@ class SimulatedTeacher:
             if frame == 0:
                 self._simulation.settle(target, turn, ends)
             moved = self._simulation.advance(target, turn, ends, seconds=1 / clip.rate)
+            if clip.stretches is not None:
+                canonical = rotation.dual_transform(rotation.dual_inverse(dual), moved)
+                moved = rotation.dual_transform(dual, stretched(character, clip.stretches, frame, canonical))
             pose = Pose(clip.rotations[frame], clip.translations[frame])
             yield self._whole(pose, joints, dual, moved) if frame in wanted else pose
 
@@ -104,3 +108,21 @@ class SimulatedTeacher:
         heading = heading_of(joints[self._character.skeleton.root, :4])
         light = shade(normals, visible, heading=heading)
         return Light(gain=light.gain, sheen=rotation.rotate(rotation.conjugate(dual[:, :4]), light.sheen))
+
+
+def stretched(
+    character: Character,
+    stretches: Stretches,
+    frame: int,
+    points: Array,  # [V, 3] the character's vertices or near them, canonical
+) -> Array:
+    """Points [V, 3] stretched about the joints that they hang on, blended by the skinning weights."""
+    skeleton = character.skeleton
+    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    change = np.zeros((len(places), 3, 3))
+    change[stretches.joints] = stretches.matrices[frame] - np.eye(3)
+    moved = points.copy()
+    for joints, weights in zip(character.skin_indices.T, character.skin_weights.T, strict=True):
+        about = points - places[joints]
+        moved += weights[:, None] * np.einsum("vij,vj->vi", change[joints], about)
+    return moved
