@@ -101,7 +101,4 @@ def test_meshes_bound_together_are_placed_together(tmp_path: Path) -> None:
     for node in (1, 2):
         glb.json["nodes"][node]["rotation"] = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
     surfaces = read(glb, tmp_path)
-    apart = np.linalg.norm(
-        surfaces.vertices[surfaces.faces] - np.roll(surfaces.vertices[surfaces.faces], 1, 1), axis=-1
-    )
-    assert apart.max() <= np.hypot(0.4, 0.5) + FLOAT_BOUND  # no triangle between two rings is drawn out
+    assert len(np.unique(np.round(surfaces.vertices, 4), axis=0)) == len(POINTS)  # the rings still meet
