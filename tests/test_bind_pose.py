@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy as np
-from gltf_files import BONES, FLOAT_BOUND, POINTS, TRIANGLES, Glb, body, posed, read, weighted
+from gltf_files import BONES, FLOAT_BOUND, POINTS, TRIANGLES, Glb, animate, body, posed, read, weighted
 
 TURN = np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]], float)  # x to y to z to x
 
@@ -102,3 +102,22 @@ def test_meshes_bound_together_are_placed_together(tmp_path: Path) -> None:
         glb.json["nodes"][node]["rotation"] = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
     surfaces = read(glb, tmp_path)
     assert len(np.unique(np.round(surfaces.vertices, 4), axis=0)) == len(POINTS)  # the rings still meet
+
+
+def test_head_that_clips_do_not_turn_backwards_is_not_bound_so(tmp_path: Path) -> None:
+    """Rigid parts bind as the file stands, unless a joint is turned about there as most clips do not begin."""
+    for turned, bound in ((170, 0), (60, 60)):
+        glb = body()
+        glb.json["skins"] = []
+        glb.json["nodes"] = [*glb.json["nodes"][:3], {"name": "nose", "mesh": 0, "translation": [0, 0.1, 0]}]
+        glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = glb.accessor(POINTS * 0.2)
+        glb.json["nodes"][2]["children"] = [3]
+        glb.json["scenes"] = [{"nodes": [0]}]
+        half = np.radians(turned) / 2
+        glb.json["nodes"][2]["rotation"] = [0, 0, np.sin(half), np.cos(half)]
+        for name, start in (("idle", 0.0), ("walk", 0.05), ("spin", half)):
+            keys = [[0, 0, np.sin(angle), np.cos(angle)] for angle in (start, start + 0.2)]
+            animate(glb, 2, "rotation", times=[0.0, 1.0], values=keys, name=name)
+        surfaces = read(glb, tmp_path)
+        nose = surfaces.vertices.mean(axis=0)[1] - 1
+        assert abs(nose - 0.25 * np.cos(np.radians(bound))) < 0.01  # spin begins at rest, walk a little off

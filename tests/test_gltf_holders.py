@@ -146,6 +146,15 @@ def test_nodes_that_the_file_hides_are_left_out(tmp_path: Path) -> None:
     assert surfaces.notes == ("Meshes that the file hides are left out: sword.",)
 
 
+def test_prop_that_is_scaled_to_nothing_is_left_out(tmp_path: Path) -> None:
+    glb = body()
+    sword = block(glb, "sword", at=(0, 0, 0), parent=2)
+    glb.json["nodes"][sword]["scale"] = [0, 0, 0]
+    surfaces = read(glb, tmp_path)
+    assert_is_column(surfaces)
+    assert surfaces.notes == ("Meshes that the file hides are left out: sword.",)
+
+
 @pytest.mark.parametrize("name", ["sword", "SWORD MESH", "steel"])
 def test_mesh_node_or_material_is_left_out_by_name(tmp_path: Path, name: str) -> None:
     glb = body()

@@ -5,13 +5,14 @@ from the rest pose where that equals the bind pose, and is estimated where it do
 """
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.rig.scene import Scene, Skin
 from mua.rig.skin_groups import alike, grouped
+from mua.rig.taken_pose import taken_pose
 
 ANIMATED = 1e-4  # change of a local matrix, relative to the character, below which a node counts as static
 STRETCHED = 1e-3  # scale of a joint between bind and rest pose below which nothing is folded into the mesh
@@ -41,7 +42,11 @@ def bind_pose(scene: Scene) -> Bind:
     mass = np.zeros(len(nodes))
     for s, skin in enumerate(scene.skins):
         np.add.at(mass, [index[int(node)] for node in skin.joints], scene.masses(s))
-    matrices, trusted = _bind_matrices(scene, nodes, index=index, parents=parents)
+    binds = _file_binds(scene, index)
+    if binds is None:
+        scene = replace(scene, rest=taken_pose(scene, nodes))
+        binds = _rest_binds(scene, index)
+    matrices, trusted = _bind_matrices(scene, nodes, *binds, index=index, parents=parents)
     stretch = _stretch(scene.rest[nodes] @ np.linalg.inv(matrices))
     places = matrices[:, :3, 3].copy()
     for j, parent in enumerate(parents):
@@ -91,7 +96,15 @@ def _kept_parent(scene: Scene, node: int, index: dict[int, int]) -> int:
     return index.get(parent, -1)
 
 
-def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents: Array) -> tuple[Array, Array]:
+def _bind_matrices(
+    scene: Scene,
+    nodes: Array,
+    bound: dict[int, Array],
+    proposed: dict[int, Array],
+    *,
+    index: dict[int, int],
+    parents: Array,
+) -> tuple[Array, Array]:
     """Joint-to-bind-world matrices [J, 4, 4] and which [J] of them are the file's own.
 
     Inverse binds of joints without weights are often left at the identity: such a joint takes the file's only where
@@ -99,7 +112,6 @@ def _bind_matrices(scene: Scene, nodes: Array, *, index: dict[int, int], parents
     stands beside its neighbours as in the rest pose, which is where the file puts those meshes.
     """
     carries = _rigid_holders(scene, index)
-    bound, proposed = _file_binds(scene, index)
     size = np.ptp([matrix[:3, 3] for matrix in bound.values()], axis=0).max() if bound else 0.0
     trusted = np.array([j in bound or j in carries for j in range(len(nodes))])
     towards = _by_descendants(bound, parents)
@@ -123,22 +135,25 @@ def _rigid_holders(scene: Scene, index: dict[int, int]) -> set[int]:
     return {index[int(scene.skins[part.skin].joints[0])] for part in scene.parts if scene.skins[part.skin].rigid}
 
 
-def _file_binds(scene: Scene, index: dict[int, int]) -> tuple[dict[int, Array], dict[int, Array]]:
+def _file_binds(scene: Scene, index: dict[int, int]) -> tuple[dict[int, Array], dict[int, Array]] | None:
     """Joint-to-bind-world matrices by the file's inverse binds: of joints with weights, and of those without.
 
-    Where skins that are bound apart from the rest pose do not say how they stand to one another, or are the smaller
-    part of the character, the rest pose serves as bind pose: in it the file itself puts all together.
+    None where there are no skins, where skins that are bound apart from the rest pose do not say how they stand to
+    one another, or where these are the smaller part of the character: the rest pose then serves as bind pose, in
+    which the file itself puts all together.
     """
     bound: dict[int, Array] = {}
     proposed: dict[int, Array] = {}
     groups = grouped(scene)
     skinned = sum(float(mass.sum()) for _, mass in groups)
+    if not groups:
+        return None
     minor = 2 * skinned < sum(scene.masses(s).sum() for s in range(len(scene.skins)))
     for skin, mass in groups:
         space = _rest_space(scene, skin, mass=mass)
         beside = np.eye(4) if space is None or not bound else _moved_with(scene, skin, mass, bound, index)
         if (space is None and (bound or minor)) or beside is None:
-            return _rest_binds(scene, index)
+            return None
         space = _upright_space(scene, skin, mass=mass, kept=index) if space is None else beside @ space
         for node, matrix, joint_mass in zip(skin.joints, space @ np.linalg.inv(skin.inverse_binds), mass, strict=True):
             (bound if joint_mass > 0 else proposed).setdefault(index[int(node)], matrix)

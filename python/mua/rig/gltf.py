@@ -80,10 +80,11 @@ def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list
     """The nodes with a mesh that a viewer shows, parents first."""
     drawn = []
     for node in tree.order:
-        mesh = document.gltf.nodes[node].mesh
-        if node not in tree.shown or mesh is None:
+        source = document.gltf.nodes[node]
+        if node not in tree.shown or source.mesh is None:
             continue
-        if node in tree.hidden or node in vrm.hidden_nodes or mesh in vrm.hidden_meshes:
+        flat = source.skin is None and abs(np.linalg.det(tree.world[node][:3, :3])) < np.finfo(np.float32).tiny
+        if flat or node in tree.hidden or node in vrm.hidden_nodes or source.mesh in vrm.hidden_meshes:
             findings.add("Meshes that the file hides are left out: {}.", node_name(document, node))
             continue
         drawn.append(node)
