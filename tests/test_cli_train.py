@@ -135,6 +135,26 @@ def test_without_a_terminal_stages_and_steps_are_lines(monkeypatch: pytest.Monke
     assert re.fullmatch(r"  \d+\.\d s", lines[3])  # what the stage took
 
 
+def test_two_stages_that_take_turns_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(display, "LINE_SECONDS", 0.0)
+    file = io.StringIO()
+    with Display(Console(file=file)) as shown:
+        shown.stage("coarse mesh")
+        shown.step(1, 1)
+        for step in (1, 2):
+            for name in ("geometry bases", "appearance bases"):
+                shown.stage(name)
+                shown.step(step, 2)
+        shown.stage("avatar")
+    lines = [re.sub(r"\d+\.\d s", "T", line.split(", ")[0]) for line in file.getvalue().splitlines()]
+    assert lines == [
+        *("coarse mesh", "  1 of 1", "  T"),
+        *("geometry bases", "  1 of 2", "appearance bases", "  appearance bases: 1 of 2"),
+        *("  geometry bases: 2 of 2", "  geometry bases: T", "  2 of 2", "  T"),
+        *("avatar", "  T"),
+    ]
+
+
 @pytest.mark.parametrize("asked", [True, False])
 def test_says_how_busy_a_gpu_is_as_far_as_it_tells(monkeypatch: pytest.MonkeyPatch, asked: bool) -> None:
     def utilization(_: torch.device) -> int:

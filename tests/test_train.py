@@ -1,7 +1,8 @@
 """Training explains its frames, resumes to the same bytes after a kill and gives the same bytes for a seed."""
 
 import math
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,7 +32,7 @@ from mua.student.regress import leading, regress, squared_error
 from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights, joint_targets
-from mua.student.train import best_coefficients, train
+from mua.student.train import BestCoefficients, train
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
 CPU = torch.device("cpu")
@@ -104,6 +105,7 @@ def test_goes_on_where_directions_come_out_the_other_way(
 ) -> None:
     """As on another machine or with another number of threads: nothing settles the sign of a singular vector."""
     monkeypatch.setattr("mua.student.optimise.CHECKPOINT_STEPS", 2)
+    monkeypatch.setattr("mua.student.train.together", one_by_one)  # so that what the kill finds is known
     whole = trained(tmp_path / "whole", quick()).state_dict()
 
     def kill(progress: Progress) -> None:
@@ -118,6 +120,36 @@ def test_goes_on_where_directions_come_out_the_other_way(
     found = trained(tmp_path / "killed", quick()).state_dict()
     assert all(torch.equal(found[name], whole[name]) for name in whole if name.startswith(part))
     assert not torch.equal(found["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
+
+
+def one_by_one(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
+    for task in tasks:
+        task()
+
+
+def test_branches_side_by_side_end_in_the_bytes_of_one_after_the_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at_once = trained(tmp_path / "a", quick())
+    monkeypatch.setattr("mua.student.train.together", one_by_one)
+    assert same(at_once, trained(tmp_path / "b", quick()))
+
+
+def test_where_one_branch_fails_the_other_ends_too(tmp_path: Path) -> None:
+    stages: list[str] = []
+    failed = threading.Event()
+
+    def fail(progress: Progress) -> None:
+        stages.append(progress.stage)
+        if progress.stage.startswith("geometry"):
+            failed.set()
+            raise Killed
+        if progress.stage.startswith("appearance"):
+            assert failed.wait(60)
+
+    with pytest.raises(Killed):
+        trained(tmp_path, quick(), fail)
+    assert "appearance fine-tuning" not in stages
 
 
 def turned(x: torch.Tensor, rank: int, *, generator: torch.Generator) -> tuple[torch.Tensor, ...]:
@@ -145,7 +177,7 @@ def test_best_coefficients_give_back_what_the_bases_span() -> None:
     branch = random_student().appearance
     alphas = branch.split(torch.randn(3, branch.channels * branch.ranks.total, generator=torch.Generator()))
     bands = branch.synthesize(alphas)
-    again = branch.synthesize(best_coefficients(branch, bands))
+    again = branch.synthesize(BestCoefficients(branch)(bands))
     for found, band in zip(again, bands, strict=True):
         assert torch.allclose(found, band, atol=1e-3 * float(band.abs().max()))
 
@@ -153,7 +185,7 @@ def test_best_coefficients_give_back_what_the_bases_span() -> None:
 def test_best_coefficients_are_no_worse_than_any_others() -> None:
     branch = random_student().geometry
     bands = bands_of_frames(4)[1].of(GEOMETRY)
-    best = branch.synthesize(best_coefficients(branch, bands))
+    best = branch.synthesize(BestCoefficients(branch)(bands))
     predicted = branch(torch.zeros(4, INPUTS))
     for found, other, band in zip(best, predicted, bands, strict=True):
         assert (found - band).square().sum() <= (other - band).square().sum()

@@ -26,7 +26,7 @@ from mua.student.factorize import Factors, separable_blendshapes
 from mua.student.model import STATIC_LEVELS, Bands, Branch, lowpass_texels
 from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
-from mua.student.train import best_coefficients, factorize_channel
+from mua.student.train import BestCoefficients, factorize_channel
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import synthesise_lowpass, waverec2
 
@@ -175,7 +175,7 @@ def ours(
                 numbers += sum(basis.numel() for basis in bases)
                 for at, textures in enumerate((known, unseen)):
                     bands = textures.channel(channel)
-                    found = branch.synthesize(best_coefficients(branch, bands))
+                    found = branch.synthesize(BestCoefficients(branch)(bands))
                     left = Bands(*(a - b for a, b in zip(bands, found, strict=True)))
                     lost[at] += float(textures.image(left).double().square().sum())
         yield Point(frames, "ours", ", ".join(names), numbers, *(1 - a / b for a, b in zip(lost, totals, strict=True)))

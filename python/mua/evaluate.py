@@ -18,14 +18,16 @@ from mua.asset.avatar import Avatar
 from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
 from mua.student.model import STATIC_LEVELS, Bands, Student
-from mua.student.train import best_coefficients
+from mua.student.train import BestCoefficients, thread_share
 from mua.texture.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.texture.fill import Fill
+from mua.threads import in_order
 from mua.wavelets import analyse_lowpass, wavedec2
 
 TRAINING = "training"
 MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
-BATCH = 16  # frames
+BATCH = 2  # frames whose images are held at once, by each thread
+THREADS = 4  # at most: each holds some hundred megabytes
 DYNAMIC_LEVELS = 2  # D3 and D2
 PICTURES = ("mean", "bands", "best", "student")
 
@@ -102,13 +104,16 @@ def evaluate(
     judge = _Judge(recording, student, avatar)
     groups: dict[str, Errors] = {}
     frames = recording.whole_frames()
+    batches = iter(lambda: list(itertools.islice(frames, BATCH)), [])
+    threads = min(torch.get_num_threads(), THREADS)
     done = 0
-    while batch := list(itertools.islice(frames, BATCH)):
-        for frame, pictures in zip(batch, judge.pictures(batch), strict=True):
-            group = frame.clip.name if frame.clip.held_out else TRAINING
-            groups.setdefault(group, Errors()).add(frame, pictures)
-            done += 1
-            progress(done, recording.whole_count)
+    with thread_share(threads):
+        for batch, judged in in_order(lambda batch: (batch, judge.errors(batch)), batches, threads=threads):
+            for frame, own in zip(batch, judged, strict=True):
+                group = frame.clip.name if frame.clip.held_out else TRAINING
+                groups[group] = groups.get(group, Errors()) + own
+                done += 1
+                progress(done, recording.whole_count)
     return dict(sorted(groups.items(), key=lambda item: item[0] != TRAINING))
 
 
@@ -125,9 +130,19 @@ class _Judge:
         self.student, self.avatar = student, avatar
         self.mean = Picture(recording.mean_texture(), recording.mean_mesh())
         self.fill = Fill(recording.rig.texels)
+        parts = zip(student.branches, (GEOMETRY, APPEARANCE), strict=True)
+        self.best = [(BestCoefficients(branch), channels) for branch, channels in parts]
+
+    def errors(self, frames: Sequence[WholeFrame]) -> list[Errors]:
+        """Errors of each frame alone."""
+        counted = []
+        for frame, pictures in zip(frames, self.pictures(frames), strict=True):
+            counted.append(Errors())
+            counted[-1].add(frame, pictures)
+        return counted
 
     def pictures(self, frames: Sequence[WholeFrame]) -> Iterator[dict[str, Picture]]:
-        """The pictures of each frame by name; together, because the bases are factorised once for all of them."""
+        """The pictures of each frame by name."""
         bands, best = self._closest(frames)
         for i, frame in enumerate(frames):
             posed = decode_clip_frame(self.avatar, frame.clip, frame=frame.index)
@@ -145,7 +160,6 @@ class _Judge:
         wavelet = self.student.wavelet
         ll, (d3, d2) = wavedec2(analyse_lowpass(images, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
         bands = Bands(ll, d3.transpose(1, 2), d2.transpose(1, 2))
-        parts = zip(self.student.branches, (GEOMETRY, APPEARANCE), strict=True)
-        alphas = [best_coefficients(branch, bands.of(channels)) for branch, channels in parts]
+        alphas = [best(bands.of(channels)) for best, channels in self.best]
         best = self.student.synthesize((alphas[0], alphas[1]))
         return self.student.texture(bands).numpy(), self.student.texture(best).numpy()

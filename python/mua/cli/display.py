@@ -4,7 +4,7 @@ import time
 
 import torch
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mua.bake.distillation import Baked
 from mua.bake.report import closing, table
@@ -22,8 +22,9 @@ class Display:
         self.progress = Progress(
             *columns, TimeElapsedColumn(), TimeRemainingColumn(), console=console, disable=not console.is_terminal
         )
-        self.task: TaskID | None = None
-        self._told = self._begun = 0.0
+        self._open: dict[str, tuple[TaskID, float]] = {}  # stages that have not ended, and when each began
+        self._stage = ""  # that steps belong to
+        self._told = 0.0
         self._notes: dict[str, int] = {}  # of this stage, and how often each came
 
     def __enter__(self) -> "Display":
@@ -33,30 +34,36 @@ class Display:
     def __exit__(self, *_: object) -> None:
         self._say_notes()
         self.progress.stop()
-        if self.task is not None:
-            self._say_end()
+        for name in tuple(self._open):
+            self._end(name)
 
     def stage(self, name: str) -> None:
-        """End the bar of the stage before and begin one."""
+        """Begin a stage, or go on with one; of those before it only one whose last step is still to come stays open."""
         self._say_notes()
-        if self.task is not None:
-            self.progress.update(self.task, total=1, completed=1)
-            self._say_end()
-        self.task = self.progress.add_task(name, total=None, detail="")
-        self._begun = time.monotonic()
+        self._stage = name
+        if name in self._open:
+            return
+        for other in tuple(self._open):
+            task = self._task(other)
+            if task.total is None or task.finished:
+                self._end(other)
+        self._open[name] = self.progress.add_task(name, total=None, detail=""), time.monotonic()
         if self.progress.disable:
             self._say(name)
 
     def step(self, done: int, total: int, *, detail: str = "") -> None:
         """Say how far the stage is."""
         self._say_notes()
-        if self.task is None:
+        name = self._stage
+        if name not in self._open:
             return
-        self.progress.update(self.task, completed=done, total=total, detail=detail)
+        self.progress.update(self._open[name][0], completed=done, total=total, detail=detail)
         if self.progress.disable and time.monotonic() - self._told >= LINE_SECONDS:
-            left = self.progress.tasks[-1].time_remaining
+            left = self._task(name).time_remaining
             ending = "" if left is None else f", {left / 60:.0f} min left"
-            self._say(f"  {done} of {total}{', ' if detail else ''}{detail}{ending}")
+            self._say(f"  {self._among(name)}{done} of {total}{', ' if detail else ''}{detail}{ending}")
+        if done == total and len(self._open) > 1:
+            self._end(name)
 
     def note(self, sentence: str) -> None:
         """Say a sentence, before the next step or stage: one that comes several times is said once."""
@@ -68,9 +75,20 @@ class Display:
             self.console.print(f"  {sentence}{times}", highlight=False, markup=False, soft_wrap=True)
         self._notes.clear()
 
-    def _say_end(self) -> None:
+    def _end(self, name: str) -> None:
+        """Fill the bar of a stage; without a terminal, say what it took."""
+        among = self._among(name)
+        task, begun = self._open.pop(name)
+        self.progress.update(task, total=1, completed=1)
         if self.progress.disable:
-            self._say(f"  {time.monotonic() - self._begun:.1f} s")
+            self._say(f"  {among}{time.monotonic() - begun:.1f} s")
+
+    def _among(self, name: str) -> str:
+        """Which stage a line is about, where several are open."""
+        return f"{name}: " if len(self._open) > 1 else ""
+
+    def _task(self, name: str) -> Task:
+        return next(task for task in self.progress.tasks if task.id == self._open[name][0])
 
     def _say(self, line: str) -> None:
         self._told = time.monotonic()

@@ -4,6 +4,7 @@ import math
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
+from threading import Lock
 from typing import Protocol
 
 import numpy as np
@@ -31,7 +32,8 @@ GPU_SECONDS = 1.0  # between two questions about the GPU
 class Listener(Protocol):
     """Hears how far a distillation is."""
 
-    def stage(self, name: str) -> None: ...
+    def stage(self, name: str) -> None:
+        """A stage begins, or one that has begun goes on: two may take turns."""
 
     def step(self, done: int, total: int, *, detail: str = "") -> None: ...
 
@@ -172,19 +174,20 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
 
 
 class _Reporter:
-    """Tells a listener of the stages and steps of a training, and how busy the GPU is."""
+    """Tells a listener of the stages and steps of a training, of several side by side too, and how busy the GPU is."""
 
     def __init__(self, listener: Listener, device: torch.device) -> None:
         self._listener, self._device = listener, device
-        self._stage = ""
+        self._stage, self._one = "", Lock()
         self._use, self._asked = "", -math.inf
 
     def __call__(self, progress: Progress) -> None:
-        if progress.stage != self._stage:
-            self._stage = progress.stage
-            self._listener.stage(progress.stage)
         loss = "" if progress.loss is None else f"loss {progress.loss:.4f}, "
-        self._listener.step(progress.step, progress.steps, detail=f"{loss}{progress.rate:.1f} steps/s{self._gpu()}")
+        with self._one:
+            if progress.stage != self._stage:
+                self._stage = progress.stage
+                self._listener.stage(progress.stage)
+            self._listener.step(progress.step, progress.steps, detail=f"{loss}{progress.rate:.1f} steps/s{self._gpu()}")
 
     def _gpu(self) -> str:
         """How busy the GPU was when last asked; asking takes longer than a step."""

@@ -8,7 +8,7 @@ from torch import Tensor
 from mua.processes import ALONE, Processes
 from mua.student.model import Bands
 
-HELD_BYTES = 2 << 30  # a branch's subbands up to this size are kept in memory, larger ones are read batch by batch
+HELD_BYTES = 1 << 30  # subbands up to this size are kept in memory, larger ones are read batch by batch
 GPU_SHARE = 0.5  # of what is free on a GPU may be taken by subbands; the rest is for the factorisation
 READ_FRAMES = 64  # at once
 CPU = torch.device("cpu")
@@ -24,6 +24,7 @@ def hold(
     size: int,
     device: torch.device = CPU,
     processes: Processes = ALONE,
+    together: int = 1,  # how many sources share the memory
 ) -> Source:
     """A source of `channels` alone, counted from 0, read once into the memory of `device` where they fit.
 
@@ -32,7 +33,7 @@ def hold(
     own = processes.held(frames)
     values = (size // 4) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
     held: Bands | None = None
-    if len(own) * values * (channels.stop - channels.start) * 4 <= room(device):
+    if len(own) * values * (channels.stop - channels.start) * 4 <= room(device) // together:
         held = _read(subbands, channels, torch.tensor(own), device=device)
 
     def source(part: slice, rows: Tensor) -> Bands:

@@ -1,8 +1,11 @@
 """Distillation of training frames into a student: closed-form start, regression, fine-tuning (design, section 8.1)."""
 
 import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from threading import Event
 from typing import Literal, get_args
 
 import torch
@@ -25,6 +28,7 @@ from mua.student.settings import Settings
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, still_channels
 from mua.texture.channels import APPEARANCE, GEOMETRY
+from mua.threads import together
 
 StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
 STAGES: tuple[StageName, ...] = get_args(StageName)
@@ -89,9 +93,16 @@ def train(
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
     if only == "coarse":
         return
-    for name, branch, channels in zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True):
+
+    def teach(name: str, branch: Branch, channels: slice, run: Run) -> None:
         source = hold(
-            samples.subbands, channels, frames=len(samples), size=student.size, device=device, processes=processes
+            samples.subbands,
+            channels,
+            frames=len(samples),
+            size=student.size,
+            device=device,
+            processes=processes,
+            together=len(BRANCHES) if side_by_side(run) else 1,
         )
         judges = None
         if unseen is not None:
@@ -107,11 +118,54 @@ def train(
             run=run.alone(name),
             judges=judges,
         )
-        del source  # before the next branch looks for room
+
+    branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
+    each_branch([partial(teach, *branch) for branch in branches], run)
     if only is not None:
         return
     student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
     student.requires_grad_(False).eval()
+
+
+class Stopped(Exception):
+    """Raised in a branch whose training is to end, because that of the other one has failed."""
+
+
+def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
+    """Train the branches: on a processor side by side, each with its share of the threads; else one after the other.
+
+    They share nothing but the descriptors, so that half the threads for each do more than all for one: the larger
+    part of a step is too small to be divided.
+    """
+    if not side_by_side(run):
+        for task in tasks:
+            task(run)
+        return
+    stop = Event()
+
+    def report(progress: Progress) -> None:
+        if stop.is_set():
+            raise Stopped
+        run.report(progress)
+
+    with thread_share(len(tasks)):
+        together([partial(task, replace(run, report=report)) for task in tasks], stop=stop.set)
+
+
+def side_by_side(run: Run) -> bool:
+    """Whether branches are trained at once: not on a GPU, whose memory one fills, nor where processes take turns."""
+    return run.device.type == "cpu" and run.processes.count == 1
+
+
+@contextmanager
+def thread_share(parts: int) -> Iterator[None]:
+    """Let torch compute with one of so many parts of its threads within the block, in each thread that asks it to."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(max(threads // parts, 1))
+    try:
+        yield
+    finally:
+        torch.set_num_threads(threads)
 
 
 def set_apart(samples: Samples, share: float, *, run: Run) -> tuple[Samples, Samples | None]:
@@ -337,25 +391,37 @@ def hold_still(
         level[:, still] = 0
 
 
-@torch.no_grad()
-def best_coefficients(
-    branch: Branch,
-    bands: Bands,  # of the branch's channels
-) -> Alphas:
+class BestCoefficients:
     """The coefficients per frame and channel that fit given subbands best, by least squares, for the learnt bases."""
-    ll = _least_squares(bands.ll - branch.ll_mean, branch.ll_basis.flatten(2))
-    levels = [ll]
-    for detail, band in ((branch.d3, bands.d3), (branch.d2, bands.d2)):
-        samples = (band - detail.mean).transpose(1, 2)
-        levels.append(_least_squares(samples, outer_products(detail.h, detail.w)))
-    return Alphas(*levels)
+
+    @torch.no_grad()
+    def __init__(self, branch: Branch) -> None:
+        """Solve once for what depends on the bases alone."""
+        self._branch = branch
+        outer = (outer_products(detail.h, detail.w) for detail in (branch.d3, branch.d2))
+        self._levels = [_LeastSquares(basis) for basis in (branch.ll_basis.flatten(2), *outer)]
+
+    @torch.no_grad()
+    def __call__(
+        self,
+        bands: Bands,  # of the branch's channels
+    ) -> Alphas:
+        branch = self._branch
+        details = [(bands.d3 - branch.d3.mean).transpose(1, 2), (bands.d2 - branch.d2.mean).transpose(1, 2)]
+        samples = (bands.ll - branch.ll_mean, *details)
+        return Alphas(*(level(own) for level, own in zip(self._levels, samples, strict=True)))
 
 
-def _least_squares(
-    x: Tensor,  # [F, C, ...]
-    basis: Tensor,  # [C, R, P]
-) -> Tensor:
-    """[F, C, R] in double precision, of least norm where blendshapes are alike or zero."""
-    right = torch.einsum("fcp,crp->crf", x.flatten(2).double(), basis.double())
-    gram = basis.double() @ basis.double().transpose(1, 2)
-    return (torch.linalg.pinv(gram, hermitian=True, rtol=1e-10) @ right).permute(2, 0, 1).to(x)
+class _LeastSquares:
+    """Coefficients [F, C, R] of samples [F, C, ...], in double precision, of least norm where blendshapes are alike."""
+
+    def __init__(
+        self,
+        basis: Tensor,  # [C, R, P]
+    ) -> None:
+        self._basis = basis.double()
+        self._inverse = torch.linalg.pinv(self._basis @ self._basis.transpose(1, 2), hermitian=True, rtol=1e-10)
+
+    def __call__(self, x: Tensor) -> Tensor:
+        right = torch.einsum("fcp,crp->crf", x.flatten(2).double(), self._basis)
+        return (self._inverse @ right).permute(2, 0, 1).to(x)

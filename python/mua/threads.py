@@ -1,0 +1,37 @@
+"""Work on several threads of this process: numpy and torch leave Python's lock while they compute."""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
+from itertools import islice
+from typing import TypeVar
+
+A = TypeVar("A")
+B = TypeVar("B")
+
+
+def in_order(work: Callable[[A], B], items: Iterable[A], *, threads: int) -> Iterator[B]:
+    """What `work` gives for each item, in the order of the items; no more of them are held than threads are busy."""
+    items = iter(items)
+    with ThreadPoolExecutor(threads) as pool:
+        pending: deque[Future[B]] = deque(pool.submit(work, item) for item in islice(items, threads))
+        while pending:
+            result = pending.popleft().result()
+            pending.extend(pool.submit(work, item) for item in islice(items, 1))
+            yield result
+
+
+def together(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
+    """Run all tasks at once, each in a thread of its own, and raise the first error of any.
+
+    `stop` is called then, and on an interrupt: it has to make the others end, which is waited for.
+    """
+    with ThreadPoolExecutor(len(tasks)) as pool:
+        futures = [pool.submit(task) for task in tasks]
+        try:
+            ended, _ = wait(futures, return_when=FIRST_EXCEPTION)
+            for future in ended:
+                future.result()
+        except BaseException:
+            stop()
+            raise
