@@ -1,5 +1,7 @@
 """Retargeting: what limbs do in the world, checked on a T-pose person built here and on real motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from people import bone_aligned, person, random_clip, walk, world
@@ -224,6 +226,37 @@ def test_bone_aligned_rest_poses_give_what_a_standing_one_gives(heading: float) 
     assert quality.flaws == ()
     assert quality.facing_degrees is not None
     assert quality.facing_degrees < ESTIMATE_BOUND
+
+
+def resting_in(skeleton: Skeleton, clip: Clip, frame: int) -> Skeleton:
+    """The skeleton as files without a bind pose hold it: at rest in a frame of the motion."""
+    return replace(skeleton, bind_rotations=clip.rotations[frame], bind_translations=clip.translations[frame])
+
+
+def test_a_rest_pose_that_is_a_frame_of_the_motion_is_not_taken_for_standing() -> None:
+    source, target = person(), person(size=1.1, axes=2)
+    clip = walk(source)
+    expected, _ = retarget(SourceMotion(source, clip), target)
+    found, _ = retarget(SourceMotion(resting_in(source, clip, 10), clip), target)
+    turned, wanted = world(target, found)[0], world(target, expected)[0]
+    away = np.degrees(2 * np.arccos(np.minimum(np.abs(np.sum(turned * wanted, axis=-1)), 1)))
+    assert np.median(away, axis=0).max() < ESTIMATE_BOUND
+
+
+def test_rotations_are_copied_between_rigs_of_one_maker_whatever_the_rest_pose() -> None:
+    source, target = person(axes=1), person(size=1.1, axes=1)
+    plain = walk(person())
+    straight = rotation.multiply(
+        rotation.conjugate(world(person(), Clip("", 30.0, person().bind_rotations[None], plain.translations[:1]))[0]),
+        world(person(), plain)[0],
+    )
+    turned = rotation.multiply(straight, source.world(source.bind_rotations, source.bind_translations)[0])
+    above = turned[:, np.maximum(source.parents, 0)]
+    local = np.where(source.parents[:, None] < 0, turned, rotation.multiply(rotation.conjugate(above), turned))
+    clip = Clip("walk", 30.0, local, source.with_root(plain.translations[:, 0]))
+    found, _ = retarget(SourceMotion(resting_in(source, clip, 10), clip), target)
+    cosines = np.abs(np.sum(world(target, found)[0] * world(source, clip)[0], axis=-1))
+    np.testing.assert_allclose(cosines, 1, atol=POSITION_BOUND)
 
 
 def test_feet_that_hang_on_controls_stay_at_the_shins_end() -> None:

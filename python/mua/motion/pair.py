@@ -22,6 +22,7 @@ class Side:
     at: Array  # [F, J, 3]
     rest_at: Array  # [J, 3] in the bind pose
     roles: Mapping[str, int]  # only those matched
+    trusted: bool  # whether the bind pose shows how the trunk stands
 
     def place(self, role: str) -> Array | None:
         """[F, 3] where a role begins."""
@@ -36,7 +37,7 @@ class Side:
         found = trunk_of({role: self.at[:, joint] for role, joint in self.roles.items()})
         if found is None:
             return None
-        at_rest = trunk_of(self.rest()) if stands(self.rest()) else None
+        at_rest = trunk_of(self.rest()) if self.trusted else None
         lean = -AT_EASE if at_rest is None else lean_of(at_rest)
         return Trunk(leaned(found, -lean), found.hips, found.chest)
 
@@ -76,9 +77,13 @@ class Pair:
         bind_turned, bind_at = _bind(target)
         ends = {role: pair for role in matches.roles if (pair := matches.ends(role)) is not None}
         last = {role: joints[-1] for role in ("hips", "spine") if (joints := matches.roles.get(role))}
+        source_bind = _bind(source.skeleton)[1]
+        sources = {role: joint for role, (_, joint) in ends.items()}
         return cls(
-            Side(at, bind_at, {role: joint for role, (joint, _) in ends.items()}),
-            Side(source_at, _bind(source.skeleton)[1], {role: joint for role, (_, joint) in ends.items()}),
+            Side(at, bind_at, {role: joint for role, (joint, _) in ends.items()}, trusted=True),
+            Side(
+                source_at, source_bind, sources, trusted=stands({role: source_bind[j] for role, j in sources.items()})
+            ),
             clip.rate,
             {
                 role: rotation.multiply(turned[:, joint], rotation.conjugate(bind_turned[joint]))

@@ -4,8 +4,9 @@ For a target joint t that follows source joint s:
 
     R_t(f) = W  R_s(f)  C_t  R_t(bind)
 
-C_t says how t's bind pose lies in the space of s: by both rest poses where the source's shows a body (mua.motion.rest),
-else by what the posed skeleton does (mua.motion.posed). W turns the result so that the source's rest faces where the
+C_t says how t's bind pose lies in the space of s: by both rest poses where the source's shows a body
+(mua.motion.rest), else by what the posed skeleton does (mua.motion.posed), or by the joints' axes where both rigs have
+them alike. W turns the result so that the source's rest faces where the
 target's bind faces. The hips' path is scaled by the ratio of leg lengths and set so that standing feet keep the height
 that they have in the bind pose (mua.motion.floor).
 """
@@ -22,13 +23,17 @@ from mua.motion.floor import placed
 from mua.motion.match import Matches, match_joints, missing_limbs, require_limbs
 from mua.motion.posed import posed_calibrations
 from mua.motion.resample import resample
-from mua.motion.rest import IDENTITY, Rest, body_turn, rest_calibrations, rest_of
+from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
 from mua.motion.source import SourceMotion
-from mua.motion.trunk import stands
+from mua.motion.trunk import SIDES, stands, unit
 from mua.rig.skeleton import Skeleton
 
-CONTRADICTS = 45.0  # degrees from which a rest pose is not what the posed skeleton shows
-TELLING = ("hips", "spine", "left thigh", "right thigh", "left shin", "right shin")
+ALIKE = 30.0  # degrees within which an estimate agrees
+MOST = 0.75  # of the joints asked
+TELLING = (
+    *("hips", "spine"),
+    *(f"{side} {part}" for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin")),
+)
 
 
 def retarget(
@@ -57,13 +62,7 @@ def retarget_matched(
     rest = rest_of(source.skeleton, target, matches)
     clip = resample(source.clip, rate)
     turned, at = source.skeleton.world(clip.rotations, clip.translations)
-    upright = body_turn(rest)
-    facing = rotation.conjugate(heading_of(upright))
-    calibrations = rest_calibrations(rest, upright)
-    posed = posed_calibrations(rest, turned, at, rate)
-    honest = stands(rest.source_places()) or not _contradicts(rest, calibrations, posed)
-    if not honest:
-        calibrations, facing = posed, IDENTITY
+    calibrations, facing, honest = _calibrations(rest, turned, at, rate)
     rotations = _local_rotations(rest, calibrations, rotation.multiply(facing, turned))
     translations, notes = placed(rest, rotations, rotation.rotate(facing, at), rate=rate, honest=honest)
     notes = [f"{clip.name}: {note}" for note in notes]
@@ -76,11 +75,36 @@ def retarget_matched(
     return Clip(clip.name, rate, rotations, translations), (*source.notes, *notes)
 
 
-def _contradicts(rest: Rest, by_rest: Mapping[int, Array], by_pose: Mapping[int, Array]) -> bool:
-    """Whether the source's rest pose says something else about trunk and legs than its posed skeleton."""
-    joints = [joint for role in TELLING for joint in rest.matches.roles.get(role, ()) if joint in by_pose]
-    cosines = [abs(by_rest[joint] @ by_pose[joint]) for joint in joints]
-    return any(cosine < np.cos(np.radians(CONTRADICTS) / 2) for cosine in cosines)
+def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[dict[int, Array], Array, bool]:
+    """C_t by target joint, W [4], and whether they come from the source's rest pose, which then tells heights too."""
+    upright = body_turn(rest)
+    by_rest = rest_calibrations(rest, upright)
+    by_pose = {} if stands(rest.source_places()) else posed_calibrations(rest, turned, at, rate)
+    if not by_pose:
+        return by_rest, rotation.conjugate(heading_of(upright)), True
+    by_frames = {joint: rotation.conjugate(rest.target_turned[joint]) for joint in rest.matches.chains}
+    if not _same_frames(rest, by_frames, by_pose):
+        return by_pose, IDENTITY, False
+    return by_frames | _along_bones(rest, by_frames, by_pose), IDENTITY, False
+
+
+def _same_frames(rest: Rest, by_frames: dict[int, Array], by_pose: dict[int, Array]) -> bool:
+    """Whether both skeletons have their joints' axes alike, as rigs of one maker do: then rotations can be copied."""
+    joints = [joint for role in TELLING if (joint := rest.joint(role)) is not None]
+    cosines = np.array([abs(by_frames[joint] @ by_pose[joint]) for joint in joints])
+    return bool(np.mean(cosines > np.cos(np.radians(ALIKE) / 2)) > MOST)
+
+
+def _along_bones(rest: Rest, by_frames: dict[int, Array], by_pose: dict[int, Array]) -> dict[int, Array]:
+    """`by_frames` of limbs, turned to where the source's bones are, which estimates know exactly."""
+    found = {}
+    for role, end in ((f"{side} {part}", f"{side} {end}") for part, end in LIMBS.items() for side in SIDES):
+        joint, below = rest.joint(role), rest.joint(end)
+        if joint is not None and below is not None:
+            bone = unit(rest.target_at[below] - rest.target_at[joint])
+            lies, seen = (rotation.rotate(turns[joint], bone) for turns in (by_frames, by_pose))
+            found[joint] = rotation.multiply(rotation.between(lies, seen), by_frames[joint])
+    return found
 
 
 def _local_rotations(rest: Rest, calibrations: Mapping[int, Array], moved: Array) -> Array:

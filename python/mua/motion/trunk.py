@@ -13,7 +13,8 @@ WIDE = 0.1  # of the way between the shoulders: collar bones that begin farther 
 AT_EASE = np.radians(5)  # by which people's shoulder joints are behind their hip joints while they stand upright
 HANGING = 60.0  # degrees from straight down within which legs of a standing body point
 RAISED = 45.0  # degrees from straight up within which arms of a standing body do not point
-MIRRORED = 40.0  # degrees by which a limb may differ from the mirror image of the other
+MIRRORED = 15.0  # degrees by which a limb may differ from the mirror image of the other
+STRAIGHT = {"shin": 20.0, "forearm": 45.0}  # degrees by which knees and elbows of a body at rest may bend
 POINTED = 20.0  # degrees between shin and foot below which the foot only continues the leg
 LEGS = (("thigh", "shin"), ("shin", "foot"))
 ARMS = (("upper_arm", "forearm"), ("forearm", "hand"))
@@ -79,7 +80,10 @@ def nearest_axis(v: Array) -> Array:
 
 
 def stands(at: Mapping[str, Array]) -> bool:
-    """Whether places [3] of roles are those of a standing body: legs down, arms not up, both sides alike."""
+    """Whether places [3] of roles are those of a body made to stand: legs down and straight, arms not up, sides alike.
+
+    A frame of some motion is none: what its limbs do would pass for what limbs do at rest.
+    """
     trunk = trunk_of({role: at[role] for role in AROUND if role in at})
     if trunk is None:
         return False
@@ -96,6 +100,9 @@ def stands(at: Mapping[str, Array]) -> bool:
         if part == "upper_arm" and degrees(bone, trunk.up) < RAISED:
             return False
         if part == "foot" and (side, "shin") in bones and degrees(bone, bones[side, "shin"]) < POINTED:
+            return False
+        above = bones.get((side, {"shin": "thigh", "forearm": "upper_arm"}.get(part, "")))
+        if above is not None and degrees(bone, above) > STRAIGHT[part]:
             return False
         other = bones.get(("right", part)) if side == "left" and part != "foot" else None
         if other is not None and degrees(bone, other - 2 * (other @ across) * across) > MIRRORED:
