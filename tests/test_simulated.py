@@ -12,6 +12,7 @@ from mua.motion.clip import Clip, Stretches
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
+from mua.teachers import texels
 from mua.teachers.bones import fit_bones
 from mua.teachers.folds import Folds
 from mua.teachers.simulated import SimulatedTeacher
@@ -41,6 +42,12 @@ def teacher() -> SimulatedTeacher:
     return SimulatedTeacher(tube(looseness=0.6), texels=SIZE)
 
 
+@pytest.fixture
+def unsunk(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Splats lie on the surface and not a little below it."""
+    monkeypatch.setattr(texels, "SINK", 0.0)
+
+
 def test_whole_frames_have_the_shapes_of_the_rig(teacher: SimulatedTeacher) -> None:
     (frame,) = whole_frames(teacher, still(tube(), frames=1))
     assert frame.mesh.shape == teacher.rig.mesh.vertices.shape
@@ -60,14 +67,30 @@ def test_frames_not_wanted_are_poses_and_change_nothing(teacher: SimulatedTeache
     np.testing.assert_array_equal(some[11].mesh, every[11].mesh)
 
 
-def test_in_the_bind_pose_splats_lie_on_the_surface(teacher: SimulatedTeacher) -> None:
-    character = tube()
+@pytest.mark.usefixtures("unsunk")
+def test_in_the_bind_pose_splats_lie_on_the_surface() -> None:
+    character = tube(looseness=0.6)
+    teacher = SimulatedTeacher(character, texels=SIZE)
     frame = whole_frames(teacher, still(character))[-1]
     rig = teacher.rig
     corners = rig.mesh.vertices[rig.mesh.faces[rig.texels.triangles]]
     expected = np.einsum("nk,nkc->nc", rig.texels.barycentrics, corners)
     np.testing.assert_allclose(posed(rig, frame)[0], expected, atol=SINGLE)
     np.testing.assert_allclose(frame.mesh, rig.mesh.vertices, atol=SINGLE)
+
+
+def test_splats_lie_below_the_surface_by_a_share_of_their_smaller_deviation(
+    teacher: SimulatedTeacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frame = whole_frames(teacher, still(tube()))[-1]
+    sunk, rotations = posed(teacher.rig, frame)
+    share = texels.SINK
+    monkeypatch.setattr(texels, "SINK", 0.0)
+    unsunk = SimulatedTeacher(tube(looseness=0.6), texels=SIZE)
+    on_surface, _ = posed(unsunk.rig, whole_frames(unsunk, still(tube()))[-1])
+    smaller = np.exp(frame.texture[:, 7:9]).min(axis=1, keepdims=True)
+    below = share * smaller * rotation.rotate(rotations, np.array([0.0, 0, 1]))
+    np.testing.assert_allclose(on_surface - sunk, below, atol=SINGLE)
 
 
 def at_vertices(looseness: float) -> tuple[Character, SimulatedTeacher, np.ndarray, np.ndarray]:
@@ -85,6 +108,7 @@ def at_vertices(looseness: float) -> tuple[Character, SimulatedTeacher, np.ndarr
     return character, teacher, at_vertex, vertex
 
 
+@pytest.mark.usefixtures("unsunk")
 def test_a_squash_of_the_source_is_in_the_surface() -> None:
     """The whole body 30 % flatter, as a scaled joint above all makes it: every joint scales, and stands nearer."""
     character, teacher, at_vertex, vertex = at_vertices(looseness=0.0)
@@ -102,6 +126,7 @@ def test_a_squash_of_the_source_is_in_the_surface() -> None:
     assert (flat.texture[:, spread] - rest.texture[:, spread]).max() > np.log(1.1)  # splats widen with their surface
 
 
+@pytest.mark.usefixtures("unsunk")
 def test_mesh_offsets_and_texel_transforms_rebuild_the_simulated_surface() -> None:
     """Splats at vertices of the template have no interpolation between them and the simulation."""
     character, teacher, at_vertex, vertex = at_vertices(looseness=0.6)

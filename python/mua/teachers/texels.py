@@ -16,6 +16,7 @@ from mua.texture.surfels import rest_surfels
 
 MOST_OPAQUE = 5.0  # logit of a texel whose alpha is 1
 MOST_CLEAR = 6.0  # negative logit of one whose alpha is 0: below what changes an 8-bit image, so that it is not drawn
+SINK = 0.45  # of its smaller standard deviation, by which a splat lies below the surface: on edge, many tails add up
 SHEEN_TINT = 0.5  # how far the sheen has the colour of the surface, as cloth does, rather than that of the lamp
 
 
@@ -32,6 +33,7 @@ class SurfaceTexels:
         surfels = rest_surfels(
             mesh, size=texels.size, texels=texels.texels, triangles=triangles, barycentrics=barycentrics
         )
+        relief -= SINK * np.exp(surfels.log_scales[:, :2]).min(axis=1, keepdims=True) * surfels.normals
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
         albedo = sample_albedo(character.base_color, uv, texels.size)
         self._relief, self._rest, self._log_scales, self._albedo = (

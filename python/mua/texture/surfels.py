@@ -12,9 +12,10 @@ from mua.rig.character import Mesh
 from mua.rig.surface_points import interpolate
 from mua.texture.footprints import TexelPoints, neighbour_steps, neighbours, sample_surface, spreads
 
-SPREAD = 0.65  # standard deviation over the distance of neighbouring texels: between four, 97 % is covered
-FLATNESS = 0.1  # thickness over the smaller standard deviation
-CELL = 1.5  # standard deviation over that of the surface nearest to a texel: half opaque at the border of a square
+SPREAD = 0.62  # standard deviation over the distance of neighbouring texels: between four, 95 % is covered
+FLATNESS = 0.03  # thickness over the smaller standard deviation
+THINNESS = 0.5  # of the thickness that rounded normals and near surfaces ask for: more, and silhouettes swell
+CELL = 1.3  # standard deviation over that of the surface nearest to a texel: nearly half opaque at a square's border
 LEAST = 1e-6  # of the surface's size, of any standard deviation: a texel where the surface has no extent
 
 
@@ -24,6 +25,11 @@ class Surfels:
 
     rotations: Array  # [N, 4] x about along u, z along the normal; unit, wxyz, one sign over each chart
     log_scales: Array  # [N, 3] along x, y, z; natural logarithms of metres
+
+    @property
+    def normals(self) -> Array:
+        """Unit normals [N, 3] of the surface."""
+        return rotation.rotate(self.rotations, np.array([0.0, 0, 1]))
 
 
 def rest_surfels(
@@ -54,7 +60,7 @@ def rest_surfels(
     footprint = neighbour_steps(points, own)
     cells = spreads(points, sample_surface(points, footprint), frames)
     extents = np.maximum(SPREAD * np.linalg.norm(footprint @ frames, axis=1), CELL * cells)
-    extents[:, 2] = np.maximum(extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
+    extents[:, 2] = np.maximum(THINNESS * extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
     least = max(LEAST * float(np.ptp(mesh.vertices, axis=0).max()), float(np.finfo(np.float32).tiny))
     return Surfels(
         rotations=align_neighbours(rotation.from_matrix(frames), texels, size),

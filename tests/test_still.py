@@ -1,0 +1,57 @@
+"""Splats of a still character, drawn: its silhouette is the surface's, and nothing shines through."""
+
+import numpy as np
+import pytest
+from tube import HEIGHT, RADIUS, tube
+
+from mua.camera import orbit
+from mua.decode import pose_splats
+from mua.render import render_premultiplied
+from mua.teachers import texels
+from mua.teachers.still import StillTeacher
+
+SCREEN = (96, 256)  # pixels
+TEXELS = 64
+
+
+def alpha_of(sides: int, *, azimuth: float = 0.0) -> tuple[np.ndarray, float]:
+    """Opacity [H, W] of a tube that is seen from the front, and pixels for a metre."""
+    character = tube(rings=29, sides=sides)
+    teacher = StillTeacher(character, texels=TEXELS)
+    frame = teacher.frame(character.skeleton.bind_pose)
+    splats = pose_splats(teacher.rig, frame.mesh, texture=frame.texture, pose=frame.pose)
+    low, high = character.mesh.vertices.min(axis=0), character.mesh.vertices.max(axis=0)
+    camera = orbit(np.stack([low, high]), screen=SCREEN, azimuth=azimuth, elevation=0.0)
+    middle = np.array([[0, y, 0, 1] for y in (0.4 * HEIGHT, 0.6 * HEIGHT)]) @ (camera.projection @ camera.view).T
+    rows = middle[:, 1] / middle[:, 3] * SCREEN[1] / 2
+    return render_premultiplied(splats, camera)[..., 3], float(abs(np.ptp(rows))) / (0.2 * HEIGHT)
+
+
+def width(alpha: np.ndarray) -> float:
+    """Mean distance in pixels between the places in the middle rows where half is covered."""
+    found = []
+    for row in alpha[len(alpha) // 3 : -len(alpha) // 3]:
+        first, last = np.flatnonzero(row >= 0.5)[[0, -1]]
+        left = first - (row[first] - 0.5) / (row[first] - row[first - 1])
+        right = last + (row[last] - 0.5) / (row[last] - row[last + 1])
+        found.append(right - left)
+    return float(np.mean(found))
+
+
+def test_a_silhouette_is_as_wide_as_the_surface(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tube of 40 sides, on which splats of 7 x 12 mm lie."""
+    alpha, scale = alpha_of(40)
+    assert width(alpha) == pytest.approx(2 * RADIUS * scale, abs=0.3)  # of a pixel of 8 mm
+    monkeypatch.setattr(texels, "SINK", 0.0)
+    swollen, _ = alpha_of(40)
+    assert width(swollen) > width(alpha) + 0.5
+
+
+@pytest.mark.parametrize("azimuth", [0.0, np.pi / 3, np.pi / 2, 2.0])
+def test_nothing_shines_through_at_sharp_edges(azimuth: float) -> None:
+    """A tube of three sides: corners of 60 degrees that smooth normals round off."""
+    alpha, _ = alpha_of(3, azimuth=azimuth)
+    middle = alpha[len(alpha) // 3 : -len(alpha) // 3]
+    for row in middle:
+        inside = np.flatnonzero(row >= 0.5)
+        assert row[inside[0] + 1 : inside[-1]].min() > 0.8
