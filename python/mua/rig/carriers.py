@@ -18,15 +18,17 @@ from mua.rig.surface_points import face_normals, interpolate, nearest_barycentri
 from mua.rig.template import Template
 from mua.rig.texel_map import TexelMap, build_texel_map
 
-SKIN_REACH = 0.15  # of the figure's size: how far a point lies wrong in a pose that is moved by other joints altogether
+BEND = 0.7  # radians, of every joint by itself, for which it is judged how wrong other skin weights place a point
+SLIDE = 0.03  # of the figure's size, of every joint by itself, likewise
+REACH = 0.1  # of the figure's size: distance from a joint in the search for neighbours that move alike
 OTHER_PIECE = 0.02  # of the figure's size: what another UV piece counts for, as pieces part where surfaces end
 OTHER_SIDE = 0.05  # of the figure's size: what a triangle counts for that faces the other way
-ACCEPTED = 0.01  # of the figure's size: the triangle under a texel that carries it no worse is taken without a search
-FAR = 0.05  # of the figure's size: a texel that is carried worse is a stray
+ACCEPTED = 0.004  # of the figure's size: the triangle under a texel that carries it no worse is taken without a search
+FAR = 0.03  # of the figure's size, 5 cm on a person: a texel that is carried worse is a stray
 CANDIDATES = 12  # points of the template that a texel chooses from
 SAMPLES = 8  # points for each triangle of the template
 SKIN_DIRECTIONS = 8  # of the space of weights, in which neighbours are sought
-AT_ONCE = 2000  # texels that choose together
+AT_ONCE = 1000  # texels that choose together
 
 
 @dataclass(frozen=True)
@@ -34,13 +36,35 @@ class Carried:
     """The texels of a dense surface on its template."""
 
     texels: TexelMap  # triangles and barycentrics are the template's
-    cost: Array  # [N] how far off each texel is carried, of the figure's size: distance, skin, side and piece
+    cost: Array  # [N] how far off each texel is carried, of the figure's size: at rest and in a bent pose
     moved: int  # texels that another triangle carries than the one under them in the texture
 
     @property
     def strays(self) -> Array:
         """[N] bool, texels that nothing of the template carries well."""
         return self.cost > FAR
+
+    @property
+    def kept(self) -> TexelMap:
+        """The texels without the strays."""
+        held, texels = ~self.strays, self.texels
+        return replace(
+            texels,
+            texels=texels.texels[held],
+            triangles=texels.triangles[held],
+            barycentrics=texels.barycentrics[held],
+        )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence on the strays, where there are any."""
+        strays = int(np.count_nonzero(self.strays))
+        if not strays:
+            return ()
+        return (
+            f"{strays:,} of {len(self.cost):,} texels are left out: no part of the simplified mesh lies near them and "
+            f"moves as they do.",
+        )
 
 
 def carry_texels(character: Character, template: Template, *, size: int) -> Carried:
@@ -55,7 +79,10 @@ def carry_texels(character: Character, template: Template, *, size: int) -> Carr
     there = rows >= 0
     triangles = np.where(there, under.triangles[rows], 0)
     barycentrics = np.where(there[:, None], under.barycentrics[rows], [1.0, 0, 0])
-    cost = np.where(there, surfaces.cost(dense.triangles, dense.barycentrics, triangles, barycentrics), np.inf)
+    cost = np.full(len(dense.texels), np.inf)
+    for some in np.array_split(np.flatnonzero(there), len(there) // (AT_ONCE * CANDIDATES) + 1):
+        placed = dense.triangles[some], dense.barycentrics[some]
+        cost[some] = surfaces.cost(*placed, triangles[some], barycentrics[some])
     poor, moved = np.flatnonzero(cost > ACCEPTED), 0
     for start in range(0, len(poor), AT_ONCE):
         part = poor[start : start + AT_ONCE]
@@ -77,7 +104,10 @@ class _Surfaces:
         self._dense, self._coarse = (replace(m, vertices=m.vertices / scale) for m in (mesh, coarse))
         self._dense_normals, self._coarse_normals = face_normals(mesh), face_normals(coarse)
         self._dense_pieces, self._coarse_pieces = _pieces(mesh, template)
-        self._weights = _weights(character)
+        skeleton = character.skeleton
+        _, joints = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+        self._joints = joints / scale
+        self._weights = _carried_weights(character)
         self._coarse_weights = self._weights[template.source_vertices]
         self._directions = _directions(self._weights)
         self._samples, at = spread_points(coarse, SAMPLES * len(coarse.faces))
@@ -95,10 +125,12 @@ class _Surfaces:
         corners = self._coarse.faces[carriers]
         away = np.linalg.norm(interpolate(self._coarse.vertices, corners, points) - own, axis=1)
         skin = interpolate(self._weights, self._dense.faces[triangles], barycentrics)
-        skin = np.abs(skin - interpolate(self._coarse_weights, corners, points)).sum(axis=1) / 2
+        skin -= interpolate(self._coarse_weights, corners, points)
+        squares = np.sum(own**2, axis=1)[:, None] - 2 * own @ self._joints.T + np.sum(self._joints**2, axis=1)
+        astray = BEND * np.sqrt(np.sum(skin**2 * (np.maximum(squares, 0) + SLIDE**2), axis=1))
         facing = np.sum(self._dense_normals[triangles] * self._coarse_normals[carriers], axis=1)
         other = self._dense_pieces[triangles] != self._coarse_pieces[carriers]
-        return np.asarray(away + SKIN_REACH * skin + OTHER_SIDE * (facing < 0) + OTHER_PIECE * other)
+        return np.asarray(away + astray + OTHER_SIDE * (facing < 0) + OTHER_PIECE * other)
 
     def best(self, triangles: Array, barycentrics: Array) -> tuple[Array, Array, Array]:
         """The triangles of the template [N] that carry points best, where on them [N, 3], and the cost [N]."""
@@ -117,13 +149,17 @@ class _Surfaces:
         """Places [N, 3 + n] in a space in which what belongs together lies near."""
         places = interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
         skin = interpolate(weights @ self._directions, mesh.faces[triangles], barycentrics)
-        return np.concatenate([places, SKIN_REACH / 2 * skin], axis=1)
+        return np.concatenate([places, REACH * BEND * skin], axis=1)
 
 
-def _weights(character: Character) -> Array:
-    """The vertices' weights over all joints [V, J]."""
-    weights = np.zeros((len(character.skin_weights), int(character.skin_indices.max(initial=0)) + 1))
+def _carried_weights(character: Character) -> Array:
+    """How far a turn of each joint carries each vertex along [V, J]: its weights and those of all that hang on it."""
+    weights = np.zeros((len(character.skin_weights), len(character.skeleton.parents)))
     np.add.at(weights, (np.arange(len(weights))[:, None], character.skin_indices), character.skin_weights)
+    for joint in reversed(range(len(character.skeleton.parents))):  # parents come first
+        parent = character.skeleton.parents[joint]
+        if parent >= 0:
+            weights[:, parent] += weights[:, joint]
     return weights
 
 

@@ -32,6 +32,6 @@ def build_rig(character: Character, *, texels: int, template_vertices: int = 500
         mesh=template.mesh,
         skin_indices=template.skin_indices,
         skin_weights=template.skin_weights,
-        texels=carry_texels(character, template, size=texels).texels,
+        texels=carry_texels(character, template, size=texels).kept,
     )
     return rig, template.source_vertices

@@ -43,12 +43,13 @@ class SimulatedTeacher:
         mesh = character.mesh
         template = make_template(character, vertices=template_vertices)
         carried = carry_texels(character, template, size=texels)
+        self.notes = carried.notes  # what is left out, a sentence each
         self.rig = Rig(
             skeleton=character.skeleton,
             mesh=template.mesh,
             skin_indices=template.skin_indices,
             skin_weights=template.skin_weights,
-            texels=carried.texels,
+            texels=carried.kept,
         )
         self._character = character
         self._template = template.source_vertices
