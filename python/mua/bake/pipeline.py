@@ -23,9 +23,11 @@ from mua.motion.clip import Clip
 from mua.motion.planted_feet import Feet
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
+from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.detail import Detail
 from mua.rig.figure_size import AS_FOUND, FigureSize
+from mua.rig.template import make_template
 from mua.rig.texel_density import describe_texels
 from mua.rig.uv import UvMode
 from mua.student.settings import Settings
@@ -107,6 +109,8 @@ def _record(order: Order, character: Character, planned: list[PlannedClip], list
     """The teacher's recording, taken up where an earlier run of the same order left it."""
     directory = order.work / f"recording-{_key(order, character, planned)}"
     listener.stage("recording")
+    for sentence in carry_texels(character, make_template(character), size=order.settings.texels).notes:
+        listener.note(sentence)
     total = sum(len(clip.wanted) for clip in planned)
     record_by_workers(
         partial(SimulatedTeacher, replace(character, clips=()), texels=order.settings.texels, seed=order.settings.seed),
