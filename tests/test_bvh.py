@@ -239,6 +239,12 @@ def test_takes_positions_for_the_offset_that_starts_far_along_the_path(tmp_path:
     np.testing.assert_array_equal(world_positions(motion)[:, 1], [[0, 1, -41], [0, 1, 3]])
 
 
+def test_reads_the_frame_that_a_writer_forgot_to_count_and_says_so(tmp_path: Path) -> None:
+    motion = read_bvh(write(tmp_path, PERSON.replace("Frames: 2", "Frames: 1")))
+    assert len(motion.clip) == 2
+    assert "holds 2 frames, though it says 1" in motion.notes[0]
+
+
 def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
     z_up = PERSON.replace("OFFSET 1 -9 0", "OFFSET 1 0 -9").replace("OFFSET 0 7 0.5", "OFFSET 0 -0.5 7")
     z_up = z_up.replace("0 9 0 0 0 0 0 0 0 0", "0 0 9 0 0 0 0 0 0 0").replace(
@@ -269,7 +275,8 @@ def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
         ("}\nMOTION", "}\n}\nMOTION", "found '}'"),
         ("{\n  OFFSET 0 0 0", "{\n{\n  OFFSET 0 0 0", "found '{'"),
         ("Frames: 2", "Frames: 3", "3 frames of 10 values, found 20 values"),
-        ("Frames: 2", "Frames: 1", "1 frames of 10 values, found 20 values"),
+        ("0 9 0 0 0 0 0 0 0 0", "0 9 0 0 0 0 0 0 0", "2 frames of 10 values, found 19 values"),
+        ("5 6 -7 45", "5 6 -7 45\n" + "0 " * 20, "2 frames of 10 values, found 40 values"),
         ("Frames: 2", "Frames: 0", "at least 1 frame"),
         ("Frames: 2", "Frames: 1.5", "at least 1 frame"),
         ("Frames: 2", "Frames: two", "Frames:"),

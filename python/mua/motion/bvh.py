@@ -47,8 +47,12 @@ def read_bvh(path: Path, *, scale: float | None = None) -> SourceMotion:
     if motion is None:
         raise InputError(f"{path}: expected a line MOTION after the hierarchy, found none")
     nodes = _parse_hierarchy(path, lines[:motion])
-    rate, values = _parse_motion(path, lines[motion + 1 :], sum(len(node.channels) for node in nodes))
-    return _assemble(path, nodes, rate, values, scale)
+    rate, count, values = _parse_motion(path, lines[motion + 1 :], sum(len(node.channels) for node in nodes))
+    read = _assemble(path, nodes, rate, values, scale)
+    if len(values) == count:
+        return read
+    told = f"{path.name}: holds {len(values)} frames, though it says {count}; all are read."
+    return replace(read, notes=(told, *read.notes))
 
 
 def _parse_hierarchy(path: Path, lines: list[str]) -> list[_Node]:
@@ -107,8 +111,11 @@ def _channels(path: Path, node: _Node, values: list[str]) -> _Node:
     return _Node(node.name, node.parent, node.offset, channels)
 
 
-def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, Array]:
-    """Return frames per second and values [F, width] of the MOTION section."""
+def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, int, Array]:
+    """Return frames per second, how many frames there should be, and values [F, width] of the MOTION section.
+
+    Writers that count from 0 state one frame less than follows.
+    """
     rows = [line for line in lines if line.strip()]
     count = _header(path, rows, 0, "Frames:")
     frame_time = _header(path, rows, 1, "Frame Time:")
@@ -117,14 +124,15 @@ def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, Arra
     if frame_time <= 0:
         raise InputError(f"{path}: Frame Time: expected seconds above 0, found {frame_time:g}")
     values = _numbers(path, "MOTION", " ".join(rows[2:]).split())
-    if len(values) != count * width:
+    if len(values) < count * width or len(values) > (count + 1) * width or len(values) % max(width, 1):
         raise InputError(
             f"{path}: MOTION: expected {int(count)} frames of {width} values, found {len(values)} values "
             f"({len(values) / max(width, 1):g} frames)"
         )
     rate = 1 / frame_time
     whole = max(round(rate), 1)
-    return float(whole) if abs(rate - whole) < WHOLE_RATE * whole else rate, values.reshape(int(count), width)
+    rate = float(whole) if abs(rate - whole) < WHOLE_RATE * whole else rate
+    return rate, int(count), values.reshape(-1, width) if width else values.reshape(int(count), 0)
 
 
 def _header(path: Path, rows: list[str], index: int, label: str) -> float:

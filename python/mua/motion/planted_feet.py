@@ -21,7 +21,7 @@ from mua.motion.match import Matches
 from mua.motion.pair import Pair
 from mua.motion.rest import Rest, rest_of
 from mua.motion.source import SourceMotion
-from mua.motion.trunk import unit
+from mua.motion.trunk import degrees, unit
 from mua.rig.skeleton import Skeleton
 
 Feet = Literal["auto", "keep", "plant"]
@@ -32,6 +32,7 @@ STRETCHED = 0.999  # of the leg's length: how far a held foot may stretch the le
 ALONG_FLOOR = np.array([1.0, 0, 1])  # a nearly straight leg cannot also change its height without bending visibly
 FARTHEST = 0.15  # of the leg: what would have to move farther to stand does not stand
 FASTEST = 0.8  # legs per second at which a foot may be brought from one place to the next
+VISIBLY = 4.0  # degrees by which limbs may turn, as a median, before sliding feet are the lesser evil
 FADE = 0.4  # seconds in which the correction begins before the first standing and ends after the last
 
 
@@ -50,8 +51,8 @@ def plant_feet(
 ) -> tuple[Clip, tuple[str, ...]]:
     """The clip with feet held where the source's stand, and a note where it was done.
 
-    feet: "plant" wherever the source's feet stand, "keep" nowhere, "auto" where the source's stand firmly and the
-    target's slide.
+    feet: "plant" wherever the source's feet stand, "keep" nowhere, "auto" where the source's stand firmly, the
+    target's slide, and holding them turns no limb visibly.
     """
     if feet == "keep" or len(clip) < 2:
         return clip, ()
@@ -60,8 +61,11 @@ def plant_feet(
     legs = [(leg, stands) for leg in _legs(target, matches) if (stands := _stands(pair, leg)).any()]
     if not legs or (feet == "auto" and not any(_worth_it(pair, leg, stands) for leg, stands in legs)):
         return clip, ()
+    kept = clip
     for leg, stands in legs:
         clip = _held(rest, clip, leg, stands, pair.target.leg)
+    if feet == "auto" and max(_turned(rest, kept, clip, leg) for leg, _ in legs) > VISIBLY:
+        return kept, ()
     return clip, (f"{clip.name}: standing feet are held in place (--feet keep leaves them as they come).",)
 
 
@@ -86,6 +90,13 @@ def _worth_it(pair: Pair, leg: _Leg, stands: Array) -> bool:
     target = speed(pair.target.at[:, [joint for joint, _ in leg.held]], pair.rate)[stands].mean() / pair.target.leg
     source = speed(pair.source.at[:, [joint for _, joint in leg.held]], pair.rate)[stands].mean() / pair.source.leg
     return bool(source < FIRM and target > source + WORTH)
+
+
+def _turned(rest: Rest, kept: Clip, held: Clip, leg: _Leg) -> float:
+    """Degrees by which thigh and shin point elsewhere in the held clip: the median over frames, of the worse one."""
+    at, moved = (rest.target.world(clip.rotations, clip.translations)[1] for clip in (kept, held))
+    bones = ((leg.thigh, leg.shin), (leg.shin, leg.foot))
+    return max(float(np.median(degrees(at[:, b] - at[:, a], moved[:, b] - moved[:, a]))) for a, b in bones)
 
 
 def _held(rest: Rest, clip: Clip, leg: _Leg, stands: Array, length: float) -> Clip:
