@@ -14,7 +14,7 @@ DENSE_ENOUGH = 1.2  # a mesh of at most this many times the wanted vertices is i
 CLOSE_ENOUGH = 0.02  # of the wanted vertices
 ATTEMPTS = 6  # the number of vertices that a number of triangles leaves is only known afterwards
 UV_WEIGHT = 4.0  # of an error in UV against the distance on the surface that it stands for
-SKIN_WEIGHT = 2.0  # of the character's size: the error of a vertex that moves with a wrong joint
+SKIN_WEIGHT = 0.5  # of the character's size: the error of a vertex that moves with a wrong joint
 SKIN_DIRECTIONS = 24  # of the space of skin weights; the library takes 32 attributes
 NO_ERROR_LIMIT = c_float(1e9)  # the number of triangles alone ends the decimation
 
