@@ -158,7 +158,7 @@ BROKEN: dict[str, tuple[Callable[[Glb], Any], str]] = {
         "holds 1 elements, expected 2",
     ),
     "times fall": (lambda g: animate(g, 1, "rotation", times=[1.0, 0.0], values=HALF_TURN), "do not increase"),
-    "wrong kind": (lambda g: g.json.update(nodes=7), "wrong kind"),
+    "wrong kind": (lambda g: g.json.update(nodes=7), "nodes is 7, expected an array"),
 }
 
 

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pygltflib
 
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig.gltf_compression import decode_meshopt
+from mua.rig.gltf_json import Entry, read_object
 
 COMPONENT_TYPES = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -42,10 +42,9 @@ MESHOPT = "EXT_meshopt_compression"
 class Document:
     """The parsed JSON of one file and the bytes that it points to; decoded views are kept."""
 
-    def __init__(self, path: Path, gltf: pygltflib.GLTF2, blob: bytes | None, raw: dict[str, Any]) -> None:
+    def __init__(self, path: Path, gltf: Entry, blob: bytes | None) -> None:
         self.path = path
         self.gltf = gltf
-        self.raw = raw  # the JSON itself, for fields that pygltflib does not know
         self._blob = blob
         self._buffers: dict[int, bytes] = {}
         self._views: dict[int, bytes] = {}
@@ -185,43 +184,21 @@ def load(path: Path) -> Document:
     text, blob = _glb_chunks(path, content) if content[:4] == b"glTF" else (content, None)
     try:
         raw = json.loads(text)
-        _check_structure(path, raw)
-        gltf = pygltflib.GLTF2.gltf_from_json(text.decode("utf-8"))
     except ValueError as broken:
         raise InputError(f"{path}: the glTF JSON cannot be parsed: {broken}") from broken
-    except (TypeError, AttributeError, KeyError) as broken:
-        raise InputError(f"{path}: the glTF JSON has a field of the wrong kind: {broken}") from broken
-    for name in gltf.extensionsRequired or []:
-        if name not in READ_EXTENSIONS and not name.startswith(HARMLESS_EXTENSIONS):
-            advice = f"; {ADVICE[name]}" if name in ADVICE else ""
-            raise InputError(f"{path}: extensionsRequired names {name}, which is not supported{advice}")
-    return Document(path, gltf, blob, raw)
-
-
-def _check_structure(path: Path, raw: Any) -> None:
-    """Refuse JSON that pygltflib would take although its arrays hold something else than objects."""
     if not isinstance(raw, dict) or not isinstance(raw.get("asset"), dict):
         raise InputError(f"{path}: the glTF JSON has no asset object")
     if not str(raw["asset"].get("version")).startswith("2."):
         raise InputError(f"{path}: asset.version is {raw['asset'].get('version')}, expected 2.0")
-    for name, entries in raw.items():
-        if isinstance(entries, list) and not name.startswith("extensions"):
-            for index, entry in enumerate(entries):
-                _check_objects(path, entry, f"{name}[{index}]")
-
-
-def _check_objects(path: Path, entry: Any, where: str) -> None:
-    """An entry of an array is an object, and so are those of the arrays of objects inside it."""
-    if not isinstance(entry, dict):
-        raise InputError(f"{path}: {where} is {entry}, expected an object")
-    for name in ("primitives", "channels", "samplers"):
-        inner = entry.get(name, [])
-        if not isinstance(inner, list):
-            raise InputError(f"{path}: {where}.{name} is {inner}, expected an array")
-        for index, item in enumerate(inner):
-            _check_objects(path, item, f"{where}.{name}[{index}]")
-    if "attributes" in entry and not (isinstance(entry["attributes"], dict) and entry["attributes"]):
-        raise InputError(f"{path}: {where}.attributes is {entry['attributes']}, expected an object with a POSITION")
+    try:
+        gltf = read_object(raw)
+    except ValueError as broken:
+        raise InputError(f"{path}: {broken}") from broken
+    for name in gltf.extensionsRequired or []:
+        if name not in READ_EXTENSIONS and not name.startswith(HARMLESS_EXTENSIONS):
+            advice = f"; {ADVICE[name]}" if name in ADVICE else ""
+            raise InputError(f"{path}: extensionsRequired names {name}, which is not supported{advice}")
+    return Document(path, gltf, blob)
 
 
 def _glb_chunks(path: Path, content: bytes) -> tuple[bytes, bytes | None]:

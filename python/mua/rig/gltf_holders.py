@@ -57,7 +57,7 @@ class Holders:
         mesh = self._document.item("meshes", gltf.nodes[node].mesh, field=f"nodes[{node}].mesh")
         points = [np.zeros((1, 3))]
         for primitive in mesh.primitives or []:
-            index = primitive.attributes.POSITION
+            index = primitive.attributes.POSITION if primitive.attributes else None
             accessor = self._document.item("accessors", index, field=f"nodes[{node}].mesh POSITION")
             if accessor.min and accessor.max:
                 ends = np.array([accessor.min, accessor.max], float)

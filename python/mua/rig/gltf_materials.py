@@ -51,9 +51,10 @@ def read_materials(document: Document, findings: Findings) -> tuple[tuple[Materi
     materials = document.gltf.materials or []
     pairs = [_material(document, index, material, findings) for index, material in enumerate(materials)]
     pairs.append((Material("default", pictures.flat(np.ones(4))), Coordinates()))
-    variants = (document.gltf.extensions or {}).get(VARIANTS)
-    for variant in variants.get("variants") or [] if isinstance(variants, dict) else []:
-        findings.add("The file's material variants are left out, its default is drawn: {}.", str(variant.get("name")))
+    variants = (document.gltf.extensions or {}).get(VARIANTS, {}).get("variants")
+    for variant in variants if isinstance(variants, list) else []:
+        name = variant.get("name") if isinstance(variant, dict) else variant
+        findings.add("The file's material variants are left out, its default is drawn: {}.", str(name))
     read, coordinates = zip(*pairs, strict=True)
     return read, coordinates
 

@@ -30,7 +30,7 @@ def read_parts(
     source = document.gltf.nodes[node]
     mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
     name = mesh.name or f"mesh{source.mesh}"
-    morphs = document.raw["nodes"][node].get("weights") or mesh.weights or []  # pygltflib drops those of nodes
+    morphs = source.weights or mesh.weights or []
     parts = []
     for p, primitive in enumerate(mesh.primitives or []):
         where = f"meshes[{source.mesh}].primitives[{p}]"
@@ -73,14 +73,13 @@ def read_parts(
 
 def _morphed(document: Document, targets: Any, weights: Any, where: str, *, count: int) -> Array:
     """How far [V, 3] the targets move the vertices at these weights, of which missing ones are 0."""
-    if not isinstance(weights, list) or not all(isinstance(w, int | float) and np.isfinite(w) for w in weights):
+    if not np.isfinite(weights).all():
         raise document.error(f"{where} is morphed by the weights {weights}, expected finite numbers")
     moved = np.zeros((count, 3))
     for t, (target, weight) in enumerate(zip(targets, weights, strict=False)):
-        index = target.get("POSITION") if isinstance(target, dict) else target.POSITION
-        if weight and index is not None:
+        if weight and target.POSITION is not None:
             field = f"{where}.targets[{t}].POSITION"
-            offsets = document.accessor(index, field=field, types=("VEC3",))
+            offsets = document.accessor(target.POSITION, field=field, types=("VEC3",))
             if len(offsets) != count:
                 raise document.error(f"{field} holds {len(offsets)} elements for {count} vertices")
             moved += weight * offsets
@@ -102,6 +101,8 @@ def _colors(geometry: dict[str, Array], faces: Array, reads: Coordinates) -> Arr
 
 def _geometry(document: Document, primitive: Any, where: str) -> dict[str, Array]:
     """Attributes [V, n] that matter here, and "indices" [I]; all of one length and in range."""
+    if primitive.attributes is None:
+        raise document.error(f"{where} has no attributes")
     wanted = {
         name: accessor
         for name, accessor in vars(primitive.attributes).items()

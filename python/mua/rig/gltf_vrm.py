@@ -77,7 +77,7 @@ def _bones(document: Document, vrm: dict[str, Any], where: str, *, listed: bool)
     humanoid = _table(document, vrm.get("humanoid", {}), where.rpartition(".")[0])
     entries = humanoid.get("humanBones", [] if listed else {})
     if listed and isinstance(entries, list):
-        entries = {_table(document, entry, where).get("bone"): entry for entry in entries}
+        entries = {str(_table(document, entry, where).get("bone")): entry for entry in entries}
     found = {}
     for bone, entry in _table(document, entries, where).items():
         node = _table(document, entry, f"{where}.{bone}").get("node", -1)
@@ -128,7 +128,7 @@ def _not_carried(document: Document, vrm: dict[str, Any], extensions: dict[str, 
     nodes = document.gltf.nodes or []
     constrained = sum(1 for node in nodes if CONSTRAINT in (node.extensions or {}))
     notes = []
-    if chains:
+    if isinstance(chains, list) and chains:
         notes.append(
             f"The avatar's {len(chains)} spring bone groups are not carried: what they swing keeps its place, "
             f"and the simulation moves what hangs loose."
