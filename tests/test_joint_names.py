@@ -49,6 +49,7 @@ def chain(*names: str) -> Skeleton:
         (("HipLeft", "KneeLeft", "AnkleLeft", "FootLeft"), LEG),
         (("CLAVICLE_LEFT", "SHOULDER_LEFT", "ELBOW_LEFT", "WRIST_LEFT"), ARM),
         (("Hip_L", "Knee_L", "Ankle_L", "Toes_L"), LEG),
+        (("Left leg", "Left knee", "Left ankle", "Left toe"), LEG),
         (("Scapula_L", "Shoulder_L", "Elbow_L", "Wrist_L"), ARM),
         (("lThighBend", "lShin", "lFoot", "lToe"), LEG),
         (("lCollar", "lShldrBend", "lForearmBend", "lHand"), ARM),

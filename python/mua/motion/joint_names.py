@@ -85,7 +85,7 @@ def roles(
     left = {role: tuple(joint for joint in joints if joint not in taken) for role, joints in chains.items()}
     chains = {role: joints for role, joints in left.items() if joints and role not in told} | told
     _keep_to_limbs(skeleton, chains)
-    _settle_toes(chains)
+    _settle_legs(chains)
     _settle_trunk(skeleton, chains)
     return chains
 
@@ -154,10 +154,12 @@ def _keep_to_limbs(skeleton: Skeleton, chains: Roles) -> None:
             chains[role] = kept or joints
 
 
-def _settle_toes(chains: Roles) -> None:
-    """The last of several joints of a foot is its toe, where no name says so."""
+def _settle_legs(chains: Roles) -> None:
+    """A leg above a knee is the thigh, and the last of several joints of a foot its toe, where no name says so."""
     for side in SIDES:
-        foot = chains.get(f"{side} foot", ())
+        shin, foot = (chains.get(f"{side} {part}", ()) for part in ("shin", "foot"))
+        if len(shin) > 1 and f"{side} thigh" not in chains:
+            chains[f"{side} thigh"], chains[f"{side} shin"] = shin[:1], shin[1:]
         if len(foot) > 1 and f"{side} toe" not in chains:
             chains[f"{side} foot"], chains[f"{side} toe"] = foot[:-1], foot[-1:]
 

@@ -8,6 +8,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.joint_names import NAMESPACE, SIDES, Roles
 from mua.motion.joint_names import roles as find_roles
+from mua.motion.joint_places import roles_by_place
 from mua.rig.skeleton import Skeleton
 
 
@@ -17,6 +18,7 @@ class Matches:
 
     chains: Mapping[int, tuple[int, int]]  # target joint -> first and last source joint of the chain that moves it
     roles: Roles  # of the target
+    notes: tuple[str, ...] = ()  # what was told by other means than names, a sentence each
 
     def joint(self, role: str) -> int | None:
         """The first matched target joint of a role."""
@@ -43,7 +45,8 @@ def match_joints(
     Errors: InputError if `mapping` names an unknown joint.
     """
     chains = _match_equal_names(source, target)
-    source_roles, target_roles = find_roles(source, source_said), find_roles(target, target_said)
+    source_roles, source_notes = _roles(source, source_said, "motion")
+    target_roles, target_notes = _roles(target, target_said, "character")
     for role, joints in target_roles.items():
         chain = source_roles.get(role, ())
         for i, joint in enumerate(joints):
@@ -54,7 +57,20 @@ def match_joints(
     for target_name, source_name in (mapping or {}).items():
         chosen = _index(source, source_name, "source")
         chains[_index(target, target_name, "target")] = chosen, chosen
-    return Matches(chains, target_roles)
+    return Matches(chains, target_roles, (*source_notes, *target_notes))
+
+
+def _roles(skeleton: Skeleton, said: Mapping[str, str] | None, owner: str) -> tuple[Roles, tuple[str, ...]]:
+    """Joints of every role by what the file says and names tell; by their places where these know no limb at all."""
+    found = find_roles(skeleton, said)
+    if any(role in found for roles in LIMBS.values() for role in roles if role != "spine"):
+        return found, ()
+    placed = roles_by_place(skeleton)
+    if not placed:
+        return found, ()
+    listed = ", ".join(f"{name} the {role.replace('_', ' ')}" for name, role in placed.items() if " " in role)
+    note = f"The {owner}'s joints are told by their places, for their names do not tell: {listed}."
+    return find_roles(skeleton, {**placed, **(said or {})}), (note,)
 
 
 def _with_mapped(

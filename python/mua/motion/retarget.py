@@ -72,7 +72,7 @@ def retarget_matched(
         notes.append(
             f"{unmatched} of {len(target.names)} joints match none of the motion and keep their bind rotation."
         )
-    return Clip(clip.name, rate, rotations, translations), (*source.notes, *notes)
+    return Clip(clip.name, rate, rotations, translations), (*source.notes, *matches.notes, *notes)
 
 
 def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[dict[int, Array], Array, bool]:
