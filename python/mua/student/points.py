@@ -59,7 +59,9 @@ def scatter(
     along, off = torch.rand(2, len(points), 1, generator=generator).to(z)
     drawn = torch.randn(points.shape, generator=generator).to(z)
     target = pick(z, len(points), generator=generator)
-    return points + BLEND * along * (target - points) + noise * off * z.std(0, correction=0) * drawn
+    drawn.mul_(noise * off * z.std(0, correction=0))  # in place: all of this is large
+    target.sub_(points).mul_(BLEND * along)
+    return target.add_(points).add_(drawn)
 
 
 def pick(rows: Tensor, count: int, *, generator: torch.Generator) -> Tensor:
