@@ -10,7 +10,7 @@ from patches import patch, plain, points, ramp, surfaces_of, texels_and_colours,
 from scipy import ndimage
 
 from mua.rig.bake_texture import bake_texture
-from mua.rig.charts import areas, find_charts, isometric, pack, signed_areas
+from mua.rig.charts import areas, find_charts, isometric, signed_areas
 from mua.rig.read import read_surfaces
 from mua.rig.scene import Material, Wrap
 from mua.rig.texel_map import build_texel_map
@@ -171,15 +171,6 @@ def test_isometric_takes_the_stretch_out_of_a_chart() -> None:
         expected = np.linalg.norm(vertices[faces[:, a]] - vertices[faces[:, b]], axis=1)
         found = np.linalg.norm(flat[:, a] - flat[:, b], axis=1)
         np.testing.assert_allclose(found, expected, atol=LENGTH_BOUND)
-
-
-def test_pack_fits_more_charts_than_the_usual_square_has_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mua.rig.charts.PACK_SIZE", 32)
-    corners = np.tile(np.array([[[0, 0], [1, 0], [0, 1]]], float), (131, 1, 1))
-    placed = pack(corners, np.arange(131))
-    assert placed.min() >= 0
-    assert placed.max() <= 1
-    np.testing.assert_allclose(areas(placed), areas(placed)[0], rtol=SNAPPED)
 
 
 def test_a_folded_sliver_stays_in_its_chart() -> None:

@@ -8,13 +8,6 @@ from scipy.sparse.csgraph import connected_components
 from mua.arrays import Array
 from mua.rig.texel_map import cover
 
-PACK_SIZE = 512  # texels along the square that charts are packed in
-PACK_GUTTER = 2  # of these texels between charts
-PLACES_TRIED = 256  # up to so many charts every place is tried for each
-ROOM = 8  # texels along the square that the smallest chart and its gutter need
-FULL = 0.75  # share of the square that the first attempt wants to fill
-SHRINK = 0.985  # texel density of the next attempt, when the charts did not fit
-
 SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is no chart
 CELL = 128  # texels along the square in which a chart is searched for overlap
 CELLS_SIZE = 2048  # texels along all these squares together
@@ -145,46 +138,6 @@ def unwrap(
     atlas.generate()
     _, flat, uv = atlas.get_mesh(0)
     return uv[flat].astype(np.float64) * (atlas.width, atlas.height)
-
-
-def pack(
-    corners: Array,  # [F, 3, 2] all charts in one scale
-    charts: Array,  # [F]
-) -> Array:
-    """Place the charts in the unit square, as large as they fit without overlap: [F, 3, 2]."""
-    size = max(PACK_SIZE, int(ROOM * np.sqrt(charts.max() + 1)))
-    scale = size * np.sqrt(FULL / max(areas(corners).sum(), np.finfo(float).tiny))
-    while True:
-        for upright in (True, False):  # which of the two packs better differs from character to character
-            atlas = _packed(corners * scale, charts, size, upright=upright)
-            if atlas.atlas_count <= 1:
-                _, flat, uv = atlas.get_mesh(0)
-                return uv[flat].astype(np.float64)
-        filled = [atlas.get_utilization(k) for k in range(atlas.atlas_count)]
-        scale *= min(SHRINK, (filled[0] / sum(filled)) ** 0.25)  # half of what the squares too many ask for
-
-
-def _packed(
-    corners: Array,  # [F, 3, 2] in texels, because xatlas leaves out what is small in absolute terms
-    charts: Array,  # [F]
-    size: int,
-    *,
-    upright: bool,
-) -> xatlas.Atlas:
-    """The charts moved and turned (`upright`: along their longest side) into as many squares of `size` as they need."""
-    rows = np.column_stack([np.repeat(charts, 3), corners.reshape(-1, 2).astype(np.float32)])
-    nodes, index = np.unique(rows, axis=0, return_inverse=True)
-    triangles = index.reshape(-1, 3).astype(np.uint32)
-    atlas = xatlas.Atlas()
-    atlas.add_uv_mesh(nodes[:, 1:].astype(np.float32), triangles, charts.astype(np.uint32)[:, None])
-    options = xatlas.PackOptions()
-    options.resolution, options.padding, options.texels_per_unit = size, PACK_GUTTER, 1.0
-    options.bruteForce = (
-        charts.max() < PLACES_TRIED
-    )  # fills a tenth more of the square, but slowly where there are many
-    options.rotate_charts_to_axis = upright
-    atlas.generate(xatlas.ChartOptions(), options)
-    return atlas
 
 
 def signed_areas(

@@ -10,9 +10,10 @@ from mua.rig.assemble import Surfaces
 from mua.rig.bake_texture import bake_texture
 from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
-from mua.rig.charts import areas, even, find_charts, overlapping, pack, starved, unwrap
+from mua.rig.charts import areas, even, find_charts, overlapping, starved, unwrap
 from mua.rig.detail import Detail, factors, split_by_factor
 from mua.rig.opacity import without_unseen
+from mua.rig.packing import pack
 from mua.rig.texel_map import build_texel_map, cover
 
 UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]
