@@ -56,7 +56,7 @@ def test_mesh_on_a_joint_follows_it_rigidly(tmp_path: Path) -> None:
     worn = surfaces.vertices[surfaces.faces[hat_face]]
     np.testing.assert_allclose(worn, [[0, 1.6, 0], [0.1, 1.6, 0], [0, 1.7, 0]], atol=FLOAT_BOUND)
     assert (surfaces.skin_indices[surfaces.faces[hat_face], 0] == 2).all()
-    assert surfaces.notes == ("Meshes that hang rigidly on a joint: node4.",)
+    assert surfaces.notes == ("Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): node4.",)
 
 
 def test_mesh_on_no_joint_is_left_out_with_a_note(tmp_path: Path) -> None:

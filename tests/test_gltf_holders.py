@@ -91,7 +91,7 @@ def test_part_that_clips_move_below_a_joint_is_a_joint_of_its_own(tmp_path: Path
     assert surfaces.skeleton.names == ("hips", "spine", "head", "jaw")
     parents = dict(zip(surfaces.skeleton.names, surfaces.skeleton.parents, strict=True))
     assert parents["jaw"] == 2
-    assert "Meshes that hang rigidly on a joint: jaw, hat." in surfaces.notes
+    assert "Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): jaw, hat." in surfaces.notes
 
 
 @pytest.mark.parametrize(
@@ -164,6 +164,7 @@ def test_mesh_node_or_material_is_left_out_by_name(tmp_path: Path, name: str) ->
     primitive(glb)["material"] = 1
     surfaces = read_surfaces(glb.save(tmp_path / "body.glb"), leave_out=[name])
     assert_is_column(surfaces)
+    assert surfaces.notes == ()
 
 
 def test_unknown_name_to_leave_out_is_refused_with_the_nearest(tmp_path: Path) -> None:
@@ -179,3 +180,18 @@ def test_unknown_name_to_leave_out_is_refused_with_the_nearest(tmp_path: Path) -
 def test_leaving_out_everything_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no skinned mesh"):
         read_surfaces(body().save(tmp_path / "body.glb"), leave_out=["body"])
+
+
+def test_meshes_of_other_scenes_are_left_out_by_name(tmp_path: Path) -> None:
+    glb = body()
+    block(glb, "stage", at=(0, 0, 0), parent=None)
+    glb.json["scenes"] = [{"nodes": [0, 3]}, {"nodes": [4]}]
+    surfaces = read(glb, tmp_path)
+    assert_is_column(surfaces)
+    assert surfaces.notes == ("Meshes of other scenes than the file's first are left out: stage.",)
+
+
+def test_mesh_that_lies_flat_keeps_its_size(tmp_path: Path) -> None:
+    glb = body()
+    primitive(glb)["attributes"]["POSITION"] = glb.accessor(COLUMN * [1, 1e-20, 1])
+    np.testing.assert_allclose(np.ptp(read(glb, tmp_path).vertices, axis=0), [0.4, 0, 0.2], atol=FLOAT_BOUND)

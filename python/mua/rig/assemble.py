@@ -12,7 +12,7 @@ from mua.motion.clip import Clip
 from mua.rig.bind_pose import Bind, bind_pose
 from mua.rig.character import MAX_INFLUENCES
 from mua.rig.correction import check_scales, corrected
-from mua.rig.findings import UNHELD
+from mua.rig.findings import UNHELD, Findings
 from mua.rig.rigid_skeleton import rigid_skeleton, roles_of
 from mua.rig.scene import Material, Part, Scene, Source, without
 from mua.rig.scene import Wrap as Wrap  # part of what Surfaces says to the atlas
@@ -110,10 +110,19 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
         source=Source(scene, rigged.nodes),
         corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
         roles=roles_of(scene, rigged),
-        notes=(*scene.notes, *size_notes, *change.notes, *mesh.notes, *rigged.notes),
+        notes=(*scene.notes, *_rigid_parts(scene), *size_notes, *change.notes, *mesh.notes, *rigged.notes),
         unit=change.unit,
         size_notes=size_notes,
     )
+
+
+def _rigid_parts(scene: Scene) -> tuple[str, ...]:
+    """A sentence on the meshes that only hang on a joint: a hat, a weapon, a robot's limbs."""
+    findings = Findings()
+    for part in scene.parts:
+        if scene.skins[part.skin].rigid:
+            findings.add("Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): {}.", part.node)
+    return findings.notes()
 
 
 def limit_influences(

@@ -16,6 +16,7 @@ HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measure
 ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be another than it says
 UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
+FLAT = 1e-3  # of the length: what is lower than this has no height to judge
 FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
 
@@ -44,7 +45,7 @@ def corrected(
     """The scene at a plausible height in metres and facing +Z."""
     correction = np.eye(4)
     told = []
-    unit, size_notes = plausible_unit(float(np.ptp(points[:, 1])))
+    unit, size_notes = plausible_unit(_height(points))
     correction[:3, :3] *= unit
     turn = _quarter_turn(scene, bind)
     if turn:
@@ -57,6 +58,12 @@ def corrected(
     if unit == 1 and not turn:
         return scene, change
     return carried(scene, correction), change
+
+
+def _height(points: Array) -> float:
+    """How tall [N, 3] points are; of what lies flat, how long."""
+    extents = np.ptp(points, axis=0)
+    return float(extents[1] if extents[1] > FLAT * extents.max() else extents.max())
 
 
 def carried(

@@ -19,6 +19,8 @@ from mua.rig.gltf_nodes import Tree, below, local_matrix, node_name, read_tree
 from mua.rig.gltf_vrm import Vrm, read_vrm
 from mua.rig.scene import Part, Scene, Skin
 
+INSTANCES = "EXT_mesh_gpu_instancing"
+
 
 def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
     """Read all skinned meshes of a .glb, .gltf or .vrm, with what hangs rigidly on their joints, and its clips.
@@ -63,7 +65,6 @@ def _meshes(document: Document, tree: Tree) -> Scene:
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             skin = len(skins) - 1
-            findings.add("Meshes that hang rigidly on a joint: {}.", node_name(document, node))
         else:
             document.item("skins", skin, field=f"nodes[{node}].skin")
         count = len(skins[skin].joints)
@@ -81,8 +82,13 @@ def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list
     drawn = []
     for node in tree.order:
         source = document.gltf.nodes[node]
-        if node not in tree.shown or source.mesh is None:
+        if source.mesh is None:
             continue
+        if node not in tree.shown:
+            findings.add("Meshes of other scenes than the file's first are left out: {}.", node_name(document, node))
+            continue
+        if INSTANCES in (source.extensions or {}):
+            findings.add("Meshes that the file repeats at many places are drawn once: {}.", node_name(document, node))
         flat = source.skin is None and abs(np.linalg.det(tree.world[node][:3, :3])) < np.finfo(np.float32).tiny
         if flat or node in tree.hidden or node in vrm.hidden_nodes or source.mesh in vrm.hidden_meshes:
             findings.add("Meshes that the file hides are left out: {}.", node_name(document, node))
