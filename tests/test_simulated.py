@@ -14,9 +14,11 @@ from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.teachers import texels
 from mua.teachers.bones import fit_bones
+from mua.teachers.chords import SEEN
 from mua.teachers.folds import Folds
 from mua.teachers.simulated import SimulatedTeacher
 from mua.teachers.simulation import Simulation
+from mua.teachers.still import StillTeacher
 from mua.teachers.teacher import TeacherFrame
 from mua.texture.channels import ATTRIBUTES, CHANNELS
 
@@ -106,6 +108,39 @@ def at_vertices(looseness: float) -> tuple[Character, SimulatedTeacher, np.ndarr
     vertex = rig.mesh.faces[rig.texels.triangles[at_vertex], corner]
     assert len(np.unique(vertex)) == len(rig.mesh.vertices)
     return character, teacher, at_vertex, vertex
+
+
+@pytest.mark.usefixtures("unsunk")
+def test_without_simulation_a_squash_is_in_the_surface_too() -> None:
+    character, teacher, at_vertex, vertex = at_vertices(looseness=0.0)
+    squash = np.diag([1.2, 0.7, 1.2])
+    held = still(character, frames=1)
+    stretches = Stretches(np.arange(3), np.tile(squash, (1, 3, 1, 1)))
+    taught = StillTeacher(character, texels=2 * SIZE).frame(
+        Pose(held.rotations[0], held.translations[0] @ squash), stretches
+    )
+    expected = character.mesh.vertices[vertex] @ squash
+    np.testing.assert_allclose(posed(teacher.rig, taught)[0][at_vertex], expected, atol=SINGLE)
+
+
+@pytest.mark.usefixtures("unsunk")
+def test_texels_of_long_triangles_stay_on_them() -> None:
+    """A tube of three rings that is bent by 100 degrees: its triangles stay flat, as in the source."""
+    character = tube(rings=3, sides=7, looseness=0.0)
+    teacher = SimulatedTeacher(character, texels=SIZE)
+    bent = still(character, frames=2)
+    rotations = bent.rotations.copy()
+    rotations[1, 1] = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(100))
+    clip = replace(bent, rotations=rotations)
+    frame = whole_frames(teacher, clip)[1]
+    rig = teacher.rig
+    joints = rig.skeleton.skinning(rotations[1], clip.translations[1])
+    vertices = rotation.dual_transform(blend_vertices(joints, rig.skin_indices, rig.skin_weights), rig.mesh.vertices)
+    corners = vertices[rig.mesh.faces[rig.texels.triangles]]
+    expected = np.einsum("nk,nkc->nc", rig.texels.barycentrics, corners)
+    away = np.linalg.norm(posed(rig, frame)[0] - expected, axis=1)
+    assert away.max() < 2 * SEEN * 1.75
+    assert np.mean(away < 10 * SINGLE) > 0.3  # of the rest, the arcs are too low to be seen
 
 
 @pytest.mark.usefixtures("unsunk")

@@ -114,7 +114,7 @@ class _Studio:
         used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
         points = np.concatenate(used)
         bounds = np.stack([points.min(axis=0), points.max(axis=0)])
-        taught = teacher.frame(moment.pose)
+        taught = teacher.frame(moment.pose, moment.stretches)
         frame = pose_splats(teacher.rig, taught.mesh, texture=taught.texture, pose=moment.pose)
         shots = []
         for view, degrees in views.items():

@@ -6,7 +6,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
+from mua.motion.clip import Clip, Stretches
 from mua.motion.descriptor import heading_of
 from mua.rig.assemble import weighted
 from mua.rig.rigid_skeleton import rest_pose
@@ -24,6 +24,7 @@ class Moment:
     pose: Pose
     nodes: Array  # [nodes, 4, 4] node to world, metres
     yaw: float  # of the body since the bind pose, about +Y, radians
+    stretches: Stretches | None = None  # of this frame alone
 
 
 class Poser:
@@ -44,7 +45,8 @@ class Poser:
         pose = clip.pose(frame)
         own = [m for m in self._source.scene.motions if m.name == clip.name and len(m.worlds) == len(clip)]
         nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self._moved(pose)
-        return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose))
+        stretches = clip.cut(slice(frame, frame + 1)).stretches
+        return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose), stretches)
 
     def _moved(self, pose: Pose) -> Array:
         """The nodes [nodes, 4, 4] at rest, moved by what each joint does between rest and `pose`."""

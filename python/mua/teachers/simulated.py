@@ -22,6 +22,7 @@ from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.rig.template import make_template
 from mua.teachers.bones import figure_scale, fit_bones
+from mua.teachers.chords import straighten
 from mua.teachers.folds import Folds
 from mua.teachers.looseness import estimate_looseness
 from mua.teachers.shading import Light, shade, visibility
@@ -100,6 +101,8 @@ class SimulatedTeacher:
             light=self._light(joints, dual, moved, turn),
         )
         mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)
+        canonical, places = bind + displacement, self._texels.places
+        straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=canonical, places=places)
         return TeacherFrame(pose=pose, mesh=mesh, texture=texture)
 
     def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:

@@ -4,12 +4,14 @@ import numpy as np
 
 from mua import rotation
 from mua.kernels.dq_skinning import blend_vertices
+from mua.motion.clip import Stretches
 from mua.rig.character import Character
 from mua.rig.rig import build_rig
 from mua.rig.skeleton import Pose
 from mua.teachers.bones import figure_scale
+from mua.teachers.chords import straighten
 from mua.teachers.shading import Light
-from mua.teachers.simulated import TURN_WAVELENGTH
+from mua.teachers.simulated import TURN_WAVELENGTH, stretched
 from mua.teachers.smoothing import low_pass
 from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels
@@ -27,18 +29,28 @@ class StillTeacher:
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
         self._texels = SurfaceTexels(character, self.rig)
         count = len(mesh.vertices)
-        self._still = np.zeros((count, 3)), np.zeros((len(self.rig.mesh.vertices), 3))
+        self._coarse = np.zeros((len(self.rig.mesh.vertices), 3))
         self._unlit = Light(gain=np.ones((count, 3)), sheen=np.zeros((count, 3)))
 
-    def frame(self, pose: Pose) -> TeacherFrame:
+    def frame(
+        self,
+        pose: Pose,
+        stretches: Stretches | None = None,  # of this frame alone
+    ) -> TeacherFrame:
         """One pose; its splats turn and stretch with the surface as the simulated ones do."""
         character = self._character
         joints = character.skeleton.skinning(pose.rotations, pose.translations)
         dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
-        moved = rotation.dual_transform(dual, character.mesh.vertices)
+        bind = character.mesh.vertices
+        shape = bind if stretches is None else stretched(character, stretches, 0, bind)
+        moved = rotation.dual_transform(dual, shape)
         turn, strain = self._surface(moved)
         turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)
         turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
-        displacement, coarse = self._still
-        texture = self._texels.texture(displacement, coarse, turn=turn, moved=moved, strain=strain, light=self._unlit)
-        return TeacherFrame(pose=pose, mesh=self.rig.mesh.vertices.astype(np.float32), texture=texture)
+        texture = self._texels.texture(
+            shape - bind, self._coarse, turn=turn, moved=moved, strain=strain, light=self._unlit
+        )
+        mesh = self.rig.mesh.vertices.astype(np.float32)
+        places = self._texels.places
+        straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=shape, places=places)
+        return TeacherFrame(pose=pose, mesh=mesh, texture=texture)

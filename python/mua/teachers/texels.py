@@ -68,6 +68,14 @@ class SurfaceTexels:
             np.multiply(tint, sign * slope[axis], out=planes[first : first + 3])
         return planes.T
 
+    def places(
+        self,
+        vertices: Array,  # [V, 3] of the dense surface
+        texels: Array,  # [n] int, rows among the valid texels
+    ) -> Array:
+        """Where some texels lie on the surface, [n, 3]."""
+        return np.asarray(self._dense[texels] @ vertices)
+
     def _at_texels(self, values: Array) -> Array:
         return _planes(self._dense, values)
 
