@@ -192,11 +192,10 @@ def test_joints_without_a_match_keep_their_bind_rotation() -> None:
     assert notes[0].startswith(f"1 of {len(names)} joints")
 
 
-def test_mapping_reaches_joints_that_no_name_gives_away() -> None:
-    plain, target = person(axes=1), person(axes=2)
+def test_mapping_reaches_joints_that_neither_names_nor_places_give_away() -> None:
+    (plain, clip), target = bone_aligned(person(), walk(person())), person(axes=2)
     names = tuple(f"Bone.{i:03}" for i in range(len(plain.names)))
-    source = Skeleton(names, plain.parents, plain.bind_rotations, plain.bind_translations, root=0)
-    clip = random_clip(plain)
+    source = replace(plain, names=names)
     with pytest.raises(InputError, match="mapping file"):
         retarget(SourceMotion(source, clip), target)
     mapping = dict(zip(target.names, names, strict=True))
