@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 import typer
+from bvh_files import BVH
 from PIL import Image
 from silent import Silent
 from test_bake import SMALL
@@ -17,7 +18,9 @@ from mua.bake.pipeline import Order, bake
 from mua.cli.bake import main
 from mua.contact_sheet import CAPTION, CELL
 from mua.errors import InputError
+from mua.motion.load import load_motions
 from mua.motion.mapping import read_mapping
+from mua.rig.read import read_surfaces
 
 app = typer.Typer()
 app.command()(main)
@@ -47,6 +50,21 @@ def test_leaves_a_picture_a_mapping_and_figures_and_no_avatar(tmp_path: Path) ->
     assert told["unmatched"] == []
     assert told["warnings"] == [sentence for sentence in told["warnings"] if sentence in text]
     assert "bend, frame 15" in text
+
+
+def test_motion_that_a_bake_refuses_is_checked_and_leaves_a_mapping_to_fill(tmp_path: Path) -> None:
+    character, output = column_file(tmp_path), tmp_path / "a.muaavatar"
+    motion = tmp_path / "wave.bvh"
+    motion.write_text(BVH)
+    with pytest.raises(InputError, match=r"wave\.bvh.*left arm.*--mapping"):
+        load_motions(motion, read_surfaces(character).skeleton, mapping=None, rate=30.0)
+    text = run(character, "--motion", motion, "--check", "--texels", 64, "-o", output, "--json", tmp_path / "a.json")
+    (refused,) = (w for w in json.loads((tmp_path / "a.json").read_text())["warnings"] if "--mapping" in w)
+    assert refused in text
+    assert json.loads((tmp_path / "a_mapping.json").read_text()) == {"hips": "hips", "spine": "spine", "head": ""}
+    run(
+        character, "--motion", motion, "--mapping", tmp_path / "a_mapping.json", "--check", "--texels", 64, "-o", output
+    )
 
 
 def test_a_character_with_neither_motion_nor_clips_is_checked_as_it_stands(tmp_path: Path) -> None:
