@@ -326,6 +326,13 @@ def test_a_height_that_no_unit_explains_is_made_that_of_an_adult_and_told(unit: 
     assert f"it is made {ADULT} m high. --height METRES" in surfaces.notes[0]
 
 
+def test_a_figure_that_creeps_is_not_taken_for_a_small_one() -> None:
+    flat = part().positions * [1, 0.03, 1]
+    surfaces = assemble(scene(parts=(replace(part(), positions=flat),)), HERE)
+    assert surfaces.unit == 1
+    assert surfaces.size_notes == ()
+
+
 def test_a_giant_keeps_its_size_and_is_told() -> None:
     surfaces = assemble(in_units(15 / high(assemble(scene(), HERE))), HERE)
     assert high(surfaces) == pytest.approx(15)

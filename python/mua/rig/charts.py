@@ -15,6 +15,7 @@ CELLS_SIZE = 2048  # texels along all these squares together
 STARVED = 1 / 6  # of its chart's texels for each square metre
 SMOOTHING = 3  # rounds over neighbours
 PATCH = 0.01  # of the character's surface
+SCATTERED = 0.02  # of it: more than this in small patches, as of colours from a palette, counts as well
 MOST_EVENED = 1.5  # of length: what a chart is enlarged by beyond its best linear map, lest a fold in it rules it
 
 
@@ -73,7 +74,7 @@ def starved(
     """Say which triangles [F] have far fewer texels for their surface than the rest of their chart, or none.
 
     Areas are smoothed over neighbours, and a patch counts where it is a good part of its chart or of the character, so
-    that a skirt drawn in a narrow band is found and a nostril is not.
+    that a skirt drawn in a narrow band is found and a nostril is not. Many patches count however small they are.
     """
     surface, drawn = areas(positions), areas(isometric(corners, positions, charts))
     touches = coo_matrix((np.ones(nodes.size), (np.repeat(np.arange(len(nodes)), 3), nodes.ravel()))).tocsr()
@@ -87,8 +88,11 @@ def starved(
     sizes = np.bincount(patch, surface)
     large = (sizes[patch] > PATCH * surface.sum()) | (sizes[patch] > np.bincount(charts, surface)[charts] / 2)
     found = poor & large
+    alone = drawn < STARVED * surface
+    if surface[alone & ~found].sum() > SCATTERED * surface.sum():
+        return found | alone
     beside = touches @ (touches.T @ found) > 0  # smoothing hid the border of the patch
-    return found | (beside & (drawn < STARVED * surface))
+    return found | (beside & alone)
 
 
 def isometric(

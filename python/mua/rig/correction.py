@@ -17,6 +17,7 @@ ODD_HEIGHTS = (0.1, 8.0)  # metres: beyond these a file's unit is taken to be an
 UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, metres taken for centimetres
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FLAT = 1e-3  # of the length: what is lower than this has no height to judge
+LYING = 0.2  # of its length: what a creature that creeps counts as high
 FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
 
@@ -63,7 +64,7 @@ def corrected(
 def _height(points: Array) -> float:
     """How tall [N, 3] points are; of what lies flat, how long."""
     extents = np.ptp(points, axis=0)
-    return float(extents[1] if extents[1] > FLAT * extents.max() else extents.max())
+    return float(max(extents[1], LYING * extents.max()) if extents[1] > FLAT * extents.max() else extents.max())
 
 
 def carried(

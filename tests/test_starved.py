@@ -1,0 +1,53 @@
+"""Triangles with next to no texels for their surface are found, together or scattered."""
+
+import numpy as np
+import pytest
+
+from mua.arrays import Array
+from mua.rig.charts import find_charts, starved
+
+ROWS, COLUMNS = 12, 20
+
+
+def sheet(widths: Array) -> tuple[Array, Array, Array]:
+    """UV and space of a flat sheet, [F, 3, 2] and [F, 3, 3], and its nodes [F, 3].
+
+    Its cells are as large as each other, but as wide in the texture as `widths` [ROWS, COLUMNS] says.
+    """
+    x, y = np.meshgrid(np.arange(COLUMNS + 1.0), np.arange(ROWS + 1.0))
+    row, column = (index.ravel() for index in np.mgrid[:ROWS, :COLUMNS])
+    corner = row * (COLUMNS + 1) + column
+    below = np.stack([corner, corner + 1, corner + COLUMNS + 1], axis=1)
+    above = np.stack([corner + 1, corner + COLUMNS + 2, corner + COLUMNS + 1], axis=1)
+    faces = np.concatenate([below, above])
+    places = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)[faces]
+    uv = places[..., :2].copy()
+    middle = uv.mean(axis=1, keepdims=True)
+    uv[:] = middle + (uv - middle) * np.tile(widths.ravel(), 2)[:, None, None]  # each triangle shrunk in its place
+    return uv / COLUMNS, places, faces
+
+
+def found(widths: Array) -> Array:
+    """Cells [ROWS, COLUMNS] that are starved."""
+    uv, places, faces = sheet(widths)
+    charts = np.zeros_like(find_charts(faces, uv))
+    return np.asarray(starved(uv, places, faces, charts=charts)[: ROWS * COLUMNS].reshape(ROWS, COLUMNS))
+
+
+def test_many_small_patches_count_however_small_they_are() -> None:
+    widths = np.ones((ROWS, COLUMNS))
+    widths[1::3, 1::4] = 1e-2
+    assert np.array_equal(found(widths), widths < 1)
+
+
+def test_one_small_patch_does_not_count() -> None:
+    widths = np.ones((ROWS, COLUMNS))
+    widths[5, 9] = 1e-2
+    assert not found(widths).any()
+
+
+@pytest.mark.parametrize("width", [1e-2, 0.2])
+def test_a_large_patch_counts(width: float) -> None:
+    widths = np.ones((ROWS, COLUMNS))
+    widths[3:9, 4:14] = width
+    assert found(widths)[4:8, 5:13].all()
