@@ -44,6 +44,14 @@ def test_figures_claim_no_more_of_the_teacher_than_is_known(trained: Path) -> No
     assert trained.with_name("a_contact_sheet.png").is_file()
 
 
+def test_an_unknown_clip_to_store_is_named_before_anything_is_trained(
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar", "--clips", "jump") == 1
+    assert "--clips jump: there is no such clip, only walk" in sentence(capsys.readouterr().err)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_leaves_nothing_half_written(trained: Path) -> None:
     assert not list(trained.parent.rglob("*.part*"))
 

@@ -63,6 +63,8 @@ def test_files_hold_all_held_out_clips_together_too() -> None:
 def test_the_last_lines_say_what_the_file_holds() -> None:
     stored = Stored(clips=21, seconds=508.0, clip_bytes=10_400_000, file_bytes=61_200_000)
     assert closing(stored, Path("a.muaavatar")) == "a.muaavatar: 61.2 MB, 21 clips of 8 min 28 s in all, 10.4 MB of it"
+    one = Stored(clips=1, seconds=5.3, clip_bytes=42_400, file_bytes=1_800_000)
+    assert closing(one, Path("a.muaavatar")) == "a.muaavatar: 1.8 MB, 1 clip of 5.3 s in all, 42 kB of it"
     none = Stored(clips=0, seconds=0.0, clip_bytes=0, file_bytes=5_000_000)
     assert closing(none, Path("a.muaavatar")) == "a.muaavatar: 5.0 MB, no clip stored for playback"
 

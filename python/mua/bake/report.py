@@ -53,6 +53,7 @@ def table(groups: Mapping[str, Errors], *, teacher: str) -> Table:
     """For the terminal: one line for training, for all held-out clips together and for each of them."""
     shown = Table(*SHORT, title="What the student explains, and its RMS errors")
     shown.caption = f"{SHORT_LEGEND} Note: {teacher}."
+    shown.columns[0].no_wrap = True
     for column in shown.columns[1:]:
         column.justify = "right"
     held = held_out_errors(groups)
@@ -115,7 +116,8 @@ def closing(stored: Stored, output: Path) -> str:
     if not stored.clips:
         return f"{size}, no clip stored for playback"
     clips = "1 clip" if stored.clips == 1 else f"{stored.clips} clips"
-    return f"{size}, {clips} of {duration(stored.seconds)} in all, {stored.clip_bytes / 1e6:.1f} MB of it"
+    held = f"{stored.clip_bytes / 1e6:.1f} MB" if stored.clip_bytes >= 1e6 else f"{stored.clip_bytes / 1e3:.0f} kB"
+    return f"{size}, {clips} of {duration(stored.seconds)} in all, {held} of it"
 
 
 def duration(seconds: float) -> str:

@@ -101,7 +101,8 @@ def show(console: Console, baked: Baked, *, teacher: str) -> None:
     if baked.errors:
         console.print(table(baked.errors, teacher=teacher))
     console.print(closing(baked.stored, baked.output), highlight=False, soft_wrap=True, markup=False)
-    for path in (baked.sheet, baked.figures):
+    written = (baked.sheet, baked.figures, None if baked.figures is None else baked.figures.with_suffix(".json"))
+    for path in written:
         if path is not None:
             console.print(path, highlight=False, soft_wrap=True)
 

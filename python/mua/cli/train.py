@@ -9,6 +9,7 @@ from rich.console import Console
 
 from mua.asset.tensors import Storage
 from mua.bake.distillation import Distillation, finish, teach, teach_stage
+from mua.bake.playback import choose, whole_clips
 from mua.bake.report import UNSAID
 from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
@@ -28,6 +29,10 @@ def main(
     stage: Annotated[
         StageName | None, typer.Option(help="Run this stage alone, up to its checkpoint; all if left out.")
     ] = None,
+    clips: Annotated[
+        list[str],
+        typer.Option(help="Clip that the file holds for playback, may be repeated; or all, none, or how many."),
+    ] = ["all"],  # noqa: B006 typer copies it
     storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
     device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
@@ -41,6 +46,7 @@ def main(
     settings = with_recipe(replace(preset(preset_name), seed=seed), recipe)
     with joined() as processes:
         opened = Recording(recording)
+        choose(whole_clips(opened.clips), clips)  # before hours of work
         order = Distillation(
             output=output,
             work=output.with_suffix(".work") if work is None else work,
@@ -48,6 +54,7 @@ def main(
             device=processes.place(choose_device(device)),
             name=output.stem,
             teacher=UNSAID,
+            playback=tuple(clips),
             storage=storage,
             processes=processes,
         )
