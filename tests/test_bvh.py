@@ -234,9 +234,10 @@ def test_takes_positions_for_the_offset_that_starts_far_along_the_path(tmp_path:
     """Hips below a reference, whose offset is where some frame stands: most frames are nearer to the origin."""
     text = REFERENCE.replace("OFFSET 0 1 0", "OFFSET 0 1 -40")
     assert text != REFERENCE
-    rows = "0 0 0 0 0 0  0 1 -41 0 0 0  0 0.7 0 0 0 0\n0 0 0 0 0 0  0 1 3 0 0 0  0 0.7 0 0 0 0\n"
-    motion = read_bvh(write(tmp_path, text + rows), scale=1.0)
-    np.testing.assert_array_equal(world_positions(motion)[:, 1], [[0, 1, -41], [0, 1, 3]])
+    for far in (-41, 1):
+        rows = f"0 0 0 0 0 0  0 1 {far} 0 0 0  0 0.7 0 0 0 0\n0 0 0 0 0 0  0 1 3 0 0 0  0 0.7 0 0 0 0\n"
+        motion = read_bvh(write(tmp_path, text + rows), scale=1.0)
+        np.testing.assert_array_equal(world_positions(motion)[:, 1], [[0, 1, far], [0, 1, 3]])
 
 
 def test_reads_the_frame_that_a_writer_forgot_to_count_and_says_so(tmp_path: Path) -> None:

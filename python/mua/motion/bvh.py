@@ -189,8 +189,8 @@ def _decode_channels(nodes: list[_Node], values: Array) -> tuple[Array, Array]:
     """Return local rotations [F, J, 4] and local positions [F, J, 3] in file units.
 
     Rotations apply in the order of the channels, each about the axes that the ones before it have turned. Positions
-    stand for the offset, as most writers mean them; below the root they add to it where some frame comes nearer to zero
-    than any comes to the offset.
+    stand for the offset, as most writers mean them; below the root they add to it where those of most joints come
+    nearer to zero than to the offset.
     """
     rotations = np.tile([1.0, 0, 0, 0], (len(values), len(nodes), 1))
     positions = np.tile(np.array([node.offset for node in nodes]), (len(values), 1, 1))
@@ -204,10 +204,15 @@ def _decode_channels(nodes: list[_Node], values: Array) -> tuple[Array, Array]:
                 turn = rotation.from_axis_angle(np.eye(3)[axis], np.radians(values[:, column]))
                 rotations[:, j] = rotation.multiply(rotations[:, j], turn)
             column += 1
-        moved = positions[:, j]
-        adds = np.linalg.norm(moved, axis=-1).min() < np.linalg.norm(moved - node.offset, axis=-1).min()
-        if node.parent >= 0 and adds:
-            positions[:, j] += node.offset
+    moving = [
+        j
+        for j, node in enumerate(nodes)
+        if node.parent >= 0 and node.offset.any() and any(channel.endswith("position") for channel in node.channels)
+    ]
+    offsets = np.array([nodes[j].offset for j in moving]).reshape(-1, 3)
+    to_zero, to_offset = (np.linalg.norm(positions[:, moving] - place, axis=-1).min(axis=0) for place in (0.0, offsets))
+    if 2 * np.count_nonzero(to_zero < to_offset) > len(moving):
+        positions[:, moving] += offsets
     return rotations, positions
 
 
