@@ -235,3 +235,23 @@ def simulated_vertices(character: Character, clip: Clip) -> list[np.ndarray]:
             state.settle(target, turn, ends)
         result.append(state.advance(target, turn, ends, seconds=1 / clip.rate))
     return result
+
+
+@pytest.mark.parametrize("factor", [2.0**-7, 2.0**5])  # 14 mm and 56 m high
+def test_a_figure_of_any_size_is_taught_alike(factor: float) -> None:
+    person = tube(looseness=0.6)
+    skeleton = replace(person.skeleton, bind_translations=factor * person.skeleton.bind_translations)
+    mesh = replace(person.mesh, vertices=factor * person.mesh.vertices)
+    other, clip = replace(person, skeleton=skeleton, mesh=mesh), swing(person)
+    last = len(clip) - 1
+    scaled = replace(clip, translations=factor * clip.translations)
+    frames = [
+        list(SimulatedTeacher(figure, texels=48).frames(motion, {last}))[last]
+        for figure, motion in ((person, clip), (other, scaled))
+    ]
+    one, two = (frame for frame in frames if isinstance(frame, TeacherFrame))
+    bound = 1e-4  # float32 positions of a metre's size, 20 frames of 4 substeps and 4 iterations
+    np.testing.assert_allclose(two.mesh / factor, one.mesh, atol=bound)
+    np.testing.assert_allclose(two.texture[:, :3] / factor, one.texture[:, :3], atol=bound)
+    np.testing.assert_allclose(two.texture[:, 7:10] - np.log(factor), one.texture[:, 7:10], atol=100 * bound)
+    np.testing.assert_allclose(two.texture[:, 11:], one.texture[:, 11:], atol=100 * bound)
