@@ -1,6 +1,8 @@
 """mua-bake --check: what it writes, prints and refuses, without baking anything."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -101,3 +103,8 @@ def test_a_bake_tells_the_likeness_and_its_contact_sheet_begins_with_it(tmp_path
 def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--json: is written by --check alone"):
         run("--json", tmp_path / "a.json", "-o", tmp_path / "a.muaavatar")
+
+
+def test_a_check_does_not_wait_for_torch() -> None:
+    code = "import sys, mua.cli.bake, mua.cli.check; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -4,11 +4,10 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from mua.bake.distillation import Listener
 from mua.bake.sources import RATE, load_character
 from mua.errors import InputError
 from mua.files import replacing, require_writable, write_bytes
@@ -25,6 +24,9 @@ from mua.motion.source import SourceMotion
 from mua.rig.character import Character
 from mua.rig.detail import Detail
 from mua.rig.figure_size import AS_FOUND, FigureSize
+
+if TYPE_CHECKING:
+    from mua.bake.distillation import Listener  # with torch, which takes seconds to load
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 
@@ -62,7 +64,7 @@ class Check:
     written: tuple[Path, ...]
 
 
-def check(order: CheckOrder, listener: Listener) -> Check:
+def check(order: CheckOrder, listener: "Listener") -> Check:
     """Measure likeness and motion, and leave a picture and a mapping file to start from beside the output.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
@@ -79,7 +81,7 @@ def check(order: CheckOrder, listener: Listener) -> Check:
     )
     listener.stage("motion")
     loaded = _loaded(order, character)
-    qualities = tuple(measure_motion(m.source, character.skeleton, m.clip, m.matches) for m in loaded)
+    qualities = tuple(_quality(order, character, motion) for motion in loaded)
     listener.stage("likeness")
     clips = [m.clip for m in loaded]
     likeness, warnings = likeness_of(character, clips, texels=order.texels)
@@ -159,6 +161,13 @@ def _loaded(order: CheckOrder, character: Character) -> list[LoadedMotion]:
             path, skeleton, mapping=order.mapping, rate=RATE, said=character.roles, feet=order.feet, refuse=False
         )
     ]
+
+
+def _quality(order: CheckOrder, character: Character, motion: LoadedMotion) -> MotionQuality:
+    """What a clip keeps of its source; a character's own clip is its source."""
+    if order.motions:
+        return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
+    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, ())
 
 
 def _refusals(order: CheckOrder, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:

@@ -28,8 +28,10 @@ def show(console: Console, found: Check) -> None:
     """Tables of figures, then sentences, then where everything is."""
     if found.likeness is not None:
         console.print(_likeness_table(found.likeness))
-    if found.motions:
+    if any(motion.limbs for motion in found.motions):
         console.print(_motion_table(found.motions))
+    elif found.motions:
+        _say(console, f"The character's own clips: {', '.join(motion.name for motion in found.motions)}")
     if found.matched:
         pairs = ", ".join(f"{pair.target} < {pair.source}" for pair in found.matched)
         _say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")

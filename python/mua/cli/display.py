@@ -1,14 +1,17 @@
 """What a long job shows while it runs: bars on a terminal, lines of text anywhere else."""
 
 import time
+from typing import TYPE_CHECKING
 
-import torch
 from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from mua.bake.distillation import Baked
-from mua.bake.report import closing, table
 from mua.errors import InputError
+
+if TYPE_CHECKING:  # torch takes seconds to load, and a check needs none of it
+    import torch
+
+    from mua.bake.distillation import Baked
 
 LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
 
@@ -96,8 +99,10 @@ class Display:
         self.console.file.flush()  # who reads a log reads it now
 
 
-def show(console: Console, baked: Baked, *, teacher: str) -> None:
+def show(console: Console, baked: "Baked", *, teacher: str) -> None:
     """Print what a bake or a training ends with: the table of errors, and what was written where."""
+    from mua.bake.report import closing, table
+
     if baked.errors:
         console.print(table(baked.errors, teacher=teacher))
     console.print(closing(baked.stored, baked.output), highlight=False, soft_wrap=True, markup=False)
@@ -107,8 +112,10 @@ def show(console: Console, baked: Baked, *, teacher: str) -> None:
             console.print(path, highlight=False, soft_wrap=True)
 
 
-def choose_device(name: str) -> torch.device:
+def choose_device(name: str) -> "torch.device":
     """What --device means; raises InputError where it names a GPU and there is none."""
+    import torch
+
     found = torch.cuda.is_available()
     if name == "cuda" and not found:
         raise InputError("--device cuda: torch finds no GPU here")
