@@ -9,7 +9,12 @@ import torch
 from synthetic_avatar import SIZE, synthetic_clip, synthetic_rig
 from synthetic_student import SETTINGS, quick
 
+from mua.asset.read import read
+from mua.asset.write import write
+from mua.bake.assemble import assemble
+from mua.decode import decode_clip_frame
 from mua.errors import InputError
+from mua.motion.descriptor import describe
 from mua.recording import Recording, TeacherWriter
 from mua.rig.skeleton import Pose
 from mua.student.distil import distil, moving_joints
@@ -18,6 +23,7 @@ from mua.student.settings import Settings
 from mua.texture.channels import CHANNELS
 
 CPU = torch.device("cpu")
+RELATIVE = 1e-5  # of the largest value: a float32 file against the torch student
 
 
 class Heard:
@@ -92,6 +98,23 @@ def test_joints_move_the_mesh_themselves_or_through_a_descendant() -> None:
     rig = synthetic_rig()
     only_middle = replace(rig, skin_indices=np.full_like(rig.skin_indices, 1))
     assert moving_joints(only_middle).tolist() == [True, True, False]
+
+
+def test_decode_is_the_student_where_joints_move_in_their_parents(tmp_path: Path) -> None:
+    """From the pose on: descriptor, MLPs and textures, with a joint whose translation the descriptor tells."""
+    source = recording(tmp_path / "recording")
+    student = distilled(source, tmp_path / "student", Heard())
+    assert student.encoding.translated == (2,)
+    avatar = assemble(student, source.rig, name="a", encoding=student.encoding, clips=source.clips, notes="")
+    write(tmp_path / "a.muaavatar", avatar, storage="f32")
+    avatar = read(tmp_path / "a.muaavatar")
+    clip = avatar.clips[1]
+    described = describe(source.rig.skeleton, student.encoding, clip.rotations, clip.translations)[5:6]
+    seen = torch.from_numpy(described).float()
+    mesh, texture = student.mesh(seen)[0].numpy(), student.texture(student.predict(seen))[0].numpy()
+    found = decode_clip_frame(avatar, clip, frame=5)
+    assert np.abs(found.canonical - mesh).max() < RELATIVE * np.abs(mesh).max()
+    assert np.abs(found.texture - texture).max() < RELATIVE * np.abs(texture).max()
 
 
 def test_rejects_a_recording_of_another_texture_size(tmp_path: Path) -> None:
