@@ -84,6 +84,13 @@ def test_a_mirrored_texture_turns_round_at_its_end(context: moderngl.Context) ->
     np.testing.assert_allclose(reds, [1, 0, 1], atol=EIGHT_BITS)
 
 
+def test_a_triangle_at_one_place_of_a_palette_has_its_colour(context: moderngl.Context) -> None:
+    palette = np.full((1, 256, 4), 255, np.uint8)
+    palette[0, :, 0] = np.where(np.arange(256) == 0, 200, 20)
+    part = replace(card(depth=0), uv=np.full((4, 2), [0.5 / 256, 0.5]))
+    np.testing.assert_allclose(drawn(context, [part], [Material("", palette)])[4, 4, 0], 200 / 255, atol=EIGHT_BITS)
+
+
 def test_the_nearer_card_hides_the_farther_whatever_comes_first(context: moderngl.Context) -> None:
     materials = [plain(255, 0, 0, 255), plain(0, 255, 0, 255)]
     for near in (0, 1):

@@ -74,7 +74,9 @@ class Painter:
         self._context, self._materials = context, materials
         self._program = context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f1")
-        self._textures = {m: _texture(context, materials[m]) for m in sorted({part.material for part in parts})}
+        palettes = {part.material for part in parts if _is_palette(part)}
+        shown = sorted({part.material for part in parts})
+        self._textures = {m: _texture(context, materials[m], slanted=m not in palettes) for m in shown}
         self._pieces = [_piece(part, materials[part.material]) for part in parts]
 
     def __call__(
@@ -125,7 +127,16 @@ def _piece(part: Part, material: Material) -> _Piece:
     return _Piece(corners, inputs, part.material, bool(clear))
 
 
-def _texture(context: moderngl.Context, material: Material) -> moderngl.Texture:
+def _is_palette(part: Part) -> bool:
+    """Whether triangles have all their corners at one place of the texture.
+
+    Filtering along a slant has no direction there, and drivers then blend places far apart.
+    """
+    mapped = part.uv_faces[(part.uv_faces >= 0).all(axis=1)]
+    return bool((np.ptp(part.uv[mapped], axis=1) == 0).all(axis=1).any())
+
+
+def _texture(context: moderngl.Context, material: Material, *, slanted: bool) -> moderngl.Texture:
     image = cut_out(material, EDGE) if material.alpha_mode == "mask" else bled(material.image)
     factor = -(-max(image.shape[:2]) // LARGEST)
     if factor > 1:
@@ -134,5 +145,5 @@ def _texture(context: moderngl.Context, material: Material) -> moderngl.Texture:
     texture.repeat_x, texture.repeat_y = material.wrap_u == "repeat", material.wrap_v == "repeat"
     texture.build_mipmaps()
     texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-    texture.anisotropy = FILTERING
+    texture.anisotropy = FILTERING if slanted else 1.0
     return texture
