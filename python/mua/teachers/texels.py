@@ -11,6 +11,7 @@ from mua.teachers.shading import Light
 from mua.texture.albedo import sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1
 from mua.texture.sh import LINEAR
+from mua.texture.sheet import surfel_opacities
 from mua.texture.stretch import SurfelStretch
 from mua.texture.surfels import rest_surfels
 
@@ -41,7 +42,7 @@ class SurfaceTexels:
             for rows in (relief, surfels.rotations, surfels.log_scales, albedo[:, :3])
         )
         self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.rotations)
-        alpha = np.clip(albedo[:, 3], 1e-6, 1 - 1e-6)
+        alpha = np.clip(surfel_opacities(albedo[:, 3]), 1e-6, 1 - 1e-6)
         self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_CLEAR, MOST_OPAQUE)
 
     def texture(
