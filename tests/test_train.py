@@ -2,7 +2,7 @@
 
 import math
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from synthetic_student import (
     run_in,
     samples,
 )
+from trainings import one_by_one
 
 from mua.student import coarse, targets
 from mua.student import regress as regression
@@ -120,11 +121,6 @@ def test_goes_on_where_directions_come_out_the_other_way(
     found = trained(tmp_path / "killed", quick()).state_dict()
     assert all(torch.equal(found[name], whole[name]) for name in whole if name.startswith(part))
     assert not torch.equal(found["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
-
-
-def one_by_one(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
-    for task in tasks:
-        task()
 
 
 def test_branches_side_by_side_end_in_the_bytes_of_one_after_the_other(

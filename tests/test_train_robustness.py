@@ -10,18 +10,20 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import torch
 from recordings import RATE, write
 from synthetic_avatar import synthetic_rig
-from trainings import STAGE_NAMES, mua_train, process, sentence
+from trainings import STAGE_NAMES, mua_train, one_by_one, process, sentence
 
 from mua.arrays import Array
 from mua.recording import TeacherWriter
+from mua.student.checkpoint import Checkpoints
 
 EARLIER = b"an earlier result"
 
@@ -192,7 +194,15 @@ def test_a_checkpoint_that_finds_no_room_costs_nothing_trained_before(
 ) -> None:
     room = (undisturbed.with_suffix(".work") / f"student/{stage}.pt").stat().st_size - 1
     output = tmp_path / "a.muaavatar"
-    with disk_of(room):
+    save = Checkpoints.save
+
+    def save_on_small_disk(self: Checkpoints, name: str, state: dict[str, Any]) -> None:
+        with disk_of(room) if name == stage else nullcontext():
+            save(self, name, state)
+
+    monkeypatch.setattr("mua.student.train.together", one_by_one)  # so that it is known which one finds no room
+    with monkeypatch.context() as small:
+        small.setattr(Checkpoints, "save", save_on_small_disk)
         assert mua_train(monkeypatch, written, output) == 1
     captured = capsys.readouterr()
     assert f"{stage}.pt: cannot be written (File too large)" in sentence(captured.err)

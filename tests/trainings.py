@@ -1,6 +1,7 @@
 """mua-train in a test: a preset of a few steps, run within the test or as a process of its own."""
 
 import sys
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -56,3 +57,9 @@ def sentence(captured: str) -> str:
     """The one error that a command printed."""
     (line,) = [line for line in captured.splitlines() if line.startswith("error: ")]
     return line
+
+
+def one_by_one(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
+    """In the place of `mua.threads.together`: one task after the other."""
+    for task in tasks:
+        task()
