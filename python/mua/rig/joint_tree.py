@@ -48,7 +48,7 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
         return bind, ()
     parts = [f"{moved} joints hang on others than in the file, as the clips show"] if moved else []
     parts += [f"{left_out} joints without weights and without a bind pose are left out"] if left_out else []
-    return _ordered(bind, parents, kept), (" and ".join(parts) + ".",)
+    return _ordered(bind, parents, kept), (", and ".join(parts) + ".",)
 
 
 def _as_filed(bind: Bind) -> tuple[Array, Array]:
