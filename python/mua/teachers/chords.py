@@ -30,8 +30,8 @@ def straighten(
     faces, triangles = rig.mesh.faces, rig.texels.triangles
     duals = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
     size = float(np.ptp(rig.mesh.vertices, axis=0).max()) or 1.0
-    beyond = np.clip(_arc_heights(duals, mesh, faces) / (SEEN * size) - 1, 0, 1)
-    share = beyond[triangles]
+    beyond = bent(duals, mesh, faces, size=size)
+    share = np.einsum("nk,nk->n", rig.texels.barycentrics, beyond[faces[triangles]])
     texels = np.flatnonzero(share)
     if not len(texels):
         return
@@ -39,6 +39,20 @@ def straighten(
     back = rotation.dual_inverse(blend_texels(duals, faces, triangles, barycentrics))
     astray = rotation.dual_transform(back, places(moved, texels)) - places(canonical, texels)
     texture[texels, :3] += share[texels, None] * astray
+
+
+def bent(
+    duals: Array,  # [T, 8] bind pose to world
+    mesh: Array,  # [T, 3] canonical vertices, metres
+    faces: Array,  # [F, 3]
+    *,
+    size: float,  # of the character, metres
+) -> Array:
+    """How far [T] points about each vertex are to be straightened, 0 .. 1: neighbouring triangles part nowhere."""
+    beyond = np.zeros(len(mesh))
+    heights = np.clip(_arc_heights(duals, mesh, faces) / (SEEN * size) - 1, 0, 1)
+    np.maximum.at(beyond, faces.ravel(), np.repeat(heights, 3))
+    return beyond
 
 
 def _arc_heights(duals: Array, mesh: Array, faces: Array) -> Array:
