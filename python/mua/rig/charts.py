@@ -16,6 +16,8 @@ STARVED = 1 / 6  # of its chart's texels for each square metre
 SMOOTHING = 3  # rounds over neighbours
 PATCH = 0.01  # of the character's surface
 SCATTERED = 0.02  # of it: more than this in small patches, as of colours from a palette, counts as well
+PULLED = 2.5  # surface over drawing, in the direction in which a triangle is drawn too short for its chart
+DISTORTED = 0.15  # of a chart's surface
 MOST_EVENED = 1.5  # of length: what a chart is enlarged by beyond its best linear map, lest a fold in it rules it
 
 
@@ -93,6 +95,26 @@ def starved(
         return found | alone
     beside = touches @ (touches.T @ found) > 0  # smoothing hid the border of the patch
     return found | (beside & alone)
+
+
+def distorted(
+    corners: Array,  # [F, 3, 2] UV
+    positions: Array,  # [F, 3, 3] metres
+    charts: Array,  # [F]
+) -> Array:
+    """Say which triangles [F] belong to charts that no one linear map brings near to their surface.
+
+    A layout that only picks colours, such as a palette of gradients, lays surfaces into strips. Texels of such a chart
+    would be dense here and far apart there.
+    """
+    if not len(charts):
+        return np.zeros(0, bool)
+    charts = np.unique(charts, return_inverse=True)[1]
+    flat = even(corners, positions, charts)
+    scales = np.linalg.svd(np.linalg.pinv(flat[:, 1:] - flat[:, :1]) @ (positions[:, 1:] - positions[:, :1]))[1]
+    surface = areas(positions)
+    pulled = np.bincount(charts, surface * (scales[:, 0] > PULLED))
+    return (pulled > DISTORTED * np.bincount(charts, surface))[charts]
 
 
 def isometric(

@@ -10,7 +10,7 @@ from mua.rig.assemble import Surfaces
 from mua.rig.bake_texture import bake_texture
 from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
-from mua.rig.charts import areas, even, find_charts, overlapping, starved, unwrap
+from mua.rig.charts import areas, distorted, even, find_charts, overlapping, starved, unwrap
 from mua.rig.detail import Detail, factors, split_by_factor
 from mua.rig.opacity import without_unseen
 from mua.rig.packing import pack
@@ -49,8 +49,8 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
     """Give a character one UV layout and one picture for all its materials.
 
     `auto` brings the artist's charts to one density of texels, finer where `detail` says so, packs them, and cuts anew
-    only what overlaps itself or is starved of texels; `unwrap` cuts everything anew with xatlas; `keep` leaves every
-    chart where its artist put it, several materials side by side as whole squares.
+    only what overlaps itself, is distorted or is starved of texels; `unwrap` cuts everything anew with xatlas; `keep`
+    leaves every chart where its artist put it, several materials side by side as whole squares.
 
     The picture is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
@@ -63,6 +63,7 @@ def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | N
     else:
         wound = overlapping(source.corners, source.charts)[source.charts] > LOSS_ALLOWED
         anew = wound | source.starved if uv == "auto" else np.ones(len(source.charts), bool)
+        anew[~anew] = distorted(source.corners[~anew], source.positions[~anew], source.charts[~anew])
         layout = _lay_out(source, anew, detail or {})
     return _character(source, layout, size)
 
@@ -148,7 +149,7 @@ def _told(
     note = f"{kept} charts of the file's UV layout are kept, at one density of texels"
     if not cut:
         return f"{note}."
-    useless = f"{np.count_nonzero(anew):,} of {len(anew):,} triangles overlap in their chart or have next to no texels"
+    useless = f"{np.count_nonzero(anew):,} of {len(anew):,} triangles overlap, are distorted or have next to no texels"
     return f"{note}; {useless} and are cut into {cut} new charts."
 
 
