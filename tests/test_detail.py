@@ -84,6 +84,14 @@ def test_parts_follow_joints_and_their_descendants() -> None:
     assert [BODY_PARTS[k] for k in parts[:: 2 * CELLS * CELLS]] == ["body", "head", "head", "hands", "hands"]
 
 
+def test_what_the_file_says_of_a_joint_goes_before_its_name() -> None:
+    surfaces = strip([0, 1, 3], joined=False)
+    parts = body_parts(
+        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, said={"LeftHand": "head"}
+    )
+    assert BODY_PARTS[parts[-1]] == "head"
+
+
 def test_detail_doubles_the_density_of_the_heads_chart() -> None:
     surfaces = strip([0, 0, 0, 1], joined=False)
     plain = texels_by_square(build_atlas(surfaces, uv="auto", size=64, detail={"head": 1}), 4, apart=2)

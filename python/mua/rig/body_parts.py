@@ -1,5 +1,6 @@
 """Which part of the body each triangle belongs to, by the joints that move it."""
 
+from collections.abc import Mapping
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -29,20 +30,24 @@ def body_parts(
     faces: Array,  # [F, 3]
     skin_indices: Array,  # [V, 8]
     skin_weights: Array,  # [V, 8]
+    *,
+    said: Mapping[str, str] | None = None,  # joint to role, where the file itself says it
 ) -> Array:
     """The part of each triangle [F], as an index of BODY_PARTS: that of the joints which move it most.
 
     A joint without a part of its own belongs to its parent's, so that fingers are hands and eyes are the head.
     """
-    part = _parts_of_joints(skeleton)
+    part = _parts_of_joints(skeleton, said)
     shares = np.zeros((len(skin_indices), len(BODY_PARTS)))
     np.add.at(shares, (np.arange(len(skin_indices))[:, None], part[skin_indices]), skin_weights)
     return np.asarray(shares[faces].sum(axis=1).argmax(axis=1))
 
 
-def _parts_of_joints(skeleton: Skeleton) -> Array:
+def _parts_of_joints(skeleton: Skeleton, said: Mapping[str, str] | None) -> Array:
     """The part of each joint [J]; all that no name tells apart is the body."""
-    named = {joint: _OF_ROLE.get(role.split()[-1]) for role, joints in roles(skeleton).items() for joint in joints}
+    named = {
+        joint: _OF_ROLE.get(role.split()[-1]) for role, joints in roles(skeleton, said).items() for joint in joints
+    }
     part = np.full(len(skeleton.names), _BODY)
     for joint, parent in enumerate(skeleton.parents):
         own = named.get(joint)

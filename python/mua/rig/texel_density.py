@@ -14,7 +14,9 @@ def describe_texels(character: Character, size: int) -> str:
     """The share of `size` x `size` texels that are in use, and how wide a texel is on each part of the body."""
     mesh = character.mesh
     texels = build_texel_map(mesh, size)
-    parts = body_parts(character.skeleton, mesh.faces, character.skin_indices, character.skin_weights)
+    parts = body_parts(
+        character.skeleton, mesh.faces, character.skin_indices, character.skin_weights, said=character.roles
+    )
     surface = np.bincount(parts, areas(mesh.vertices[mesh.faces]), minlength=len(BODY_PARTS))
     held = np.bincount(parts[texels.triangles], minlength=len(BODY_PARTS))
     widths = [

@@ -128,7 +128,9 @@ def _lay_out(
         rows = np.column_stack([surfaces.faces[anew].ravel(), corners[anew].reshape(-1, 2)])
         nodes[anew] = nodes.max() + 1 + _numbered(rows)
         charts[anew] = charts.max() + 1 + find_charts(nodes[anew], corners[anew])
-    parts = body_parts(surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights)
+    parts = body_parts(
+        surfaces.skeleton, surfaces.faces, surfaces.skin_indices, surfaces.skin_weights, said=surfaces.roles
+    )
     surface = areas(source.positions)
     finer, absent = factors(parts, surface, detail)
     cut, kept = len(np.unique(charts[anew])), len(np.unique(charts[~anew]))
