@@ -11,6 +11,7 @@ import pytest
 from test_render import sphere
 from tube import tube
 
+from mua import rotation
 from mua.arrays import Array
 from mua.bake.check import WITHOUT_FILE, likeness_of
 from mua.camera import Camera, orbit
@@ -18,7 +19,7 @@ from mua.kernels.splat_project import LEAST_OPACITY
 from mua.likeness import splats as splat_painting
 from mua.likeness import told
 from mua.likeness.canvas import opened
-from mua.likeness.compare import SCREEN, spread
+from mua.likeness.compare import SCREEN, Likeness, PoseLikeness, Shot, spread
 from mua.likeness.measure import MOST_DECIBELS, Agreement, agreement, worst_place
 from mua.likeness.painter import Painter
 from mua.likeness.posing import Poser, skinned
@@ -164,6 +165,34 @@ def test_the_source_is_posed_alike_by_its_own_nodes_and_by_the_joints(tmp_path: 
     assert np.abs(own - character.source.scene.rest).max() > 0.1
     np.testing.assert_allclose(moved, own, atol=1e-6)  # float32 keys of the file
     np.testing.assert_allclose(skinned(character.source.scene, part, poser.rest().nodes), part.positions, atol=1e-6)
+
+
+def test_rigid_pieces_bend_alike_by_dual_quaternions_and_by_a_linear_blend(tmp_path: Path) -> None:
+    character = column(tmp_path)
+    assert character.source is not None
+    (part,) = character.source.scene.parts
+    poser = Poser(character.source, character.skeleton)
+    clip = character.clips[0]
+    turn = np.array([np.cos(1.4), np.sin(1.4), 0, 0])  # 160 degrees at the spine
+    rotations = clip.rotations.copy()
+    rotations[:, 1] = rotation.multiply(turn, rotations[:, 1])
+    pose = replace(clip.pose(0), rotations=rotations[0])
+    at = poser.bent(part, pose)
+    expected = gltf_files.posed(gltf_files.read_surfaces(tmp_path / "column.glb"), pose.rotations, pose.translations)
+    assert len(at) == len(part.positions)
+    np.testing.assert_allclose(np.sort(at[:, 1]), np.sort(expected[:, 1]), atol=1e-6)  # rigid rings bend alike
+    likeness, _ = likeness_of(character, (replace(clip, name="far", rotations=rotations),), texels=TEXELS)
+    assert likeness is not None
+    assert all(pose.bending.iou > 0.99 for pose in likeness.poses)
+
+
+@pytest.mark.parametrize(("bending", "told_of"), [(Agreement(90, 5, 5, 0.0), True), (Agreement(99, 0, 1, 0.0), False)])
+def test_bending_is_told_where_it_explains_what_is_missing(bending: Agreement, told_of: bool) -> None:
+    image = np.zeros((2, 2, 4))
+    shot = Shot("front", image, image, Agreement(90, 5, 5, 0.0), (0, 0), "Spine", 0.1)
+    (sentence,) = told.sentences(Likeness((PoseLikeness("bow", (shot,), bending),)))
+    assert "overlaps the character's by 90.0 %" in sentence
+    assert ("Bending alone makes it 90.0 %" in sentence) == told_of
 
 
 def test_splats_look_like_the_character_that_they_are_of(tmp_path: Path) -> None:

@@ -47,6 +47,7 @@ class PoseLikeness:
 
     pose: str
     shots: tuple[Shot, ...]
+    bending: Agreement  # of the source moved by the joints: blended linearly, and by dual quaternions
 
     @property
     def agreement(self) -> Agreement:
@@ -87,7 +88,7 @@ def compare(character: Character, clips: Sequence[Clip], *, texels: int, source:
     moments = [poser.rest(), *(poser.of_clip(clip, frame) for clip, frame in spread(clips, POSED))]
     teacher = StillTeacher(character, texels=texels)
     with opened() as context:
-        studio = _Studio(context, source)
+        studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
         return Likeness(tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False)))
 
@@ -102,8 +103,8 @@ def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
 class _Studio:
     """Both painters, set up for one source."""
 
-    def __init__(self, context: moderngl.Context, source: Source) -> None:
-        self._scene = source.scene
+    def __init__(self, context: moderngl.Context, source: Source, poser: Poser) -> None:
+        self._scene, self._poser = source.scene, poser
         self._paint_source = Painter(context, source.scene.parts, source.scene.materials, screen=SCREEN)
         self._paint_splats = SplatPainter(context, SCREEN)
         self._carriers = np.concatenate([carriers(source.scene, part) for part in source.scene.parts])
@@ -111,20 +112,24 @@ class _Studio:
     def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseLikeness:
         """One pose, drawn from all `views`."""
         places = [skinned(self._scene, part, moment.nodes) for part in self._scene.parts]
+        by_joints = self._poser.by_joints(moment.pose)
+        blended = [skinned(self._scene, part, by_joints) for part in self._scene.parts]
+        bent = [self._poser.bent(part, moment.pose) for part in self._scene.parts]
         used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
         points = np.concatenate(used)
         bounds = np.stack([points.min(axis=0), points.max(axis=0)])
         taught = teacher.frame(moment.pose, moment.stretches)
         frame = pose_splats(teacher.rig, taught.mesh, texture=taught.texture, pose=moment.pose)
-        shots = []
+        shots, bending = [], []
         for view, degrees in views.items():
             azimuth = moment.yaw + float(np.radians(degrees))
             camera = orbit(bounds, screen=SCREEN, azimuth=azimuth, elevation=ABOVE)
             source, splats = self._paint_source(places, camera), self._paint_splats(frame, camera)
+            bending.append(agreement(self._paint_source(blended, camera), self._paint_source(bent, camera)))
             column, row, difference = worst_place(source, splats)
             joint = self._joint_at(np.concatenate(places), camera, (column, row))
             shots.append(Shot(view, source, splats, agreement(source, splats), (column, row), joint, difference))
-        return PoseLikeness(moment.name, tuple(shots))
+        return PoseLikeness(moment.name, tuple(shots), together(bending))
 
     def _joint_at(self, points: Array, camera: Camera, place: tuple[int, int]) -> str:
         """The name of the node that carries what is seen at a place: the nearest to the eye of the points about it."""

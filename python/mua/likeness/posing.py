@@ -6,6 +6,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip, Stretches
 from mua.motion.descriptor import heading_of
 from mua.rig.assemble import weighted
@@ -44,11 +45,24 @@ class Poser:
         """A frame of a clip: the file's own nodes where it is the file's clip, else what the joints do to them."""
         pose = clip.pose(frame)
         own = [m for m in self._source.scene.motions if m.name == clip.name and len(m.worlds) == len(clip)]
-        nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self._moved(pose)
+        nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self.by_joints(pose)
         stretches = clip.cut(slice(frame, frame + 1)).stretches
         return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose), stretches)
 
-    def _moved(self, pose: Pose) -> Array:
+    def bent(self, part: Part, pose: Pose) -> Array:
+        """A part's vertices [N, 3] in a pose, bent by dual quaternions as avatars are, not by a linear blend."""
+        scene, skeleton = self._source.scene, self._skeleton
+        joints = self._holders[scene.skins[part.skin].joints][part.joints]
+        order = np.argsort(-part.weights, axis=1, kind="stable")
+        since_rest = rotation.dual_multiply(
+            skeleton.skinning(pose.rotations, pose.translations),
+            rotation.dual_inverse(skeleton.skinning(self._rest.rotations, self._rest.translations)),
+        )
+        indices = np.maximum(np.take_along_axis(joints, order, axis=1), 0)
+        dual = blend_vertices(since_rest, indices, np.take_along_axis(weighted(part.weights), order, axis=1))
+        return np.asarray(rotation.dual_transform(dual, skinned(scene, part, scene.rest)))
+
+    def by_joints(self, pose: Pose) -> Array:
         """The nodes [nodes, 4, 4] at rest, moved by what each joint does between rest and `pose`."""
         moves = self._carried(pose) @ self._to_bind
         nodes = self._source.scene.rest.copy()
