@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pygltflib
 
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig.gltf_compression import decode_meshopt
-from mua.rig.gltf_json import Entry, read_object
+from mua.rig.gltf_json import read_object
 
 COMPONENT_TYPES = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -42,7 +43,7 @@ MESHOPT = "EXT_meshopt_compression"
 class Document:
     """The parsed JSON of one file and the bytes that it points to; decoded views are kept."""
 
-    def __init__(self, path: Path, gltf: Entry, blob: bytes | None) -> None:
+    def __init__(self, path: Path, gltf: pygltflib.GLTF2, blob: bytes | None) -> None:
         self.path = path
         self.gltf = gltf
         self._blob = blob

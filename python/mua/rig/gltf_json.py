@@ -1,7 +1,12 @@
-"""The JSON of a glTF file as objects: each field that is read here is checked for its kind, absent ones are None."""
+"""The JSON of a glTF file as objects of pygltflib: each field that is read is checked, absent ones are None.
+
+pygltflib's own parser takes fields of any kind, and ten times as long for a file of many clips.
+"""
 
 from collections.abc import Mapping
 from typing import Any, TypeAlias
+
+import pygltflib
 
 Kind: TypeAlias = "type | str | list[Kind]"  # a type, an object of FIELDS by its name, or an array of either
 
@@ -81,12 +86,35 @@ FIELDS: dict[str, dict[str, Kind]] = {
     "image": {"uri": str, "bufferView": int},
     "sampler": {"wrapS": int, "wrapT": int},
 }
+STRUCTURES: dict[str, type] = {
+    "glTF": pygltflib.GLTF2,
+    "scene": pygltflib.Scene,
+    "node": pygltflib.Node,
+    "mesh": pygltflib.Mesh,
+    "primitive": pygltflib.Primitive,
+    "skin": pygltflib.Skin,
+    "animation": pygltflib.Animation,
+    "channel": pygltflib.AnimationChannel,
+    "target": pygltflib.AnimationChannelTarget,
+    "keys": pygltflib.AnimationSampler,
+    "accessor": pygltflib.Accessor,
+    "sparse": pygltflib.Sparse,
+    "sparse part": pygltflib.AccessorSparseIndices,
+    "bufferView": pygltflib.BufferView,
+    "buffer": pygltflib.Buffer,
+    "material": pygltflib.Material,
+    "pbrMetallicRoughness": pygltflib.PbrMetallicRoughness,
+    "textureInfo": pygltflib.TextureInfo,
+    "texture": pygltflib.Texture,
+    "image": pygltflib.Image,
+    "sampler": pygltflib.Sampler,
+}
 ATTRIBUTES, EXTENSIONS = "attributes", "extensions"  # objects whose names are free: of indices, and of objects
 WORDS = {int: "a whole number", float: "a number", str: "a string", bool: "true or false", dict: "an object"}
 
 
-class Entry:
-    """An object of the JSON with its fields as attributes; what it does not have is None."""
+class Names:
+    """An object of the JSON whose names are free, as attributes; what it does not have is None."""
 
     def __init__(self, fields: Mapping[str, Any]) -> None:
         self.__dict__.update(fields)
@@ -97,7 +125,7 @@ class Entry:
         return None
 
 
-def read_object(raw: Any, kind: str = "glTF", where: str = "") -> Entry:
+def read_object(raw: Any, kind: str = "glTF", where: str = "") -> Any:
     """The object `raw` of a kind of FIELDS; raises ValueError that names the field which is of another kind.
 
     Extensions stay dictionaries of dictionaries: whoever reads one checks what is in it.
@@ -111,7 +139,11 @@ def read_object(raw: Any, kind: str = "glTF", where: str = "") -> Entry:
         for name, wanted in known.items()
         if raw.get(name) is not None
     }
-    return Entry(fields)
+    if kind in free:
+        return Names(fields)
+    found = STRUCTURES[kind]()
+    vars(found).update(dict.fromkeys(vars(found)) | dict.fromkeys(known) | fields)
+    return found
 
 
 def _value(raw: Any, kind: Kind, where: str) -> Any:
