@@ -258,7 +258,7 @@ def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, undisturb
     """kill -9, three times at a random moment after a stage was announced; then a run that nothing disturbs."""
     moment = random.Random(7)
     output = tmp_path / "a.muaavatar"
-    for stage in ("coarse mesh", "geometry fine-tuning", "appearance coefficients"):
+    for stage in ("coarse mesh", "geometry coefficients", "avatar"):
         killed = subprocess.Popen(process(written, output), stdout=subprocess.PIPE, text=True)
         assert killed.stdout is not None
         for line in killed.stdout:
