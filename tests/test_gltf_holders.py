@@ -76,10 +76,14 @@ def test_robot_of_rigid_parts_is_a_character(tmp_path: Path) -> None:
     np.testing.assert_allclose(reach, [-0.3, -0.15, 0], atol=FLOAT_BOUND)
 
 
-def test_robot_with_names_of_sides_is_turned_to_the_front(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [("arm.L", "arm.R"), ("UpperArmL", "UpperArmR"), ("LArm", "RArm"), ("lShldr", "rShldr"), ("arm_l_01", "arm_r_01")],
+)
+def test_robot_with_names_of_sides_is_turned_to_the_front(tmp_path: Path, left: str, right: str) -> None:
     glb = robot()
-    glb.json["nodes"][2]["name"] = "arm.R"
-    turn(glb, block(glb, "arm.L", at=(-0.5, 0, 0), parent=1))
+    glb.json["nodes"][2]["name"] = right
+    turn(glb, block(glb, left, at=(-0.5, 0, 0), parent=1))
     assert any("turned by 180°" in note for note in read(glb, tmp_path).notes)
 
 

@@ -18,6 +18,16 @@ UNITS = (0.01, 0.001, 100.0)  # centimetres or millimetres taken for metres, met
 ADULT = 1.75  # metres: what a figure is made whose file says nothing that is possible
 FLAT = 1e-3  # of the length: what is lower than this has no height to judge
 LYING = 0.2  # of its length: what a creature that creeps counts as high
+SIDES = (  # how names say left, and what stands there for right
+    ("left", "right"),
+    ("Left", "Right"),
+    ("LEFT", "RIGHT"),
+    ("(?<![A-Za-z])l(?![A-Za-z])", "r"),
+    ("(?<![A-Za-z])L(?![A-Za-z])", "R"),
+    ("(?<=[a-z])L(?![a-z])", "R"),  # UpperArmL
+    ("(?<![A-Za-z])L(?=[A-Z][a-z])", "R"),  # LUpperArm
+    ("(?<![A-Za-z])l(?=[A-Z][a-z])", "r"),  # lUpperArm
+)
 FACING = 0.5  # cosine between a character's front and +Z below which it is turned
 
 
@@ -127,11 +137,11 @@ def _across_by_roles(scene: Scene, bind: Bind) -> Array:
 
 def _across_by_names(scene: Scene, bind: Bind) -> Array:
     """The summed way [3] from right joints to left ones, by the joints' names."""
-    names = [re.sub(r"_\d+$", "", scene.node_names[node].lower()) for node in bind.nodes]  # some tools number them
+    names = [re.sub(r"_\d+$", "", scene.node_names[node]) for node in bind.nodes]  # some tools number them
     index = {name: j for j, name in enumerate(names)}
     across = np.zeros(3)
     for name, j in index.items():
-        for left, right in (("left", "right"), (r"(?<![a-z])l(?![a-z])", "r")):
+        for left, right in SIDES:
             other = index.get(re.sub(left, right, name))
             if other is not None and other != j:
                 across += bind.places[j] - bind.places[other]
