@@ -72,6 +72,12 @@ def test_columns_with_few_texels_beside_columns_with_many_are_closed() -> None:
     assert least_coverage(graded(np.array([1, 1, 0.2, 1, 1]), 0.9)) > OPAQUE
 
 
+def test_a_texel_in_a_wide_gap_does_not_reach_far_beyond_it() -> None:
+    """A column of 20 cm that has one texel across, of a sheet whose other texels are 2 cm wide."""
+    _, found, _ = laid(graded(np.array([1, 1, 0.1, 1, 1]), 0.9))
+    assert np.exp(found.log_scales[:, :2]).max() < 0.1
+
+
 def test_a_seam_between_two_charts_is_closed() -> None:
     left, right = graded(np.ones(2), 0.37), graded(np.ones(2), 0.37)
     aside, below = np.array([1.0, 0, 0]), np.array([0, 0.47])

@@ -11,7 +11,7 @@ from mua.rig.charts import areas, find_charts
 from mua.rig.surface_points import face_normals, interpolate, spread_points
 
 SLIT = 2.5  # times its texel's footprint that the step to a neighbour may span; a longer one crosses a slit in a chart
-COARSEST = 8.0  # times the median footprint that a texel may have: beyond it a surfel is fog about its few triangles
+COARSEST = 3.0  # times the median step that a texel may span: beyond it a surfel reaches out into the air beside it
 SAMPLES = 8  # of the surface, for each texel
 FEW = 2  # samples: fewer than these say little about the extent of a texel's surface
 NEAREST = 6  # texels among which a sample seeks the nearest that faces its way
@@ -67,7 +67,10 @@ def neighbour_steps(
     alone = (
         own * (np.minimum(lengths, width) / np.maximum(np.linalg.norm(own, axis=2), np.finfo(float).tiny))[..., None]
     )
-    return np.where(farthest[:, :, None] > 0, found, alone)
+    steps = np.where(farthest[:, :, None] > 0, found, alone)
+    long = np.linalg.norm(steps, axis=2, keepdims=True)
+    longest = COARSEST * np.median(long) if len(long) else 1.0
+    return steps * np.minimum(1, longest / np.maximum(long, np.finfo(float).tiny))
 
 
 def sample_surface(
