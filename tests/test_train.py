@@ -106,7 +106,7 @@ def test_goes_on_where_directions_come_out_the_other_way(
 ) -> None:
     """As on another machine or with another number of threads: nothing settles the sign of a singular vector."""
     monkeypatch.setattr("mua.student.optimise.CHECKPOINT_STEPS", 2)
-    monkeypatch.setattr("mua.student.train.together", one_by_one)  # so that what the kill finds is known
+    monkeypatch.setattr("mua.student.branches.together", one_by_one)  # so that what the kill finds is known
     whole = trained(tmp_path / "whole", quick()).state_dict()
 
     def kill(progress: Progress) -> None:
@@ -127,7 +127,7 @@ def test_branches_side_by_side_end_in_the_bytes_of_one_after_the_other(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     at_once = trained(tmp_path / "a", quick())
-    monkeypatch.setattr("mua.student.train.together", one_by_one)
+    monkeypatch.setattr("mua.student.branches.together", one_by_one)
     assert same(at_once, trained(tmp_path / "b", quick()))
 
 

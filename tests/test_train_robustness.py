@@ -200,7 +200,7 @@ def test_a_checkpoint_that_finds_no_room_costs_nothing_trained_before(
         with disk_of(room) if name == stage else nullcontext():
             save(self, name, state)
 
-    monkeypatch.setattr("mua.student.train.together", one_by_one)  # so that it is known which one finds no room
+    monkeypatch.setattr("mua.student.branches.together", one_by_one)  # so that it is known which one finds no room
     with monkeypatch.context() as small:
         small.setattr(Checkpoints, "save", save_on_small_disk)
         assert mua_train(monkeypatch, written, output) == 1

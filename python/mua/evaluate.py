@@ -17,8 +17,9 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
+from mua.student.branches import thread_share
 from mua.student.model import STATIC_LEVELS, Bands, Student
-from mua.student.train import BestCoefficients, thread_share
+from mua.student.train import BestCoefficients
 from mua.texture.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.texture.fill import Fill
 from mua.threads import in_order

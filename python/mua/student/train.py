@@ -1,11 +1,8 @@
-"""Distillation of training frames into a student: closed-form start, regression, fine-tuning (design, section 8.1)."""
+"""Distillation of training frames into a student: closed-form start, regression, fine-tuning."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from threading import Event
 from typing import Literal, get_args
 
 import torch
@@ -13,6 +10,7 @@ from torch import Tensor
 
 from mua.errors import InputError
 from mua.processes import ALONE, Processes
+from mua.student.branches import each_branch, side_by_side
 from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
 from mua.student.conditioned import fold
@@ -28,7 +26,6 @@ from mua.student.settings import Settings
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, still_channels
 from mua.texture.channels import APPEARANCE, GEOMETRY
-from mua.threads import together
 
 StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
 STAGES: tuple[StageName, ...] = get_args(StageName)
@@ -125,47 +122,6 @@ def train(
         return
     student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
     student.requires_grad_(False).eval()
-
-
-class Stopped(Exception):
-    """Raised in a branch whose training is to end, because that of the other one has failed."""
-
-
-def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
-    """Train the branches: on a processor side by side, each with its share of the threads; else one after the other.
-
-    They share nothing but the descriptors, so that half the threads for each do more than all for one: the larger
-    part of a step is too small to be divided.
-    """
-    if not side_by_side(run):
-        for task in tasks:
-            task(run)
-        return
-    stop = Event()
-
-    def report(progress: Progress) -> None:
-        if stop.is_set():
-            raise Stopped
-        run.report(progress)
-
-    with thread_share(len(tasks)):
-        together([partial(task, replace(run, report=report)) for task in tasks], stop=stop.set)
-
-
-def side_by_side(run: Run) -> bool:
-    """Whether branches are trained at once: not on a GPU, whose memory one fills, nor where processes take turns."""
-    return run.device.type == "cpu" and run.processes.count == 1
-
-
-@contextmanager
-def thread_share(parts: int) -> Iterator[None]:
-    """Let torch compute with one of so many parts of its threads within the block, in each thread that asks it to."""
-    threads = torch.get_num_threads()
-    torch.set_num_threads(max(threads // parts, 1))
-    try:
-        yield
-    finally:
-        torch.set_num_threads(threads)
 
 
 def set_apart(samples: Samples, share: float, *, run: Run) -> tuple[Samples, Samples | None]:

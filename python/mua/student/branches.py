@@ -1,0 +1,53 @@
+"""Both branches of a student trained at once: side by side on a processor, each with its share of the threads."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from threading import Event
+
+import torch
+
+from mua.student.optimise import Progress, Run
+from mua.threads import together
+
+
+class Stopped(Exception):
+    """Raised in a branch whose training is to end, because that of the other one has failed."""
+
+
+def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
+    """Train the branches: on a processor side by side, each with its share of the threads; else one after the other.
+
+    They share nothing but the descriptors, so that half the threads for each do more than all for one: the larger
+    part of a step is too small to be divided.
+    """
+    if not side_by_side(run):
+        for task in tasks:
+            task(run)
+        return
+    stop = Event()
+
+    def report(progress: Progress) -> None:
+        if stop.is_set():
+            raise Stopped
+        run.report(progress)
+
+    with thread_share(len(tasks)):
+        together([partial(task, replace(run, report=report)) for task in tasks], stop=stop.set)
+
+
+def side_by_side(run: Run) -> bool:
+    """Whether branches are trained at once: not on a GPU, whose memory one fills, nor where processes take turns."""
+    return run.device.type == "cpu" and run.processes.count == 1
+
+
+@contextmanager
+def thread_share(parts: int) -> Iterator[None]:
+    """Let torch compute with one of so many parts of its threads within the block, in each thread that asks it to."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(max(threads // parts, 1))
+    try:
+        yield
+    finally:
+        torch.set_num_threads(threads)
