@@ -47,6 +47,13 @@ def test_matches_unknown_names_that_are_equal() -> None:
     assert pairs(chain("Hips", "b_Tail_01"), chain("Hips", "rig:b_tail_01"))["rig:b_tail_01"] == ("b_Tail_01",) * 2
 
 
+def test_a_thumb_without_fingers_moves_nothing() -> None:
+    target = chain("LeftHand", "LeftHandThumb1", "LeftHandThumb2")
+    assert pairs(chain("lwrist", "lthumb"), target) == {"LeftHand": ("lwrist", "lwrist")}
+    beside_fingers = pairs(chain("lwrist", "lthumb", "lindex"), target)
+    assert beside_fingers["LeftHandThumb1"] == ("lthumb", "lthumb")
+
+
 def test_prefers_the_mapping() -> None:
     source, target = chain("Hips", "Bone", "LeftArm"), chain("Hips", "LeftArm")
     assert pairs(source, target, {"LeftArm": "Bone"})["LeftArm"] == ("Bone", "Bone")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.joint_names import NAMESPACE, SIDES, Roles
+from mua.motion.joint_names import FINGERS, NAMESPACE, SIDES, Roles
 from mua.motion.joint_names import roles as find_roles
 from mua.motion.joint_places import roles_by_place
 from mua.rig.skeleton import Skeleton
@@ -41,12 +41,17 @@ def match_joints(
     """Find the source chain that moves each target joint: by `mapping`, then by role, then by equal names.
 
     What a file says of its joints' roles goes before what their names tell.
-    Chains of different length share their joints in proportion.
+    Chains of different length share their joints in proportion. A thumb without fingers, as optical motion capture has
+    it, is one marker that a solver turned wildly: it moves nothing.
     Errors: InputError if `mapping` names an unknown joint.
     """
     chains = _match_equal_names(source, target)
     source_roles, source_notes = _roles(source, source_said, "motion")
     target_roles, target_notes = _roles(target, target_said, "character")
+    for side in SIDES:
+        thumb, *fingers = (f"{side} {finger}" for finger in FINGERS)
+        if not any(finger in source_roles for finger in fingers):
+            source_roles = {role: joints for role, joints in source_roles.items() if role != thumb}
     for role, joints in target_roles.items():
         chain = source_roles.get(role, ())
         for i, joint in enumerate(joints):
