@@ -11,7 +11,9 @@ from shared_data import SharedData
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 
 if TYPE_CHECKING:
+    from mua.compare.system import TrainingFrames
     from mua.gpu import Device
+    from mua.recording import Recording
 
 
 @pytest.fixture(scope="session")
@@ -27,6 +29,22 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("recordings") / "undisturbed"
     write(directory)
     return directory
+
+
+@pytest.fixture(scope="session")
+def smooth_recording(tmp_path_factory: pytest.TempPathFactory) -> "Recording":
+    """A smooth teacher's frames, in which every compared system finds something to learn."""
+    import compared  # here, because few tests need torch
+
+    return compared.smooth_recording(tmp_path_factory.mktemp("smooth"))
+
+
+@pytest.fixture(scope="session")
+def smooth_frames(smooth_recording: "Recording") -> "TrainingFrames":
+    """The same, as compared systems are given them."""
+    import compared
+
+    return compared.smooth_frames(smooth_recording)
 
 
 @pytest.fixture(scope="session")

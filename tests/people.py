@@ -7,50 +7,33 @@ from mua import rotation
 from mua.motion.clip import Clip
 from mua.rig.skeleton import Skeleton
 
-# World positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is mirrored.
-PARENTS = {
-    "Hips": "",
-    "Spine": "Hips",
-    "Spine1": "Spine",
-    "Spine2": "Spine1",
-    "Neck": "Spine2",
-    "Head": "Neck",
-    "HeadTop_End": "Head",
-    "LeftShoulder": "Spine2",
-    "LeftArm": "LeftShoulder",
-    "LeftForeArm": "LeftArm",
-    "LeftHand": "LeftForeArm",
-    "LeftHandMiddle1": "LeftHand",
-    "LeftUpLeg": "Hips",
-    "LeftLeg": "LeftUpLeg",
-    "LeftFoot": "LeftLeg",
-    "LeftToeBase": "LeftFoot",
-    "LeftToe_End": "LeftToeBase",
+# Parents, and world positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is
+# mirrored.
+JOINTS = {
+    "Hips": ("", (0, 1.0, 0)),
+    "Spine": ("Hips", (0, 1.1, 0)),
+    "Spine1": ("Spine", (0, 1.2, 0.01)),
+    "Spine2": ("Spine1", (0, 1.32, 0)),
+    "Neck": ("Spine2", (0, 1.5, -0.02)),
+    "Head": ("Neck", (0, 1.6, 0.01)),
+    "HeadTop_End": ("Head", (0, 1.8, 0.03)),
+    "LeftShoulder": ("Spine2", (0.06, 1.45, 0)),
+    "LeftArm": ("LeftShoulder", (0.18, 1.45, -0.01)),
+    "LeftForeArm": ("LeftArm", (0.46, 1.45, -0.01)),
+    "LeftHand": ("LeftForeArm", (0.72, 1.45, 0)),
+    "LeftHandMiddle1": ("LeftHand", (0.82, 1.45, 0)),
+    "LeftUpLeg": ("Hips", (0.1, 0.94, 0)),
+    "LeftLeg": ("LeftUpLeg", (0.1, 0.52, 0.01)),
+    "LeftFoot": ("LeftLeg", (0.1, 0.1, -0.02)),
+    "LeftToeBase": ("LeftFoot", (0.1, 0.02, 0.11)),
+    "LeftToe_End": ("LeftToeBase", (0.1, 0.0, 0.17)),
 }
-T_POSE = {
-    "Hips": (0, 1.0, 0),
-    "Spine": (0, 1.1, 0),
-    "Spine1": (0, 1.2, 0.01),
-    "Spine2": (0, 1.32, 0),
-    "Neck": (0, 1.5, -0.02),
-    "Head": (0, 1.6, 0.01),
-    "HeadTop_End": (0, 1.8, 0.03),
-    "LeftShoulder": (0.06, 1.45, 0),
-    "LeftArm": (0.18, 1.45, -0.01),
-    "LeftForeArm": (0.46, 1.45, -0.01),
-    "LeftHand": (0.72, 1.45, 0),
-    "LeftHandMiddle1": (0.82, 1.45, 0),
-    "LeftUpLeg": (0.1, 0.94, 0),
-    "LeftLeg": (0.1, 0.52, 0.01),
-    "LeftFoot": (0.1, 0.1, -0.02),
-    "LeftToeBase": (0.1, 0.02, 0.11),
-    "LeftToe_End": (0.1, 0.0, 0.17),
-}
+PARENTS = {name: parent for name, (parent, _) in JOINTS.items()}
 
 
 def person(*, arms_down: float = 0, legs_apart: float = 0, size: float = 1, axes: int | None = None) -> Skeleton:
     """The T-pose, arms lowered and legs set apart (feet roll along) by degrees; joint axes random by seed `axes`."""
-    at = {name: np.array(place) * size for name, place in T_POSE.items()}
+    at = {name: np.array(place) * size for name, (_, place) in JOINTS.items()}
     swing(at, "LeftArm", -arms_down)
     swing(at, "LeftUpLeg", legs_apart)
     parents = dict(PARENTS)

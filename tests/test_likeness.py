@@ -28,7 +28,7 @@ from mua.likeness.splats import SplatPainter
 from mua.render import frame_bounds, render_premultiplied
 from mua.rig.character import Character
 from mua.rig.read import read_character
-from mua.rig.scene import Material, Part
+from mua.rig.scene import Material, Part, Source
 
 SIDE = 9  # pixels, odd: a pixel's middle is on the axis
 AHEAD = Camera(np.eye(4), np.diag([1.0, 1.0, 0.5, 1.0]), (SIDE, SIDE))  # sees -1..1; what has more z is behind
@@ -154,25 +154,27 @@ def column(tmp_path: Path) -> Character:
     return read_character(column_file(tmp_path), atlas_size=128)
 
 
-def test_the_source_is_posed_alike_by_its_own_nodes_and_by_the_joints(tmp_path: Path) -> None:
+def column_with_source(tmp_path: Path) -> tuple[Character, Source, Part]:
+    """The same, what it was read from, and the one part of that."""
     character = column(tmp_path)
     assert character.source is not None
     (part,) = character.source.scene.parts
-    poser = Poser(character.source, character.skeleton)
-    clip = character.clips[0]
+    return character, character.source, part
+
+
+def test_the_source_is_posed_alike_by_its_own_nodes_and_by_the_joints(tmp_path: Path) -> None:
+    character, source, part = column_with_source(tmp_path)
+    poser, clip = Poser(source, character.skeleton), character.clips[0]
     own = poser.of_clip(clip, len(clip) - 1).nodes
     moved = poser.of_clip(replace(clip, name="another"), len(clip) - 1).nodes
-    assert np.abs(own - character.source.scene.rest).max() > 0.1
+    assert np.abs(own - source.scene.rest).max() > 0.1
     np.testing.assert_allclose(moved, own, atol=1e-6)  # float32 keys of the file
-    np.testing.assert_allclose(skinned(character.source.scene, part, poser.rest().nodes), part.positions, atol=1e-6)
+    np.testing.assert_allclose(skinned(source.scene, part, poser.rest().nodes), part.positions, atol=1e-6)
 
 
 def test_rigid_pieces_bend_alike_by_dual_quaternions_and_by_a_linear_blend(tmp_path: Path) -> None:
-    character = column(tmp_path)
-    assert character.source is not None
-    (part,) = character.source.scene.parts
-    poser = Poser(character.source, character.skeleton)
-    clip = character.clips[0]
+    character, source, part = column_with_source(tmp_path)
+    poser, clip = Poser(source, character.skeleton), character.clips[0]
     turn = np.array([np.cos(1.4), np.sin(1.4), 0, 0])  # 160 degrees at the spine
     rotations = clip.rotations.copy()
     rotations[:, 1] = rotation.multiply(turn, rotations[:, 1])

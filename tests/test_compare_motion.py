@@ -1,0 +1,67 @@
+"""What compared systems are given: maps of the posed surface, and motion that was held out."""
+
+import numpy as np
+import pytest
+import torch
+from compared import HELD_OUT, STEPS, trained
+from synthetic_avatar import synthetic_rig
+
+from mua import rotation
+from mua.compare.maps import SurfaceMaps
+from mua.compare.motion import motion_of
+from mua.compare.system import Budget, TrainingFrames
+from mua.motion.clip import Clip
+from mua.recording import Recording
+
+
+@pytest.mark.parametrize("size", [2, 7, 16])
+def test_maps_equal_an_independent_sampling(size: int) -> None:
+    rig = synthetic_rig()
+    rng = np.random.default_rng(size)
+    posed = rig.mesh.vertices + 0.05 * rng.standard_normal(rig.mesh.vertices.shape)
+    found = SurfaceMaps(rig, size, device=torch.device("cpu"))(torch.from_numpy(posed).float()[None])[0]
+    normals = np.zeros_like(posed)
+    for face in rig.mesh.faces:
+        a, b, c = posed[face]
+        normals[face] += np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    seen = 0
+    for row, column in np.ndindex(size, size):
+        centre = np.array([column + 0.5, row + 0.5, size]) / size  # u, v, 1
+        for face, uv_face in zip(rig.mesh.faces, rig.mesh.uv_faces, strict=True):
+            corners = np.vstack([rig.mesh.uv[uv_face].T, np.ones(3)])
+            weights = np.linalg.solve(corners, centre)
+            if (weights > 1e-9).all():
+                normal = weights @ normals[face]
+                expected = [*(weights @ posed[face]), *(normal / np.linalg.norm(normal))]
+                np.testing.assert_allclose(found[:, row, column], expected, rtol=0, atol=1e-5)
+                seen += 1
+    assert seen >= size * size // 3
+
+
+def test_posed_meshes_forget_where_the_body_stands_and_looks(
+    smooth_recording: Recording, smooth_frames: TrainingFrames
+) -> None:
+    clip = smooth_recording.clips[0]
+    root = smooth_recording.rig.skeleton.root
+    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), 1.1)
+    rotations = clip.rotations.copy()
+    rotations[:, root] = rotation.multiply(turn, rotations[:, root])
+    places = clip.translations.copy()
+    places[:, root] = rotation.rotate(turn, places[:, root]) + np.array([3.0, 0, -2])
+    moved = Clip("moved", clip.rate, rotations, places)
+    one, other = (
+        motion_of(c, np.arange(6), rig=smooth_recording.rig, student=smooth_frames.student) for c in (clip, moved)
+    )
+    torch.testing.assert_close(one.posed, other.posed, rtol=0, atol=1e-4)
+    assert float((one.posed[5] - one.posed[0]).abs().max()) > 0.01
+
+
+def test_held_out_frames_are_predicted(smooth_recording: Recording, smooth_frames: TrainingFrames) -> None:
+    (clip,) = (clip for clip in smooth_recording.clips if clip.held_out)
+    motion = motion_of(clip, clip.recorded, rig=smooth_recording.rig, student=smooth_frames.student)
+    textures = trained("ours", smooth_frames, Budget(steps=STEPS)).textures(motion)
+    truth = [frame.texture for frame in smooth_recording.whole_frames(held_out=True)]
+    kept = textures[::5][: len(truth)].numpy()
+    assert textures.shape == (HELD_OUT, len(smooth_recording.rig.texels.texels), 23)
+    assert np.abs(kept - truth).mean() < np.abs(smooth_frames.mean_texture.numpy() - truth).mean()
