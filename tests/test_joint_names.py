@@ -136,3 +136,10 @@ def test_roles_that_a_file_states_win_over_names() -> None:
     rig = chain("Hips", "LeftArm", "Tube1", "Tube2")
     found = roles(rig, {"Tube1": "left upper_arm", "Tube2": "left forearm"})
     assert (found["left upper_arm"], found["left forearm"]) == ((2,), (3,))
+
+
+def test_a_leg_of_one_bone_is_the_thigh_and_a_leg_below_something_unknown_is_not() -> None:
+    block = tree(Root="", Hips="Root", leg_L="Hips", leg_R="Hips", foot_L="leg_L", foot_R="leg_R")
+    assert {role for role in roles(block) if "left" in role} == {"left thigh", "left foot"}
+    unknown = tree(Hips="", thing_L="Hips", thing_R="Hips", leg_L="thing_L", leg_R="thing_R")
+    assert {role for role in roles(unknown) if "left" in role} == {"left shin"}

@@ -119,6 +119,33 @@ def test_asks_no_limbs_of_rigs_of_one_kind_and_of_whole_people() -> None:
     require_limbs(person(), other_habit(person()), match_joints(person(), other_habit(person())))
 
 
+def block_figure(*more: tuple[str, str]) -> Skeleton:
+    """Arms and legs of one bone each, and `more` joints with their parents."""
+    joints = [
+        *(("Root", ""), ("Hips", "Root"), ("Spine", "Hips"), ("Head", "Spine")),
+        *((f"{part}_{side}", above) for side in "LR" for part, above in (("Arm", "Spine"), ("Leg", "Hips"))),
+        *more,
+    ]
+    names = tuple(name for name, _ in joints)
+    parents = np.array([names.index(above) if above else -1 for _, above in joints], np.int32)
+    return Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), 1)
+
+
+def test_limbs_of_one_bone_follow_the_upper_one() -> None:
+    block = block_figure()
+    matches = match_joints(person(), block)
+    require_limbs(person(), block, matches)
+    moved = {block.names[joint]: person().names[first] for joint, (first, _) in matches.chains.items()}
+    assert {moved[name] for name in ("Arm_L", "Arm_R")} == {"LeftArm", "RightArm"}
+    assert {moved[name] for name in ("Leg_L", "Leg_R")} == {"LeftUpLeg", "RightUpLeg"}
+
+
+def test_a_limb_that_goes_on_in_an_unknown_joint_is_still_asked_for() -> None:
+    block = block_figure(("Leg_L_end", "Leg_L"), ("Tube_R", "Leg_R"))
+    with pytest.raises(InputError, match="move the right leg of"):
+        require_limbs(person(), block, match_joints(person(), block))
+
+
 def test_a_mapped_joint_takes_the_role_of_what_moves_it() -> None:
     source, target = person(), renamed(other_habit(person()), LeftForeArm="Tube")
     matches = match_joints(source, target, {"mixamorig_Tube": "LeftForeArm"})

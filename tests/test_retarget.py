@@ -354,3 +354,38 @@ def test_walks_and_runs_upright_on_the_floor_with_knees_forward(
         assert (bend > -0.02 * np.linalg.norm(forward, axis=-1)).all()
     travel = place["Hips"][-1] - place["Hips"][0]
     assert np.sum(travel * forward.mean(axis=0)) > 0.9 * np.linalg.norm(travel) * np.linalg.norm(forward.mean(axis=0))
+
+
+def reparented(skeleton: Skeleton, joint: str, parent: str) -> Skeleton:
+    """The same joints at the same places, one of them on another."""
+    index, above = skeleton.names.index(joint), skeleton.names.index(parent)
+    turned, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    parents, rotations = skeleton.parents.copy(), skeleton.bind_rotations.copy()
+    translations = skeleton.bind_translations.copy()
+    parents[index] = above
+    rotations[index] = rotation.multiply(rotation.conjugate(turned[above]), turned[index])
+    translations[index] = rotation.rotate(rotation.conjugate(turned[above]), at[index] - at[above])
+    return replace(skeleton, parents=parents, bind_rotations=rotations, bind_translations=translations)
+
+
+def on_a_root(skeleton: Skeleton, *, moved: tuple[str, ...]) -> Skeleton:
+    """The same skeleton below a root, with a joint in its belly that nothing moves; `moved` hang on the root."""
+    names = ("Root", *skeleton.names, "Belly")
+    parents = np.concatenate([[-1], skeleton.parents + 1, [0]]).astype(np.int32)
+    turns = np.concatenate([[[1.0, 0, 0, 0]], skeleton.bind_rotations, [[1.0, 0, 0, 0]]])
+    shifts = np.concatenate([np.zeros((1, 3)), skeleton.bind_translations, [[0, 1.05, 0.1]]])
+    found = Skeleton(names, parents, turns, shifts, root=0)
+    for joint in moved:
+        found = reparented(found, joint, "Root")
+    return found
+
+
+def test_parts_of_the_trunk_that_hang_on_the_root_go_with_the_body() -> None:
+    """Rigs of cartoons have belly, chest and pelvis beside each other: what nothing moves must not stay behind."""
+    body = person(axes=3)
+    source = SourceMotion(body, random_clip(body))
+    apart, whole = on_a_root(body, moved=("Spine",)), reparented(on_a_root(body, moved=()), "Belly", "Hips")
+    clips = [retarget(source, target)[0] for target in (apart, whole)]
+    turned, at = (np.stack(parts) for parts in zip(*map(world, (apart, whole), clips), strict=True))
+    np.testing.assert_allclose(at[0], at[1], atol=POSITION_BOUND)
+    np.testing.assert_allclose(np.abs(np.sum(turned[0] * turned[1], axis=-1)), 1, atol=ANGLE_BOUND)

@@ -7,6 +7,7 @@ from mua.arrays import Array
 from mua.motion.contacts import STANDING, planted
 from mua.motion.joint_names import SIDES, ancestors
 from mua.motion.rest import IDENTITY, Rest, Y
+from mua.motion.strays import stray_joints
 
 SOLES = ("foot", "toe")
 GOING = 0.2  # legs per second of the hips above standing feet from which these show how far a step carries
@@ -15,7 +16,14 @@ ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 
 LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stands and stays where it is
 
 
-CARRIED_BY = (("forearm", "upper_arm"), ("hand", "forearm"), ("shin", "thigh"), ("foot", "shin"))
+CARRIED_BY = (
+    ("spine", "hips"),
+    *(
+        (f"{side} {part}", f"{side} {limb}")
+        for part, limb in (("forearm", "upper_arm"), ("hand", "forearm"), ("shin", "thigh"), ("foot", "shin"))
+        for side in SIDES
+    ),
+)
 
 
 def placed(rest: Rest, rotations: Array, source_at: Array, *, rate: float, honest: bool) -> tuple[Array, list[str]]:
@@ -76,11 +84,14 @@ def _mover(rest: Rest) -> int:
 
 
 def attached(rest: Rest, rotations: Array, translations: Array) -> Array:
-    """Translations [F, T, 3] after which hands and feet that hang on no limb (rigs for IK) are at the limb's end."""
+    """Translations [F, T, 3] after which joints that do not hang on what carries them in a body are where it ends.
+
+    Rigs for IK have hands and feet of that kind, others a chest beside the pelvis or parts of the trunk on the root.
+    """
     target = rest.target
-    for role, carrier in ((f"{side} {part}", f"{side} {limb}") for part, limb in CARRIED_BY for side in SIDES):
-        joint, limb = rest.joint(role), rest.joint(carrier)
-        if joint is None or limb is None or limb in ancestors(target, joint):
+    pairs = [(rest.joint(role), rest.joint(carrier)) for role, carrier in CARRIED_BY]
+    for joint, limb in (*pairs, *stray_joints(rest).items()):
+        if joint is None or limb is None or limb in ancestors(target, joint) or joint in ancestors(target, limb):
             continue
         parent = int(target.parents[joint])
         turned, at = target.world(rotations, translations)

@@ -85,7 +85,7 @@ def roles(
     left = {role: tuple(joint for joint in joints if joint not in taken) for role, joints in chains.items()}
     chains = {role: joints for role, joints in left.items() if joints and role not in told} | told
     _keep_to_limbs(skeleton, chains)
-    _settle_legs(chains)
+    _settle_legs(skeleton, chains)
     _settle_trunk(skeleton, chains)
     return chains
 
@@ -154,12 +154,19 @@ def _keep_to_limbs(skeleton: Skeleton, chains: Roles) -> None:
             chains[role] = kept or joints
 
 
-def _settle_legs(chains: Roles) -> None:
-    """A leg above a knee is the thigh, and the last of several joints of a foot its toe, where no name says so."""
+def _settle_legs(skeleton: Skeleton, chains: Roles) -> None:
+    """A leg above a knee is the thigh, and the last of several joints of a foot its toe, where no name says so.
+
+    So is a leg that hangs on what carries the other one too: it is a leg of one bone.
+    """
+    shins = [chains[role][0] for role in (f"{side} shin" for side in SIDES) if role in chains]
+    carrying = set.intersection(*(set(ancestors(skeleton, joint)) for joint in shins)) if len(shins) == 2 else set()
     for side in SIDES:
         shin, foot = (chains.get(f"{side} {part}", ()) for part in ("shin", "foot"))
-        if len(shin) > 1 and f"{side} thigh" not in chains:
+        if f"{side} thigh" not in chains and (len(shin) > 1 or (shin and skeleton.parents[shin[0]] in carrying)):
             chains[f"{side} thigh"], chains[f"{side} shin"] = shin[:1], shin[1:]
+        if not chains.get(f"{side} shin"):
+            chains.pop(f"{side} shin", None)
         if len(foot) > 1 and f"{side} toe" not in chains:
             chains[f"{side} foot"], chains[f"{side} toe"] = foot[:-1], foot[-1:]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.joint_names import FINGERS, NAMESPACE, SIDES, Roles
+from mua.motion.joint_names import FINGERS, NAMESPACE, SIDES, Roles, ancestors
 from mua.motion.joint_names import roles as find_roles
 from mua.motion.joint_places import roles_by_place
 from mua.rig.skeleton import Skeleton
@@ -97,6 +97,7 @@ LIMBS = {
     **{f"{side} leg": (f"{side} thigh", f"{side} shin") for side in SIDES},
     "spine": ("spine",),
 }
+END = re.compile(r"(end|nub|tip)$", re.IGNORECASE)  # of joints that only mark where a bone ends
 SAME_RIG = 0.8  # of the target's joints: with as many equal names, motion and character are of one kind of rig
 
 
@@ -104,7 +105,11 @@ def missing_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> tuple
     """Limbs without which motion is no likeness of its source; none between rigs of one kind, people or not."""
     if len(_match_equal_names(source, target)) >= SAME_RIG * len(target.names):
         return ()
-    missing = [limb for limb, roles in LIMBS.items() if any(matches.ends(role) is None for role in roles)]
+    missing = [
+        limb
+        for limb, roles in LIMBS.items()
+        if any(matches.ends(role) is None for role in _asked(target, matches.roles, roles))
+    ]
     if "spine" in missing and "spine" not in matches.roles and _has_no_spine(target, matches.roles):
         missing.remove("spine")
     return tuple(missing)
@@ -125,6 +130,16 @@ def require_limbs(source: Skeleton, target: Skeleton, matches: Matches) -> None:
             f"character ({_sample(target)}); pair their joints in a mapping file and give it with --mapping "
             "(mua-bake --check writes one to start from)"
         )
+
+
+def _asked(skeleton: Skeleton, found: Roles, limb: tuple[str, ...]) -> tuple[str, ...]:
+    """The roles of a limb that must be matched: the first alone where the limb is one bone, as of block figures."""
+    upper, lower = limb[0], limb[-1]
+    if upper not in found or lower in found:
+        return limb
+    known = {joint for joints in found.values() for joint in joints}
+    below = [joint for joint in range(len(skeleton.names)) if found[upper][-1] in ancestors(skeleton, joint)]
+    return limb if any(joint not in known and not END.search(skeleton.names[joint]) for joint in below) else limb[:1]
 
 
 def _has_no_spine(skeleton: Skeleton, found: Roles) -> bool:
