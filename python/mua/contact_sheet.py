@@ -9,10 +9,11 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.decode import decode_clip_frame, pose_splats
 from mua.likeness.compare import Likeness
+from mua.likeness.ground import ground_for, over
 from mua.likeness.sheet import worst_strips
 from mua.portrait import portrait
 from mua.recording import WholeFrame
-from mua.render import render, to_bytes
+from mua.render import render_premultiplied, to_bytes
 
 CELL = (288, 416)  # width, height, pixels
 CAPTION = 22  # pixels
@@ -38,8 +39,9 @@ def _strip(avatar: Avatar, frame: WholeFrame) -> Array:
     teacher = pose_splats(avatar.rig, frame.mesh, texture=frame.texture, pose=pose)
     student = decode_clip_frame(avatar, frame.clip, frame=frame.index)
     camera = portrait(teacher, avatar.rig.skeleton, pose=pose, screen=CELL)
-    shown = [render(teacher, camera), render(student, camera)]
-    difference = 1 - GAIN * np.abs(np.clip(shown[0], 0, 1) - np.clip(shown[1], 0, 1))
+    drawn = [render_premultiplied(splats, camera) for splats in (teacher, student)]
+    shown = [over(image, ground_for(drawn[:1])) for image in drawn]
+    difference = 1 - GAIN * np.abs(shown[0] - shown[1])
     picture = np.hstack([to_bytes(image) for image in (*shown, difference)])
     kind = "held out" if frame.clip.held_out else "trained on"
     return np.vstack([_caption(f"{frame.clip.name}, frame {frame.index} ({kind})"), picture])

@@ -11,10 +11,11 @@ from mua.asset.avatar import Avatar
 from mua.bake.playback import typical_frame
 from mua.bounds import playback_bounds
 from mua.decode import decode_clip_frame
+from mua.likeness.ground import ground_for, over
 from mua.motion.clip import Clip
 from mua.motion.encoding import PoseEncoding
 from mua.portrait import portrait
-from mua.render import render, to_bytes
+from mua.render import render_premultiplied, to_bytes
 from mua.rig.rig import Rig
 from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
 from mua.student.model import Student
@@ -59,5 +60,6 @@ def thumbnail(avatar: Avatar, clips: Sequence[Clip]) -> bytes:
     screen = (THUMBNAIL, THUMBNAIL)
     camera = portrait(frame, avatar.rig.skeleton, pose=clip.pose(index), screen=screen)
     stream = io.BytesIO()
-    Image.fromarray(to_bytes(render(frame, camera))).save(stream, "PNG")
+    drawn = render_premultiplied(frame, camera)
+    Image.fromarray(to_bytes(over(drawn, ground_for([drawn])))).save(stream, "PNG")
     return stream.getvalue()

@@ -1,0 +1,31 @@
+"""What pictures of a figure stand on: white, and grey for a figure that is itself white."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from mua.arrays import Array
+
+WHITE, GREY = 1.0, 0.55
+NEAR_WHITE = 0.85  # of each channel: paler than this is hardly seen on white
+MOSTLY = 0.5  # of what the figure covers
+
+
+def ground_for(
+    images: Iterable[Array],  # [H, W, 4] premultiplied sRGB and alpha
+) -> float:
+    """The grey, 0..1, on which a figure is seen in all of its pictures."""
+    covered = pale = 0
+    for image in images:
+        solid = image[..., 3] > 0.5
+        covered += int(solid.sum())
+        pale += int((image[solid, :3] > NEAR_WHITE * image[solid, 3:]).all(axis=-1).sum())
+    return GREY if pale > MOSTLY * max(covered, 1) else WHITE
+
+
+def over(
+    image: Array,  # [..., 4] premultiplied sRGB and alpha
+    ground: float,
+) -> Array:
+    """The image [..., 3] in 0..1 over a plain ground."""
+    return np.asarray(np.clip(image[..., :3] + ground * (1 - image[..., 3:]), 0, 1))
