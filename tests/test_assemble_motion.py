@@ -8,7 +8,7 @@ from scenes import BIND, HERE, NAMES, PARENTS, WEIGHT_BOUND, assert_follows, at,
 
 from mua.rig.assemble import assemble
 from mua.rig.scene import Motion, Skin
-from mua.teachers.simulated import stretched
+from mua.rig.stretched import stretched
 
 
 def test_clip_follows_the_sources_matrices() -> None:

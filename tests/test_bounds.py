@@ -8,6 +8,7 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.bounds import frame_boxes, margin, playback_bounds, root_positions, union
 from mua.decode import decode_clip_frame
+from mua.motion.clip import Stretches
 
 AVATAR = synthetic_avatar()
 RIG, CLIP = AVATAR.rig, AVATAR.clips[0]
@@ -37,3 +38,14 @@ def test_playback_bounds_hold_every_frame_about_its_root() -> None:
 def test_a_union_reaches_to_the_outermost_corners() -> None:
     boxes = np.array([[[0, 0, 0], [1, 1, 1]], [[-1, 0.5, 0], [0, 2, 0.5]]])
     np.testing.assert_array_equal(union(boxes), [[-1, 0, 0], [1, 2, 1]])
+
+
+def test_stretched_limbs_are_within_the_bounds() -> None:
+    """A joint that a clip scales takes the surface beyond where rigid joints alone would."""
+    frames = len(CLIP)
+    matrices = np.tile(np.eye(3), (frames, len(RIG.skeleton.names), 1, 1))
+    matrices[frames // 2] *= 3
+    swollen = replace(CLIP, stretches=Stretches(np.arange(len(RIG.skeleton.names)), matrices))
+    plain, boxes = frame_boxes(RIG, CLIP), frame_boxes(RIG, swollen)
+    np.testing.assert_array_equal(boxes[0], plain[0])
+    assert (np.ptp(boxes[frames // 2], axis=0) > 2 * np.ptp(plain[frames // 2], axis=0)).all()

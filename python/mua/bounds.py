@@ -9,6 +9,7 @@ from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.rig.rig import Rig
+from mua.rig.stretched import stretched
 
 MARGIN = 0.06  # of the figure's size, that cloth may leave the skinned template
 
@@ -22,9 +23,12 @@ def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
 def frame_boxes(rig: Rig, clip: Clip) -> Array:
     """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
     boxes, around = [], margin(rig)
-    for joints in rig.skeleton.skinning(clip.rotations, clip.translations):
+    for frame, joints in enumerate(rig.skeleton.skinning(clip.rotations, clip.translations)):
         dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
-        posed = rotation.dual_transform(dual, rig.mesh.vertices)
+        shape = rig.mesh.vertices
+        if clip.stretches is not None:
+            shape = stretched(rig, clip.stretches, frame, shape)
+        posed = rotation.dual_transform(dual, shape)
         boxes.append([posed.min(axis=0) - around, posed.max(axis=0) + around])
     return np.array(boxes)
 

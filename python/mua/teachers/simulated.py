@@ -14,12 +14,13 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
-from mua.motion.clip import Clip, Stretches
+from mua.motion.clip import Clip
 from mua.motion.descriptor import heading_of
 from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
+from mua.rig.stretched import stretched
 from mua.rig.template import make_template
 from mua.teachers.bones import figure_scale, fit_bones
 from mua.teachers.chords import straighten
@@ -112,21 +113,3 @@ class SimulatedTeacher:
         heading = heading_of(joints[self._character.skeleton.root, :4])
         light = shade(normals, visible, heading=heading)
         return Light(gain=light.gain, sheen=rotation.rotate(rotation.conjugate(dual[:, :4]), light.sheen))
-
-
-def stretched(
-    character: Character,
-    stretches: Stretches,
-    frame: int,
-    points: Array,  # [V, 3] the character's vertices or near them, canonical
-) -> Array:
-    """Points [V, 3] stretched about the joints that they hang on, blended by the skinning weights."""
-    skeleton = character.skeleton
-    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    change = np.zeros((len(places), 3, 3))
-    change[stretches.joints] = stretches.matrices[frame] - np.eye(3)
-    moved = points.copy()
-    for joints, weights in zip(character.skin_indices.T, character.skin_weights.T, strict=True):
-        about = points - places[joints]
-        moved += weights[:, None] * np.einsum("vij,vj->vi", change[joints], about)
-    return moved

@@ -8,10 +8,11 @@ from mua.motion.clip import Stretches
 from mua.rig.character import Character
 from mua.rig.rig import build_rig
 from mua.rig.skeleton import Pose
+from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale
 from mua.teachers.chords import straighten
 from mua.teachers.shading import Light
-from mua.teachers.simulated import TURN_WAVELENGTH, stretched
+from mua.teachers.simulated import TURN_WAVELENGTH
 from mua.teachers.smoothing import low_pass
 from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels

@@ -1,0 +1,40 @@
+"""Scales and shears that a clip animates, which rigid joints do not carry: put on the surface before joints move it."""
+
+from typing import Protocol
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.motion.clip import Stretches
+from mua.rig.skeleton import Skeleton
+
+
+class Skinned(Protocol):
+    """A surface of V vertices on a skeleton."""
+
+    @property
+    def skeleton(self) -> Skeleton: ...
+
+    @property
+    def skin_indices(self) -> Array: ...  # [V, 8] int32
+
+    @property
+    def skin_weights(self) -> Array: ...  # [V, 8] float32
+
+
+def stretched(
+    surface: Skinned,
+    stretches: Stretches,
+    frame: int,
+    points: Array,  # [V, 3] the surface's vertices or near them, canonical
+) -> Array:
+    """Points [V, 3] stretched about the joints that they hang on, blended by the skinning weights."""
+    skeleton = surface.skeleton
+    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    change = np.zeros((len(places), 3, 3))
+    change[stretches.joints] = stretches.matrices[frame] - np.eye(3)
+    moved = points.copy()
+    for joints, weights in zip(surface.skin_indices.T, surface.skin_weights.T, strict=True):
+        about = points - places[joints]
+        moved += weights[:, None] * np.einsum("vij,vj->vi", change[joints], about)
+    return moved
