@@ -18,7 +18,7 @@ from silent import Silent
 from mua.asset import read, write
 from mua.asset.tensors import Storage
 from mua.bake.assemble import assemble
-from mua.bake.pipeline import Baked, Order, bake
+from mua.bake.pipeline import Baked, Order, bake, recording_key
 from mua.bake.plan import plan, split
 from mua.bake.sources import RATE, load_character
 from mua.decode import decode_clip_frame
@@ -114,6 +114,24 @@ def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Pat
     (mine,), (theirs,) = (list(path.glob("recording-*")) for path in (tmp_path / "work", baked.output.parent / "work"))
     assert content(mine) == content(theirs)
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
+
+
+def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path) -> None:
+    order = Order(tmp_path / "a.muaavatar", tmp_path, SMALL, torch.device("cpu"))
+    character = load_character(None, uv="auto", seed=0)
+    mesh, skeleton = character.mesh, character.skeleton
+    others = [
+        dataclasses.replace(character, mesh=dataclasses.replace(mesh, faces=mesh.faces[:, [1, 2, 0]])),
+        dataclasses.replace(character, mesh=dataclasses.replace(mesh, uv_faces=mesh.uv_faces[:, [1, 2, 0]])),
+        dataclasses.replace(character, skin_indices=character.skin_indices[:, ::-1]),
+        dataclasses.replace(character, looseness=None),
+        dataclasses.replace(
+            character, skeleton=dataclasses.replace(skeleton, names=tuple(name + "_" for name in skeleton.names))
+        ),
+    ]
+    keys = [recording_key(order, one, []) for one in (character, character, *others)]
+    assert keys[0] == keys[1]
+    assert len(set(keys)) == 1 + len(others)
 
 
 def clip(name: str, frames: int) -> Clip:

@@ -1,5 +1,6 @@
 """mua-inspect prints what a file holds and refuses a broken one in a sentence."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +13,8 @@ from mua.asset import write
 
 def inspect(*arguments: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-c", "from mua.cli.inspect import run; run()", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False, env={"COLUMNS": "160"})
+    environment = {"COLUMNS": "160", "PYTHONPATH": os.pathsep.join(sys.path)}
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
 
 
 @pytest.fixture

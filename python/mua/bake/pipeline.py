@@ -107,7 +107,7 @@ def _likeness(character: Character, clips: list[Clip], texels: int, listener: Li
 
 def _record(order: Order, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:
     """The teacher's recording, taken up where an earlier run of the same order left it."""
-    directory = order.work / f"recording-{_key(order, character, planned)}"
+    directory = order.work / f"recording-{recording_key(order, character, planned)}"
     listener.stage("recording")
     for sentence in carry_texels(character, make_template(character), size=order.settings.texels).notes:
         listener.note(sentence)
@@ -123,13 +123,17 @@ def _record(order: Order, character: Character, planned: list[PlannedClip], list
     return Recording(directory)
 
 
-def _key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
+def recording_key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
     """Changes with everything that a recording depends on, so that no other order's frames are taken for these."""
     digest = hashlib.sha256(f"{__version__} in parts {order.settings.texels} {order.settings.seed}".encode())
-    skeleton = character.skeleton
-    digest.update(skeleton.bind_rotations.tobytes() + skeleton.bind_translations.tobytes())
-    for array in (character.mesh.vertices, character.mesh.uv, character.skin_weights, character.base_color):
-        digest.update(array.tobytes())
+    skeleton, mesh = character.skeleton, character.mesh
+    digest.update(repr((skeleton.names, skeleton.root)).encode())
+    for array in (
+        *(skeleton.parents, skeleton.bind_rotations, skeleton.bind_translations),
+        *(mesh.vertices, mesh.faces, mesh.uv, mesh.uv_faces, character.base_color),
+        *(character.skin_indices, character.skin_weights, character.looseness),
+    ):
+        digest.update(b"none" if array is None else f"{array.shape}".encode() + array.tobytes())
     for clip in planned:
         digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
         digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
