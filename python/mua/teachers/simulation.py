@@ -15,9 +15,9 @@ The evening-out keeps what is shorter than about 4 cm small: a student holds no 
 import numpy as np
 import warp as wp
 
-from mua import rotation
 from mua.arrays import Array
 from mua.teachers.bones import Bones, capsule_distance, figure_scale
+from mua.teachers.rings import LANES, in_blocks, relax
 from mua.teachers.warp_start import start
 
 DEVICE = "cpu"  # a frame takes milliseconds: less than its way to a GPU and back
@@ -41,25 +41,53 @@ start()
 
 
 @wp.kernel(enable_backward=False)
+def even_out(
+    starts: wp.array[int],
+    neighbours: wp.array[int],
+    evening: wp.array[float],
+    target: wp.array[wp.vec3],
+    even: wp.array[wp.vec3],
+):
+    """Where evening out would move each vertex of the skinned shape: bending is measured from there."""
+    i = wp.tid()
+    place = target[i]
+    move = wp.vec3(0.0, 0.0, 0.0)
+    for k in range(starts[i], starts[i + 1]):
+        move += (target[neighbours[k]] - place) * evening[k]
+    even[i] = move
+
+
+@wp.kernel(enable_backward=False)
 def predict(
     now: wp.array[wp.vec3],
     before: wp.array[wp.vec3],
     target_from: wp.array[wp.vec3],
     target_to: wp.array[wp.vec3],
+    even_from: wp.array[wp.vec3],
+    even_to: wp.array[wp.vec3],
     force: wp.array[wp.vec3],
+    looseness: wp.array[float],
     frequency: wp.array[float],
     drag: wp.array[float],
     damping: float,
     moment: float,
     frame_time: float,
     step: float,
-    target: wp.array[wp.vec3],
+    even: wp.array[wp.vec3],
     ahead: wp.array[wp.vec3],
 ):
-    """Move each vertex by inertia, spring and gravity for one substep; implicit in the spring, so always stable."""
+    """Move each vertex by inertia, spring and gravity for one substep; implicit in the spring, so always stable.
+
+    Rigid vertices are where skinning puts them, and stay so in both arrays that the constraints take turns with: the
+    places before are read here for the last time.
+    """
     i = wp.tid()
     aim = wp.lerp(target_from[i], target_to[i], moment)
-    target[i] = aim
+    if looseness[i] == 0.0:
+        ahead[i] = aim
+        before[i] = aim
+        return
+    even[i] = wp.lerp(even_from[i], even_to[i], moment)
     velocity = (now[i] - before[i]) / step
     pace = (target_to[i] - target_from[i]) / frame_time
     w = frequency[i]
@@ -67,44 +95,6 @@ def predict(
     push = w * w * (aim - now[i]) + friction * pace + force[i]
     velocity = (velocity + step * push) / (1.0 + step * (friction + drag[i]) + step * step * w * w)
     ahead[i] = now[i] + step * velocity
-
-
-@wp.kernel(enable_backward=False)
-def relax(
-    starts: wp.array[int],
-    neighbours: wp.array[int],
-    lengths: wp.array[float],
-    looseness: wp.array[float],
-    evening: wp.array[float],
-    stretch: float,
-    slack: float,
-    target: wp.array[wp.vec3],
-    now: wp.array[wp.vec3],
-    ahead: wp.array[wp.vec3],
-):
-    """One Jacobi iteration of the stretch and bend constraints about each vertex."""
-    i = wp.tid()
-    own = looseness[i]
-    if own == 0.0:
-        ahead[i] = target[i]
-        return
-    place = now[i]
-    shift = place - target[i]
-    pull = wp.vec3(0.0, 0.0, 0.0)
-    even = wp.vec3(0.0, 0.0, 0.0)
-    total = wp.float32(1.0)
-    for k in range(starts[i], starts[i + 1]):
-        j = neighbours[k]
-        edge = now[j] - place
-        length = wp.max(wp.length(edge), 1.0e-9)
-        error = length - lengths[k]
-        if error < 0.0:
-            error = error * slack
-        pull += edge * (error / length * own / (own + looseness[j]))
-        even += (now[j] - target[j] - shift) * evening[k]
-        total += evening[k]
-    count = wp.max(float(starts[i + 1] - starts[i]), 1.0)
-    ahead[i] = place + pull * (stretch * own * own / count) + even / total
 
 
 @wp.kernel(enable_backward=False)
@@ -144,20 +134,22 @@ class Simulation:
         starts, neighbours = one_rings(faces, len(vertices))
         own = np.repeat(np.arange(len(vertices)), np.diff(starts))
         lengths = np.maximum(np.linalg.norm(vertices[neighbours] - vertices[own], axis=1), SHORTEST_EDGE * self._scale)
-        self._starts, self._neighbours = _ints(starts), _ints(neighbours)
-        self._lengths, self._looseness = _floats(lengths), _floats(looseness)
         per_ring = 4 / np.diff(starts)[own]  # of edges, in the discrete Laplacian
-        self._evening = _floats(per_ring * BENDING * SUBSTEP**2 / ITERATIONS / (lengths / self._scale) ** 2)
+        evening = per_ring * BENDING * SUBSTEP**2 / ITERATIONS / (lengths / self._scale) ** 2
+        evening /= 1 + np.bincount(own, evening, len(vertices))[own]
+        self._rings = _ints(starts), _ints(neighbours), _floats(evening)
+        self._constraints = _constraints(starts, neighbours, lengths, evening, looseness)
         softness = np.maximum(looseness, 1e-3)
         self._frequency = _floats(2 * np.pi * CLOTH_FREQUENCY / softness**FIRMING)
-        self._drag = _floats(DRAG * looseness)
+        self._drag, self._looseness = _floats(DRAG * looseness), _floats(looseness)
         loose = np.flatnonzero(looseness > LOOSE)
         at_rest = capsule_distance(vertices[loose][:, None], bones.ends[:, 0], bones.ends[:, 1])
         self._loose = _ints(loose)
         self._clearance = wp.array(np.minimum(bones.radii + GAP * self._scale, at_rest), dtype=float, device=DEVICE)
         self._places = [_vectors(vertices) for _ in range(3)]  # now, a substep ago, to be written next
-        self._target = _vectors(vertices)
-        self._last = _vectors(vertices)
+        self._even = _vectors(np.zeros_like(vertices))
+        self._last = _vectors(vertices), _vectors(vertices)  # the skinned shape and where it would even out
+        self._relaxing: dict[tuple[int, int], wp.Launch] = {}
 
     def settle(
         self,
@@ -166,10 +158,11 @@ class Simulation:
         ends: Array,  # [C, 2, 3] bones
     ) -> None:
         """Start at rest in a pose: hang still, as if the pose had been held for long."""
-        self._last = _vectors(target)
-        self._places = [_vectors(target) for _ in range(3)]
+        self._last = self._aim(target)
+        for places in self._places:
+            wp.copy(places, self._last[0])
         self.advance(target, turn, ends, seconds=SETTLE_SECONDS)
-        self._places[1] = wp.clone(self._places[0])
+        wp.copy(self._places[1], self._places[0])
 
     def advance(
         self,
@@ -181,7 +174,7 @@ class Simulation:
     ) -> Array:
         """Move on by `seconds`, while the skinned shape goes steadily to `target`; returns positions [V, 3] float64."""
         steps = max(1, round(seconds / SUBSTEP))
-        aim, capsules = _vectors(target), wp.array(ends, dtype=wp.vec3, ndim=2, device=DEVICE)
+        aim, capsules = self._aim(target), wp.array(ends, dtype=wp.vec3, ndim=2, device=DEVICE)
         force = _vectors(self._scale * gravity_beyond_rest(turn))
         for step in range(steps):
             self._predict(aim, force, moment=(step + 1) / steps, seconds=seconds, substep=seconds / steps)
@@ -189,36 +182,77 @@ class Simulation:
         self._last = aim
         return np.asarray(self._places[0].numpy(), dtype=np.float64)
 
-    def _predict(self, aim: wp.array, force: wp.array, *, moment: float, seconds: float, substep: float) -> None:
+    def _aim(self, target: Array) -> tuple[wp.array, wp.array]:
+        """A skinned shape, and where evening out would move its vertices."""
+        places = _vectors(target)
+        even = wp.empty_like(places)
+        wp.launch(even_out, dim=len(places), inputs=[*self._rings, places], outputs=[even], device=DEVICE)
+        return places, even
+
+    def _predict(
+        self, aim: tuple[wp.array, wp.array], force: wp.array, *, moment: float, seconds: float, substep: float
+    ) -> None:
         """Fill the third of the places with where inertia, spring and gravity lead."""
         now, before, ahead = self._places
-        shapes = [now, before, self._last, aim, force, self._frequency, self._drag]
+        shapes = [now, before, self._last[0], aim[0], self._last[1], aim[1], force]
         wp.launch(
             predict,
             dim=len(now),
-            inputs=[*shapes, DAMPING, moment, seconds, substep],
-            outputs=[self._target, ahead],
+            inputs=[*shapes, self._looseness, self._frequency, self._drag, DAMPING, moment, seconds, substep],
+            outputs=[self._even, ahead],
             device=DEVICE,
         )
 
     def _constrain(self, capsules: wp.array) -> None:
         """Bring the predicted places nearer to the constraints and make them the present ones."""
         now, spare, ahead = self._places
-        edges = [self._starts, self._neighbours, self._lengths, self._looseness, self._evening]
         for _ in range(ITERATIONS):
-            inputs = [*edges, STRETCH, SLACK, self._target, ahead]
-            wp.launch(relax, dim=len(now), inputs=inputs, outputs=[spare], device=DEVICE)
+            self._relax(ahead, spare)
             ahead, spare = spare, ahead
-        wp.launch(collide, dim=len(self._loose), inputs=[self._loose, self._clearance, capsules, ahead], device=DEVICE)
+        if len(self._loose):
+            inputs = [self._loose, self._clearance, capsules, ahead]
+            wp.launch(collide, dim=len(self._loose), inputs=inputs, device=DEVICE)
         self._places = [ahead, now, spare]
+
+    def _relax(self, now: wp.array, ahead: wp.array) -> None:
+        """One iteration; its launch is kept, as preparing one takes half as long as its work."""
+        blocks = len(self._constraints[0]) // LANES
+        if not blocks:
+            return
+        key = now.ptr, ahead.ptr
+        if key not in self._relaxing:
+            inputs = [*self._constraints, SLACK, *(array.view(float).flatten() for array in (self._even, now, ahead))]
+            self._relaxing[key] = wp.launch(relax, dim=blocks, inputs=inputs, device=DEVICE, record_cmd=True)
+        self._relaxing[key].launch()
+
+
+def _constraints(
+    starts: Array,  # [V + 1]
+    neighbours: Array,  # [E]
+    lengths: Array,  # [E] at rest
+    evening: Array,  # [E] share of a neighbour's displacement that a vertex takes over in an iteration
+    looseness: Array,  # [V]
+) -> list[wp.array]:
+    """What `mua.teachers.rings.relax` takes first: the edges about all vertices that are not rigid, in blocks."""
+    blocks = in_blocks(starts, np.flatnonzero(looseness > 0))
+    counts = np.maximum(np.diff(starts), 1)
+    own = np.repeat(np.arange(len(counts)), np.diff(starts))
+    share = STRETCH * looseness[own] ** 3 / counts[own] / np.maximum(looseness[own] + looseness[neighbours], 1e-30)
+    by_edge = ((lengths, 1.0), (share, 0.0), (evening, 0.0))
+    return [
+        _ints(blocks.vertices.ravel()),
+        _ints(blocks.starts),
+        _ints(np.where(blocks.edges >= 0, neighbours[blocks.edges], blocks.owners).ravel()),
+        *(_floats(blocks.by_edge(values, none=none).ravel()) for values, none in by_edge),
+    ]
 
 
 def gravity_beyond_rest(
     turn: Array,  # [V, 4] skinned rotations
 ) -> Array:
     """Accelerations [V, 3], m / s^2: gravity less that which the rest shape bears, turned with the surface."""
-    down = np.array([0.0, -GRAVITY, 0.0])
-    return np.asarray(down - rotation.rotate(turn, np.broadcast_to(down, (len(turn), 3))))
+    w, x, y, z = turn.T
+    return 2 * GRAVITY * np.stack([x * y - w * z, -(x * x + z * z), y * z + w * x], axis=1)
 
 
 def one_rings(faces: Array, count: int) -> tuple[Array, Array]:
