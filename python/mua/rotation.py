@@ -36,9 +36,14 @@ def conjugate(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """Rotate vectors [..., 3] by unit quaternions [..., 4]."""
-    w, u = q[..., :1], q[..., 1:]
-    t = 2 * np.cross(u, v)
-    return np.asarray(v + w * t + np.cross(u, t))
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    vx, vy, vz = np.moveaxis(v, -1, 0)
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    turned = np.empty((*tx.shape, 3), dtype=tx.dtype)
+    turned[..., 0] = vx + w * tx + (y * tz - z * ty)
+    turned[..., 1] = vy + w * ty + (z * tx - x * tz)
+    turned[..., 2] = vz + w * tz + (x * ty - y * tx)
+    return turned
 
 
 def from_axis_angle(axis: Array, angle: Array | float) -> Array:

@@ -43,5 +43,7 @@ class Folds:
         turn: Array,  # [V, 4] skinned rotations
     ) -> Array:
         """The skinned positions with folds [V, 3]."""
+        if not self._height.any():  # rigid all over
+            return target
         risen = self._height * self._smooth(np.tanh(self._surface.squeeze(target) / FULL_SQUEEZE))
         return np.asarray(target + risen[:, None] * rotation.rotate(turn, self._normals))

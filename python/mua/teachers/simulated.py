@@ -13,7 +13,6 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip
 from mua.motion.descriptor import heading_of
 from mua.rig.carriers import carry_texels
@@ -28,6 +27,7 @@ from mua.teachers.folds import Folds
 from mua.teachers.looseness import estimate_looseness
 from mua.teachers.shading import Light, shade, visibility
 from mua.teachers.simulation import Simulation
+from mua.teachers.skinning import Skinning, transform
 from mua.teachers.smoothing import low_pass
 from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels
@@ -57,6 +57,7 @@ class SimulatedTeacher:
         self._template = template.source_vertices
         looseness = estimate_looseness(character) if character.looseness is None else character.looseness
         self._bones = fit_bones(character, looseness)
+        self._skinning = Skinning(character.skin_indices, character.skin_weights)
         self._simulation = Simulation(mesh.vertices, mesh.faces, looseness=looseness, bones=self._bones)
         rng = np.random.default_rng(seed)
         self._folds = Folds(mesh.vertices, mesh.faces, looseness=looseness, rng=rng)
@@ -72,22 +73,22 @@ class SimulatedTeacher:
         character, bones = self._character, self._bones
         skinning = character.skeleton.skinning(clip.rotations, clip.translations)
         for frame, joints in enumerate(skinning):
-            dual = blend_vertices(joints, character.skin_indices, character.skin_weights)
+            dual = self._skinning(joints)
             turn, ends = dual[:, :4], bones.posed(joints)
-            target = self._folds(rotation.dual_transform(dual, character.mesh.vertices), turn)
+            target = self._folds(transform(dual, character.mesh.vertices), turn)
             if frame == 0:
                 self._simulation.settle(target, turn, ends)
             moved = self._simulation.advance(target, turn, ends, seconds=1 / clip.rate)
             if clip.stretches is not None:
-                canonical = rotation.dual_transform(rotation.dual_inverse(dual), moved)
-                moved = rotation.dual_transform(dual, stretched(character, clip.stretches, frame, canonical))
+                canonical = transform(rotation.dual_inverse(dual), moved)
+                moved = transform(dual, stretched(character, clip.stretches, frame, canonical))
             pose = Pose(clip.rotations[frame], clip.translations[frame])
             yield self._whole(pose, joints, dual, moved) if frame in wanted else pose
 
     def _whole(self, pose: Pose, joints: Array, dual: Array, moved: Array) -> TeacherFrame:
         """The frame whose dense surface, posed by `dual` [V, 8], lies at `moved` [V, 3]."""
         bind = self._character.mesh.vertices
-        displacement = rotation.dual_transform(rotation.dual_inverse(dual), moved) - bind
+        displacement = transform(rotation.dual_inverse(dual), moved) - bind
         coarse = self._coarse(displacement)[self._template]
         back = rotation.conjugate(dual[:, :4])
         turn, strain = self._surface(moved)

@@ -1,0 +1,55 @@
+"""Skinning of a dense surface, component by component: the values of `mua.kernels.dq_skinning`, several times faster.
+
+Each component of all vertices lies in one piece of memory, and joints that do not move a vertex cost nothing. Which
+way round a joint's dual quaternion is added depends only on it and the vertex's first joint, so it is found once for
+each pair of joints and not once a vertex.
+"""
+
+import numpy as np
+from scipy import sparse
+
+from mua.arrays import Array
+
+
+class Skinning:
+    """The blending of one character's weights."""
+
+    def __init__(
+        self,
+        indices: Array,  # [V, 8] joints, largest weight first
+        weights: Array,  # [V, 8] rows sum to 1
+    ) -> None:
+        used = weights > 0
+        counts = used.sum(axis=1)
+        self._starts = np.concatenate([[0], np.cumsum(counts)])
+        self._joints, self._weights = indices[used].astype(np.int64), weights[used].astype(np.float64)
+        pairs = np.stack([np.repeat(indices[:, 0], counts).astype(np.int64), self._joints], axis=1)
+        self._pairs, self._pair = np.unique(pairs, axis=0, return_inverse=True)
+
+    def __call__(
+        self,
+        joints: Array,  # [J, 8] bind pose to world
+    ) -> Array:
+        """Dual quaternions [V, 8] of the vertices, bind pose to world."""
+        first, other = joints[self._pairs, :4].swapaxes(0, 1)
+        away = np.einsum("pi,pi->p", other, first) < 0
+        weights = np.where(away[self._pair.ravel()], -self._weights, self._weights) if away.any() else self._weights
+        matrix = sparse.csr_matrix((weights, self._joints, self._starts), shape=(len(self._starts) - 1, len(joints)))
+        total = np.stack([matrix @ component for component in np.ascontiguousarray(joints.T)])
+        total /= np.maximum(np.sqrt(np.einsum("in,in->n", total[:4], total[:4])), np.finfo(total.dtype).tiny)
+        return total.T
+
+
+def transform(
+    dual: Array,  # [V, 8] unit
+    points: Array,  # [V, 3]
+) -> Array:
+    """Points [V, 3] moved as `mua.rotation.dual_transform` does, component by component."""
+    w, x, y, z, dw, dx, dy, dz = dual.T
+    px, py, pz = np.ascontiguousarray(points.T)
+    tx, ty, tz = 2 * (y * pz - z * py), 2 * (z * px - x * pz), 2 * (x * py - y * px)
+    moved = np.empty((3, len(points)))
+    moved[0] = px + w * tx + (y * tz - z * ty) + 2 * (w * dx - x * dw + y * dz - z * dy)
+    moved[1] = py + w * ty + (z * tx - x * tz) + 2 * (w * dy - y * dw + z * dx - x * dz)
+    moved[2] = pz + w * tz + (x * ty - y * tx) + 2 * (w * dz - z * dw + x * dy - y * dx)
+    return moved.T
