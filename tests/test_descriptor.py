@@ -6,7 +6,15 @@ from scipy.spatial.transform import Rotation
 
 from mua import rotation
 from mua.motion.clip import Clip
-from mua.motion.descriptor import choose_joints, choose_translated, describe, describe_window, heading_of, normalization
+from mua.motion.descriptor import (
+    choose_joints,
+    choose_translated,
+    describe,
+    describe_window,
+    heading_of,
+    normalization,
+    units_of,
+)
 from mua.motion.encoding import PoseEncoding
 from mua.rig.skeleton import Skeleton
 
@@ -167,6 +175,16 @@ def test_chooses_what_is_translated_below_the_root_and_used(skeleton: Skeleton) 
 
 def test_normalizes_but_does_not_stretch_constant_columns() -> None:
     columns = np.random.default_rng(5).normal(size=(50, 3)) * [2, 1e-6, 0] + [1, 2, 3]
-    found = normalization(columns)
+    found = normalization(columns, np.ones(3))
     np.testing.assert_allclose(found.mean, columns.mean(axis=0))
     np.testing.assert_allclose(found.scale, [columns[:, 0].std(), 1, 1])
+
+
+def test_a_small_figures_lengths_count_as_much_as_a_persons() -> None:
+    """At a hundredth of the size, all lengths of a descriptor are a hundredth, and what the MLPs read is the same."""
+    encoding = PoseEncoding((1, 2), rate=30.0, translated=(2,))
+    columns = np.random.default_rng(6).normal(size=(50, encoding.width)) * np.geomspace(1e-4, 1, encoding.width)
+    units = units_of(encoding, 0.01)
+    person, small = normalization(columns, units_of(encoding, 1.0)), normalization(columns * units, units)
+    assert set(units) == {1.0, 0.01}
+    np.testing.assert_allclose(small.scale, person.scale * units, rtol=1e-12)

@@ -32,7 +32,7 @@ from mua.student.optimise import Progress
 from mua.student.regress import leading, regress, squared_error
 from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
-from mua.student.targets import channel_weights, joint_targets
+from mua.student.targets import channel_weights, joint_targets, still_channels
 from mua.student.train import BestCoefficients, train
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
@@ -209,6 +209,16 @@ def test_attributes_count_alike_and_one_that_never_varies_is_not_raised() -> Non
     assert torch.allclose(weights[:10], torch.tensor([100.0] * 3 + [5.0] * 4 + [1 / 0.3] * 3))
     assert float(weights[10]) == pytest.approx(1000)  # a thousandth of a logit is the least that counts
     assert len(channel_weights(torch.ones(12), APPEARANCE)) == 12
+
+
+def test_a_small_figures_offsets_vary_as_much_as_a_persons() -> None:
+    """12 mm high, what moves by half a hundredth of a millimetre moves by as much as a millimetre of a person."""
+    variance = torch.tensor([1e-3**2] * 3 + [0.04] * 4 + [0.09] * 3 + [1.0])
+    small = variance * torch.tensor([0.005**2] * 3 + [1.0] * 8)
+    assert not still_channels(small, GEOMETRY, size=0.005).any()
+    assert still_channels(small, GEOMETRY)[:3].all()
+    person = channel_weights(variance, GEOMETRY) * torch.tensor([200.0] * 3 + [1.0] * 8)
+    assert torch.allclose(channel_weights(small, GEOMETRY, size=0.005), person)
 
 
 def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:

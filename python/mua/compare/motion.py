@@ -21,6 +21,7 @@ from mua.student.optimise import Run
 from mua.student.settings import Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights
+from mua.teachers.bones import figure_scale
 from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 
 
@@ -43,6 +44,7 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
         for clip in recording.clips
         if not clip.held_out and len(clip.recorded)
     ]
+    size = figure_scale(recording.rig.mesh.vertices)
     return TrainingFrames(
         rig=recording.rig,
         sizes=Sizes(settings, student.encoding, len(student.coarse.mean), student.texels, recording.wavelet),
@@ -51,7 +53,7 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
         bands=bands,
         mean=mean,
         mean_texture=samples.mean_texture,
-        weights=torch.cat([channel_weights(variance[part], part) for part in (GEOMETRY, APPEARANCE)]),
+        weights=torch.cat([channel_weights(variance[part], part, size=size) for part in (GEOMETRY, APPEARANCE)]),
         parts=samples.parts,
         device=run.device,
     )

@@ -21,6 +21,7 @@ from mua.student.finetune import BASIS_RATE
 from mua.student.model import Coarse, linear_layers
 from mua.student.optimise import Report, Run
 from mua.student.settings import Generalisation
+from mua.teachers.bones import figure_scale
 from mua.texture.channels import CHANNELS
 
 FRAMES_AT_ONCE = 16
@@ -109,7 +110,8 @@ class NetworkSystem:
         def told(progress: Any) -> None:
             report(replace(progress, stage=f"{self.name}: {progress.stage}"))
 
-        run = Run(generator, Forgetful(Path(), ""), told, frames.device)
+        size = figure_scale(frames.rig.mesh.vertices)
+        run = Run(generator, Forgetful(Path(), ""), told, frames.device, size=size)
         groups = network.start(frames, closed_form=budget.closed_form, rate=budget.rate, run=run)
         self.steps = descend(
             lambda rows: network.loss(frames, rows),

@@ -13,7 +13,7 @@ from mua.rig.skeleton import Skeleton
 
 STILL = np.radians(0.1)  # standard deviation below which a joint counts as not moving
 MOVES = 1e-3  # of the character's size; standard deviation below which a joint counts as not translated
-SCALE_FLOOR = 1e-3  # a millimetre, or 0.06 degrees: columns that vary less are not stretched to unit variance
+SCALE_FLOOR = 1e-3  # a millimetre of a person of 1.75 m, or 0.06 degrees: what varies less is not stretched
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,24 @@ def choose_translated(
     return tuple(int(j) for j in np.flatnonzero(varies & used) if j != skeleton.root and j not in above)
 
 
-def normalization(descriptors: Array) -> Normalization:
-    """Mean and scale of descriptors [N, k D]; columns that hardly vary keep scale 1."""
+def normalization(
+    descriptors: Array,  # [N, k D]
+    units: Array,  # [k D] as of `units_of`
+) -> Normalization:
+    """Mean and scale of descriptors; columns that hardly vary keep a scale of one unit."""
     deviation = descriptors.std(axis=0)
-    return Normalization(descriptors.mean(axis=0), np.where(deviation > SCALE_FLOOR, deviation, 1.0))
+    return Normalization(descriptors.mean(axis=0), np.where(deviation > SCALE_FLOOR * units, deviation, units))
+
+
+def units_of(
+    encoding: PoseEncoding,
+    size: float,  # of the figure over that of a person
+) -> Array:
+    """How much of each column [k D] of a descriptor is as much as 1 on a person: lengths grow with the figure."""
+    turns = np.ones(6 + 6 * len(encoding.joints))
+    return np.tile(
+        np.concatenate([np.full(3, size), turns, np.full(3 * len(encoding.translated), size)]), encoding.window
+    )
 
 
 def heading_of(turn: Array) -> Array:

@@ -82,14 +82,14 @@ def start_from_noise(
 ) -> Tensor:
     """Set the means of `branch` and draw its bases and MLP; returns the weight [C] of each channel's error."""
     variance = set_means(branch, source, frames=len(inputs), processes=run.processes).to(run.device)
-    weights = channel_weights(variance, channels)
+    weights = channel_weights(variance, channels, size=run.size)
     start_mlp(branch.mlp, run.generator)
     with weighted(branch, weights), torch.no_grad():
         branch.ll_basis.copy_(BASIS_START * torch.randn(branch.ll_basis.shape, generator=run.generator))
         for detail in (branch.d3, branch.d2):
             for factor in (detail.h, detail.w):
                 factor.copy_(math.sqrt(BASIS_START) * torch.randn(factor.shape, generator=run.generator))
-    branch.silence(still_channels(variance, channels))
+    branch.silence(still_channels(variance, channels, size=run.size))
     return weights
 
 

@@ -14,7 +14,7 @@ from torch import Tensor
 from mua import __version__
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.descriptor import choose_joints, choose_translated, describe, normalization
+from mua.motion.descriptor import choose_joints, choose_translated, describe, normalization, units_of
 from mua.motion.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -25,6 +25,7 @@ from mua.student.model import Bands, Student
 from mua.student.optimise import Progress
 from mua.student.settings import Settings
 from mua.student.train import Samples, StageName, stages, train
+from mua.teachers.bones import figure_scale
 
 GPU_SECONDS = 1.0  # between two questions about the GPU
 
@@ -129,7 +130,7 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
         texels=torch.from_numpy(recording.rig.texels.texels),
         wavelet=recording.wavelet,
     )
-    normal = normalization(descriptors)
+    normal = normalization(descriptors, units_of(encoding, figure_scale(recording.rig.mesh.vertices)))
     student.mean.copy_(torch.from_numpy(normal.mean))
     student.scale.copy_(torch.from_numpy(normal.scale))
     parts = body_parts(recording.rig, encoding) if settings.generalisation.fade < 1 else None

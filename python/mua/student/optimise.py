@@ -39,6 +39,7 @@ class Run:
     report: Report
     device: torch.device
     processes: Processes = ALONE
+    size: float = 1.0  # of the figure over that of a person
 
     def alone(self, stage: str) -> "Run":
         """The same run with a generator of the stage's own: it draws the same numbers alone as after other stages."""

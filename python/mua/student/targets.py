@@ -14,7 +14,7 @@ from mua.student.factorize import truncated_svd
 from mua.student.model import Branch, outer_products
 from mua.texture.channels import ATTRIBUTES
 
-# No one sees an attribute vary by less than this, in its own unit (metres, quaternion, log scale, logit, SH).
+# No one sees an attribute vary by less, in its own unit (metres on a person, quaternion, log scale, logit, SH).
 LEAST_SPREAD = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3, "SH": 1e-4}
 GRAM_RIDGE = 1e-6
 
@@ -30,6 +30,8 @@ class Targets:
 def channel_weights(
     variance: Tensor,  # [C] over training frames and texels
     channels: slice,  # which of the 23 these are
+    *,
+    size: float = 1.0,  # of the figure over that of a person
 ) -> Tensor:
     """The weight [C] of each channel's error: one over the spread of its attribute.
 
@@ -38,19 +40,25 @@ def channel_weights(
     """
     weights = torch.empty_like(variance)
     for name, own in _attributes(channels):
-        weights[own] = 1 / variance[own].mean().sqrt().clamp(min=LEAST_SPREAD[name])
+        weights[own] = 1 / variance[own].mean().sqrt().clamp(min=_least(name, size))
     return weights
 
 
 def still_channels(
     variance: Tensor,  # [C] over training frames and texels
     channels: slice,  # which of the 23 these are
+    *,
+    size: float = 1.0,  # of the figure over that of a person
 ) -> Tensor:
     """Which channels [C] hardly vary: what their blendshapes would hold is rounding."""
     still = torch.zeros_like(variance, dtype=torch.bool)
     for name, own in _attributes(channels):
-        still[own] = variance[own].sqrt() < LEAST_SPREAD[name]
+        still[own] = variance[own].sqrt() < _least(name, size)
     return still
+
+
+def _least(attribute: str, size: float) -> float:
+    return LEAST_SPREAD[attribute] * (size if attribute == "offset" else 1.0)
 
 
 def _attributes(channels: slice) -> Iterator[tuple[str, slice]]:

@@ -25,6 +25,7 @@ from mua.student.selection import validation_rows
 from mua.student.settings import Settings
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, still_channels
+from mua.teachers.bones import figure_scale
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
 StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
@@ -79,7 +80,8 @@ def train(
         require_earlier(only, settings, checkpoints)
     if not processes.first:
         report = _silent
-    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
+    size = figure_scale(samples.meshes[0].numpy())
+    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes, size)
     student.to(device)
     samples, unseen = set_apart(samples, settings.generalisation.validation, run=run.alone("selection"))
     inputs = student.normalize(samples.descriptors.to(device))
@@ -230,10 +232,10 @@ def start_branch(
     flat, variance = factorize_branch(
         branch, source, frames=len(inputs), settings=settings, stage=stage, run=run.alone(stage)
     )
-    weights = channel_weights(variance, channels)
+    weights = channel_weights(variance, channels, size=run.size)
     if until == "bases":
         return weights
-    hold_still(branch, flat, still_channels(variance, channels))
+    hold_still(branch, flat, still_channels(variance, channels, size=run.size))
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
     stage = f"{name} coefficients"
     own = run.alone(stage)
