@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 from gltf_files import FLOAT_BOUND, HALF_TURN, animate, body, read
 
+from mua.motion.joint_names import limb_count
+from mua.motion.read import read_motion
 from mua.rig.gltf_animation import sample
 
 
@@ -75,6 +77,26 @@ def test_scales_are_kept_for_the_mesh_and_told(tmp_path: Path) -> None:
     (note,) = surfaces.notes
     assert note.startswith("Animated scales go into the mesh")
     assert note.endswith("the largest is 50 %, of head in clip wave.")
+
+
+def test_motion_of_a_file_that_shows_a_face_alone_has_all_limbs(tmp_path: Path) -> None:
+    """Exports of motion may keep one mesh of many: its skin knows the head, the clip moves the whole body."""
+    glb = body()
+    limbs = ["LeftArm", "LeftForeArm", "RightArm", "RightForeArm", "LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg"]
+    first = len(glb.json["nodes"])
+    for i, name in enumerate(limbs):
+        node = {"name": name, "translation": [0.2 if "Left" in name else -0.2, 0.1, 0]}
+        glb.json["nodes"].append(node | ({} if i % 2 else {"children": [first + i + 1]}))
+    glb.json["nodes"][0]["children"] += list(range(first, first + len(limbs), 2))
+    for node in (0, *range(first, first + len(limbs))):
+        animate(glb, node, "rotation", times=[0.0, 1.0], values=HALF_TURN)
+    (source,) = read_motion(glb.save(tmp_path / "face.glb"))
+    assert set(limbs) <= set(source.skeleton.names)
+    assert limb_count(source.skeleton) == 8
+    turned, _ = source.skeleton.world(source.clip.rotations, source.clip.translations)
+    arm = source.skeleton.names.index("LeftForeArm")
+    # after half a second hips, arm and forearm have each turned by 90 degrees about Z
+    np.testing.assert_allclose(np.abs(turned[15, arm] @ [np.cos(0.75 * np.pi), 0, 0, np.sin(0.75 * np.pi)]), 1)
 
 
 def test_step_holds_and_cubic_passes_its_keys() -> None:

@@ -90,6 +90,12 @@ def roles(
     return chains
 
 
+def limb_count(skeleton: Skeleton) -> int:
+    """How many of the eight bones of arms and legs the joints' names tell."""
+    found = roles(skeleton)
+    return sum(f"{side} {part}" in found for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
+
+
 def _told(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
     found: dict[str, list[int]] = {}
     for joint, name in enumerate(skeleton.names):

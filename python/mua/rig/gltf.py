@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mua.motion.joint_names import limb_count
 from mua.rig.animation import Animation, bare_animation
 from mua.rig.assemble import Surfaces, assemble
 from mua.rig.findings import UNHELD, Findings
@@ -37,15 +38,21 @@ def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
 def read_gltf_animation(path: Path) -> Animation:
     """Read the skeleton and clips of a .glb or .gltf: those of its skinned meshes, else of its skins or moved nodes.
 
+    Where the mesh is a part of the body alone, such as a face, the nodes that clips move are taken with all limbs.
     Raises an InputError where `read_gltf` does, except that a mesh may be missing where there are joints.
     """
     document = load(path)
     tree = read_tree(document)
     scene = _meshes(document, tree)
-    if any(len(part.faces) for part in scene.parts):
-        rig = assemble(scene, path)
-        return Animation(rig.skeleton, rig.clips, (), rig.roles)
-    return bare_animation(_scene(document, tree, _bare_skins(document, tree), vrm=read_vrm(document)), path)
+    vrm = read_vrm(document)
+    if not any(len(part.faces) for part in scene.parts):
+        return bare_animation(_scene(document, tree, _bare_skins(document, tree), vrm=vrm), path)
+    rig = assemble(scene, path)
+    meshed = Animation(rig.skeleton, rig.clips, (), rig.roles)
+    if set(moved_nodes(document)) <= {int(node) for skin in _skins(document) for node in skin.joints}:
+        return meshed
+    whole = bare_animation(_scene(document, tree, _moved_tree(document, tree), vrm=vrm), path)
+    return whole if limb_count(whole.skeleton) > limb_count(meshed.skeleton) else meshed
 
 
 def _meshes(document: Document, tree: Tree) -> Scene:
@@ -109,6 +116,11 @@ def _bare_skins(document: Document, tree: Tree) -> list[Skin]:
     ]
     if any(len(skin.joints) for skin in found):
         return [skin for skin in found if len(skin.joints)]
+    return _moved_tree(document, tree)
+
+
+def _moved_tree(document: Document, tree: Tree) -> list[Skin]:
+    """All nodes of the tree that clips move most, bound as they rest; no skin where no clip moves anything."""
     moved = Counter([*tree.upwards(node)][-1] for node in moved_nodes(document))
     if not moved:
         return []
