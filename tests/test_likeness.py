@@ -172,6 +172,21 @@ def test_the_source_is_posed_alike_by_its_own_nodes_and_by_the_joints(tmp_path: 
     np.testing.assert_allclose(skinned(source.scene, part, poser.rest().nodes), part.positions, atol=1e-6)
 
 
+def test_a_body_that_turns_on_a_still_root_is_seen_from_its_own_front(tmp_path: Path) -> None:
+    character, source, _ = column_with_source(tmp_path)
+    poser, clip = Poser(source, character.skeleton), character.clips[0]
+    rotations = np.tile(character.skeleton.bind_rotations, (1, 1, 1))
+    apart = rotations.copy()
+    quarter = np.array([np.sqrt(0.5), 0, np.sqrt(0.5), 0])  # about +Y
+    rotations[0, 1] = rotation.multiply(quarter, rotations[0, 1])  # three quarters of the surface hang on the spine
+    turned = replace(clip, rotations=rotations, translations=clip.translations[:1])
+    assert poser.of_clip(turned, 0).yaw == pytest.approx(np.pi / 2)
+    for joint, times in ((1, 1), (2, 2)):  # hips, spine and head each another way: the root's
+        for _ in range(times):
+            apart[0, joint] = rotation.multiply(quarter, apart[0, joint])
+    assert poser.of_clip(replace(turned, rotations=apart), 0).yaw == pytest.approx(0, abs=1e-6)
+
+
 def test_rigid_pieces_bend_alike_by_dual_quaternions_and_by_a_linear_blend(tmp_path: Path) -> None:
     character, source, part = column_with_source(tmp_path)
     poser, clip = Poser(source, character.skeleton), character.clips[0]

@@ -15,6 +15,8 @@ from mua.rig.scene import Part, Scene, Source
 from mua.rig.skeleton import Pose, Skeleton
 
 REST = "as the file stands"
+AGREED = 0.5  # of the surface: where less of it is turned alike, it has no heading of its own
+ALIKE = 30.0  # degrees
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,7 @@ class Poser:
         self._rest = rest_pose(source, skeleton)
         self._to_bind = np.linalg.inv(self._carried(self._rest))
         self._holders = _holders(source)
+        self._mass = _mass(source.scene, self._holders, len(skeleton.names))
 
     def rest(self) -> Moment:
         """The pose in which the file's nodes stand."""
@@ -79,9 +82,15 @@ class Poser:
         return matrices
 
     def _yaw(self, pose: Pose) -> float:
+        """How far most of the surface is turned; where its parts do not agree, how far the root is."""
         dual = self._skeleton.skinning(pose.rotations, pose.translations)
-        heading = heading_of(dual[self._skeleton.root, :4])
-        return float(2 * np.arctan2(heading[2], heading[0]))
+        headings = heading_of(dual[:, :4])
+        angles = 2 * np.arctan2(headings[:, 2], headings[:, 0])
+        alike = np.cos(angles[:, None] - angles) > np.cos(np.radians(ALIKE))
+        agreeing = alike @ self._mass
+        most = int(np.argmax(agreeing))
+        root = self._skeleton.root
+        return float(angles[most if agreeing[most] > AGREED * self._mass.sum() else root])
 
 
 def skinned(scene: Scene, part: Part, nodes: Array) -> Array:
@@ -111,3 +120,12 @@ def _holders(source: Source) -> Array:
         if holders[node] < 0 and parent >= 0:
             holders[node] = holders[parent]
     return holders
+
+
+def _mass(scene: Scene, holders: Array, joints: int) -> Array:
+    """The weights [J] that each joint has in the surface."""
+    mass = np.zeros(joints)
+    for part in scene.parts:
+        held = holders[scene.skins[part.skin].joints][part.joints]
+        np.add.at(mass, held[held >= 0], weighted(part.weights)[held >= 0])
+    return mass
