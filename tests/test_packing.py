@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
+from mua.rig.chart_shapes import GUTTER
 from mua.rig.charts import areas
-from mua.rig.packing import GRID, GUTTER, pack
+from mua.rig.ground import GRID
+from mua.rig.packing import pack
 from mua.rig.texel_map import cover
 
 LENGTH_BOUND = 1e-9  # relative: float64 of a rotation and a scale
