@@ -140,3 +140,19 @@ def test_compressed_pictures_are_refused_with_advice(tmp_path: Path) -> None:
 def test_broken_glow_is_named(tmp_path: Path, fields: dict, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         read(textured(PICTURE, **fields), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("sampler", "squares"), [({"magFilter": 9728}, True), ({"magFilter": 9729}, False), ({}, False)]
+)
+def test_a_picture_that_is_not_interpolated_has_square_texels(
+    tmp_path: Path, sampler: dict[str, int], squares: bool
+) -> None:
+    """Block figures are painted in few texels, whose edges are sharp."""
+    glb = textured(np.array([[[255, 0, 0, 255], [0, 0, 255, 255]]], np.uint8))
+    glb.json["samplers"] = [sampler]
+    image = read(glb, tmp_path).materials[0].image
+    middle = image[:, [image.shape[1] // 2 - 1, image.shape[1] // 2]]
+    assert (image.shape[1] >= 16) == squares
+    assert (middle[:, 0] == [255, 0, 0, 255]).all()
+    assert (middle[:, 1] == [0, 0, 255, 255]).all()

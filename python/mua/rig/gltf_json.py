@@ -84,7 +84,7 @@ FIELDS: dict[str, dict[str, Kind]] = {
     "textureInfo": {"index": int, "texCoord": int},
     "texture": {"source": int, "sampler": int},
     "image": {"uri": str, "bufferView": int},
-    "sampler": {"wrapS": int, "wrapT": int},
+    "sampler": {"wrapS": int, "wrapT": int, "magFilter": int},
 }
 STRUCTURES: dict[str, type] = {
     "glTF": pygltflib.GLTF2,

@@ -13,6 +13,7 @@ from mua.rig.gltf_vrm import is_toon
 from mua.rig.scene import AlphaMode, Material, Wrap
 
 WRAPS: dict[int, Wrap] = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
+NEAREST = 9728  # of a sampler that shows texels as squares
 ALPHA_MODES: dict[str, AlphaMode] = {"OPAQUE": "opaque", "MASK": "mask", "BLEND": "blend"}
 REPEAT: tuple[Wrap, Wrap] = ("repeat", "repeat")
 WEBP = "EXT_texture_webp"
@@ -147,6 +148,8 @@ def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Arra
     if texture.sampler is None:
         return picture, REPEAT
     sampler = document.item("samplers", texture.sampler, field=f"textures[{info['index']}].sampler")
+    if sampler.magFilter == NEAREST:
+        picture = pictures.blocky(picture)
     return picture, (WRAPS.get(sampler.wrapS, "repeat"), WRAPS.get(sampler.wrapT, "repeat"))
 
 

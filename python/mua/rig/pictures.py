@@ -10,6 +10,9 @@ from mua.arrays import Array
 STORED = np.arange(256) / 255
 LINEAR = np.where(STORED <= 0.04045, STORED / 12.92, ((STORED + 0.055) / 1.055) ** 2.4)  # of the sRGB bytes 0 to 255
 
+SQUARE = 16  # texels along the side of a square that one texel becomes: its edge is a sixteenth of it wide
+FINEST = 1024  # texels along a side, beyond which no picture is made finer
+
 
 def decode_image(content: bytes) -> Array:
     """Decode a PNG, JPEG or WebP to [h, w, 4] uint8; raises ValueError where Pillow cannot."""
@@ -18,6 +21,12 @@ def decode_image(content: bytes) -> Array:
             return np.asarray(image.convert("RGBA"))
     except (OSError, SyntaxError, Image.DecompressionBombError) as broken:
         raise ValueError(str(broken)) from broken
+
+
+def blocky(image: Array) -> Array:
+    """The picture [h, w, 4] with each texel as a square of several, as samplers show it that do not interpolate."""
+    times = min(SQUARE, FINEST // max(image.shape[:2]))
+    return image if times < 2 else image.repeat(times, axis=0).repeat(times, axis=1)
 
 
 def flat(factor: Array) -> Array:
