@@ -76,6 +76,26 @@ def test_robot_of_rigid_parts_is_a_character(tmp_path: Path) -> None:
     np.testing.assert_allclose(reach, [-0.3, -0.15, 0], atol=FLOAT_BOUND)
 
 
+@pytest.mark.parametrize("on_a_mesh", [True, False])
+def test_a_body_of_which_a_single_arm_moves_is_whole(tmp_path: Path, on_a_mesh: bool) -> None:
+    """The still parts belong to it, whether the arm hangs on one of them or all on a node without a mesh."""
+    glb = Glb()
+    glb.json["nodes"] = [{"name": "group"}]
+    glb.json["scenes"] = [{"nodes": [0]}]
+    belly = block(glb, "belly", at=(0, 1, 0), parent=0)
+    turn(glb, block(glb, "arm", at=(0.5, 0, 0), parent=belly if on_a_mesh else 0))
+    block(glb, "hat", at=(0, 0.6, 0), parent=belly)
+    surfaces = read(glb, tmp_path)
+    assert not any("left out:" in note and "belly" in note for note in surfaces.notes)
+    low, high = surfaces.vertices.min(axis=0), surfaces.vertices.max(axis=0)
+    assert high[1] - low[1] > 0.6
+    (clip,) = surfaces.clips
+    moved = posed(surfaces, clip.rotations[15], clip.translations[15]) - surfaces.vertices
+    still = surfaces.vertices[:, 0] < 0.25
+    np.testing.assert_allclose(moved[still], 0, atol=FLOAT_BOUND)
+    assert np.abs(moved[~still]).max() > 0.1
+
+
 @pytest.mark.parametrize(
     ("left", "right"),
     [("arm.L", "arm.R"), ("UpperArmL", "UpperArmR"), ("LArm", "RArm"), ("lShldr", "rShldr"), ("arm_l_01", "arm_r_01")],

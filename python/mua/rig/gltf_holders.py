@@ -34,11 +34,21 @@ class Holders:
         return holder
 
     def _base_of_rigid_parts(self) -> int | None:
-        """Where nothing is skinned: the lowest node above all meshes that clips move; still meshes below hang on it."""
+        """Where nothing is skinned: the lowest node above all meshes that clips move; still meshes below hang on it.
+
+        Where a single part moves, it is the node above it; and always the highest node above that is itself a mesh:
+        what hangs on a mesh is a part of it.
+        """
         nodes = self._document.gltf.nodes or []
         held = [n for n in self._tree.shown if nodes[n].mesh is not None]
-        moved = {self._tree.nearest(n, self._moved) for n in held} - {None}
-        return self._tree.common({int(n) for n in moved if n is not None}) if moved else None
+        found = {self._tree.nearest(n, self._moved) for n in held} - {None}
+        moved = {int(n) for n in found if n is not None}
+        base = self._tree.common(moved) if moved else None
+        if base is None:
+            return None
+        if len(moved) == 1:
+            base = self._tree.parents.get(base, base)
+        return [base, *(n for n in self._tree.upwards(base) if nodes[n].mesh is not None)][-1]
 
     def _is_near(self, node: int) -> bool:
         """Whether a mesh, by the bounds in its file, lies at the skeleton; always where there is none."""

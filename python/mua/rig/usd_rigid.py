@@ -52,6 +52,8 @@ def find_movers(stage: Usd.Stage, meshes: list[Usd.Prim], *, first: int) -> Move
     base = next(iter(moving))
     for path in moving:
         base = base.GetCommonPrefix(path)
+    if len(moving) == 1:  # the part that moves is one of a body's
+        base = base.GetParentPath()
     prim = stage.GetPrimAtPath(base)
     if base not in moving and prim and not prim.IsPseudoRoot():
         moving[base] = prim
