@@ -90,7 +90,7 @@ def test_what_is_steered_from_above_the_root_is_led_by_the_body() -> None:
     skeleton = surfaces.skeleton
     assert skeleton.names[skeleton.root] == NAMES[1]
     assert skeleton.root in skeleton.ancestors(skeleton.names.index(NAMES[4]))
-    assert surfaces.notes == ("1 joints hang on others than in the file, as the clips show.",)
+    assert surfaces.notes == ("1 joint hangs on another than in the file, as the clips show.",)
 
 
 def test_parents_come_before_children() -> None:

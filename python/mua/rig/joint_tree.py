@@ -46,9 +46,21 @@ def reattached(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> t
     moved, left_out = int(np.count_nonzero((parents != bind.parents) & kept)), int(np.count_nonzero(~kept))
     if not moved and not left_out:
         return bind, ()
-    parts = [f"{moved} joints hang on others than in the file, as the clips show"] if moved else []
-    parts += [f"{left_out} joints without weights and without a bind pose are left out"] if left_out else []
-    return _ordered(bind, parents, kept), (", and ".join(parts) + ".",)
+    return _ordered(bind, parents, kept), (_told(moved, left_out, shown=bool(motions)),)
+
+
+def _told(moved: int, left_out: int, *, shown: bool) -> str:
+    """The sentence on joints that hang elsewhere and those that are left out; `shown`: by clips."""
+    parts = []
+    if moved:
+        others = "joint hangs on another" if moved == 1 else "joints hang on others"
+        parts.append(
+            f"{moved} {others} than in the file, {'as the clips show' if shown else 'so that the root leads all'}"
+        )
+    if left_out:
+        idle, are = ("joint", "is") if left_out == 1 else ("joints", "are")
+        parts.append(f"{left_out} {idle} without weights and without a bind pose {are} left out")
+    return ", and ".join(parts) + "."
 
 
 def _as_filed(bind: Bind) -> tuple[Array, Array]:
