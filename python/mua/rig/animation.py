@@ -39,7 +39,7 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     carries = _body(scene)
     scene = replace(scene, parts=tuple(_stand_in(scene, skin, carries) for skin in range(len(scene.skins))))
     bind = bind_pose(scene)
-    scene, change = corrected(scene, bind, points=bind.places[bind.mass > 0])
+    scene, change = corrected(scene, bind, points=bind.places[bind.mass > 0], stand=False)
     rigged = rigid_skeleton(scene, bind_pose(scene))
     notes = (*scene.notes, *change.size_notes, *change.notes, *rigged.notes)
     return Animation(rigged.skeleton, rigged.clips, notes, roles_of(scene, rigged))

@@ -84,7 +84,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.ptp(used, axis=0).any():
         raise InputError(f"{path}: all vertices of the skinned meshes lie at {used[0].tolist()}, expected a surface")
-    scene, change = corrected(scene, bind, points=used)
+    scene, change = corrected(scene, bind, points=used, stand=True)
     if change.unit != 1 or change.notes:
         bind = bind_pose(scene)
         mesh = _merge(scene, bind)

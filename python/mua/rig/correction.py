@@ -10,6 +10,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig.bind_pose import Bind
 from mua.rig.figure_size import LEAST, MOST
+from mua.rig.lying import turn_to_stand
 from mua.rig.scene import Scene
 
 HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
@@ -52,10 +53,18 @@ def corrected(
     bind: Bind,
     *,
     points: Array,  # [N, 3] what the scene shows in the bind pose, at least one
+    stand: bool,  # whether a person who lies is made to stand
 ) -> tuple[Scene, Correction]:
-    """The scene at a plausible height in metres and facing +Z."""
+    """The scene at a plausible height in metres, upright and facing +Z."""
     correction = np.eye(4)
     told = []
+    upright = turn_to_stand(scene, bind) if stand else None
+    if upright is not None:
+        correction[:3, :3] = upright
+        points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
+        told.append(
+            "The character lies in its bind pose: the file's up axis is another than it says; it is made to stand."
+        )
     unit, size_notes = plausible_unit(_height(points))
     correction[:3, :3] *= unit
     turn = _quarter_turn(scene, bind)
@@ -66,7 +75,7 @@ def corrected(
             f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°."
         )
     change = Correction(unit, size_notes, tuple(told))
-    if unit == 1 and not turn:
+    if (correction == np.eye(4)).all():
         return scene, change
     return carried(scene, correction), change
 

@@ -1,0 +1,71 @@
+"""A person who lies in the bind pose is made to stand; nobody else is turned."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from people import person
+from scenes import GREY, HERE, at, part
+from scipy.spatial.transform import Rotation
+
+from mua.motion.joint_names import roles
+from mua.rig.assemble import Surfaces, assemble
+from mua.rig.scene import Scene, Skin
+
+
+def whole(turn: Rotation, *, sitting: float = 0.0, rest: Rotation | None = None) -> Scene:
+    """A person turned as a whole, the thighs lifted by `sitting` degrees; at rest turned as `rest` says."""
+    skeleton = person()
+    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    for side in ("Left", "Right"):
+        hip = skeleton.names.index(f"{side}UpLeg")
+        for joint in range(len(places)):
+            if hip in skeleton.ancestors(joint):
+                lift = Rotation.from_euler("x", -sitting, degrees=True)
+                places[joint] = places[hip] + lift.apply(places[joint] - places[hip])
+    bound, rests = (np.stack([at(*t.apply(place), t) for place in places]) for t in (turn, rest or turn))
+    count = len(places)
+    skin = Skin(np.arange(count), np.linalg.inv(bound))
+    joints = np.stack([np.arange(count), np.roll(np.arange(count), 1)], axis=1)
+    corners = turn.apply(np.concatenate([places, places + 0.02, places - [0.02, 0, 0]]))
+    faces = np.stack([np.arange(count), np.arange(count) + count, np.arange(count) + 2 * count], axis=1)
+    mesh = replace(
+        part(count=3 * count),
+        positions=corners,
+        joints=np.tile(joints, (3, 1)),
+        weights=np.tile([0.75, 0.25], (3 * count, 1)),
+        faces=faces,
+        uv_faces=faces,
+    )
+    return Scene("body", skeleton.names, skeleton.parents, rests, (skin,), (mesh,), (GREY,), (), ())
+
+
+def places_of(surfaces: Surfaces) -> dict[str, np.ndarray]:
+    skeleton = surfaces.skeleton
+    _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    return {role: places[joints[0]] for role, joints in roles(skeleton).items()}
+
+
+STANDS = places_of(assemble(whole(Rotation.identity()), HERE))
+
+
+@pytest.mark.parametrize(("axis", "degrees"), [("x", 90), ("x", -90), ("z", 90), ("z", -90)])
+def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
+    surfaces = assemble(whole(Rotation.from_euler(axis, degrees, degrees=True)), HERE)
+    assert any("it is made to stand" in note for note in surfaces.notes)
+    for role, place in places_of(surfaces).items():
+        np.testing.assert_allclose(place, STANDS[role], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        whole(Rotation.identity()),
+        whole(Rotation.identity(), sitting=80),
+        whole(Rotation.from_euler("x", 90, degrees=True), sitting=80),  # on four legs
+        whole(Rotation.from_euler("x", 45, degrees=True)),
+        whole(Rotation.from_euler("x", 90, degrees=True), rest=Rotation.identity()),
+    ],
+)
+def test_who_stands_sits_leans_or_goes_on_four_legs_is_not_turned(scene: Scene) -> None:
+    assert not any("made to stand" in note for note in assemble(scene, HERE).notes)
