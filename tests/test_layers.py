@@ -57,3 +57,9 @@ def test_modules_import_only_from_above() -> None:
 def test_reading_and_decoding_import_no_torch() -> None:
     code = "import sys, mua.asset.read, mua.decode, mua.render; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_check_of_a_gltf_file_loads_no_library_that_it_does_not_use() -> None:
+    unused = "{'torch', 'warp', 'pxr'}"
+    code = f"import sys, mua.cli.check; sys.exit(bool({unused} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -194,13 +194,28 @@ def test_rigid_pieces_bend_alike_by_dual_quaternions_and_by_a_linear_blend(tmp_p
     rotations = clip.rotations.copy()
     rotations[:, 1] = rotation.multiply(turn, rotations[:, 1])
     pose = replace(clip.pose(0), rotations=rotations[0])
-    at = poser.bent(part, pose)
+    (at,) = poser.bent(pose)
     expected = gltf_files.posed(gltf_files.read_surfaces(tmp_path / "column.glb"), pose.rotations, pose.translations)
     assert len(at) == len(part.positions)
     np.testing.assert_allclose(np.sort(at[:, 1]), np.sort(expected[:, 1]), atol=1e-6)  # rigid rings bend alike
     likeness, _ = likeness_of(character, (replace(clip, name="far", rotations=rotations),), texels=TEXELS)
     assert likeness is not None
     assert all(pose.bending.iou > 0.99 for pose in likeness.poses)
+
+
+def test_what_stands_alike_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    character, _, _ = column_with_source(tmp_path)
+    paint, cameras = Painter.__call__, []
+
+    def counted(self: Painter, places: list[Array], camera: Camera) -> Array:
+        cameras.append(camera)
+        return paint(self, places, camera)
+
+    monkeypatch.setattr(Painter, "__call__", counted)
+    likeness, _ = likeness_of(character, (), texels=TEXELS)
+    assert likeness is not None
+    assert len(cameras) == len(likeness.poses[0].shots)  # as the file stands, joints and bending change nothing
+    assert likeness.poses[0].bending.iou == 1
 
 
 @pytest.mark.parametrize(("bending", "told_of"), [(Agreement(90, 5, 5, 0.0), True), (Agreement(99, 0, 1, 0.0), False)])

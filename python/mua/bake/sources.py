@@ -14,7 +14,6 @@ from mua.rig.detail import Detail
 from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.read import read_character
 from mua.rig.uv import UvMode
-from mua.teachers.procedural import procedural_character
 
 RATE = 30.0  # frames per second of every clip, and of the window that the student sees
 ATLAS = 1024  # texels of the base-colour atlas along a side
@@ -39,6 +38,8 @@ def load_character(
         raise InputError("--scale and --height are for a character from a file; give CHARACTER")
     if leave_out:
         raise InputError(f"--leave-out {leave_out[0]}: is for a character from a file; give CHARACTER")
+    from mua.teachers.procedural import procedural_character  # not to be loaded for a file's sake
+
     return procedural_character(seed=seed)
 
 

@@ -11,7 +11,6 @@ from mua.rig.detail import Detail
 from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.gltf import read_gltf, read_gltf_animation
 from mua.rig.resize import resized
-from mua.rig.usd import read_usd, read_usd_animation
 from mua.rig.uv import UvMode, build_atlas
 from mua.signature import refuse_foreign, require_kind
 
@@ -25,14 +24,21 @@ def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequenc
 
     Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
     """
-    read = read_gltf if _checked_suffix(path, (*GLTF, *USD)) in GLTF else read_usd
-    return resized(read(path, leave_out=leave_out), size, path)
+    if _checked_suffix(path, (*GLTF, *USD)) in GLTF:
+        return resized(read_gltf(path, leave_out=leave_out), size, path)
+    from mua.rig.usd import read_usd  # with USD's library, which takes long to load
+
+    return resized(read_usd(path, leave_out=leave_out), size, path)
 
 
 def read_animation(path: Path) -> Animation:
     """Read a file's skeleton and clips by its suffix, with or without a mesh; raises as `read_surfaces` does."""
     suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, *USD))
-    return read_usd_animation(path) if suffix in USD else read_gltf_animation(path)
+    if suffix not in USD:
+        return read_gltf_animation(path)
+    from mua.rig.usd import read_usd_animation
+
+    return read_usd_animation(path)
 
 
 def _checked_suffix(path: Path, known: Sequence[str]) -> str:

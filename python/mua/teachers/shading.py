@@ -8,13 +8,12 @@ would be finer than what a student holds.
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, var-annotated"
 # (the body of the kernel is Warp's language, not Python)
 
-from dataclasses import dataclass
-
 import numpy as np
 import warp as wp
 
 from mua import rotation
 from mua.arrays import Array
+from mua.teachers.light import Light
 from mua.teachers.warp_start import start
 
 DEVICE = "cpu"
@@ -28,14 +27,6 @@ SHADOW = 0.85  # of the light, that a bone hides when it fills the view along th
 SHEEN = 0.10  # display value at the centre of the lamp's reflection
 
 start()
-
-
-@dataclass(frozen=True)
-class Light:
-    """Light that a surface sends out, by vertex, in world space."""
-
-    gain: Array  # [V, 3 rgb] display value over albedo
-    sheen: Array  # [V, 3 xyz] change of display value with the unit direction from camera to surface
 
 
 @wp.kernel(enable_backward=False)

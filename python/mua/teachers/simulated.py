@@ -24,17 +24,17 @@ from mua.rig.template import make_template
 from mua.teachers.bones import figure_scale, fit_bones
 from mua.teachers.chords import straighten
 from mua.teachers.folds import Folds
+from mua.teachers.light import Light
 from mua.teachers.looseness import estimate_looseness
-from mua.teachers.shading import Light, shade, visibility
+from mua.teachers.shading import shade, visibility
 from mua.teachers.simulation import Simulation
 from mua.teachers.skinning import Skinning, transform
-from mua.teachers.smoothing import low_pass
+from mua.teachers.smoothing import TURN_WAVELENGTH, low_pass
 from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames, vertex_normals
 
 COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets
-TURN_WAVELENGTH = 0.08  # metres on a person: in the crease of a knee skinning turns the surface faster than texels hold
 
 
 class SimulatedTeacher:

@@ -11,9 +11,8 @@ from mua.rig.skeleton import Pose
 from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale
 from mua.teachers.chords import straighten
-from mua.teachers.shading import Light
-from mua.teachers.simulated import TURN_WAVELENGTH
-from mua.teachers.smoothing import low_pass
+from mua.teachers.light import Light
+from mua.teachers.smoothing import TURN_WAVELENGTH, low_pass
 from mua.teachers.teacher import TeacherFrame
 from mua.teachers.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames

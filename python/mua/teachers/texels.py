@@ -7,7 +7,7 @@ from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.texel_map import build_texel_map, points_on_surface
-from mua.teachers.shading import Light
+from mua.teachers.light import Light
 from mua.texture.albedo import sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1
 from mua.texture.sh import LINEAR
