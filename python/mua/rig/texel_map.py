@@ -32,12 +32,12 @@ def build_texel_map(mesh: Mesh, size: int) -> TexelMap:
     corners = mesh.uv[mesh.uv_faces] * size
     owner, claims = cover(corners, size)
     texels = np.flatnonzero(owner >= 0)
-    areas = _corner_areas(corners[owner[texels]], texels, size)
+    areas = _corner_areas(_edges(corners), owner[texels], texels, size)
     return TexelMap(
         size=size,
         texels=texels.astype(np.int32),
         triangles=owner[texels],
-        barycentrics=(areas / areas.sum(axis=1, keepdims=True)).astype(np.float32),
+        barycentrics=np.ascontiguousarray((areas / areas.sum(axis=0)).T, dtype=np.float32),
         claimed_twice=int(np.count_nonzero(claims > 1)),
     )
 
@@ -70,13 +70,14 @@ def cover(
     """For each texel centre [size * size] its first triangle, -1 for none, and how many hold it strictly inside."""
     owner = np.full(size * size, -1, np.int32)
     claims = np.zeros(size * size, np.int64)
+    edges = _edges(corners)
     for faces, texels in _candidates(corners, size):
-        areas = _corner_areas(corners[faces], texels, size)
-        covered = (areas >= 0).all(axis=1) & (areas > 0).any(axis=1)
-        claims += np.bincount(texels[(areas > 0).all(axis=1)], minlength=size * size)
-        taken, first = np.unique(texels[covered], return_index=True)
-        free = owner[taken] < 0
-        owner[taken[free]] = faces[covered][first[free]]
+        one, two, three = _corner_areas(edges, faces, texels, size)
+        least, most = np.minimum(np.minimum(one, two), three), np.maximum(np.maximum(one, two), three)
+        claims += np.bincount(texels[least > 0], minlength=size * size)
+        covered = np.flatnonzero((least >= 0) & (most > 0))
+        covered = covered[owner[texels[covered]] < 0][::-1]  # of equal indices numpy lets the last win: the first face
+        owner[texels[covered]] = faces[covered]
     return owner, claims
 
 
@@ -97,28 +98,39 @@ def _candidates(
         yield owner, (row + low[owner, 1]) * size + column + low[owner, 0]
 
 
-def _corner_areas(
-    corners: Array,  # [n, 3, 2] in texels
-    texels: Array,  # [n] row * size + col
-    size: int,
+def _edges(
+    corners: Array,  # [F, 3, 2] in texels
 ) -> Array:
-    """Twice the area [n, 3] that each texel centre spans with the edge opposite each corner; >= 0 inside.
+    """The edge opposite each corner as (dx, dy, x, y), [3, 4, F]: its direction, counter-clockwise, and one end.
 
-    Both triangles of an edge evaluate it from the same end, so their values differ in sign alone: rounding opens no
-    gap between neighbours and makes no overlap.
+    Both triangles of an edge take the same end, so that what they compute with it differs in sign alone.
     """
-    row, column = np.divmod(texels, size)
-    centre = np.stack([column, row], axis=1) + 0.5
-    turn = np.sign(_cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-    areas = np.empty((len(texels), 3))
+    sides = corners[:, 1:] - corners[:, :1]
+    turn = np.sign(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
+    edges = []
     for k in range(3):
         start, end = corners[:, (k + 1) % 3], corners[:, (k + 2) % 3]
         swap = (start[:, 0] > end[:, 0]) | ((start[:, 0] == end[:, 0]) & (start[:, 1] > end[:, 1]))
         first, last = np.where(swap[:, None], end, start), np.where(swap[:, None], start, end)
-        areas[:, k] = _cross(last - first, centre - first) * np.where(swap, -turn, turn)
+        edges.append(np.concatenate([((last - first) * np.where(swap, -turn, turn)[:, None]).T, first.T]))
+    return np.stack(edges)
+
+
+def _corner_areas(
+    edges: Array,  # [3, 4, F]
+    faces: Array,  # [n]
+    texels: Array,  # [n] row * size + col
+    size: int,
+) -> Array:
+    """Twice the area [3, n] that each texel centre spans with the edge opposite each corner; >= 0 inside.
+
+    Of two triangles with an edge in common, one has what the other has with the other sign: rounding opens no gap
+    between neighbours and makes no overlap.
+    """
+    row, column = np.divmod(texels, size)
+    x, y = column + 0.5, row + 0.5
+    areas = np.empty((3, len(texels)))
+    for k in range(3):
+        dx, dy, from_x, from_y = edges[k]
+        areas[k] = dx[faces] * (y - from_y[faces]) - dy[faces] * (x - from_x[faces])
     return areas
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """z component [n] of the cross product of vectors [n, 2] in the plane."""
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
