@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,25 @@ def test_rig_comes_back_exactly(written: Path) -> None:
     np.testing.assert_array_equal(stored.skin_weights, rig.skin_weights)
     np.testing.assert_array_equal(stored.texels.barycentrics, rig.texels.barycentrics)
     assert stored.texels.size == rig.texels.size
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs Linux, which says what a process maps")
+def test_what_was_read_does_not_stay_in_memory(written: Path) -> None:
+    recording = Recording(written)
+    recording.subbands(GEOMETRY, range(recording.count()))
+    recording.meshes(range(recording.count()))
+    recording.mean_mesh()
+    assert sum(1 for _ in recording.whole_frames())
+    resident, name = {}, ""
+    for line in Path("/proc/self/smaps").read_text().splitlines():
+        if line.endswith(".npy"):
+            name = Path(line.split(maxsplit=5)[5]).name
+        elif line.startswith("Rss:") and name:
+            resident[name] = resident.get(name, 0) + int(line.split()[1])
+            name = ""
+    kept = ("meshes.npy", "ll.npy", "d3.npy", "d2.npy")
+    assert {name: size for name, size in resident.items() if size and name.startswith((*kept, "whole"))} == {}
+    assert set(kept) <= set(resident)
 
 
 def pywt_subbands(fill: Fill, texture: Array) -> list[Array]:

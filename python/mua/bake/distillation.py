@@ -21,6 +21,7 @@ from mua.errors import InputError
 from mua.evaluate import Errors, evaluate
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
 from mua.likeness.compare import Likeness
+from mua.memory import give_back
 from mua.motion.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -116,6 +117,7 @@ def teach_stage(order: Distillation, stage: StageName, recording: Recording, lis
 
 def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
     """Write the avatar, read it back, measure it and picture it."""
+    give_back()
     listener.stage("avatar")
     clips = playback.whole_clips(recording.clips) if order.clips is None else order.clips
     starts = playback.held_out(recording.clips)

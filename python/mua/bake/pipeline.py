@@ -19,6 +19,7 @@ from mua.bake.sources import RATE, load_character, load_clips
 from mua.files import require_writable
 from mua.likeness import told
 from mua.likeness.compare import Likeness
+from mua.memory import give_back
 from mua.motion.clip import Clip
 from mua.motion.planted_feet import Feet
 from mua.recording import PlannedClip, Recording
@@ -77,7 +78,9 @@ def bake(order: Order, listener: Listener) -> Baked:
     require_writable(order.output)
     likeness = _likeness(character, clips, order.settings.texels, listener)
     character = replace(character, source=None)  # its textures may be large
+    give_back()
     recording = _record(order, character, planned, listener)
+    give_back()
     distillation = Distillation(
         output=order.output,
         work=order.work,

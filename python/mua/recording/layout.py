@@ -1,6 +1,7 @@
 """The files of a recording: their names, what the JSON among them says, and the shapes of arrays."""
 
 import json
+import mmap
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -157,6 +158,18 @@ def open_array(path: Path, shape: tuple[int, ...], dtype: str) -> Array:
     if array.shape != shape or array.dtype != np.dtype(dtype):
         raise InputError(f"{path} holds {array.shape} of {array.dtype.str}, expected {shape} of {dtype}")
     return np.asarray(array)
+
+
+def forget(array: Array) -> None:
+    """Take a mapped file's pages out of this process's memory: they are mapped again where they are needed again.
+
+    The system keeps what it read of a file as long as it has room, but counts pages that are mapped as used.
+    """
+    owner: object = array
+    while isinstance(owner, np.ndarray):
+        owner = owner.base
+    if isinstance(owner, mmap.mmap) and hasattr(owner, "madvise"):  # Windows has none
+        owner.madvise(mmap.MADV_DONTNEED)
 
 
 def _read_json(path: Path) -> dict[str, Any]:

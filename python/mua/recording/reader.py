@@ -25,6 +25,7 @@ from mua.recording.layout import (
     SUM,
     Header,
     Index,
+    forget,
     open_array,
     read_header,
     read_indices,
@@ -113,11 +114,12 @@ class Recording:
         """Absolute subbands of some channels and frames: the stored differences plus the reference's."""
         at = self._places[held_out][np.asarray(rows, dtype=np.int64)]
         reference = self.reference.subbands
-        return Subbands(
-            torch.from_numpy(self._gather("ll", at, (channels,)) + reference.ll[channels]),
-            torch.from_numpy(self._gather("d3", at, (slice(None), channels)) + reference.d3[:, channels]),
-            torch.from_numpy(self._gather("d2", at, (slice(None), channels)) + reference.d2[:, channels]),
-        )
+        bands = []
+        for name, part in (("ll", (channels,)), ("d3", (slice(None), channels)), ("d2", (slice(None), channels))):
+            gathered = self._gather(name, at, part)
+            gathered += getattr(reference, name)[part]  # in place: of all frames this is large
+            bands.append(torch.from_numpy(gathered))
+        return Subbands(*bands)
 
     def meshes(self, rows: Rows, *, held_out: bool = False) -> Array:
         """Canonical vertices [F, V, 3] float32, metres."""
@@ -135,6 +137,7 @@ class Recording:
         for number in np.unique(self._places[False][:, 0]):
             rows = self._places[False][self._places[False][:, 0] == number, 1]
             total += self._shards[number].arrays["meshes"][rows].sum(axis=0, dtype=np.float64)
+            forget(self._shards[number].arrays["meshes"])
         return total / self._training_frames
 
     def whole_frames(self, held_out: bool | None = None) -> Iterator[WholeFrame]:
@@ -146,11 +149,14 @@ class Recording:
                 segment, frame = owners[row]
                 if held_out is None or segment.held_out == held_out:
                     texture = self.reference.texture + shard.arrays[whole_name(row)].astype(np.float32)
+                    mesh = np.array(shard.arrays["meshes"][row])
+                    for name in (whole_name(row), "meshes"):
+                        forget(shard.arrays[name])
                     if not np.isfinite(texture).all():
                         raise not_finite(
                             shard.directory / f"{whole_name(row)}.npy", f"frame {frame} of {segment.clip!r}"
                         )
-                    yield WholeFrame(by_name[segment.clip], frame, np.array(shard.arrays["meshes"][row]), texture)
+                    yield WholeFrame(by_name[segment.clip], frame, mesh, texture)
 
     def fingerprint(self) -> str:
         """A SHA-256 that changes with anything recorded."""
@@ -185,6 +191,7 @@ class Recording:
             if picked is None:
                 picked = np.empty((len(places), *rows.shape[1:]), np.float32)
             picked[here] = rows
+            forget(self._shards[number].arrays[name])
         assert picked is not None
         if not math.isfinite(picked.sum(dtype=np.float64)):  # one pass over what is at hand; a place is sought after
             self._refuse(name, places, picked)

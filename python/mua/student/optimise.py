@@ -78,7 +78,7 @@ def optimise(
     With `selection` the module ends with the weights that it chose.
     """
     relative = [float(group.pop("lr", 1.0)) for group in parameters]  # type: ignore[arg-type]
-    optimizer = torch.optim.AdamW(parameters, lr=schedule.rate)
+    optimizer = torch.optim.AdamW(parameters, lr=schedule.rate, fused=True)  # one pass over the weights
     first = _restore(module, optimizer, selection, stage=stage, run=run)
     model = run.processes.wrap(module)
     if selection is not None and first == 0:

@@ -45,7 +45,8 @@ def exchange(
     part = torch.randint(len(steps), (count,), generator=generator).to(inputs.device)
     radius = torch.randint(RADII, (count, 1), generator=generator).to(inputs.device)
     one, other = (pick(inputs, count, generator=generator) for _ in range(2))
-    return torch.where(steps.to(inputs.device)[part] <= radius, one, other)
+    few = steps.to(inputs.device, torch.int16)  # joints: [count, k D] of them is large
+    return torch.where(few[part] <= radius, one, other)
 
 
 def scatter(

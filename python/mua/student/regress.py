@@ -20,7 +20,7 @@ from mua.student.smoother import Sum, fit_smoother
 # Measured on held-out CMU walks and turns, see docs/accuracy.md.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
 VISITS = 32  # to each point: the function's values there are computed once
-POINTS_AT_ONCE = 1 << 10
+POINTS_AT_ONCE = 1 << 9
 FORGONE = 1e-4  # of the spread of what a part sees
 GENERALISATION = Generalisation()
 
@@ -64,9 +64,7 @@ def regress(
             generator=generator,
         )
         parts = {part: points[part.start :: part.step] for part in run.processes.parts(count)}
-        return {
-            part: (at, torch.cat([smooth(some) for some in at.split(POINTS_AT_ONCE)])) for part, at in parts.items()
-        }
+        return {part: (at, _values(smooth, at, width=goal.shape[1])) for part, at in parts.items()}
 
     def loss(model: nn.Module) -> Tensor:
         def part(share: Share) -> Tensor:
@@ -82,6 +80,14 @@ def regress(
     if expand is None:
         expand = torch.eye(goal.shape[1], device=goal.device)
     return Conditioned(white, mlp, unit * expand)
+
+
+def _values(smooth: Callable[[Tensor], Tensor], points: Tensor, *, width: int) -> Tensor:
+    """What a function gives at points [n, D], some at a time, [n, width]."""
+    values = points.new_empty(len(points), width)
+    for own, some in zip(values.split(POINTS_AT_ONCE), points.split(POINTS_AT_ONCE), strict=True):
+        own.copy_(smooth(some))
+    return values
 
 
 def fit_local(

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from mua.errors import InputError
+from mua.memory import give_back
 from mua.processes import ALONE, Processes
 from mua.student.branches import each_branch, side_by_side
 from mua.student.checkpoint import Checkpoints
@@ -90,6 +91,7 @@ def train(
     fit = descend_branch if random else partial(fit_branch, parts=samples.parts, until=only)
     if only in (None, "coarse"):
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
+    give_back()
     if only == "coarse":
         return
 
@@ -197,6 +199,7 @@ def fit_branch(
     )
     if until in ("bases", "regression"):
         return
+    give_back()
     stage = f"{name} fine-tuning"
     finetune(
         branch,
@@ -232,6 +235,7 @@ def start_branch(
     flat, variance = factorize_branch(
         branch, source, frames=len(inputs), settings=settings, stage=stage, run=run.alone(stage)
     )
+    give_back()
     weights = channel_weights(variance, channels, size=run.size)
     if until == "bases":
         return weights
