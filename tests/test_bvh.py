@@ -246,6 +246,14 @@ def test_reads_the_frame_that_a_writer_forgot_to_count_and_says_so(tmp_path: Pat
     assert "holds 2 frames, though it says 1" in motion.notes[0]
 
 
+def test_reads_headers_however_they_are_spaced(tmp_path: Path) -> None:
+    spaced = PERSON.replace("Frames: 2", "frames :2").replace("Frame Time:", "FRAME   Time :")
+    assert spaced != PERSON
+    motion, plain = read_bvh(write(tmp_path, spaced)), read_bvh(write(tmp_path, PERSON))
+    assert motion.clip.rate == plain.clip.rate
+    np.testing.assert_array_equal(motion.clip.rotations, plain.clip.rotations)
+
+
 def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
     z_up = PERSON.replace("OFFSET 1 -9 0", "OFFSET 1 0 -9").replace("OFFSET 0 7 0.5", "OFFSET 0 -0.5 7")
     z_up = z_up.replace("0 9 0 0 0 0 0 0 0 0", "0 0 9 0 0 0 0 0 0 0").replace(

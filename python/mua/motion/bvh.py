@@ -136,7 +136,7 @@ def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, int,
 
 
 def _header(path: Path, rows: list[str], index: int, label: str) -> float:
-    line = " ".join(rows[index].split()) if index < len(rows) else ""
+    line = " ".join(rows[index].replace(":", " : ", 1).split()).replace(" :", ":", 1) if index < len(rows) else ""
     if not line.lower().startswith(label.lower()):
         raise InputError(f"{path}: MOTION: expected {label!r} and a number, found {line[:40]!r}")
     values = _numbers(path, label, line[len(label) :].split())
