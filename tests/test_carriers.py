@@ -1,5 +1,7 @@
 """Texels on a decimated template: each is carried by its own piece of surface and moves with its own joints."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tube import tube
@@ -98,6 +100,23 @@ def test_what_nothing_carries_is_counted() -> None:
     assert np.array_equal(carried.strays, lost)
     assert np.array_equal(carried.kept.texels, carried.texels.texels[~lost])
     assert carried.notes[0].startswith(f"{np.count_nonzero(lost):,} of {len(lost):,} texels are left out")
+
+
+def test_what_moves_just_as_its_carrier_may_be_farther_from_it() -> None:
+    """Small rigid parts vanish from the template; what is left of their joint carries their texels."""
+    character = two_sheets()
+    whole = make_template(character)
+    first = whole.source_vertices[whole.mesh.faces[:, 0]] < (CELLS + 1) ** 2
+    held = whole.mesh.faces[~first | (whole.mesh.vertices[whole.mesh.faces, 0].max(axis=1) <= 0.5)]
+    template = replace(whole, mesh=Mesh(whole.mesh.vertices, held, whole.mesh.uv, held))
+    carried = carry_texels(character, template, size=SIZE)
+    dense = build_texel_map(character.mesh, SIZE)
+    at = interpolate(character.mesh.vertices, character.mesh.faces[dense.triangles], dense.barycentrics)
+    own = (at[:, 2] < GAP / 2) & (at[:, 0] > 0.5 + 0.04)  # of the sheet and beyond what is near at any rate
+    kept = ~carried.strays[own]
+    assert np.array_equal(kept, at[own, 0] - 0.5 <= 0.15)
+    assert kept.any()
+    assert not on_other_joint(character, template, carried.kept).any()
 
 
 def test_the_teacher_stands_on_carried_texels() -> None:

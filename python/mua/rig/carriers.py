@@ -6,6 +6,7 @@ joints; such a texel goes to the nearest triangle of its own kind.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -21,10 +22,13 @@ from mua.rig.texel_map import TexelMap, build_texel_map
 BEND = 0.7  # radians, of every joint by itself, for which it is judged how wrong other skin weights place a point
 SLIDE = 0.03  # of the figure's size, of every joint by itself, likewise
 REACH = 0.1  # of the figure's size: distance from a joint in the search for neighbours that move alike
+ANYWHERE = 10.0  # of the figure's size: what moves alike comes before all that is nearer
 OTHER_PIECE = 0.02  # of the figure's size: what another UV piece counts for, as pieces part where surfaces end
 OTHER_SIDE = 0.05  # of the figure's size: what a triangle counts for that faces the other way
 ACCEPTED = 0.004  # of the figure's size: the triangle under a texel that carries it no worse is taken without a search
 FAR = 0.03  # of the figure's size, 5 cm on a person: a texel that is carried worse is a stray
+FAR_ALIKE = 0.15  # of the figure's size, likewise where the carrier moves just as the texel does: its offset is long
+ALIKE = 1e-3  # of the figure's size: what moves apart by less moves alike
 CANDIDATES = 12  # points of the template that a texel chooses from
 SAMPLES = 8  # points for each triangle of the template
 SKIN_DIRECTIONS = 8  # of the space of weights, in which neighbours are sought
@@ -38,11 +42,12 @@ class Carried:
     texels: TexelMap  # triangles and barycentrics are the template's
     cost: Array  # [N] how far off each texel is carried, of the figure's size: at rest and in a bent pose
     moved: int  # texels that another triangle carries than the one under them in the texture
+    alike: Array  # [N] bool: the carrier moves just as the texel does, wherever it is
 
     @property
     def strays(self) -> Array:
         """[N] bool, texels that nothing of the template carries well."""
-        return self.cost > FAR
+        return self.cost > np.where(self.alike, FAR_ALIKE, FAR)
 
     @property
     def kept(self) -> TexelMap:
@@ -71,7 +76,7 @@ def carry_texels(character: Character, template: Template, *, size: int) -> Carr
     """Give each texel of a character's `size` x `size` texture the triangle of the template that carries it."""
     dense, under = build_texel_map(character.mesh, size), build_texel_map(template.mesh, size)
     if not len(dense.texels):
-        return Carried(dense, np.zeros(0), 0)
+        return Carried(dense, np.zeros(0), 0, np.zeros(0, bool))
     surfaces = _Surfaces(character, template)
     row_of_texel = np.full(size * size, -1, np.int64)
     row_of_texel[under.texels] = np.arange(len(under.texels))
@@ -91,8 +96,17 @@ def carry_texels(character: Character, template: Template, *, size: int) -> Carr
         chosen = part[better]
         triangles[chosen], barycentrics[chosen], cost[chosen] = choice[better], points[better], least[better]
         moved += len(chosen)
+    alike, lost = np.zeros(len(cost), bool), np.flatnonzero(cost > FAR)
+    for start in range(0, len(lost), AT_ONCE):
+        part = lost[start : start + AT_ONCE]
+        choice, points, away = surfaces.nearest_alike(dense.triangles[part], dense.barycentrics[part])
+        near = away < FAR_ALIKE
+        chosen = part[near]
+        triangles[chosen], barycentrics[chosen], cost[chosen] = choice[near], points[near], away[near]
+        alike[chosen] = True
+        moved += len(chosen)
     texels = replace(dense, triangles=triangles.astype(np.int32), barycentrics=barycentrics.astype(np.float32))
-    return Carried(texels, cost, moved)
+    return Carried(texels, cost, moved, alike)
 
 
 class _Surfaces:
@@ -110,8 +124,8 @@ class _Surfaces:
         self._weights = _carried_weights(character)
         self._coarse_weights = self._weights[template.source_vertices]
         self._directions = _directions(self._weights)
-        self._samples, at = spread_points(coarse, SAMPLES * len(coarse.faces))
-        self._tree = cKDTree(self._features(self._coarse, self._coarse_weights, self._samples, at))
+        self._samples, self._at = spread_points(coarse, SAMPLES * len(coarse.faces))
+        self._tree = cKDTree(self._features(self._coarse, self._coarse_weights, self._samples, self._at, reach=REACH))
 
     def cost(
         self,
@@ -124,32 +138,58 @@ class _Surfaces:
         own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
         corners = self._coarse.faces[carriers]
         away = np.linalg.norm(interpolate(self._coarse.vertices, corners, points) - own, axis=1)
-        skin = interpolate(self._weights, self._dense.faces[triangles], barycentrics)
-        skin -= interpolate(self._coarse_weights, corners, points)
-        squares = np.sum(own**2, axis=1)[:, None] - 2 * own @ self._joints.T + np.sum(self._joints**2, axis=1)
-        astray = BEND * np.sqrt(np.sum(skin**2 * (np.maximum(squares, 0) + SLIDE**2), axis=1))
+        astray = self.astray(triangles, barycentrics, carriers, points)
         facing = np.sum(self._dense_normals[triangles] * self._coarse_normals[carriers], axis=1)
         other = self._dense_pieces[triangles] != self._coarse_pieces[carriers]
         return np.asarray(away + astray + OTHER_SIDE * (facing < 0) + OTHER_PIECE * other)
 
+    def astray(self, triangles: Array, barycentrics: Array, carriers: Array, points: Array) -> Array:
+        """How far [N] the same points part from their carriers where joints turn."""
+        own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
+        skin = interpolate(self._weights, self._dense.faces[triangles], barycentrics)
+        skin -= interpolate(self._coarse_weights, self._coarse.faces[carriers], points)
+        squares = np.sum(own**2, axis=1)[:, None] - 2 * own @ self._joints.T + np.sum(self._joints**2, axis=1)
+        return np.asarray(BEND * np.sqrt(np.sum(skin**2 * (np.maximum(squares, 0) + SLIDE**2), axis=1)))
+
     def best(self, triangles: Array, barycentrics: Array) -> tuple[Array, Array, Array]:
         """The triangles of the template [N] that carry points best, where on them [N, 3], and the cost [N]."""
-        own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
-        features = self._features(self._dense, self._weights, triangles, barycentrics)
-        nearest = self._tree.query(features, k=min(CANDIDATES, len(self._samples)))[1].reshape(len(triangles), -1)
-        carriers = self._samples[nearest]  # [N, k]
-        points = nearest_barycentrics(own[:, None], self._coarse.vertices[self._coarse.faces[carriers]])
+        carriers, points = self._candidates(self._tree, REACH, triangles, barycentrics)
         count = carriers.shape[1]
         repeated = np.repeat(triangles, count), np.repeat(barycentrics, count, axis=0)
         cost = self.cost(*repeated, carriers.ravel(), points.reshape(-1, 3)).reshape(carriers.shape)
         rows, best = np.arange(len(triangles)), np.argmin(cost, axis=1)
         return carriers[rows, best], points[rows, best], cost[rows, best]
 
-    def _features(self, mesh: Mesh, weights: Array, triangles: Array, barycentrics: Array) -> Array:
+    def nearest_alike(self, triangles: Array, barycentrics: Array) -> tuple[Array, Array, Array]:
+        """The nearest triangles [N] that move just as points do, where on them, and how far; inf where none does."""
+        carriers, points = self._candidates(self._alike_tree, ANYWHERE, triangles, barycentrics)
+        own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
+        corners = self._coarse.vertices[self._coarse.faces[carriers]]
+        away = np.linalg.norm(np.einsum("nkc,nkcd->nkd", points, corners) - own[:, None], axis=2)
+        count = carriers.shape[1]
+        repeated = np.repeat(triangles, count), np.repeat(barycentrics, count, axis=0)
+        astray = self.astray(*repeated, carriers.ravel(), points.reshape(-1, 3)).reshape(carriers.shape)
+        away = np.where(astray < ALIKE, away, np.inf)
+        rows, best = np.arange(len(triangles)), np.argmin(away, axis=1)
+        return carriers[rows, best], points[rows, best], away[rows, best]
+
+    @cached_property
+    def _alike_tree(self) -> cKDTree:
+        return cKDTree(self._features(self._coarse, self._coarse_weights, self._samples, self._at, reach=ANYWHERE))
+
+    def _candidates(self, tree: cKDTree, reach: float, triangles: Array, barycentrics: Array) -> tuple[Array, Array]:
+        """Triangles [N, k] of the template that may carry points, and where on them [N, k, 3]."""
+        own = interpolate(self._dense.vertices, self._dense.faces[triangles], barycentrics)
+        features = self._features(self._dense, self._weights, triangles, barycentrics, reach=reach)
+        nearest = tree.query(features, k=min(CANDIDATES, len(self._samples)))[1].reshape(len(triangles), -1)
+        carriers = self._samples[nearest]
+        return carriers, nearest_barycentrics(own[:, None], self._coarse.vertices[self._coarse.faces[carriers]])
+
+    def _features(self, mesh: Mesh, weights: Array, triangles: Array, barycentrics: Array, *, reach: float) -> Array:
         """Places [N, 3 + n] in a space in which what belongs together lies near."""
         places = interpolate(mesh.vertices, mesh.faces[triangles], barycentrics)
         skin = interpolate(weights @ self._directions, mesh.faces[triangles], barycentrics)
-        return np.concatenate([places, REACH * BEND * skin], axis=1)
+        return np.concatenate([places, reach * BEND * skin], axis=1)
 
 
 def _carried_weights(character: Character) -> Array:
