@@ -6,10 +6,11 @@ from scipy import sparse
 from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.rig import Rig
-from mua.rig.texel_map import build_texel_map, points_on_surface
+from mua.rig.texel_map import TexelMap, build_texel_map, points_on_surface
 from mua.teachers.light import Light
 from mua.texture.albedo import sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1
+from mua.texture.deconvolution import deconvolved
 from mua.texture.sh import LINEAR
 from mua.texture.sheet import surfel_opacities
 from mua.texture.stretch import SurfelStretch
@@ -36,7 +37,7 @@ class SurfaceTexels:
         )
         relief -= SINK * np.exp(surfels.log_scales[:, :2]).min(axis=1, keepdims=True) * surfels.normals
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
-        albedo = sample_albedo(character.base_color, uv, texels.size)
+        albedo = _albedo(character.base_color, uv, texels)
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)
             for rows in (relief, surfels.rotations, surfels.log_scales, albedo[:, :3])
@@ -79,6 +80,21 @@ class SurfaceTexels:
 
     def _at_texels(self, values: Array) -> Array:
         return _planes(self._dense, values)
+
+
+def _albedo(
+    base_color: Array,  # [S, S, 4] uint8 sRGB
+    uv: Array,  # [N, 2] of each texel's point, v down
+    texels: TexelMap,
+) -> Array:
+    """Colours and opacities [N, 4]: as sharp as surfels can show them where a texel's point lies in its own square."""
+    albedo = sample_albedo(base_color, uv, texels.size)
+    colors = deconvolved(base_color, texels.size, 1 / (1 + np.exp(-MOST_OPAQUE))).reshape(-1, 3)[texels.texels]
+    row, column = np.divmod(texels.texels, texels.size)
+    apart = np.abs(uv * texels.size - 0.5 - np.stack([column, row], axis=1)).max(axis=1)
+    at_home = apart <= 0.5
+    albedo[at_home, :3] = colors[at_home]
+    return albedo
 
 
 def _planes(weights: sparse.csr_matrix, values: Array) -> Array:

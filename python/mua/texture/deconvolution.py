@@ -1,0 +1,65 @@
+"""Colours of texels whose surfels, laid over each other, look most like a picture that is finer than they are."""
+
+import numpy as np
+from scipy import fft
+
+from mua.arrays import Array
+from mua.texture.albedo import sample_albedo
+from mua.texture.surfels import SPREAD
+
+POINTS = 2  # along a texel, at which picture and surfels are compared
+DIRECTIONS = 8  # from which a surface is seen: the nearer of two surfels lies over the other
+AROUND = 2  # texels beyond which a surfel is not felt
+DAMPING = 0.1  # weight of the picture's own colour at the texel, so that what no surfel can show is not amplified
+
+
+def deconvolved(
+    base_color: Array,  # [S, S, 4] uint8 sRGB, alpha is opacity
+    size: int,
+    opacity: float,  # of a surfel, at its centre
+) -> Array:
+    """Colours [size, size, 3] in 0..1, sRGB, of the texels of an opaque texture.
+
+    The least-squares solution of "what the surfels of a regular grid show is the picture", over points between the
+    texels and over directions of view. The grid is the same everywhere, so that a Fourier transform solves it.
+    """
+    points = (np.arange(size * POINTS) + 0.5) / (size * POINTS)
+    uv = np.stack(np.meshgrid(points, points), axis=-1).reshape(-1, 2)
+    picture = sample_albedo(base_color, uv, size * POINTS)[:, :3].reshape(size, POINTS, size, POINTS, 3)
+    own = fft.rfft2(picture.mean(axis=(1, 3)), axes=(0, 1))
+    rows = POINTS**2 * DIRECTIONS
+    total, power = DAMPING**2 * rows * own, np.full((1, 1, 1), DAMPING**2 * rows)
+    for y, x in np.ndindex(POINTS, POINTS):
+        shown = fft.rfft2(picture[:, y, :, x], axes=(0, 1))
+        for weights in blending((np.array([x, y]) + 0.5) / POINTS - 0.5, opacity):
+            response = _response(weights, size)[..., None]
+            total, power = total + np.conj(response) * shown, power + np.abs(response) ** 2
+    return np.clip(fft.irfft2(total / power, s=(size, size), axes=(0, 1)), 0, 1)
+
+
+def blending(
+    place: Array,  # [2] along u and v from the centre of a texel, texels
+    opacity: float,
+) -> Array:
+    """What each surfel of a regular grid adds to a place seen from each direction: [DIRECTIONS, n, n], sum 1.
+
+    Rows and columns run from AROUND texels before the place's own texel to AROUND after it.
+    """
+    apart = np.arange(-AROUND, AROUND + 1)
+    v, u = (grid.ravel() for grid in np.meshgrid(apart, apart, indexing="ij"))
+    hides = opacity * np.exp(-((u - place[0]) ** 2 + (v - place[1]) ** 2) / (2 * SPREAD**2))
+    weights = np.empty((DIRECTIONS, len(hides)))
+    for row, angle in zip(weights, (np.arange(DIRECTIONS) + 0.5) * (2 * np.pi / DIRECTIONS), strict=True):
+        nearest_first = np.argsort(-(u * np.cos(angle) + v * np.sin(angle)), kind="stable")
+        passed = np.cumprod(1 - hides[nearest_first])
+        row[nearest_first] = hides[nearest_first] * np.concatenate([[1], passed[:-1]])
+    weights /= weights.sum(axis=1, keepdims=True)
+    return weights.reshape(DIRECTIONS, len(apart), len(apart))
+
+
+def _response(weights: Array, size: int) -> Array:
+    """The Fourier transform of weighted sums over a texel's surroundings in a periodic texture."""
+    kernel = np.zeros((size, size))
+    back = -np.arange(-AROUND, AROUND + 1) % size
+    np.add.at(kernel, (back[:, None], back[None, :]), weights)
+    return np.asarray(fft.rfft2(kernel))
