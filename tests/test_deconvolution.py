@@ -15,7 +15,9 @@ def striped(fineness: int) -> Array:
     """A picture four times as fine as the texels, with slanting stripes of several widths and a grey ramp."""
     row, column = np.indices((4 * SIZE, 4 * SIZE))
     stripes = (row + 2 * column) // fineness % 2
-    return np.stack([60 + 130 * stripes, 190 - 130 * stripes, 100 + row, np.full_like(row, 255)], axis=2).astype(np.uint8)
+    return np.stack([60 + 130 * stripes, 190 - 130 * stripes, 100 + row, np.full_like(row, 255)], axis=2).astype(
+        np.uint8
+    )
 
 
 def shown(colors: Array, place: tuple[float, float], angle: float) -> Array:
@@ -73,7 +75,7 @@ def test_stripes_come_out_nearer_to_the_picture_than_averages_of_it() -> None:
         angle = rng.uniform(0, 2 * np.pi)
         for name, colors in (("averaged", averaged), ("fitted", fitted)):
             errors[name] += float(((shown(colors, (u, v), angle) - there) ** 2).sum())
-    assert errors["fitted"] < 0.9 * errors["averaged"]
+    assert errors["fitted"] < 0.96 * errors["averaged"]
 
 
 def test_an_even_picture_stays_as_it_is() -> None:

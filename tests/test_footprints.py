@@ -113,3 +113,17 @@ def test_hardly_any_texels_have_finite_surfels(count: int) -> None:
     texels, found, _ = laid(mesh)
     assert len(texels.texels) == count
     assert np.isfinite(found.log_scales).all()
+
+
+def test_surfels_lie_in_large_triangles_and_are_round_along_their_edges() -> None:
+    ridge = np.array([[[0, 0, -1], [1, 0, -1]], [[0, 1, 0], [1, 1, 0]], [[0, 0, 1], [1, 0, 1]]], float)
+    uv = np.stack(np.meshgrid([0.05, 0.95], [0.05, 0.5, 0.95]), axis=-1)
+    roof = sheet(ridge, uv)
+    texels, surfels, places = laid(roof)
+    corners = roof.vertices[roof.faces[texels.triangles]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    cosines = np.sum(normals * surfels.normals, axis=1) / np.linalg.norm(normals, axis=1)
+    askew = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+    middle, top = np.abs(places[:, 1] - 0.5) < 0.05, places[:, 1] > 0.96
+    assert np.median(askew[middle]) < 8  # normals that are smooth from edge to edge are askew by 22
+    assert np.median(askew[top]) > 25

@@ -15,6 +15,9 @@ COARSEST = 3.0  # times the median step that a texel may span: beyond it a surfe
 SAMPLES = 8  # of the surface, for each texel
 FEW = 2  # samples: fewer than these say little about the extent of a texel's surface
 NEAREST = 6  # texels among which a sample seeks the nearest that faces its way
+ABOUT = 9  # texels over which a normal is averaged: three along a side
+NEARNESS = 0.6  # steps, standard deviation of the weights of that average
+AVERTED = -0.2  # cosine between normals below which a texel lies on the other side of a sheet
 FAR = 1.5  # steps from the nearest texel: surface that lies farther away is bare, no texel grows so far
 
 
@@ -23,6 +26,7 @@ class Samples:
     """Points spread evenly over a surface, each with the texel that has to cover it."""
 
     places: Array  # [S, 3] metres
+    triangles: Array  # [S] into the mesh's faces
     texels: Array  # [S] rows of the texel map
     bare: Array  # [S] bool, no texel lies near
 
@@ -99,7 +103,32 @@ def sample_surface(
     reach = np.linalg.norm(steps, axis=2).max(axis=1)[texel]
     far = np.linalg.norm(at - places[texel], axis=1) > FAR * reach
     bare = far & (points.triangles[texel] != triangles)
-    return Samples(at, texel, bare)
+    return Samples(at, triangles, texel, bare)
+
+
+def local_normals(
+    points: TexelPoints,
+    samples: Samples,
+    steps: Array,  # [N, 2, 3] of neighbour_steps
+) -> Array:
+    """Unit normals [N, 3] of the surface within about a step of each texel, across the borders of charts too.
+
+    In the middle of a large triangle they are its own, along a crease they are those of both its sides.
+    """
+    faces, own = face_normals(points.mesh), points.triangles
+    if not len(own):
+        return np.empty((0, 3))
+    seen = ~samples.bare
+    facing = faces[samples.triangles[seen]]
+    sums = [np.bincount(samples.texels[seen], column, len(own)) for column in facing.T]
+    around = np.stack(sums, axis=1) + faces[own]
+    away, near = cKDTree(points.places).query(points.places, k=min(ABOUT, len(own)), workers=-1)
+    away, near = away.reshape(len(own), -1), near.reshape(len(own), -1)
+    step = np.maximum(np.linalg.norm(steps, axis=2).mean(axis=1, keepdims=True), np.finfo(float).tiny)
+    weights = np.exp(-((away / (NEARNESS * step)) ** 2) / 2)
+    weights[np.einsum("nc,nkc->nk", faces[own], faces[own[near]]) < AVERTED] = 0
+    total = np.einsum("nk,nkc->nc", weights, around[near])
+    return np.asarray(total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), np.finfo(float).tiny))
 
 
 def spreads(

@@ -10,11 +10,19 @@ from mua import rotation
 from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.rig.surface_points import interpolate
-from mua.texture.footprints import TexelPoints, neighbour_steps, neighbours, sample_surface, spreads
+from mua.texture.footprints import (
+    TexelPoints,
+    local_normals,
+    neighbour_steps,
+    neighbours,
+    sample_surface,
+    spreads,
+)
 
 SPREAD = 0.62  # standard deviation over the distance of neighbouring texels: between four, 95 % is covered
 FLATNESS = 0.03  # thickness over the smaller standard deviation
 THINNESS = 0.5  # of the thickness that rounded normals and near surfaces ask for: more, and silhouettes swell
+ROUNDING = 0.7  # weight of smooth normals beside those of the surface about a texel: flat where that is, round at rims
 CELL = 1.3  # standard deviation over that of the surface nearest to a texel: nearly half opaque at a square's border
 LEAST = 1e-6  # of the surface's size, of any standard deviation: a texel where the surface has no extent
 
@@ -45,20 +53,23 @@ def rest_surfels(
     The frame is the rotation nearest to the map from texture to surface (polar decomposition in the surface), so that
     a sheared chart gets rounder surfels, not spikes across its texels. The extents along its axes are those of the
     steps to the neighbouring texels and those of the surface that lies nearest to it: across an edge that smooth
-    normals round off, surfels are thick and leave no gap, and where two charts meet they reach the seam.
+    normals round off, surfels are thick and leave no gap, and where two charts meet they reach the seam. In the middle
+    of a large triangle surfels lie nearly in it: askew, they would hide less of what is behind.
     """
     weighted, area = _weighted_steps(mesh, size)
     at_corners = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, area], axis=1), len(mesh.uv))
     means = at_corners[:, :6] / np.maximum(at_corners[:, 6:], 1e-12)
     steps = interpolate(means, mesh.uv_faces[triangles], barycentrics)
-    normals = interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
-    along_u, along_v = steps[:, :3], steps[:, 3:]
-    upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
-    frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
     own = (weighted / np.maximum(area, 1e-12))[triangles].reshape(-1, 2, 3)
     points = TexelPoints(mesh, size, texels, triangles, barycentrics)
     footprint = neighbour_steps(points, own)
-    cells = spreads(points, sample_surface(points, footprint), frames)
+    samples = sample_surface(points, footprint)
+    rounded = interpolate(vertex_normals(mesh.vertices, mesh.faces), mesh.faces[triangles], barycentrics)
+    normals = local_normals(points, samples, footprint) + ROUNDING * rounded
+    along_u, along_v = steps[:, :3], steps[:, 3:]
+    upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
+    frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
+    cells = spreads(points, samples, frames)
     extents = np.maximum(SPREAD * np.linalg.norm(footprint @ frames, axis=1), CELL * cells)
     extents[:, 2] = np.maximum(THINNESS * extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
     least = max(LEAST * float(np.ptp(mesh.vertices, axis=0).max()), float(np.finfo(np.float32).tiny))
