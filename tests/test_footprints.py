@@ -126,4 +126,4 @@ def test_surfels_lie_in_large_triangles_and_are_round_along_their_edges() -> Non
     askew = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
     middle, top = np.abs(places[:, 1] - 0.5) < 0.05, places[:, 1] > 0.96
     assert np.median(askew[middle]) < 8  # normals that are smooth from edge to edge are askew by 22
-    assert np.median(askew[top]) > 25
+    assert askew[top].min() > 15  # without what lies beyond the ridge, 10
