@@ -31,14 +31,14 @@ def straighten(
     duals = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
     size = float(np.ptp(rig.mesh.vertices, axis=0).max()) or 1.0
     beyond = bent(duals, mesh, faces, size=size)
-    share = np.einsum("nk,nk->n", rig.texels.barycentrics, beyond[faces[triangles]])
-    texels = np.flatnonzero(share)
+    texels = np.flatnonzero(beyond[faces].any(axis=1)[triangles])  # few of them, on most frames none
     if not len(texels):
         return
     triangles, barycentrics = triangles[texels], rig.texels.barycentrics[texels]
+    share = np.einsum("nk,nk->n", barycentrics, beyond[faces[triangles]])
     back = rotation.dual_inverse(blend_texels(duals, faces, triangles, barycentrics))
     astray = rotation.dual_transform(back, places(moved, texels)) - places(canonical, texels)
-    texture[texels, :3] += share[texels, None] * astray
+    texture[texels, :3] += share[:, None] * astray
 
 
 def bent(
