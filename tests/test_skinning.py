@@ -43,3 +43,25 @@ def test_moves_points_as_the_reference_does() -> None:
     np.testing.assert_allclose(
         transform(dual, points), rotation.dual_transform(dual, points), rtol=1e-12, atol=ROUNDING
     )
+
+
+def test_the_linear_blend_is_the_weighted_mean_of_what_each_joint_makes() -> None:
+    joints, indices, weights = rig(97, seed=7)
+    points = np.random.default_rng(8).normal(size=(97, 3))
+    expected = sum(
+        weight[:, None] * rotation.dual_transform(joints[joint], points)
+        for joint, weight in zip(indices.T, weights.T, strict=True)
+    )
+    skinning = Skinning(indices, weights)
+    np.testing.assert_allclose(skinning.linear(joints, points), expected, atol=ROUNDING)
+    joints[::2] *= -1  # the same transforms, the other way round
+    np.testing.assert_allclose(skinning.linear(joints, points), expected, atol=ROUNDING)
+
+
+def test_both_blends_agree_where_one_joint_carries_a_vertex() -> None:
+    joints, indices, _ = rig(31, seed=9)
+    skinning = Skinning(indices, np.eye(8)[np.zeros(31, int)])
+    points = np.random.default_rng(10).normal(size=(31, 3))
+    np.testing.assert_allclose(
+        skinning.linear(joints, points), transform(skinning(joints), points), rtol=1e-12, atol=ROUNDING
+    )

@@ -22,7 +22,6 @@ from mua.teachers.still import StillTeacher
 
 SCREEN = (384, 512)  # width, height, pixels
 NEAR_BY = 6.0  # pixels about a place within which the surface tells which joint it belongs to
-ALIKE = 1e-5  # of a part's size, a hundredth of a sample in its picture: places that differ less look the same
 POSED = 3  # frames of the clips beside the pose of the file
 ABOVE = float(np.radians(5))
 ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "front, right": -40.0}  # degrees round the figure
@@ -48,7 +47,6 @@ class PoseLikeness:
 
     pose: str
     shots: tuple[Shot, ...]
-    bending: Agreement  # of the source moved by the joints: blended linearly, and by dual quaternions
 
     @property
     def agreement(self) -> Agreement:
@@ -113,26 +111,20 @@ class _Studio:
     def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseLikeness:
         """One pose, drawn from all `views`."""
         places = [skinned(self._scene, part, moment.nodes) for part in self._scene.parts]
-        by_joints = self._poser.by_joints(moment.pose)
-        blended = [skinned(self._scene, part, by_joints) for part in self._scene.parts]
-        bent = self._poser.bent(moment.pose)
-        others = [None if _alike(at, places) else at for at in (blended, bent)]
         used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
         points = np.concatenate(used)
         bounds = np.stack([points.min(axis=0), points.max(axis=0)])
         taught = teacher.frame(moment.pose, moment.stretches)
         frame = pose_splats(teacher.rig, taught.mesh, texture=taught.texture, pose=moment.pose)
-        shots, bending = [], []
+        shots = []
         for view, degrees in views.items():
             azimuth = moment.yaw + float(np.radians(degrees))
             camera = orbit(bounds, screen=SCREEN, azimuth=azimuth, elevation=ABOVE)
             source, splats = self._paint_source(places, camera), self._paint_splats(frame, camera)
-            by_blend, by_bend = (source if at is None else self._paint_source(at, camera) for at in others)
-            bending.append(agreement(by_blend, by_bend))
             column, row, difference = worst_place(source, splats)
             joint = self._joint_at(np.concatenate(places), camera, (column, row))
             shots.append(Shot(view, source, splats, agreement(source, splats), (column, row), joint, difference))
-        return PoseLikeness(moment.name, tuple(shots), together(bending))
+        return PoseLikeness(moment.name, tuple(shots))
 
     def _joint_at(self, points: Array, camera: Camera, place: tuple[int, int]) -> str:
         """The name of the node that carries what is seen at a place: the nearest to the eye of the points about it."""
@@ -141,9 +133,3 @@ class _Studio:
         away = np.linalg.norm(screen - (np.array(place) + 0.5), axis=1)
         about = np.flatnonzero(away <= max(NEAR_BY, float(away.min())))
         return self._scene.node_names[int(self._carriers[about[np.argmin(clip[about, 3])]])]
-
-
-def _alike(one: Sequence[Array], other: Sequence[Array]) -> bool:
-    """Whether vertices [N, 3] of all parts lie so near to each other that pictures of them are the same."""
-    least = ALIKE * max(float(np.ptp(at, axis=0).max(initial=0)) for at in other)
-    return all(np.allclose(a, b, rtol=0, atol=least) for a, b in zip(one, other, strict=True))

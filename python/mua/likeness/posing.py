@@ -6,7 +6,6 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.clip import Clip, Stretches
 from mua.motion.descriptor import heading_of
 from mua.rig.assemble import weighted
@@ -51,27 +50,6 @@ class Poser:
         nodes = own[0].worlds[frame] if own and own[0].rate == clip.rate else self.by_joints(pose)
         stretches = clip.cut(slice(frame, frame + 1)).stretches
         return Moment(f"{clip.name}, frame {frame}", pose, nodes, self._yaw(pose), stretches)
-
-    def bent(self, pose: Pose) -> list[Array]:
-        """Each part's vertices [N, 3] in a pose, bent by dual quaternions as avatars are, not by a linear blend."""
-        skeleton = self._skeleton
-        since_rest = rotation.dual_multiply(
-            skeleton.skinning(pose.rotations, pose.translations),
-            rotation.dual_inverse(skeleton.skinning(self._rest.rotations, self._rest.translations)),
-        )
-        return [self._bent(part, since_rest) for part in self._source.scene.parts]
-
-    def _bent(
-        self,
-        part: Part,
-        since_rest: Array,  # [J, 8]
-    ) -> Array:
-        scene = self._source.scene
-        joints = self._holders[scene.skins[part.skin].joints][part.joints]
-        order = np.argsort(-part.weights, axis=1, kind="stable")
-        indices = np.maximum(np.take_along_axis(joints, order, axis=1), 0)
-        dual = blend_vertices(since_rest, indices, np.take_along_axis(weighted(part.weights), order, axis=1))
-        return np.asarray(rotation.dual_transform(dual, skinned(scene, part, scene.rest)))
 
     def by_joints(self, pose: Pose) -> Array:
         """The nodes [nodes, 4, 4] at rest, moved by what each joint does between rest and `pose`."""

@@ -23,7 +23,7 @@ def sentences(likeness: Likeness) -> tuple[str, ...]:
     if least.agreement.iou < GOOD_IOU:
         told.append(
             f"The splats' silhouette overlaps the character's by {100 * least.agreement.iou:.1f} % in the pose "
-            f"{least.pose!r}: {_excess(least)}; it is worst at {_where(least.worst)}.{_bending(least)}"
+            f"{least.pose!r}: {_excess(least)}; it is worst at {_where(least.worst)}."
         )
     least = min(likeness.poses, key=lambda pose: pose.agreement.psnr)
     if least.agreement.psnr < GOOD_PSNR:
@@ -46,7 +46,6 @@ def as_dict(likeness: Likeness) -> dict[str, Any]:
                 "pose": pose.pose,
                 "iou": pose.agreement.iou,
                 "psnr": pose.agreement.psnr,
-                "bending": pose.bending.iou,
                 "views": [
                     {"iou": shot.agreement.iou, "psnr": shot.agreement.psnr, **_place(shot)} for shot in pose.shots
                 ],
@@ -63,16 +62,6 @@ def _place(shot: Shot) -> dict[str, Any]:
 
 def _where(shot: Shot) -> str:
     return f"{shot.joint}, seen from {shot.view}"
-
-
-def _bending(pose: PoseLikeness) -> str:
-    """A sentence where how joints bend explains at least half of what the silhouettes do not share."""
-    if 1 - pose.bending.iou < (1 - pose.agreement.iou) / 2:
-        return ""
-    return (
-        f" Bending alone makes it {100 * pose.bending.iou:.1f} %: the avatar's joints bend by dual quaternions, "
-        f"the file's by a linear blend."
-    )
 
 
 def _excess(pose: PoseLikeness) -> str:

@@ -1,10 +1,11 @@
 """The simulated character: a teacher made of a rigged, textured character, motion and position-based dynamics.
 
-It stands in for a captured teacher. Its surface is defined in canonical space: the simulated vertices are brought
-back to the bind pose by the dual quaternions that skinned them, and a texel lies at a fixed point of that surface.
-What of the deformation is longer than about 20 cm goes into the canonical mesh, the rest into the texels' offsets;
-posed by T_tex, both together are the teacher's surface. Scales that a clip animates, which rigid joints do not carry,
-are put on in canonical space, after the dynamics.
+It stands in for a captured teacher. Its surface follows the linear blend of joints that the character's file means, and
+is defined in canonical space: the simulated vertices are brought back to the bind pose by the dual quaternions that
+carry the avatar's texels, and a texel lies at a fixed point of that surface. What of the deformation is longer than
+about 20 cm goes into the canonical mesh, the rest into the texels' offsets; posed by T_tex, both together are the
+teacher's surface. Scales that a clip animates, which rigid joints do not carry, are put on in canonical space, after
+the dynamics.
 """
 
 from collections.abc import Container, Iterator
@@ -75,7 +76,7 @@ class SimulatedTeacher:
         for frame, joints in enumerate(skinning):
             dual = self._skinning(joints)
             turn, ends = dual[:, :4], bones.posed(joints)
-            target = self._folds(transform(dual, character.mesh.vertices), turn)
+            target = self._folds(self._skinning.linear(joints, character.mesh.vertices), turn)
             if frame == 0:
                 self._simulation.settle(target, turn, ends)
             moved = self._simulation.advance(target, turn, ends, seconds=1 / clip.rate)

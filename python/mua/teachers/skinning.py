@@ -1,13 +1,14 @@
-"""Skinning of a dense surface, component by component: the values of `mua.kernels.dq_skinning`, several times faster.
+"""Skinning of a dense surface: dual quaternions, as avatars bend, and the linear blend, as the character's file bends.
 
-Each component of all vertices lies in one piece of memory, and joints that do not move a vertex cost nothing. Which
-way round a joint's dual quaternion is added depends only on it and the vertex's first joint, so it is found once for
-each pair of joints and not once a vertex.
+The dual quaternions are those of `mua.kernels.dq_skinning`, several times faster: each component of all vertices lies
+in one piece of memory, and joints that do not move a vertex cost nothing. Which way round a joint's dual quaternion is
+added depends only on it and the vertex's first joint, so it is found once for each pair of joints, not once a vertex.
 """
 
 import numpy as np
 from scipy import sparse
 
+from mua import rotation
 from mua.arrays import Array
 
 
@@ -34,10 +35,30 @@ class Skinning:
         first, other = joints[self._pairs, :4].swapaxes(0, 1)
         away = np.einsum("pi,pi->p", other, first) < 0
         weights = np.where(away[self._pair.ravel()], -self._weights, self._weights) if away.any() else self._weights
-        matrix = sparse.csr_matrix((weights, self._joints, self._starts), shape=(len(self._starts) - 1, len(joints)))
+        matrix = self._matrix(weights, len(joints))
         total = np.stack([matrix @ component for component in np.ascontiguousarray(joints.T)])
         total /= np.maximum(np.sqrt(np.einsum("in,in->n", total[:4], total[:4])), np.finfo(total.dtype).tiny)
         return total.T
+
+    def linear(
+        self,
+        joints: Array,  # [J, 8] bind pose to world
+        points: Array,  # [V, 3] the vertices or near them, bind pose
+    ) -> Array:
+        """Points [V, 3] in the world: the weighted mean of where each joint alone would carry them.
+
+        File formats define skins so and artists choose weights by what it shows; where joints turn far apart it lies
+        inside the arc of the dual quaternions.
+        """
+        spaces = np.concatenate(
+            [rotation.to_matrix(joints[:, :4]).reshape(-1, 9), rotation.dual_translation(joints)], 1
+        )
+        blended = self._matrix(self._weights, len(joints)) @ spaces
+        return np.asarray(np.einsum("vij,vj->vi", blended[:, :9].reshape(-1, 3, 3), points) + blended[:, 9:])
+
+    def _matrix(self, weights: Array, joints: int) -> sparse.csr_matrix:
+        """[V, joints] of the weights of each vertex, one after the other."""
+        return sparse.csr_matrix((weights, self._joints, self._starts), shape=(len(self._starts) - 1, joints))
 
 
 def transform(
