@@ -31,7 +31,8 @@ def straighten(
     duals = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
     size = float(np.ptp(rig.mesh.vertices, axis=0).max()) or 1.0
     beyond = bent(duals, mesh, faces, size=size)
-    texels = np.flatnonzero(beyond[faces].any(axis=1)[triangles])  # few of them, on most frames none
+    anywhere = np.asarray(beyond[faces].any(axis=1))
+    texels = np.flatnonzero(anywhere[triangles])  # few of them, on most frames none
     if not len(texels):
         return
     triangles, barycentrics = triangles[texels], rig.texels.barycentrics[texels]
