@@ -11,9 +11,17 @@ from csharp import ROOT, CSharp
 
 PACKAGE = ROOT / "unity-package"
 STAND_INS = Path(__file__).parent / "stand_ins"
-UNITY_6 = ("UNITY_6000_0_OR_NEWER", "UNITY_2022_3_OR_NEWER")
-EDITOR = (*UNITY_6, "UNITY_EDITOR", "UNITY_EDITOR_WIN", "UNITY_STANDALONE_WIN")
-PLAYERS = {"editor": EDITOR, "quest": (*UNITY_6, "UNITY_ANDROID"), "pc": (*UNITY_6, "UNITY_STANDALONE_WIN")}
+ENGINES = {  # an engine has the symbols of all before it; stand-ins say in these what came, and what was deprecated
+    "6000.0": ("UNITY_2022_3_OR_NEWER", "UNITY_6000_0_OR_NEWER"),
+    "6000.3": ("UNITY_6000_1_OR_NEWER", "UNITY_6000_2_OR_NEWER", "UNITY_6000_3_OR_NEWER"),
+    "6000.5": ("UNITY_6000_4_OR_NEWER", "UNITY_6000_5_OR_NEWER"),
+}
+OLDEST = next(iter(ENGINES))
+PLAYERS = {
+    "editor": ("UNITY_EDITOR", "UNITY_EDITOR_WIN", "UNITY_STANDALONE_WIN"),
+    "quest": ("UNITY_ANDROID",),
+    "pc": ("UNITY_STANDALONE_WIN",),
+}
 
 # Assemblies of each optional package, by the symbol that says that it is there.
 OPTIONAL = {
@@ -21,6 +29,13 @@ OPTIONAL = {
     "MUA_XR_MANAGEMENT": "Unity.XR.Management",
     "MUA_OPENXR": "Unity.XR.OpenXR",
 }
+
+
+def engine_symbols(engine: str) -> tuple[str, ...]:
+    """Those that every assembly is compiled with on an engine."""
+    names = list(ENGINES)
+    return tuple(symbol for name in names[: names.index(engine) + 1] for symbol in ENGINES[name])
+
 
 ALWAYS = ("UnityEngine", "UnityEditor", "UnityEngine.TestRunner", "UnityEditor.TestRunner", "nunit.framework")
 
@@ -65,8 +80,18 @@ def assemblies() -> dict[str, Assembly]:
 class Compiler:
     """Compiles assemblies and what they refer to."""
 
-    def __init__(self, csharp: CSharp, platform: str, *, packages: bool, without: Collection[str] = ()) -> None:
+    def __init__(
+        self,
+        csharp: CSharp,
+        platform: str,
+        *,
+        packages: bool,
+        without: Collection[str] = (),
+        engine: str = OLDEST,
+        symbols: Collection[str] = (),  # of the project
+    ) -> None:
         self._csharp, self._platform, self._packages, self._without = csharp, platform, packages, without
+        self._engine = (*engine_symbols(engine), *symbols)
         self._known, self._built = assemblies(), dict[str, Path]()
 
     def has(self, assembly: Assembly) -> bool:
@@ -78,7 +103,7 @@ class Compiler:
 
     def defines(self, assembly: Assembly) -> list[str]:
         """Symbols that an assembly is compiled with."""
-        symbols = assembly.defines(self._platform, packages=self._packages)
+        symbols = (*self._engine, *assembly.defines(self._platform, packages=self._packages))
         return [symbol for symbol in symbols if symbol not in self._without]
 
     def built(self, name: str) -> Path:
@@ -102,7 +127,7 @@ class Compiler:
         assert folder.is_dir(), f"{name} is no assembly of the package and has no stand-ins in {STAND_INS}"
         below = folder / "references.txt"
         references = [self.built(other) for other in below.read_text().split()] if below.exists() else []
-        return self._csharp.build([folder], library=True, name=name, references=references)
+        return self._csharp.build([folder], library=True, name=name, references=references, defines=self._engine)
 
     def _closed(self, name: str) -> Iterator[Path]:
         """A reference; optional ones are absent where their package is not installed."""
@@ -121,6 +146,24 @@ def test_an_assembly_compiles(csharp: CSharp, assembly: Assembly, platform: str,
     compiler = Compiler(csharp, platform, packages=packages)
     if compiler.has(assembly):
         assert compiler.built(assembly.name).name == f"{assembly.name}.dll"
+
+
+@pytest.mark.parametrize("engine", [engine for engine in ENGINES if engine != OLDEST])
+@pytest.mark.parametrize("platform", list(PLAYERS))
+@pytest.mark.parametrize("assembly", assemblies().values(), ids=lambda assembly: assembly.name)
+def test_a_newer_engine_takes_an_assembly_without_a_warning(
+    csharp: CSharp, assembly: Assembly, platform: str, engine: str
+) -> None:
+    """Members that were deprecated meanwhile are errors here."""
+    compiler = Compiler(csharp, platform, packages=True, engine=engine)
+    if compiler.has(assembly):
+        assert compiler.built(assembly.name).name == f"{assembly.name}.dll"
+
+
+def test_a_project_may_bring_compatibility_mode_back(csharp: CSharp) -> None:
+    """By a symbol that URP 17.3 asks for; set-up switches the mode off there too."""
+    compiler = Compiler(csharp, "editor", packages=True, engine="6000.3", symbols=("URP_COMPATIBILITY_MODE",))
+    assert compiler.built("Mua.Avatar.Editor").exists()
 
 
 @pytest.mark.parametrize(

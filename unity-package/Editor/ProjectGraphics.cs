@@ -35,7 +35,7 @@ namespace Mua.Editor
                         () => QualitySettings.antiAliasing = samples));
             }
 #if MUA_URP
-#if !UNITY_6000_4_OR_NEWER // from there on there is no other mode
+#if !UNITY_6000_3_OR_NEWER || (URP_COMPATIBILITY_MODE && !UNITY_6000_4_OR_NEWER) // elsewhere it is not to be had
             RenderGraphSettings graph;
             if (PipelineType() == Universal && GraphicsSettings.TryGetRenderPipelineSettings(out graph))
             {

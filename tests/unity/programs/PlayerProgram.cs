@@ -60,7 +60,7 @@ namespace Mua.Samples.VrPlayer
                     .FindAll(c => c.gameObject == thing && !(c is Transform)).ConvertAll(c => c.GetType().Name).ToArray());
                 Say(thing.name, kinds);
             }
-            Light light = UnityEngine.Object.FindFirstObjectByType<Light>();
+            Light light = UnityEngine.Object.FindAnyObjectByType<Light>();
             Say("light", light.type + " " + light.shadows);
             Say("ground", AssetDatabase.LoadAssetAtPath<Material>("Assets/Scenes/PlayerGround.mat")
                 == GameObject.Find("Ground").GetComponent<MeshRenderer>().sharedMaterial);
@@ -293,9 +293,9 @@ namespace Mua.Samples.VrPlayer
         private static void Make()
         {
             PlayerScene.Create(Place);
-            shown = UnityEngine.Object.FindFirstObjectByType<AvatarRenderer>();
+            shown = UnityEngine.Object.FindAnyObjectByType<AvatarRenderer>();
             user = GameObject.Find("User").transform;
-            head = UnityEngine.Object.FindFirstObjectByType<Camera>();
+            head = UnityEngine.Object.FindAnyObjectByType<Camera>();
             panel = GameObject.Find("Panel").GetComponent<TextMesh>();
         }
 

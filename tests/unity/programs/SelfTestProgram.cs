@@ -74,7 +74,7 @@ namespace Mua
             Say("over", run == null);
             Say("exit", Machine.ExitCode);
             Say("shown", Shown().Length);
-            Camera eye = UnityEngine.Object.FindFirstObjectByType<Camera>();
+            Camera eye = UnityEngine.Object.FindAnyObjectByType<Camera>();
             foreach (AvatarRenderer shown in eye == null ? new AvatarRenderer[0] : Shown())
             {
                 Vector3 middle = eye.transform.InverseTransformPoint(shown.Bounds.center);

@@ -94,8 +94,7 @@ namespace Mua.SelfTest
         /// <summary>The scene's own renderer of the avatar, or a new one; all others are switched off.</summary>
         private void Show()
         {
-            var all = UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None);
-            foreach (AvatarRenderer found in all)
+            foreach (AvatarRenderer found in AvatarScene.All())
             {
                 if (shown == null && found.isActiveAndEnabled && found.Shows(avatar))
                 {
@@ -138,7 +137,7 @@ namespace Mua.SelfTest
             Camera camera = Camera.main;
             if (camera == null)
             {
-                camera = UnityEngine.Object.FindFirstObjectByType<Camera>();
+                camera = UnityEngine.Object.FindAnyObjectByType<Camera>();
             }
             return camera != null ? camera : new GameObject("MUA camera").AddComponent<Camera>();
         }

@@ -8,10 +8,20 @@ using UnityEngine.Rendering.RenderGraphModule;
 
 namespace UnityEngine.Rendering.Universal
 {
+#if UNITY_6000_4_OR_NEWER
+    [Obsolete("These settings are not used.", false)]
+#endif
     public class RenderGraphSettings : IRenderPipelineGraphicsSettings
     {
         public int version { get { return 0; } }
+#if UNITY_6000_4_OR_NEWER
+        [Obsolete("This property is not used.", false)]
+        public bool enableRenderCompatibilityMode { get { return false; } }
+#elif UNITY_6000_3_OR_NEWER && !URP_COMPATIBILITY_MODE
+        public bool enableRenderCompatibilityMode { get { return false; } } // Unity's has a setter that is an error to use
+#else
         public bool enableRenderCompatibilityMode { get; set; }
+#endif
     }
 
     public partial class UniversalRenderPipelineAsset : RenderPipelineAsset

@@ -16,6 +16,10 @@ namespace UnityEditor
 
         public static Object[] objectReferences { get; set; }
 
+#if UNITY_6000_3_OR_NEWER
+        public static void AddDropHandlerV2(SceneDropHandler handler) { Handler = handler; }
+        [Obsolete("Use AddDropHandlerV2 instead")]
+#endif
         public static void AddDropHandler(SceneDropHandler handler) { Handler = handler; }
     }
 }

@@ -30,7 +30,7 @@ namespace UnityEngine
             cameraType = CameraType.Game;
         }
 
-        public static Camera main { get { return FindFirstObjectByType<Camera>(); } }
+        public static Camera main { get { return FindAnyObjectByType<Camera>(); } }
         public int pixelWidth { get { return 640; } }
         public int pixelHeight { get { return 480; } }
         public int scaledPixelWidth { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.widthBufferScale : 1) * pixelWidth); } }

@@ -11,6 +11,9 @@ namespace UnityEngine
         DontUnloadUnusedAsset = 32, DontSave = 52, HideAndDontSave = 61
     }
 
+#if UNITY_6000_4_OR_NEWER
+    [Obsolete("FindObjectsSortMode has been deprecated.", false)]
+#endif
     public enum FindObjectsSortMode { None, InstanceID }
     public enum FindObjectsInactive { Exclude, Include }
 
@@ -46,12 +49,18 @@ namespace UnityEngine
         public static void DestroyImmediate(Object obj, bool allowDestroyingAssets) { DestroyImmediate(obj); }
         public static void DontDestroyOnLoad(Object target) { }
         public static T Instantiate<T>(T original) where T : Object { return (T)original.MemberwiseClone(); }
-        public static T FindFirstObjectByType<T>() where T : Object
+        public static T FindAnyObjectByType<T>() where T : Object
         {
-            T[] found = FindObjectsByType<T>(FindObjectsSortMode.None);
+            T[] found = Find<T>();
             return found.Length > 0 ? found[0] : null;
         }
-        public static T[] FindObjectsByType<T>(FindObjectsSortMode sortMode) where T : Object
+#if UNITY_6000_4_OR_NEWER
+        public static T[] FindObjectsByType<T>() where T : Object { return Find<T>(); }
+        [Obsolete("FindObjectsByType with FindObjectsSortMode parameter has been deprecated.", false)]
+#endif
+        public static T[] FindObjectsByType<T>(FindObjectsSortMode sortMode) where T : Object { return Find<T>(); }
+
+        private static T[] Find<T>() where T : Object
         {
             List<T> found = new List<T>();
             foreach (GameObject gameObject in GameObject.All)
