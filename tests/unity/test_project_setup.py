@@ -5,11 +5,12 @@ import re
 import pytest
 from csharp import CSharp
 from project_program import ProjectProgram
+from test_compiles import assemblies
 
 XR = "com.unity.xr.management com.unity.xr.openxr"
 URP = "com.unity.render-pipelines.universal"
 PLATFORMS = {"Quest": "Android", "PcLink": "Standalone"}
-COUNT = {"Quest": 28, "PcLink": 11}  # settings of each platform in a project with URP and OpenXR
+COUNT = {"Quest": 31, "PcLink": 11}  # settings of each platform in a project with URP and OpenXR
 FAULT = re.compile(r"(.+?) is (.+), expected (.+)")
 CHANGE = re.compile(r"Log MUA set (.+?): (.+) -> (.+)")
 
@@ -36,13 +37,36 @@ def test_quest_gets_what_the_headset_needs(program: ProjectProgram) -> None:
     assert made["Player > Graphics APIs for Android"] == "Vulkan"
     assert made["Player > Scripting backend"] == "IL2CPP"
     assert made["Player > Target architectures"] == "ARM64"
-    assert made["Player > Minimum API level"] == "AndroidApiLevel29"
+    assert made["Player > Minimum API level"] == "AndroidApiLevel32"
+    assert made["Player > Target API level"] == "AndroidApiLevel34"
     assert made["Player > Application entry point"] == "GameActivity"
     assert made["Player > Package name"] == "com.mua.player"
     assert made["XR > Loader for Android"] == "UnityEngine.XR.OpenXR.OpenXRLoader"
     assert made["OpenXR > Render mode for Android"] == "SinglePassInstanced"
     assert made["OpenXR > com.unity.openxr.feature.metaquest for Android"] == "on"
+    assert made["OpenXR > Late latching for Android"] == "off"
     assert made["Pipeline > MSAA"] == "1"
+
+
+def test_a_quest_draws_the_edges_of_the_view_coarser(program: ProjectProgram) -> None:
+    """What the player asks of the display does nothing before both are set."""
+    changes = [CHANGE.fullmatch(line) for line in program.tell("SetsUp", "Quest")["log"]]
+    made = {change[1]: change[3] for change in changes if change}
+    assert made["OpenXR > com.unity.openxr.feature.foveatedrendering for Android"] == "on"
+    assert made["OpenXR > Foveated rendering API for Android"] == "SRPFoveation"
+
+
+def test_the_built_in_pipeline_keeps_the_one_way_that_it_knows(program: ProjectProgram) -> None:
+    told = program.tell("KeepsBuiltIn")
+    assert "after" not in told
+    assert told["api"] == ["Legacy"]
+
+
+def test_an_openxr_that_fails_builds_is_too_old() -> None:
+    """1.12 does, where the old input handler is active."""
+    definition = assemblies()["Mua.Avatar.Editor"].definition
+    (rule,) = [rule for rule in definition["versionDefines"] if rule["define"] == "MUA_OPENXR"]
+    assert tuple(map(int, rule["expression"].split("."))) >= (1, 13)
 
 
 def test_xr_settings_that_the_editor_lost_are_taken_and_an_optional_feature_enabled(program: ProjectProgram) -> None:
@@ -69,7 +93,7 @@ def test_what_is_right_another_way_is_left_alone(program: ProjectProgram, own: s
     told = program.tell("KeepsWhatIsRight", own)
     assert "after" not in told
     assert told["identifier"] == ["org.example.own"]
-    assert told["sdk"] == ["AndroidApiLevel32 AndroidApiLevel34"]
+    assert told["sdk"] == ["AndroidApiLevel33 AndroidApiLevel35"]
     assert told["stripping"] == ["Minimal"]
     assert told["pipeline"] == [pipeline]  # a project with materials of its own keeps the pipeline that they are for
 

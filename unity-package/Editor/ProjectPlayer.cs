@@ -12,8 +12,9 @@ namespace Mua.Editor
     {
         public const string Identifier = "com.mua.player"; // where mua-deploy looks for the player
 
-        private const AndroidSdkVersions Oldest = AndroidSdkVersions.AndroidApiLevel29; // Meta's for Quest 2 and later
-        private const AndroidSdkVersions OldestTarget = AndroidSdkVersions.AndroidApiLevel32;
+        // What Meta's store asks of an application since March 2026.
+        private const AndroidSdkVersions Oldest = AndroidSdkVersions.AndroidApiLevel32;
+        private const AndroidSdkVersions OldestTarget = AndroidSdkVersions.AndroidApiLevel34;
 
         private static readonly string[] DefaultIdentifiers = { "com.DefaultCompany.", "com.Company.", "com.unity.template" };
         private static readonly GraphicsDeviceType[] Quest3D = { GraphicsDeviceType.Vulkan };
@@ -53,9 +54,8 @@ namespace Mua.Editor
                     "Player > Minimum API level", Oldest, () => PlayerSettings.Android.minSdkVersion,
                     value => value >= Oldest, value => PlayerSettings.Android.minSdkVersion = value),
                 ProjectSetting.Of(
-                    "Player > Target API level", AndroidSdkVersions.AndroidApiLevelAuto,
-                    () => PlayerSettings.Android.targetSdkVersion,
-                    value => value == AndroidSdkVersions.AndroidApiLevelAuto || value >= OldestTarget,
+                    "Player > Target API level", OldestTarget, // not Auto, which is whatever a machine has
+                    () => PlayerSettings.Android.targetSdkVersion, value => value >= OldestTarget,
                     value => PlayerSettings.Android.targetSdkVersion = value),
                 ProjectSetting.Of(
                     "Player > Application entry point", AndroidApplicationEntry.GameActivity,

@@ -7,27 +7,20 @@ using UnityEngine;
 #if MUA_XR_MANAGEMENT && MUA_OPENXR
 using UnityEditor.XR.Management;
 using UnityEditor.XR.Management.Metadata;
-using UnityEditor.XR.OpenXR.Features;
 using UnityEngine.XR.Management;
-using UnityEngine.XR.OpenXR;
-using UnityEngine.XR.OpenXR.Features;
 #endif
 
 namespace Mua.Editor
 {
     /// <summary>
-    /// OpenXR as the one way to a headset, both eyes in one pass, started with the player. Where its packages are absent
-    /// there is nothing to set, and ProjectPackages says so.
+    /// OpenXR as the one way to a headset, started with the player; ProjectOpenXr has what it does there. Where its packages
+    /// are absent there is nothing to set, and ProjectPackages says so.
     /// </summary>
     internal static class ProjectXr
     {
 #if MUA_XR_MANAGEMENT && MUA_OPENXR
         private const string Loader = "UnityEngine.XR.OpenXR.OpenXRLoader";
         private const string SettingsPath = "Assets/XR/XRGeneralSettingsPerBuildTarget.asset"; // the plug-in's own place
-        private const string MetaQuest = "com.unity.openxr.feature.metaquest";
-        private const string Touch = "com.unity.openxr.feature.input.oculustouch";
-        private const string TouchPlus = "com.unity.openxr.feature.input.metaquestplus";
-        private const string DisplayRate = "com.unity.openxr.feature.meta-display-utilities"; // of com.unity.xr.meta-openxr
         private const string Absent = "absent";
 
         public static IEnumerable<ProjectSetting> Settings(BuildTarget target)
@@ -39,27 +32,10 @@ namespace Mua.Editor
             yield return new ProjectSetting(
                 $"XR > Initialize XR on startup for {group}", "on", () => Startup(group), () => Startup(group) == "on",
                 () => Start(group));
-            yield return new ProjectSetting(
-                $"OpenXR > Render mode for {group}", nameof(OpenXRSettings.RenderMode.SinglePassInstanced),
-                () => RenderMode(group),
-                () => RenderMode(group) == nameof(OpenXRSettings.RenderMode.SinglePassInstanced),
-                () => SinglePass(group));
-            string[] ids = target == BuildTarget.Android ? new[] { MetaQuest, Touch, TouchPlus } : new[] { Touch, TouchPlus };
-            foreach (string id in ids)
+            foreach (ProjectSetting setting in ProjectOpenXr.Settings(target == BuildTarget.Android, group))
             {
-                yield return Feature(group, id);
+                yield return setting;
             }
-            if (target == BuildTarget.Android && State(group, DisplayRate) != Absent)
-            {
-                yield return Feature(group, DisplayRate);
-            }
-        }
-
-        private static ProjectSetting Feature(BuildTargetGroup group, string id)
-        {
-            return new ProjectSetting(
-                $"OpenXR > {id} for {group}", "on", () => State(group, id), () => State(group, id) == "on",
-                () => Enable(group, id));
         }
 
         // The asset is the project's own, though the editor may have lost sight of it.
@@ -130,40 +106,6 @@ namespace Mua.Editor
             XRGeneralSettings general = Find().SettingsForBuildTarget(group);
             general.InitManagerOnStart = true;
             EditorUtility.SetDirty(general);
-        }
-
-        private static string RenderMode(BuildTargetGroup group)
-        {
-            OpenXRSettings settings = OpenXRSettings.GetSettingsForBuildTargetGroup(group);
-            return settings == null ? Absent : settings.renderMode.ToString();
-        }
-
-        private static void SinglePass(BuildTargetGroup group) // which is multiview on a Quest
-        {
-            FeatureHelpers.RefreshFeatures(group);
-            OpenXRSettings settings = OpenXRSettings.GetSettingsForBuildTargetGroup(group);
-            if (settings != null)
-            {
-                settings.renderMode = OpenXRSettings.RenderMode.SinglePassInstanced;
-                EditorUtility.SetDirty(settings);
-            }
-        }
-
-        private static string State(BuildTargetGroup group, string id)
-        {
-            OpenXRFeature feature = FeatureHelpers.GetFeatureWithIdForBuildTarget(group, id);
-            return feature == null ? Absent : feature.enabled ? "on" : "off";
-        }
-
-        private static void Enable(BuildTargetGroup group, string id)
-        {
-            FeatureHelpers.RefreshFeatures(group);
-            OpenXRFeature feature = FeatureHelpers.GetFeatureWithIdForBuildTarget(group, id);
-            if (feature != null)
-            {
-                feature.enabled = true;
-                EditorUtility.SetDirty(feature);
-            }
         }
 #else
         public static IEnumerable<ProjectSetting> Settings(BuildTarget target)

@@ -53,8 +53,8 @@ namespace Mua.Editor
         {
             EditorUserBuildSettings.SwitchActiveBuildTarget(BuildTargetGroup.Android, BuildTarget.Android);
             PlayerSettings.SetApplicationIdentifier(NamedBuildTarget.Android, "org.example.own");
-            PlayerSettings.Android.minSdkVersion = AndroidSdkVersions.AndroidApiLevel32;
-            PlayerSettings.Android.targetSdkVersion = AndroidSdkVersions.AndroidApiLevel34;
+            PlayerSettings.Android.minSdkVersion = AndroidSdkVersions.AndroidApiLevel33;
+            PlayerSettings.Android.targetSdkVersion = AndroidSdkVersions.AndroidApiLevel35;
             PlayerSettings.SetManagedStrippingLevel(NamedBuildTarget.Android, ManagedStrippingLevel.Minimal);
             Own(arguments[0]);
             Tell("after", ProjectSetup.Apply(BuildTarget.Android));
@@ -91,6 +91,16 @@ namespace Mua.Editor
                 Say("left", ProjectSetup.Apply(target).Count);
             }
         }
+
+#if MUA_OPENXR
+        private static void KeepsBuiltIn(string[] arguments)
+        {
+            EditorUserBuildSettings.SwitchActiveBuildTarget(BuildTargetGroup.Unknown, BuildTarget.Android);
+            Own("Assets/Skin.mat");
+            Tell("after", ProjectSetup.Apply(BuildTarget.Android));
+            Say("api", OpenXRSettings.GetSettingsForBuildTargetGroup(BuildTargetGroup.Android).foveatedRenderingApi);
+        }
+#endif
 
         private static void LacksModule(string[] arguments)
         {
@@ -214,7 +224,7 @@ namespace Mua.Editor
             yield return () => OpenXRSettings.GetSettingsForBuildTargetGroup(group).renderMode = OpenXRSettings.RenderMode.MultiPass;
             foreach (string id in OpenXR.Features.Keys.Where(each => each.StartsWith(group + " ")).ToArray())
             {
-                if (group == BuildTargetGroup.Android || !id.EndsWith("metaquest"))
+                if (group == BuildTargetGroup.Android || id.Contains(".input."))
                 {
                     yield return () => OpenXR.Features[id].enabled = false;
                 }
@@ -241,8 +251,8 @@ namespace Mua.Editor
             yield return () => PlayerSettings.SetManagedStrippingLevel(android, ManagedStrippingLevel.Medium);
             yield return () => PlayerSettings.SetApplicationIdentifier(android, "com.DefaultCompany.Avatars");
             yield return () => PlayerSettings.Android.targetArchitectures = AndroidArchitecture.ARM64 | AndroidArchitecture.ARMv7;
-            yield return () => PlayerSettings.Android.minSdkVersion = AndroidSdkVersions.AndroidApiLevel28;
-            yield return () => PlayerSettings.Android.targetSdkVersion = AndroidSdkVersions.AndroidApiLevel31;
+            yield return () => PlayerSettings.Android.minSdkVersion = AndroidSdkVersions.AndroidApiLevel31;
+            yield return () => PlayerSettings.Android.targetSdkVersion = AndroidSdkVersions.AndroidApiLevel33;
             yield return () => PlayerSettings.Android.applicationEntry = AndroidApplicationEntry.Activity;
             yield return () => PlayerSettings.defaultInterfaceOrientation = UIOrientation.AutoRotation;
             yield return () => PlayerSettings.SetUseDefaultGraphicsAPIs(BuildTarget.Android, true);
@@ -252,6 +262,9 @@ namespace Mua.Editor
             yield return () => PlayerSettings.Android.textureCompressionFormats = new[] { TextureCompressionFormat.ETC2 };
             yield return () => EditorUserBuildSettings.androidBuildSubtarget = MobileTextureSubtarget.ETC2;
 #if MUA_URP
+            OpenXRSettings settings = OpenXRSettings.GetSettingsForBuildTargetGroup(BuildTargetGroup.Android);
+            yield return () => settings.foveatedRenderingApi = OpenXRSettings.BackendFovationApi.Legacy;
+            yield return () => LateLatch(true);
             yield return () => Used().supportsHDR = true;
             yield return () => Used().msaaSampleCount = 4;
             yield return () => Used().supportsCameraOpaqueTexture = true;
@@ -262,6 +275,12 @@ namespace Mua.Editor
         }
 
 #if MUA_URP
+        private static void LateLatch(bool value)
+        {
+            var feature = new SerializedObject(OpenXR.Features["Android com.unity.openxr.feature.metaquest"]);
+            feature.FindProperty("lateLatchingMode").boolValue = value;
+        }
+
         private static UniversalRenderPipelineAsset Used()
         {
             return (UniversalRenderPipelineAsset)GraphicsSettings.defaultRenderPipeline;

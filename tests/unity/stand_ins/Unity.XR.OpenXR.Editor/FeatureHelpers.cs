@@ -1,4 +1,4 @@
-// Stand-in. Source: com.unity.xr.openxr 1.18, FeatureHelpers.cs; features of Unity's own package that this one names.
+// Stand-in. Source: com.unity.xr.openxr 1.17, FeatureHelpers.cs, MetaQuestFeature.cs; features of Unity's own package that this one names.
 using System.Collections.Generic;
 using System.Linq;
 using UnityEngine;
@@ -9,11 +9,15 @@ namespace UnityEditor.XR.OpenXR.Features
 {
     public static class FeatureHelpers
     {
-        private sealed class Feature : OpenXRFeature { }
+        private class Feature : OpenXRFeature { }
+
+        private sealed class MetaQuestFeature : Feature { internal bool lateLatchingMode = true; } // a new one has it off
+
+        private const string MetaQuest = "com.unity.openxr.feature.metaquest";
 
         private static readonly string[] ids =
         {
-            "com.unity.openxr.feature.metaquest", "com.unity.openxr.feature.input.oculustouch",
+            MetaQuest, "com.unity.openxr.feature.foveatedrendering", "com.unity.openxr.feature.input.oculustouch",
             "com.unity.openxr.feature.input.metaquestplus"
         };
 
@@ -25,7 +29,8 @@ namespace UnityEditor.XR.OpenXR.Features
                 return;
             StandIns.OpenXR.Settings[group] = ScriptableObject.CreateInstance<OpenXRSettings>();
             foreach (string id in ids.Concat(More))
-                StandIns.OpenXR.Features[group + " " + id] = ScriptableObject.CreateInstance<Feature>();
+                StandIns.OpenXR.Features[group + " " + id] = id == MetaQuest
+                    ? ScriptableObject.CreateInstance<MetaQuestFeature>() : ScriptableObject.CreateInstance<Feature>();
         }
         public static OpenXRFeature GetFeatureWithIdForBuildTarget(BuildTargetGroup buildTargetGroup, string featureId)
         {

@@ -1,4 +1,4 @@
-// Stand-in. Source: com.unity.xr.openxr 1.18, OpenXRSettings.cs, OpenXRRenderSettings.cs, OpenXRFeature.cs.
+// Stand-in. Source: com.unity.xr.openxr 1.17, OpenXRSettings.cs, OpenXRRenderSettings.cs, OpenXRFeature.cs.
 using System.Collections.Generic;
 using UnityEditor;
 using UnityEngine.XR.Management;
@@ -10,8 +10,10 @@ namespace UnityEngine.XR.OpenXR
     public class OpenXRSettings : ScriptableObject
     {
         public enum RenderMode { MultiPass, SinglePassInstanced }
+        public enum BackendFovationApi : byte { Legacy = 0, SRPFoveation = 1 }
 
         public RenderMode renderMode { get; set; }
+        public BackendFovationApi foveatedRenderingApi { get; set; }
         public static OpenXRSettings GetSettingsForBuildTargetGroup(BuildTargetGroup buildTargetGroup)
         {
             OpenXRSettings found;

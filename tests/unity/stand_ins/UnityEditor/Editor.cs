@@ -26,10 +26,11 @@ namespace UnityEditor
     {
         private readonly Object edited;
 
-        internal SerializedObject(Object edited) { this.edited = edited; }
+        public SerializedObject(Object obj) { edited = obj; }
 
         public void Update() { }
         public bool ApplyModifiedProperties() { return true; }
+        public bool ApplyModifiedPropertiesWithoutUndo() { return true; }
         public SerializedProperty FindProperty(string propertyPath)
         {
             FieldInfo field = edited.GetType().GetField(propertyPath, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public);
@@ -44,6 +45,7 @@ namespace UnityEditor
 
         internal SerializedProperty(Object edited, FieldInfo field) { this.edited = edited; this.field = field; }
 
+        public bool boolValue { get { return (bool)field.GetValue(edited); } set { field.SetValue(edited, value); } }
         public string stringValue { get { return (string)field.GetValue(edited); } set { field.SetValue(edited, value); } }
     }
 }

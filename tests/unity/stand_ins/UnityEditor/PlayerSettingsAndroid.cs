@@ -9,7 +9,7 @@ namespace UnityEditor
     public enum AndroidSdkVersions
     {
         AndroidApiLevelAuto = 0, AndroidApiLevel23 = 23, AndroidApiLevel28 = 28, AndroidApiLevel29 = 29, AndroidApiLevel31 = 31,
-        AndroidApiLevel32 = 32, AndroidApiLevel34 = 34
+        AndroidApiLevel32 = 32, AndroidApiLevel33 = 33, AndroidApiLevel34 = 34, AndroidApiLevel35 = 35
     }
 
     [Flags]
@@ -22,7 +22,7 @@ namespace UnityEditor
             static Android()
             {
                 minSdkVersion = AndroidSdkVersions.AndroidApiLevel23;
-                targetSdkVersion = AndroidSdkVersions.AndroidApiLevel31;
+                targetSdkVersion = AndroidSdkVersions.AndroidApiLevelAuto;
                 targetArchitectures = AndroidArchitecture.ARMv7;
                 applicationEntry = AndroidApplicationEntry.Activity;
                 textureCompressionFormats = new[] { TextureCompressionFormat.ETC2 };
