@@ -249,6 +249,19 @@ def test_pixels_are_those_of_a_scaled_target(recorded: Recorded) -> None:
         assert tuple(given[:2]) == tuple(np.ceil(np.multiply(mode.screen, scale)))
 
 
+@pytest.mark.parametrize(
+    "mode", [mode for mode in MODES if mode.pipeline == "urp" and mode.stereo != "None"], ids=label
+)
+def test_a_headset_has_a_scale_of_its_own(record: Callable[[Mode], Recorded], mode: Mode) -> None:
+    """URP foveates its own passes by that one, and does not merge ours with those unless we do the same."""
+    recorded = record(mode)
+    for frame, is_whole in (("scaled on a Quest", False), ("whole on a Quest", True)):
+        draws = [step for step in recorded.steps(frame) if step.startswith("MUA draw")]
+        assert ["foveated" in step for step in draws] == [is_whole] * mode.passes
+        for given in recorded.constants(frame, "SplatProject", "screen"):
+            assert tuple(given[:2]) == tuple(np.ceil(np.multiply(EYE, 1 if is_whole else 0.5)))
+
+
 def test_a_second_camera_sorts_after_the_first_has_drawn(recorded: Recorded) -> None:
     mode = recorded.mode
     assert recorded.steps("two") == [*mode.camera("main", decodes=True), *mode.camera("other")]

@@ -154,17 +154,26 @@ namespace Mua
                 universal.UsesDynamicScale = true;
                 universal.RenderScale = 0.8f;
             }
-            XRSettings.renderViewportScale = 0.5f;
-            ScalableBufferManager.ResizeBuffers(0.5f, 0.5f);
+            Resize(0.5f, 0.5f);
             Frame("scaled", true);
-            XRSettings.renderViewportScale = 1;
-            ScalableBufferManager.ResizeBuffers(1, 1);
+            Machine.Platform(RuntimePlatform.Android);
+            Frame("scaled on a Quest", true);
+            Resize(1, 0.5f); // a scale that something else left, which is not the headset's
+            Frame("whole on a Quest", true);
+            Resize(1, 1);
+            Machine.Platform(RuntimePlatform.LinuxPlayer);
             main.allowDynamicResolution = false;
             if (universal != null)
             {
                 universal.UsesDynamicScale = false;
                 universal.RenderScale = 1;
             }
+        }
+
+        private static void Resize(float headset, float buffers)
+        {
+            XRSettings.renderViewportScale = headset;
+            ScalableBufferManager.ResizeBuffers(buffers, buffers);
         }
 
         /// <summary>All avatars again, on a device that takes no counts from a buffer.</summary>

@@ -54,15 +54,22 @@ namespace Mua
         {
             int count = camera.xr.enabled ? Mathf.Min(camera.xr.viewCount, AvatarEyes.Most) : 1;
             RenderTextureDescriptor target = camera.cameraTargetDescriptor;
-            float wide = target.useDynamicScale ? ScalableBufferManager.widthBufferScale : 1;
-            float high = target.useDynamicScale ? ScalableBufferManager.heightBufferScale : 1;
+            Vector2 scale = target.useDynamicScale ? Scale(camera) : Vector2.one;
             eyes.Begin(
-                Mathf.CeilToInt(wide * target.width), Mathf.CeilToInt(high * target.height),
+                Mathf.CeilToInt(scale.x * target.width), Mathf.CeilToInt(scale.y * target.height),
                 camera.camera.nearClipPlane, SystemInfo.supportsMultiview ? 1 : count);
             for (int eye = 0; eye < count; eye++)
             {
                 eyes.Add(camera.GetViewMatrix(eye), camera.GetProjectionMatrix(eye));
             }
+        }
+
+        /// <summary>Of a target's pixels that are drawn; for a headset, which has a scale of its own, as URP asks it.</summary>
+        private static Vector2 Scale(UniversalCameraData camera)
+        {
+            return camera.xr.enabled
+                ? XRSystem.GetRenderViewportScale() * Vector2.one
+                : new Vector2(ScalableBufferManager.widthScaleFactor, ScalableBufferManager.heightScaleFactor);
         }
 
         private sealed class Data

@@ -1,5 +1,6 @@
 using System.Collections.Generic;
 using UnityEngine;
+using UnityEngine.Experimental.Rendering;
 using UnityEngine.Rendering;
 using UnityEngine.Rendering.RenderGraphModule;
 using UnityEngine.Rendering.Universal;
@@ -55,7 +56,7 @@ namespace Mua
         /// <summary>As URP decides for its own objects; passes that differ are not merged.</summary>
         private static bool IsFoveated(UniversalCameraData camera, UniversalResourceData targets)
         {
-            bool isWhole = !Application.isMobilePlatform || ScalableBufferManager.widthBufferScale.Equals(1);
+            bool isWhole = !Application.isMobilePlatform || XRSystem.GetRenderViewportScale().Equals(1);
             return camera.xr.supportsFoveatedRendering && (isWhole || targets.isActiveTargetBackBuffer);
         }
 

@@ -1,9 +1,14 @@
-// Stand-in. Source: Unity's Graphics repository, com.unity.render-pipelines.core 17.0, Runtime/XR/XRPass.cs: the views
-// that one pass over a camera draws.
+// Stand-in. Source: Unity's Graphics repository, com.unity.render-pipelines.core 17.0, Runtime/XR/XRPass.cs,
+// XRSystem.cs: the views that one pass over a camera draws.
 using UnityEngine.Rendering;
 
 namespace UnityEngine.Experimental.Rendering
 {
+    public static class XRSystem
+    {
+        public static float GetRenderViewportScale() { return UnityEngine.XR.XRSettings.renderViewportScale; }
+    }
+
     public class XRPass
     {
         private readonly Matrix4x4[] views = new Matrix4x4[2], projections = new Matrix4x4[2];

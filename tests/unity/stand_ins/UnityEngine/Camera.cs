@@ -33,8 +33,8 @@ namespace UnityEngine
         public static Camera main { get { return FindAnyObjectByType<Camera>(); } }
         public int pixelWidth { get { return 640; } }
         public int pixelHeight { get { return 480; } }
-        public int scaledPixelWidth { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.widthBufferScale : 1) * pixelWidth); } }
-        public int scaledPixelHeight { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.heightBufferScale : 1) * pixelHeight); } }
+        public int scaledPixelWidth { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.widthScaleFactor : 1) * pixelWidth); } }
+        public int scaledPixelHeight { get { return Mathf.CeilToInt((allowDynamicResolution ? ScalableBufferManager.heightScaleFactor : 1) * pixelHeight); } }
         public bool allowDynamicResolution { get; set; }
         public bool orthographic { get; set; }
         public float fieldOfView { get; set; }

@@ -15,14 +15,14 @@ namespace UnityEngine
 
     public static class ScalableBufferManager
     {
-        static ScalableBufferManager() { widthBufferScale = heightBufferScale = 1; }
+        static ScalableBufferManager() { widthScaleFactor = heightScaleFactor = 1; }
 
-        public static float widthBufferScale { get; private set; }
-        public static float heightBufferScale { get; private set; }
+        public static float widthScaleFactor { get; private set; }
+        public static float heightScaleFactor { get; private set; }
         public static void ResizeBuffers(float widthScale, float heightScale)
         {
-            widthBufferScale = widthScale;
-            heightBufferScale = heightScale;
+            widthScaleFactor = widthScale;
+            heightScaleFactor = heightScale;
         }
     }
 }
