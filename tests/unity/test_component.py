@@ -197,6 +197,27 @@ def test_transforms_give_the_pose_wherever_their_root_stands(story: Story) -> No
     assert float(told["translated"][0]) < TRANSLATED
 
 
+def test_an_avatar_whose_rig_rests_is_only_sorted(story: Story) -> None:
+    """Once its window holds nothing but the pose in which it rests: as long as that is, it is decoded."""
+    told = story("RigRests", "first")
+    sorting = len(FRAME_ORDER[FRAME_ORDER.index("SplatProject") :])
+    posed = len(FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :])
+    window = synthetic_avatar(1).encoding.window
+    assert told["settling"] == ["1"]
+    assert told["idle"] == [str(10 * sorting)] * 3
+    woken = int(told["woken"][0]) - SECOND * sorting
+    decodes, reposes = divmod(woken, len(FRAME_ORDER) - sorting)
+    assert decodes == window
+    assert reposes in (0, posed - sorting)  # the frame that moved, where it is none of the avatar's own rate
+    assert told["carried"] == [str(posed)]
+
+
+def test_a_rig_that_rested_is_remembered_resting(story: Story) -> None:
+    told = story("RemembersRest", "first")
+    assert told["changes"] == ["1", "1"]
+    assert (told["fresh"], told["rests"]) == (["1"], ["1"])
+
+
 def test_a_rig_that_is_destroyed_is_said_once(story: Story) -> None:
     told = story("FollowsRig", "first")
     assert told["state"] == ["Ready"]

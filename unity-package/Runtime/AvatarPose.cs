@@ -25,6 +25,7 @@ namespace Mua
         private ClipSampler clip; // of the window; null where it is of transforms
         private int index = -1; // frame of the clip, newest of the window
         private double newest; // seconds; of the window's newest pose of transforms
+        private int rested; // newest poses of the window that are the pose of transforms of this moment
         private bool started;
 
         public AvatarPose(AvatarFile avatar)
@@ -91,12 +92,23 @@ namespace Mua
             }
         }
 
-        /// <summary>The transforms as they are at a time; the window takes one pose in each frame of the avatar's rate.</summary>
-        public void Sample(AvatarJoints joints, double seconds)
+        /// <summary>
+        /// The transforms as they are at a time; the window takes one pose in each frame of the avatar's rate. Whether the
+        /// pose is another than before; where it fills the whole window already, that stays as it is.
+        /// </summary>
+        public bool Sample(AvatarJoints joints, double seconds)
         {
-            joints.Read(current, currentTranslations);
+            joints.Read(next, nextTranslations);
+            bool isSame = started && Equal(next, current) && Equal(nextTranslations, currentTranslations);
+            next.CopyTo(current, 0);
+            nextTranslations.CopyTo(currentTranslations, 0);
+            rested = isSame ? rested : 0;
             double age = (seconds - newest) * rate;
-            if (!started || age < 0 || age > LongestGap)
+            if (rested == frames)
+            {
+                newest = seconds;
+            }
+            else if (!started || age < 0 || age > LongestGap)
             {
                 Fill();
                 newest = seconds;
@@ -108,6 +120,7 @@ namespace Mua
             }
             clip = null;
             index = 0;
+            return !isSame;
         }
 
         /// <summary>Frame of the clip that a time falls in, and how far it is past it.</summary>
@@ -138,6 +151,7 @@ namespace Mua
                 current.CopyTo(window, age * current.Length);
                 currentTranslations.CopyTo(windowTranslations, age * currentTranslations.Length);
             }
+            rested = frames;
             started = true;
             index = -1;
             IsFresh = true;
@@ -150,7 +164,20 @@ namespace Mua
             Array.Copy(windowTranslations, 0, windowTranslations, moved, windowTranslations.Length - moved);
             current.CopyTo(window, 0);
             currentTranslations.CopyTo(windowTranslations, 0);
+            rested++;
             IsFresh = true;
+        }
+
+        private static bool Equal(double[] a, double[] b)
+        {
+            for (int i = 0; i < a.Length; i++)
+            {
+                if (!a[i].Equals(b[i]))
+                {
+                    return false;
+                }
+            }
+            return true;
         }
     }
 }

@@ -30,12 +30,10 @@ namespace Mua
         [SerializeField]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
 
-        private readonly AvatarPlayback playback = new AvatarPlayback();
+        private readonly AvatarMotion motion = new AvatarMotion();
         private readonly AvatarPlacement placement = new AvatarPlacement();
         private AvatarLoader loader;
         private AvatarBuffers buffers;
-        private AvatarPose pose;
-        private AvatarJoints joints;
         private bool hasMoved; // since the last Record
         private bool isEdited; // the inspector has changed a field
         private AvatarAsset loaded; // as avatar, file and clip were when they took effect
@@ -59,13 +57,13 @@ namespace Mua
         public string AvatarName => State == AvatarState.Ready ? buffers.Avatar.Name : "";
 
         /// <summary>Names of the avatar's clips.</summary>
-        public IReadOnlyList<string> Clips => playback.Names;
+        public IReadOnlyList<string> Clips => motion.Playback.Names;
 
         /// <summary>Index of the clip that plays.</summary>
         public int ClipIndex
         {
-            get => playback.Index;
-            set => playback.Index = value;
+            get => motion.Playback.Index;
+            set => motion.Playback.Index = value;
         }
 
         /// <summary>Whether the clip goes on by itself.</summary>
@@ -81,19 +79,19 @@ namespace Mua
         /// <summary>Seconds into the clip.</summary>
         public double Seconds
         {
-            get => playback.Seconds;
-            set => playback.Seconds = value;
+            get => motion.Playback.Seconds;
+            set => motion.Playback.Seconds = value;
         }
 
         /// <summary>Frame of the clip at the avatar's rate; setting it goes to the frame's beginning.</summary>
         public int Frame
         {
-            get => playback.Frame;
-            set => playback.Frame = value;
+            get => motion.Playback.Frame;
+            set => motion.Playback.Frame = value;
         }
 
         /// <summary>Frames of the clip at the avatar's rate.</summary>
-        public int FrameCount => playback.FrameCount;
+        public int FrameCount => motion.Playback.FrameCount;
 
         /// <summary>Transforms that give the pose, or null where a clip does.</summary>
         public Transform Rig
@@ -153,6 +151,7 @@ namespace Mua
         /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
         internal void Record(CommandBuffer commands)
         {
+            AvatarPose pose = motion.Pose;
             if (pose.IsFresh)
             {
                 Decoded.Decode(
@@ -296,8 +295,7 @@ namespace Mua
         private void Begin()
         {
             loader.Dispose();
-            pose = new AvatarPose(buffers.Avatar);
-            playback.Take(buffers.Avatar);
+            motion.Take(buffers.Avatar);
             ChooseClip();
             AvatarWorld.Add(this);
             loader = null;
@@ -308,30 +306,18 @@ namespace Mua
         private void ChooseClip()
         {
             loadedClip = clip;
-            if (!playback.Choose(clip) && !string.IsNullOrEmpty(clip))
+            if (!motion.Playback.Choose(clip) && !string.IsNullOrEmpty(clip))
             {
-                Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", playback.Names) + ".");
+                Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", motion.Playback.Names) + ".");
             }
         }
 
         private void BindRig()
         {
-            joints = null;
-            if (rig == null || State != AvatarState.Ready)
+            string fault = motion.Bind(rig);
+            if (fault.Length > 0)
             {
-                return;
-            }
-            try
-            {
-                joints = new AvatarJoints(buffers.Avatar.Skeleton, rig);
-                if (joints.Missing.Length > 0)
-                {
-                    Warn(joints.Missing);
-                }
-            }
-            catch (InvalidOperationException error)
-            {
-                Warn(error.Message);
+                Warn(fault);
             }
         }
 
@@ -348,25 +334,11 @@ namespace Mua
 
         private void Pose()
         {
-            if (joints != null && !joints.Alive)
+            if (motion.LosesRig())
             {
-                joints = null;
                 Warn("the transforms of its pose were destroyed.");
             }
-            if (joints != null)
-            {
-                pose.Sample(joints, Time.timeAsDouble);
-                playback.Forget();
-                hasMoved = true;
-            }
-            else if (!playback.IsEmpty)
-            {
-                hasMoved |= playback.Sample(pose, IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
-            }
-            else
-            {
-                pose.Hold();
-            }
+            hasMoved |= motion.Sample(Time.timeAsDouble, IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
         }
 
         private void Warn(string sentence)
@@ -395,9 +367,7 @@ namespace Mua
             Surface = null;
             Decoded = null;
             buffers = null;
-            pose = null;
-            joints = null;
-            playback.Clear();
+            motion.Clear();
             placement.Forget();
             refusal = null;
         }

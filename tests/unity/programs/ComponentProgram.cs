@@ -264,6 +264,59 @@ namespace Mua
             Say("state", shown.State);
         }
 
+        private static void RigRests()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            AvatarRenderer shown = Show(files[0]);
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Say("settling", Dispatches(72) > 0 ? 1 : 0);
+            Say("idle", Dispatches(10));
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            Say("woken", Dispatches(72));
+            Say("idle", Dispatches(10));
+            shown.transform.position = new Vector3(5, 0, 0);
+            Say("carried", Dispatches(1));
+            Say("idle", Dispatches(10));
+        }
+
+        /// <summary>A pose that is held for long and then left: the window still holds what was before.</summary>
+        private static void RemembersRest()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
+            var pose = new AvatarPose(avatar);
+            double frame = 1 / avatar.Encoding.Rate;
+            int changes = 0;
+            for (int i = 0; i < 100; i++)
+            {
+                changes += pose.Sample(joints, i * frame) ? 1 : 0;
+            }
+            Say("changes", changes);
+            pose.IsFresh = false;
+            double[] rest = pose.Current.ToArray();
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            Say("changes", pose.Sample(joints, 100 * frame) ? 1 : 0);
+            Say("fresh", pose.IsFresh ? 1 : 0);
+            double[] window = pose.Window.ToArray();
+            int same = 0;
+            for (int age = 0; age < avatar.Encoding.Window; age++)
+            {
+                var held = new ReadOnlySpan<double>(window, age * rest.Length, rest.Length);
+                same += held.SequenceEqual(rest) ? 1 : 0;
+            }
+            Say("rests", avatar.Encoding.Window - same);
+        }
+
+        /// <summary>Of so many frames.</summary>
+        private static int Dispatches(int frames)
+        {
+            int before = Recorder.Dispatches;
+            Frames(frames);
+            return Recorder.Dispatches - before;
+        }
+
         private static void LacksJoint()
         {
             AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));

@@ -1,0 +1,84 @@
+using System;
+using Mua.Format;
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>What moves an avatar: the transforms of a rig, else one of its clips, else nothing.</summary>
+    internal sealed class AvatarMotion
+    {
+        private AvatarFile avatar;
+        private AvatarJoints joints; // null where a clip gives the pose
+
+        public AvatarPlayback Playback { get; } = new AvatarPlayback();
+
+        /// <summary>Null until there is an avatar.</summary>
+        public AvatarPose Pose { get; private set; }
+
+        public void Take(AvatarFile file)
+        {
+            avatar = file;
+            Pose = new AvatarPose(file);
+            Playback.Take(file);
+        }
+
+        public void Clear()
+        {
+            avatar = null;
+            Pose = null;
+            joints = null;
+            Playback.Clear();
+        }
+
+        /// <summary>
+        /// Takes the transforms below a root in place of those it had, or none for null; what is wrong with them, or nothing.
+        /// </summary>
+        public string Bind(Transform root)
+        {
+            joints = null;
+            if (root == null || avatar == null)
+            {
+                return "";
+            }
+            try
+            {
+                joints = new AvatarJoints(avatar.Skeleton, root);
+                return joints.Missing;
+            }
+            catch (InvalidOperationException error)
+            {
+                return error.Message;
+            }
+        }
+
+        /// <summary>Lets go of transforms that were destroyed; whether they were since the last call.</summary>
+        public bool LosesRig()
+        {
+            if (joints == null || joints.Alive)
+            {
+                return false;
+            }
+            joints = null;
+            return true;
+        }
+
+        /// <summary>
+        /// The pose of a moment, in seconds of the rig's clock, or `step` seconds of the clip after the last; whether it is
+        /// another than before.
+        /// </summary>
+        public bool Sample(double seconds, double step)
+        {
+            if (joints != null)
+            {
+                Playback.Forget();
+                return Pose.Sample(joints, seconds);
+            }
+            if (!Playback.IsEmpty)
+            {
+                return Playback.Sample(Pose, step);
+            }
+            Pose.Hold();
+            return false;
+        }
+    }
+}
