@@ -163,6 +163,8 @@ def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
     [
         ("Fails", "damaged", "crc32"),
         ("Fails", "absent", "absent.muaavatar"),
+        ("FailsInEditor", "damaged", "crc32"),
+        ("FailsInEditor", "absent", "absent.muaavatar"),
         ("LacksKernel", "first", "splat_sort.compute"),
         ("LacksResources", "first", "MuaAvatarResources"),
         ("LacksCompute", "first", "compute shaders"),
@@ -176,6 +178,7 @@ def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: s
     assert len(told["log"]) == 1, told["log"]
     assert told["log"][0].startswith("Error MUA: ")
     assert words in told["log"][0]
+    assert "One or more errors" not in told["log"][0]
     assert told["log"][0].endswith(told["message"][0])
 
 

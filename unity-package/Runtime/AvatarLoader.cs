@@ -89,7 +89,7 @@ namespace Mua
             {
                 if (reading != null && !reading.IsFaulted)
                 {
-                    reading.Wait();
+                    Task.WaitAny(reading); // Wait would wrap what was wrong in an exception of its own
                 }
             }
         }

@@ -175,6 +175,13 @@ namespace Mua
             Say("message", shown.Message);
         }
 
+        private static void FailsInEditor()
+        {
+            Machine.Playing(false);
+            Fails();
+            Machine.Playing(true);
+        }
+
         private static void LacksKernel()
         {
             Set("splatSort", null);
