@@ -7,6 +7,7 @@ from pathlib import Path
 from csharp import RUNTIME
 
 SHADERS = sorted(RUNTIME.rglob("*.shader"))
+SAMPLES = sorted((RUNTIME.parent / "Samples~").rglob("*.shader"))
 STAND_IN = Path(__file__).parent / "stand_ins" / "shader"
 ENGINE = frozenset(  # what a program is given by Unity, or in its place by a test
     {"glstate_matrix_projection", "unity_StereoMatrixP", "unity_MatrixVP", "unity_StereoEyeIndex"}

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 import shader_rules
 from check_shaders import messages
-from shader_programs import SHADERS, VARIANTS, Program, programs
+from shader_programs import SAMPLES, SHADERS, VARIANTS, Program, programs
 
 from mua.gpu import compilers
 
-PROGRAMS = [program for path in SHADERS for program in programs(path)]
+PROGRAMS = [program for path in (*SHADERS, *SAMPLES) for program in programs(path)]
 FINDERS = {
     "glslang": partial(compilers.find, "glslang"),
     "dxc": partial(compilers.find, "dxc"),
@@ -42,7 +42,7 @@ def test_every_variant_compiles_without_a_warning(
 
 def test_only_words_that_every_compiler_takes() -> None:
     """No wave operation, no 16-bit type, no use_dxc, which loses the eye of a multiview pass."""
-    files = [path for shader in SHADERS for path in (shader, *shader.parent.glob("*.hlsl"))]
+    files = [path for shader in (*SHADERS, *SAMPLES) for path in (shader, *shader.parent.glob("*.hlsl"))]
     assert [fault for path in files for fault in shader_rules.file_faults(path)] == []
 
 
@@ -50,3 +50,11 @@ def test_only_words_that_every_compiler_takes() -> None:
 def test_the_eye_the_rows_and_the_screen_come_from_one_place(program: Program) -> None:
     """target.hlsl; a shader that asked the engine itself could disagree with it."""
     assert ENGINE_WORDS.findall(program.text) == []
+
+
+def test_letters_of_the_sample_stand_among_the_things_of_the_scene() -> None:
+    """Opaque to avatars, which are drawn after the queue of opaque objects and test depth."""
+    (path,) = [path for path in SAMPLES if path.stem == "text"]
+    (program,) = programs(path)
+    assert (program.state["ZTest"], program.state["ZWrite"]) == ("LEqual", "On")
+    assert '"Queue" = "AlphaTest"' in path.read_text()

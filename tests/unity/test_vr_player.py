@@ -74,13 +74,21 @@ def test_the_scene_has_what_the_player_needs(story: Story) -> None:
         ["AvatarRenderer"],
         ["VrPlayer"],
         ["Camera HeadPose"],
-        ["MeshRenderer TextMesh"],
-        ["MeshRenderer TextMesh"],
+        ["MeshRenderer TextMesh StandingText"],
+        ["MeshRenderer TextMesh StandingText"],
     ]
     assert told["light"] == ["Directional Soft"]
     assert told["camera"] == ["False False SolidColor MainCamera"]
     assert (told["ground"], told["avatars"]) == (["True"], ["True"])
     assert told["faces"] == ["0.00 0.00 -1.00, the user at 0.00 0.00 -2.20"]
+    assert told["log"] == []
+
+
+def test_letters_are_drawn_by_a_shader_that_tests_depth(story: Story) -> None:
+    """With the font's texture, also where the font has made another one meanwhile."""
+    told = story("Letters")
+    assert told["shader"] == ["Hidden/MUA/Text"]
+    assert told["own"] == ["True", "True"]
     assert told["log"] == []
 
 

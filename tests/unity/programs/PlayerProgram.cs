@@ -72,6 +72,18 @@ namespace Mua.Samples.VrPlayer
             Say("help", GameObject.Find("Help").GetComponent<TextMesh>().text.Replace('\n', '|'));
         }
 
+        /// <summary>The shader of the panel's letters, and whether they are those of the font.</summary>
+        private static void Letters()
+        {
+            Begin();
+            MeshRenderer drawn = panel.GetComponent<MeshRenderer>();
+            var texture = new Texture2D(64, 64);
+            Say("shader", drawn.sharedMaterial.shader.name);
+            Say("own", drawn.sharedMaterial.mainTexture == panel.font.material.mainTexture);
+            panel.font.Rebuild(texture);
+            Say("own", drawn.sharedMaterial.mainTexture == texture);
+        }
+
         private static void Keys()
         {
             Begin();

@@ -43,6 +43,7 @@ namespace UnityEngine
         public int renderQueue { get; set; }
         public bool enableInstancing { get; set; }
         public Color color { get; set; }
+        public Texture mainTexture { get; set; }
         public int passCount { get { return 1; } }
         public int FindPass(string passName) { return 0; }
         public void SetInt(int nameID, int value) { Constants.Set(nameID, value); }

@@ -56,4 +56,7 @@ int unity_StereoEyeIndex; // of the pass where each eye has its own, else 0
 
 #endif
 
+// A point of the object that is drawn; here it stands in the middle of the world.
+#define UnityObjectToClipPos(place) mul(UNITY_MATRIX_VP, float4(place, 1))
+
 #endif

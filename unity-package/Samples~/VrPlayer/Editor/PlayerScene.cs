@@ -12,6 +12,7 @@ namespace Mua.Samples.VrPlayer.Editor
     public static class PlayerScene
     {
         private const string Default = "Assets/MuaPlayer.unity";
+        private const string TextShader = "Hidden/MUA/Text"; // text.shader of this sample
         private const float EyeHeight = 1.6f; // metres; of a user without a headset
         private const float Distance = 2.2f; // metres from the avatar
         private const float LetterHeight = 0.028f; // metres
@@ -108,6 +109,7 @@ namespace Mua.Samples.VrPlayer.Editor
             text.anchor = TextAnchor.UpperLeft;
             text.text = content;
             thing.GetComponent<MeshRenderer>().sharedMaterial = text.font.material;
+            thing.AddComponent<StandingText>().Connect(Shader.Find(TextShader));
             return text;
         }
 
