@@ -206,13 +206,14 @@ def test_an_avatar_whose_rig_rests_is_only_sorted(story: Story) -> None:
     sorting = len(FRAME_ORDER[FRAME_ORDER.index("SplatProject") :])
     posed = len(FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :])
     window = synthetic_avatar(1).encoding.window
-    assert told["settling"] == ["1"]
+    assert told["settling"] == [str(len(FRAME_ORDER) + (SECOND - 1) * sorting)]  # the first frame fills the window
     assert told["idle"] == [str(10 * sorting)] * 3
-    woken = int(told["woken"][0]) - SECOND * sorting
-    decodes, reposes = divmod(woken, len(FRAME_ORDER) - sorting)
-    assert decodes == window
-    assert reposes in (0, posed - sorting)  # the frame that moved, where it is none of the avatar's own rate
+    for moved in ("woken", "stepped"):
+        decodes, reposes = divmod(int(told[moved][0]) - SECOND * sorting, len(FRAME_ORDER) - sorting)
+        assert decodes == window
+        assert reposes in (0, posed - sorting)  # the frame that moved, where it is none of the avatar's own rate
     assert told["carried"] == [str(posed)]
+    assert told["left"] == [str(len(FRAME_ORDER))]
 
 
 def test_a_rig_that_rested_is_remembered_resting(story: Story) -> None:

@@ -255,11 +255,16 @@ def test_pixels_are_those_of_a_scaled_target(recorded: Recorded) -> None:
 def test_a_headset_has_a_scale_of_its_own(record: Callable[[Mode], Recorded], mode: Mode) -> None:
     """URP foveates its own passes by that one, and does not merge ours with those unless we do the same."""
     recorded = record(mode)
-    for frame, is_whole in (("scaled on a Quest", False), ("whole on a Quest", True)):
+    for frame, scale, is_foveated in (
+        ("scaled", 0.5, True),
+        ("scaled on a Quest", 0.5, False),
+        ("scaled without a copy on a Quest", 0.5, True),
+        ("whole on a Quest", 1, True),
+    ):
         draws = [step for step in recorded.steps(frame) if step.startswith("MUA draw")]
-        assert ["foveated" in step for step in draws] == [is_whole] * mode.passes
+        assert ["foveated" in step for step in draws] == [is_foveated] * mode.passes
         for given in recorded.constants(frame, "SplatProject", "screen"):
-            assert tuple(given[:2]) == tuple(np.ceil(np.multiply(EYE, 1 if is_whole else 0.5)))
+            assert tuple(given[:2]) == tuple(np.ceil(np.multiply(EYE, scale)))
 
 
 def test_a_second_camera_sorts_after_the_first_has_drawn(recorded: Recorded) -> None:

@@ -277,7 +277,7 @@ namespace Mua
             Transform[] rig = MakeRig(avatar);
             AvatarRenderer shown = Show(files[0]);
             shown.Rig = Scene[Scene.Count - 2].transform;
-            Say("settling", Dispatches(72) > 0 ? 1 : 0);
+            Say("settling", Dispatches(72));
             Say("idle", Dispatches(10));
             rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
             Say("woken", Dispatches(72));
@@ -285,6 +285,11 @@ namespace Mua
             shown.transform.position = new Vector3(5, 0, 0);
             Say("carried", Dispatches(1));
             Say("idle", Dispatches(10));
+            rig[avatar.Skeleton.Root].localPosition += new Vector3(0, 0.1f, 0);
+            Say("stepped", Dispatches(72));
+            shown.IsPlaying = false;
+            shown.Rig = null;
+            Say("left", Dispatches(1));
         }
 
         /// <summary>A pose that is held for long and then left: the window still holds what was before.</summary>

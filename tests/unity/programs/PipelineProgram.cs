@@ -158,6 +158,12 @@ namespace Mua
             Frame("scaled", true);
             Machine.Platform(RuntimePlatform.Android);
             Frame("scaled on a Quest", true);
+            if (universal != null)
+            {
+                universal.IsBackBuffer = true;
+                Frame("scaled without a copy on a Quest", true);
+                universal.IsBackBuffer = false;
+            }
             Resize(1, 0.5f); // a scale that something else left, which is not the headset's
             Frame("whole on a Quest", true);
             Resize(1, 1);

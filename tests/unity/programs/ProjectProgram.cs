@@ -279,6 +279,7 @@ namespace Mua.Editor
         {
             var feature = new SerializedObject(OpenXR.Features["Android com.unity.openxr.feature.metaquest"]);
             feature.FindProperty("lateLatchingMode").boolValue = value;
+            feature.ApplyModifiedProperties();
         }
 
         private static UniversalRenderPipelineAsset Used()

@@ -33,10 +33,7 @@ namespace Mua.Samples.VrPlayer
 
         private void TakeTexture(Font rebuilt)
         {
-            if (rebuilt == font)
-            {
-                material.mainTexture = font.material.mainTexture;
-            }
+            material.mainTexture = font.material.mainTexture;
         }
     }
 }

@@ -73,7 +73,7 @@ namespace StandIns
         /// <summary>Between the recording of a graph and its execution.</summary>
         public Action BeforeExecute;
 
-        public bool HasColor = true;
+        public bool HasColor = true, IsBackBuffer;
         public float RenderScale = 1;
         public bool UsesDynamicScale;
 
@@ -149,6 +149,7 @@ namespace StandIns
             UniversalResourceData targets = renderer.Frame.GetOrCreate<UniversalResourceData>();
             targets.Accessible = true;
             targets.HasColor = HasColor;
+            targets.IsBackBuffer = IsBackBuffer;
             renderer.Sort();
             renderer.Record(graph, RenderPassEvent.BeforeRendering, RenderPassEvent.BeforeRenderingShadows);
             graph.AddStep(start);

@@ -1,5 +1,6 @@
 // Stand-in. Source: Unity 6000.0 scripting reference, Editor, CustomEditor, SerializedObject, SerializedProperty (by reflection).
 using System;
+using System.Collections.Generic;
 using System.Reflection;
 using Object = UnityEngine.Object;
 
@@ -25,16 +26,25 @@ namespace UnityEditor
     public sealed class SerializedObject
     {
         private readonly Object edited;
+        private readonly List<SerializedProperty> found = new List<SerializedProperty>();
 
         public SerializedObject(Object obj) { edited = obj; }
 
         public void Update() { }
-        public bool ApplyModifiedProperties() { return true; }
-        public bool ApplyModifiedPropertiesWithoutUndo() { return true; }
+        public bool ApplyModifiedProperties()
+        {
+            foreach (SerializedProperty each in found)
+                each.Apply();
+            return true;
+        }
+        public bool ApplyModifiedPropertiesWithoutUndo() { return ApplyModifiedProperties(); }
         public SerializedProperty FindProperty(string propertyPath)
         {
             FieldInfo field = edited.GetType().GetField(propertyPath, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public);
-            return field == null ? null : new SerializedProperty(edited, field);
+            if (field == null)
+                return null;
+            found.Add(new SerializedProperty(edited, field));
+            return found[found.Count - 1];
         }
     }
 
@@ -43,10 +53,19 @@ namespace UnityEditor
         private readonly Object edited;
         private readonly FieldInfo field;
 
-        internal SerializedProperty(Object edited, FieldInfo field) { this.edited = edited; this.field = field; }
+        private object value; // until it is applied
 
-        public bool boolValue { get { return (bool)field.GetValue(edited); } set { field.SetValue(edited, value); } }
-        public string stringValue { get { return (string)field.GetValue(edited); } set { field.SetValue(edited, value); } }
+        internal SerializedProperty(Object edited, FieldInfo field)
+        {
+            this.edited = edited;
+            this.field = field;
+            value = field.GetValue(edited);
+        }
+
+        public bool boolValue { get { return (bool)value; } set { this.value = value; } }
+        public string stringValue { get { return (string)value; } set { this.value = value; } }
+
+        internal void Apply() { field.SetValue(edited, value); }
     }
 }
 
