@@ -138,6 +138,14 @@ def test_avatars_come_and_go(story: Story) -> None:
     assert told["log"] == []
 
 
+def test_an_avatar_that_rests_is_posed_again_into_the_buffer_that_is_left(story: Story) -> None:
+    """Splats of all avatars lie in one, which is another when one of them has gone."""
+    told = story("StaysBehind", "first", "second")
+    posed = FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :]
+    assert told["left"] == [str(len(posed))]
+    assert told["idle"] == [str(len(posed) - posed.index("SplatProject"))]
+
+
 def test_an_avatar_destroyed_while_it_uploads_leaves_nothing(story: Story) -> None:
     told = story("GoesMidUpload", "wide")
     assert (told["state"], told["progress"], told["held"]) == (["Loading"], ["1"], ["1"])
@@ -220,6 +228,15 @@ def test_a_rig_that_rested_is_remembered_resting(story: Story) -> None:
     told = story("RemembersRest", "first")
     assert told["changes"] == ["1", "1"]
     assert (told["fresh"], told["rests"]) == (["1"], ["1"])
+
+
+def test_the_window_takes_a_pose_in_each_frame_of_the_avatars_rate(story: Story) -> None:
+    """On a display three times as fast; it goes on after 3 frames without a pose, starts anew after 4 or going back."""
+    told = story("WindowTakesTurns", "first")
+    window = synthetic_avatar(1).encoding.window
+    assert window == 3
+    assert told["window"] == ["12 9 6", "13 12 9", "14 14 14", "15 14 14", "16 16 16"]
+    assert [float(number) for number in told["before"]] == [pytest.approx(0.5), pytest.approx(1)]
 
 
 def test_a_rig_that_is_destroyed_is_said_once(story: Story) -> None:

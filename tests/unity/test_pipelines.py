@@ -228,6 +228,8 @@ def test_the_device_is_told_of_eyes_instances_and_pixels(recorded: Recorded) -> 
         assert [int(given[0]) for given in recorded.constants("moved", kernel, constant)] == [expected] * mode.passes
     for given in recorded.constants("moved", "SplatProject", "screen"):
         assert tuple(given[:2]) == mode.screen
+    for given in recorded.constants("moved", "SplatProject", "near"):
+        assert given[0] == np.float32(NEAR)
 
 
 def test_each_pass_is_given_its_eyes(recorded: Recorded) -> None:

@@ -91,6 +91,16 @@ namespace Mua
             Say("state", first.State + " " + second.State);
         }
 
+        private static void StaysBehind()
+        {
+            AvatarRenderer first = Show(files[0]), second = Show(files[1]);
+            first.IsPlaying = second.IsPlaying = false;
+            Frames(2);
+            second.enabled = false;
+            Say("left", Dispatches(1));
+            Say("idle", Dispatches(1));
+        }
+
         private static void ShowsViews()
         {
             AvatarRenderer shown = Show(files[0]);
@@ -319,6 +329,52 @@ namespace Mua
                 same += held.SequenceEqual(rest) ? 1 : 0;
             }
             Say("rests", avatar.Encoding.Window - same);
+        }
+
+        /// <summary>Which poses of a rig that moves all the time are in the window, newest first.</summary>
+        private static void WindowTakesTurns()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
+            var pose = new AvatarPose(avatar);
+            double frame = 1 / avatar.Encoding.Rate, now = 100;
+            var seen = new List<double[]>();
+            for (int i = 0; i <= 12; i++)
+            {
+                Turn(rig, joints, pose, now + i * frame / 3, seen);
+            }
+            Say("window", Indices(pose, seen));
+            now += 4 * frame;
+            Turn(rig, joints, pose, now + 3.75 * frame, seen);
+            Say("window", Indices(pose, seen));
+            Turn(rig, joints, pose, now + 7.5 * frame, seen);
+            Say("window", Indices(pose, seen));
+            Turn(rig, joints, pose, now + 8.5 * frame, seen);
+            Say("window", Indices(pose, seen));
+            Turn(rig, joints, pose, now + 8 * frame, seen);
+            Say("window", Indices(pose, seen));
+            var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
+            Say("before", clip.FrameCount - AvatarPose.Position(clip, -0.5 * frame));
+            Say("before", clip.FrameCount - AvatarPose.Position(clip, -(clip.FrameCount + 1) * frame));
+        }
+
+        private static void Turn(Transform[] rig, AvatarJoints joints, AvatarPose pose, double seconds, List<double[]> seen)
+        {
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 5 * seen.Count, 0);
+            pose.Sample(joints, seconds);
+            seen.Add(pose.Current.ToArray());
+        }
+
+        private static string Indices(AvatarPose pose, List<double[]> seen)
+        {
+            var found = new List<string>();
+            for (int at = 0; at < pose.Window.Length; at += pose.Current.Length)
+            {
+                double[] held = pose.Window.Slice(at, pose.Current.Length).ToArray();
+                found.Add(seen.FindIndex(each => new ReadOnlySpan<double>(each).SequenceEqual(held)).ToString());
+            }
+            return string.Join(" ", found.ToArray());
         }
 
         /// <summary>Of so many frames.</summary>
