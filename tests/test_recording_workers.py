@@ -1,6 +1,8 @@
 """Worker processes record what one would, survive kills, and end with the one that started them."""
 
+import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -152,6 +154,52 @@ def test_an_interrupt_ends_all_workers(tmp_path: Path, monkeypatch: pytest.Monke
         run(tmp_path / "r", Waiting, tmp_path / "flag", progress=interrupt)
     assert len(started) == 2
     assert all(process.poll() is not None for process in started)
+
+
+@pytest.mark.parametrize("joined", [True, False])
+def test_what_was_damaged_is_told_and_recorded_anew(alone: Path, tmp_path: Path, joined: bool) -> None:
+    directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
+    damaged = directory if joined else directory.with_name("r.part-1-of-3")
+    if joined:
+        shutil.copytree(alone, directory)
+    else:
+        record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
+    (damaged / "shards/00000/whole_00000.npy").unlink()
+    told: list[str] = []
+    run(directory, FormulaTeacher, note=told.append)
+    (sentence,) = told
+    assert sentence.startswith(f"{damaged / 'shards/00000/whole_00000.npy'} is missing")
+    assert sentence.endswith(". It is recorded anew.")
+    assert content(directory) == content(alone)
+
+
+def test_what_an_undisturbed_run_left_is_not_recorded_anew(alone: Path, tmp_path: Path) -> None:
+    directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
+    record_share(teacher, plan(teacher.rig), directory, rank=0, count=2, rate=RATE)  # the parts of one of two
+    told: list[str] = []
+    run(directory, FormulaTeacher, note=told.append)
+    run(directory, FormulaTeacher, note=told.append)
+    assert told == []
+    assert content(directory) == content(alone)
+
+
+def test_parts_that_find_no_room_to_be_joined_are_kept(
+    alone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
+    record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
+    parts = sorted(tmp_path.iterdir())
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as small:
+        small.setattr("numpy.save", full)
+        with pytest.raises(InputError, match=r"r: cannot be written \(No space left on device\); all frames are kept"):
+            join_parts(directory, plan(teacher.rig))
+    assert sorted(tmp_path.iterdir()) == parts
+    join_parts(directory, plan(teacher.rig))
+    assert content(directory) == content(alone)
 
 
 def test_a_finished_recording_starts_no_worker(alone: Path, monkeypatch: pytest.MonkeyPatch) -> None:

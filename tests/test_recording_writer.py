@@ -1,11 +1,13 @@
 """Recordings written: what a kill leaves, which frames and directories are refused."""
 
+import errno
 import os
 import random
 import shutil
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -102,15 +104,47 @@ def test_interleaved_clips_stay_contiguous_after_a_kill(tmp_path: Path) -> None:
     """A clip that a killed run left is complete once another is started."""
     rig = synthetic_rig()
     teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 3)
-    killed = TeacherWriter(tmp_path, rig, rate=RATE, shard_frames=2)
-    killed.start_clip("walk")
-    for frame in (teacher.frame(walk, index) for index in range(3)):
-        killed.add(frame.pose, frame.mesh, frame.texture)
+    with suppress(Killed), TeacherWriter(tmp_path, rig, rate=RATE, shard_frames=2) as killed:
+        killed.start_clip("walk")
+        for frame in (teacher.frame(walk, index) for index in range(3)):
+            killed.add(frame.pose, frame.mesh, frame.texture)
+        raise Killed
     with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
         writer.start_clip("turn")
         with pytest.raises(InputError, match="clip 'walk' is complete"):
             writer.start_clip("walk")
     assert [(c.name, len(c), c.complete) for c in Recording(tmp_path).clips] == [("walk", 2, True)]
+
+
+def test_a_second_writer_is_refused_and_leaves_the_first_ones_frames(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 3)
+    with TeacherWriter(tmp_path, rig, rate=RATE) as first:
+        first.start_clip("walk")
+        for index in range(3):
+            frame = teacher.frame(walk, index)
+            first.add(frame.pose, frame.mesh, frame.texture, whole=True)
+        with pytest.raises(InputError, match=rf"process {os.getpid()} is at work there; wait until it has ended"):
+            TeacherWriter(tmp_path, rig, rate=RATE)
+    assert [frame.index for frame in Recording(tmp_path).whole_frames()] == [0, 1, 2]
+    TeacherWriter(tmp_path, rig, rate=RATE)
+
+
+def test_a_shard_that_finds_no_room_is_not_left_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither where a frame kept whole finds none, which is written at once, nor where the rest does."""
+    write_bytes = Path.write_bytes
+
+    def full(self: Path, content: bytes) -> int:
+        if self.name == refused:
+            write_bytes(self, b"half")
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return write_bytes(self, content)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    for refused in ("whole_00000.npy", "d2.npy", "index.json"):
+        with pytest.raises(InputError, match=r"cannot be written \(No space left on device\); earlier shards are kept"):
+            write(tmp_path / refused)
+        assert list((tmp_path / refused / "shards").iterdir()) == []
 
 
 def nan_at(array: Array, *where: int) -> Array:

@@ -26,7 +26,7 @@ def replacing(path: Path) -> Iterator[Path]:
     except OSError as error:
         if error.strerror is None or not _concerns(error, path, temporary):
             raise
-        raise _refused(path, error) from error
+        raise refused(path, error) from error
     finally:
         _remove(temporary)
 
@@ -46,7 +46,7 @@ def require_writable(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         probe.touch()
     except OSError as error:
-        raise _refused(path, error) from error
+        raise refused(path, error) from error
     finally:
         _remove(probe)
 
@@ -80,11 +80,13 @@ def remove_leftovers(path: Path) -> None:
         _remove(left)
 
 
-def _refused(path: Path, error: OSError) -> InputError:
+def refused(path: Path, error: OSError, *, named: str = "") -> InputError:
+    """The sentence for what the system would not write; `named` as a user knows it, where that is not by its path."""
+    if isinstance(error, FileExistsError | NotADirectoryError):
+        file = next((above for above in (path, *path.parents) if above.is_file()), error.filename)
+        return InputError(f"{named or path}: cannot be written ({file} is no directory)")
     kept = "; what it held before is kept" if path.is_file() else ""
-    blocked = isinstance(error, FileExistsError | NotADirectoryError)
-    reason = f"{error.filename} is no directory" if blocked else error.strerror
-    return InputError(f"{path}: cannot be written ({reason}){kept}")
+    return InputError(f"{named or path}: cannot be written ({error.strerror}){kept}")
 
 
 def _concerns(error: OSError, path: Path, temporary: Path) -> bool:

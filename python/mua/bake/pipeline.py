@@ -19,6 +19,7 @@ from mua.bake.sources import RATE, load_character, load_clips
 from mua.files import require_writable
 from mua.likeness import told
 from mua.likeness.compare import Likeness
+from mua.locks import DirectoryLock
 from mua.memory import give_back
 from mua.motion.clip import Clip
 from mua.motion.planted_feet import Feet
@@ -58,7 +59,15 @@ class Order:
 
 
 def bake(order: Order, listener: Listener) -> Baked:
-    """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it."""
+    """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it.
+
+    Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
+    """
+    with DirectoryLock(order.work, name=f"--work {order.work}"):
+        return _bake(order, listener)
+
+
+def _bake(order: Order, listener: Listener) -> Baked:
     listener.stage("character")
     character = load_character(
         order.character,
@@ -122,6 +131,7 @@ def _record(order: Order, character: Character, planned: list[PlannedClip], list
         jobs=order.jobs,
         rate=RATE,
         progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
+        note=listener.note,
     )
     return Recording(directory)
 

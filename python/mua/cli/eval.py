@@ -14,6 +14,7 @@ from mua.cli.failure import refusing
 from mua.errors import InputError
 from mua.files import replacing, write_bytes
 from mua.gpu import Device, open_device
+from mua.locks import DirectoryLock
 from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.optimise import Progress, Run
@@ -66,7 +67,9 @@ def evaluate(
         studio = Studio(opened, recording.rig, chosen, views=views, size=size)
         rows = [entries.mean_entry(recording)]
         rows += _avatars(opened, avatars or [], recording, size=size, own_mesh=own_mesh, display=display)
-        rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
+        if names:
+            with DirectoryLock(output / "work", name=f"-o {output}"):
+                rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
         display.stage("pictures")
         results = judge.judge(studio, chosen, rows, lpips=lpips, progress=display.step)
         setting = report.Setting(
@@ -112,8 +115,6 @@ def _systems(
     names: list[str], recording: Recording, settings: Settings, *, budget: Budget, work: Path, display: Display
 ) -> list[entries.Entry]:
     """Train one system after the other; those that the work directory holds are taken from there."""
-    if not names:
-        return []
     generator = torch.Generator().manual_seed(settings.seed)
     checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), budget.seconds, budget.steps), []))
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")

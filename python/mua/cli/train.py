@@ -1,5 +1,6 @@
 """mua-train: a recording becomes a verified `.muaavatar`."""
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,6 +14,8 @@ from mua.bake.playback import choose, whole_clips
 from mua.bake.report import UNSAID
 from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
+from mua.files import require_writable
+from mua.locks import DirectoryLock
 from mua.processes import Processes, joined
 from mua.recording import Recording
 from mua.student.settings import preset, with_recipe
@@ -58,12 +61,21 @@ def main(
             storage=storage,
             processes=processes,
         )
-        _carry_out(order, opened, stage, processes)
+        with _alone(order):
+            _carry_out(order, opened, stage, processes)
 
 
 def run() -> None:
     """Entry point of the command."""
     refusing(main)
+
+
+def _alone(order: Distillation) -> AbstractContextManager[object]:
+    """Keeps other commands out of the work directory; of processes that train together the first one does."""
+    if not order.processes.first:
+        return nullcontext()
+    require_writable(order.output)
+    return DirectoryLock(order.work, name=f"--work {order.work}")
 
 
 def _carry_out(order: Distillation, recording: Recording, stage: StageName | None, processes: Processes) -> None:

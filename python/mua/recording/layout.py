@@ -16,6 +16,7 @@ from mua.rig.rig import Rig
 from mua.texture.channels import CHANNELS
 
 VERSION = 2
+WAVELET = "bior4.4"  # unless a writer is told another
 HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
 INDEX, SUM = "index.json", "sum.npy"
 DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2 vary with the frame, D1 and D0 are means (paper, Methodology)

@@ -183,16 +183,24 @@ def join_parts(directory: Path, plan: Sequence[PlannedClip]) -> None:
         _check(sources, parts)
         hidden = directory.with_name(f".{directory.name}.part")
         shutil.rmtree(hidden, ignore_errors=True)
-        (hidden / SHARDS).mkdir(parents=True)
-        for name in (HEADER, RIG, REFERENCE):
-            shutil.copyfile(sources[0] / name, hidden / name)
-        _join_shards(sources, hidden)
-        for path in (*hidden.rglob("*"), hidden):
-            sync(path)
-        hidden.rename(directory)
+        try:
+            _join(sources, hidden)
+            hidden.rename(directory)
+        except OSError as error:
+            shutil.rmtree(hidden, ignore_errors=True)
+            raise InputError(f"{directory}: cannot be written ({error.strerror}); all frames are kept") from error
         sync(directory.parent)
     for source in sources:
         shutil.rmtree(source, ignore_errors=True)
+
+
+def _join(sources: Sequence[Path], target: Path) -> None:
+    (target / SHARDS).mkdir(parents=True)
+    for name in (HEADER, RIG, REFERENCE):
+        shutil.copyfile(sources[0] / name, target / name)
+    _join_shards(sources, target)
+    for path in (*target.rglob("*"), target):
+        sync(path)
 
 
 def _check(sources: Sequence[Path], plans: Sequence[Sequence[PlannedClip]]) -> None:

@@ -2,7 +2,10 @@
 
 import io
 import os
+import shutil
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -57,8 +60,8 @@ class Shard:
     ) -> None:
         """Give the last pose its mesh and subbands."""
         if whole is not None:
-            self._part.mkdir(exist_ok=True)
-            self._save(whole_name(self.frames), whole)
+            with self._writing():
+                self._save(whole_name(self.frames), whole)
             self._segments[-1].whole.append(index)
         self._segments[-1].recorded.append(index)
         self._meshes.append(mesh)
@@ -70,28 +73,38 @@ class Shard:
         *,
         training_frames: int,  # summed in it
     ) -> None:
-        """Write the hidden directory, sync it and rename it; raises InputError where another writer did so."""
-        self._part.mkdir(exist_ok=True)
-        for name, array in {**self._arrays(), "sum": total}.items():
-            self._save(name, array)
-        crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(self._part.glob("*.npy"))}
-        index = Index(self._segments, self.complete, training_frames, crc, self._header.rig)
-        (self._part / INDEX).write_bytes(to_json(index))
-        for path in (*self._part.iterdir(), self._part):
-            sync(path)
-        if self._final.exists():
-            raise InputError(f"{self._final} has appeared: another writer is at work on this recording")
-        self._part.rename(self._final)
+        """Write the hidden directory, sync it and rename it; raises InputError where the system refuses."""
+        with self._writing():
+            for name, array in {**self._arrays(), "sum": total}.items():
+                self._save(name, array)
+            crc = {path.name: zlib.crc32(path.read_bytes()) for path in sorted(self._part.glob("*.npy"))}
+            index = Index(self._segments, self.complete, training_frames, crc, self._header.rig)
+            (self._part / INDEX).write_bytes(to_json(index))
+            for path in (*self._part.iterdir(), self._part):
+                sync(path)
+            self._part.rename(self._final)
         sync(self._final.parent)
 
     def _save(self, name: str, array: Array) -> None:
-        path = self._part / f"{name}.npy"
         content = io.BytesIO()  # np.save into a file itself overlooks that its last bytes found no room
         np.save(content, array, allow_pickle=False)
+        path = self._part / f"{name}.npy"
         try:
             path.write_bytes(content.getbuffer())
         except OSError as error:
-            raise InputError(f"{path}: cannot be written ({error.strerror}); earlier shards are kept") from error
+            error.filename = str(path)  # which a write that fails does not name
+            raise
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Writes into the hidden directory; what the system refuses is a sentence, and nothing is left half written."""
+        try:
+            self._part.mkdir(exist_ok=True)
+            yield
+        except OSError as error:
+            shutil.rmtree(self._part, ignore_errors=True)
+            named = self._final if error.filename is None else error.filename
+            raise InputError(f"{named}: cannot be written ({error.strerror}); earlier shards are kept") from error
 
     def _arrays(self) -> dict[str, Array]:
         columns = {

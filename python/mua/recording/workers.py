@@ -7,6 +7,7 @@ so that the bytes do not depend on how many work side by side, and ends when its
 import os
 import pickle
 import queue
+import shutil
 import subprocess
 import sys
 import threading
@@ -17,6 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from mua.errors import InputError
+from mua.recording import damage
+from mua.recording.layout import HEADER, SHARDS
 from mua.recording.parts import divide, is_joined, join_parts, longest_first, part_directory, recorded
 from mua.recording.record import PlannedClip
 from mua.teachers.teacher import Teacher
@@ -106,13 +109,18 @@ def record_by_workers(
     jobs: int,  # processes at most
     rate: float,
     progress: Callable[[int, int], None] = lambda done, workers: None,
+    note: Callable[[str], None] = lambda sentence: None,
 ) -> None:
     """Record a plan by processes side by side, going on where an earlier run stopped, and join its parts.
 
-    `progress` hears how many of all wanted frames are recorded, and by how many processes. Raises InputError as
-    `TeacherWriter`, `record` and `join_parts` do, and where a worker ends before its work does.
+    What an earlier run has left and is damaged since is removed, which `note` hears of, and recorded anew. `progress`
+    hears how many of all wanted frames are recorded, and by how many processes. Raises InputError as `TeacherWriter`,
+    `record` and `join_parts` do, and where a worker ends before its work does.
     """
     parts = divide(plan)
+    _remove_damaged(directory, plan, rate=rate, whole=True, note=note)
+    for part, clips in enumerate(parts):
+        _remove_damaged(part_directory(directory, part, len(parts)), clips, rate=rate, whole=False, note=note)
     if not is_joined(directory):
         directory.parent.mkdir(parents=True, exist_ok=True)
         crew = _Crew(Job(teacher, plan, directory, rate))
@@ -124,6 +132,19 @@ def record_by_workers(
         finally:
             crew.dismiss()
     join_parts(directory, plan)
+
+
+def _remove_damaged(
+    directory: Path, plan: Sequence[PlannedClip], *, rate: float, whole: bool, note: Callable[[str], None]
+) -> None:
+    """Remove a recording that is not as it was written."""
+    if not any((directory / name).exists() for name in (HEADER, SHARDS)):
+        return
+    try:
+        damage.check(directory, plan, rate=rate, whole=whole)
+    except InputError as error:
+        note(f"{error}. It is recorded anew.")
+        shutil.rmtree(directory)
 
 
 def _finished(crew: _Crew, parts: Sequence[Sequence[PlannedClip]], part: int) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.errors import InputError
+from mua.locks import DirectoryLock
 from mua.recording.encode import (
     HALF_MAX,
     Dynamic,
@@ -27,6 +28,7 @@ from mua.recording.layout import (
     SHARDS,
     STEP,
     SUM,
+    WAVELET,
     Header,
     open_array,
     read_header,
@@ -74,14 +76,14 @@ class TeacherWriter:
         rig: Rig,
         *,
         rate: float,  # frames per second of every clip
-        wavelet: str = "bior4.4",
+        wavelet: str = WAVELET,
         whole_every: int = 50,  # every how many recorded frames of a clip one is kept whole
         shard_frames: int = 32,  # recorded frames of a shard: at most so many are lost by a kill
     ) -> None:
         """Open `directory` to go on with its recording, or to begin one.
 
-        Raises InputError where it holds a recording of another rig, rate or wavelet, where it is damaged, or where the
-        texture size cannot be halved four times.
+        Raises InputError where it holds a recording of another rig, rate or wavelet, where it is damaged, where another
+        writer is at work in it, or where the texture size cannot be halved four times.
         """
         filters(wavelet)
         if rig.texels.size % STEP:
@@ -92,14 +94,15 @@ class TeacherWriter:
         self._texels = rig.texels
         self._whole_every, self._shard_frames = whole_every, shard_frames
         self._fill = Fill(rig.texels)
-        self._begin(rig)
-        self._remove_leftovers()
         self._reference: Reference | None = None
-        if (self.directory / REFERENCE).exists():
-            self._reference = load_reference(self.directory / REFERENCE, self._header)
         self._clips: dict[str, _ClipState] = {}
         self._clip = ""
-        self._read_shards()
+        self._lock = DirectoryLock(self.directory, name=f"recording {self.directory}")
+        try:
+            self._take_up(rig)
+        except BaseException:
+            self._lock.release()
+            raise
 
     @property
     def has_reference(self) -> bool:
@@ -191,9 +194,20 @@ class TeacherWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Finish; after an error nothing more is stored, as if the program had been killed there."""
-        if kind is None:
-            self.finish()
+        """Finish, and leave the recording to others; after an error nothing more is stored, as after a kill."""
+        try:
+            if kind is None:
+                self.finish()
+        finally:
+            self._lock.release()
+
+    def _take_up(self, rig: Rig) -> None:
+        """Begin the recording, or read how far it is."""
+        self._begin(rig)
+        self._remove_leftovers()
+        if (self.directory / REFERENCE).exists():
+            self._reference = load_reference(self.directory / REFERENCE, self._header)
+        self._read_shards()
 
     def _begin(self, rig: Rig) -> None:
         """Write header and rig of a new recording, or compare those of an old one."""

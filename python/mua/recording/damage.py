@@ -1,0 +1,92 @@
+"""Whether a recording is as the writer of a plan left it, to the byte; a bake asks before it goes on from one."""
+
+import zlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from mua.errors import InputError
+from mua.recording.encode import load_reference
+from mua.recording.layout import (
+    HEADER,
+    INDEX,
+    REFERENCE,
+    SHARDS,
+    SUM,
+    WAVELET,
+    Header,
+    Index,
+    Segment,
+    read_indices,
+    shard_name,
+    whole_name,
+)
+from mua.recording.reader import RecordedClip, Recording
+from mua.recording.record import PlannedClip
+
+
+def check(
+    directory: Path,
+    plan: Sequence[PlannedClip],  # that it was recorded by
+    *,
+    rate: float,
+    whole: bool,  # whether every clip is complete
+) -> None:
+    """Raise InputError, a sentence that names the file, where anything is not as the plan's writer left it."""
+    recording = Recording(directory)
+    if recording.header != Header.of(recording.rig, rate=rate, wavelet=WAVELET):
+        raise InputError(f"{directory / HEADER}: is not the header that was written")
+    indices = read_indices(directory)
+    if indices:
+        load_reference(directory / REFERENCE, recording.header)
+    for number, index in enumerate(indices):
+        _check_sums(directory / SHARDS / shard_name(number), index, recording.header, last=number == len(indices) - 1)
+    _check_indices(directory, indices, plan)
+    for planned in plan:
+        found = next((clip for clip in recording.clips if clip.name == planned.clip.name), None)
+        if not _holds(found, planned, whole=whole):
+            raise InputError(f"{directory}: clip {planned.clip.name!r} holds other frames than were recorded")
+
+
+def _check_sums(shard: Path, index: Index, header: Header, *, last: bool) -> None:
+    """Every array has the checksum that was taken when it was written."""
+    names = [f"{name}.npy" for name in header.shapes(index.poses, index.frames)]
+    names += [f"{whole_name(row)}.npy" for row in index.whole_rows]
+    if {SUM, *names} != set(index.crc32):
+        raise InputError(f"{shard / INDEX}: lists other files than frames")
+    for name in [*names, SUM] if last else names:  # only the last sum is kept
+        if zlib.crc32((shard / name).read_bytes()) != index.crc32.get(name):
+            raise InputError(f"{shard / name}: is damaged, its checksum is another")
+
+
+def _check_indices(directory: Path, indices: Sequence[Index], plan: Sequence[PlannedClip]) -> None:
+    """Segments follow upon each other, are those planned, and the training frames among them are counted rightly."""
+    planned = {clip.clip.name: clip for clip in plan}
+    frames, ends = 0, dict.fromkeys(planned, 0)
+    for number, index in enumerate(indices):
+        for segment in index.segments:
+            own = planned.get(segment.clip)
+            if own is None or segment.start != ends[segment.clip] or segment.whole != _kept(own, segment):
+                raise InputError(
+                    f"{directory / SHARDS / shard_name(number) / INDEX}: is not the index that was written"
+                )
+            ends[segment.clip] += segment.poses
+            frames += 0 if own.held_out else len(segment.recorded)
+        if index.training_frames != frames:
+            raise InputError(f"{directory / SHARDS / shard_name(number) / INDEX}: counts other frames than it lists")
+
+
+def _kept(planned: PlannedClip, segment: Segment) -> list[int]:
+    """The frames of a segment that are kept whole, as far as the plan says so."""
+    return segment.whole if planned.whole is None else sorted(planned.whole & set(segment.recorded))
+
+
+def _holds(found: RecordedClip | None, planned: PlannedClip, *, whole: bool) -> bool:
+    """Whether a clip is recorded as it was planned, as far as it is recorded."""
+    if found is None:
+        return not whole
+    frames = len(found)
+    return (
+        found.held_out == planned.held_out
+        and found.recorded.tolist() == sorted(index for index in planned.wanted if index < frames)
+        and (frames == len(planned.clip) if found.complete else not whole and frames <= len(planned.clip))
+    )
