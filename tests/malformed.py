@@ -72,6 +72,43 @@ def grow_texture(tree: Tree) -> None:
     tree["texels"]["size"] += 8
 
 
+def negative_weight(tree: Tree) -> None:
+    """The rows still sum to 1."""
+    weights = tree["template"]["skin_weights"]["data"].view("<f4").copy().reshape(-1, 8)
+    weights[3] = [1.25, 0, 0, 0, 0, 0, 0, -0.25]
+    tree["template"]["skin_weights"] = pack(weights)
+
+
+def smaller_weight_first(tree: Tree) -> None:
+    weights = tree["template"]["skin_weights"]["data"].view("<f4").copy().reshape(-1, 8)
+    weights[3, :2] = weights[3, 1::-1]
+    tree["template"]["skin_weights"] = pack(weights)
+
+
+def endless(tree: Tree) -> None:
+    """A few frames that are too many at the rate of the encoding."""
+    clip = tree["clips"][0]
+    frames = 1049  # a thousand times as many are more than 2^20
+    tree["encoding"]["rate"], clip["rate"] = 1000.0, 1.0
+    for name, width in (("rotations", 12), ("translation", 3), ("translations", 3)):
+        values = clip[name]["data"].view({"F32": "<f4", "F16": "<f2"}[clip[name]["type"]]).reshape(-1, width)
+        shape = [frames, *clip[name]["shape"][1:]]
+        clip[name] = pack(np.repeat(values[:1], frames, axis=0).reshape(shape), "f16")
+
+
+def not_a_number(at: int) -> Callable[[Tree], None]:
+    """An odd number of halves, one of them NaN."""
+
+    def edit(tree: Tree) -> None:
+        values = np.zeros((7, 3))
+        values.ravel()[at] = 1
+        tensor = pack(values, "f16")
+        tensor["data"] = np.where(tensor["data"].view("<u2") > 0, 0x7E00, 0).astype("<u2").view(np.uint8)
+        tree["clips"][0]["translation"] = tensor
+
+    return edit
+
+
 def empty(*shape: int) -> Tree:
     """A tensor without elements whose other sides may be anything."""
     return {**pack(np.zeros((0, 1))), "shape": np.array(shape, np.uint32)}
@@ -91,6 +128,9 @@ MALFORMED = [
     ("value", "skeleton.bind_inverse", poke("skeleton.bind_inverse", 5, 0.5)),
     ("shape", "skeleton.bind_inverse.shape", put("skeleton.bind_inverse", pack(np.zeros((3, 7))))),
     ("value", "encoding.joints", poke("encoding.joints", 0, 0)),
+    ("value", "encoding.joints", poke("encoding.joints", 1, 1)),
+    ("value", "skeleton.bind_translations", poke("skeleton.bind_translations", 0, 65536)),
+    ("value", "skeleton.bind_inverse", poke("skeleton.bind_inverse", 23, -65536)),
     ("range", "encoding.joints", poke("encoding.joints", 0, 7)),
     ("range", "skeleton.translated", poke("skeleton.translated", 0, 3)),
     ("range", "skeleton.translated", poke("skeleton.translated", 0, -1)),
@@ -107,14 +147,17 @@ MALFORMED = [
     ("value", "encoding.window", put("encoding.window", 0)),
     ("value", "encoding.window", put("encoding.window", 17)),
     ("shape", "encoding.scale.shape", put("encoding.window", 2)),
-    ("value", "encoding.rate", put("encoding.rate", NAN)),
-    ("value", "encoding.scale", poke("encoding.scale", 0, 0)),
+    *[("value", "encoding.rate", put("encoding.rate", rate)) for rate in (NAN, 0, -30, 0.99, 1001, float("inf"))],
+    *[("value", "encoding.scale", poke("encoding.scale", at, scale)) for at, scale in ((0, 0), (5, -1), (9, 9e-7))],
+    ("value", "encoding.scale", poke("encoding.scale", 3, 65536)),
     ("finite", "encoding.mean", poke("encoding.mean", 0, NAN)),
     ("range", "template.faces", poke("template.faces", 0, 12)),
     ("range", "template.faces", poke("template.faces", 0, -1)),
     ("range", "template.uv_faces", poke("template.uv_faces", 2, 99)),
     ("range", "template.skin_indices", poke("template.skin_indices", 0, 3)),
     ("value", "template.skin_weights", poke("template.skin_weights", 0, 5)),
+    ("value", "template.skin_weights", negative_weight),
+    ("value", "template.skin_weights", smaller_weight_first),
     ("type", "template.faces", put("template.faces", pack(np.zeros((18, 3))))),
     ("type", "template.uv", put("template.uv", pack_indices(np.zeros((16, 2))))),
     ("value", "texels.size", put("texels.size", 0)),
@@ -126,6 +169,9 @@ MALFORMED = [
     ("value", "wavelet.levels", put("wavelet.levels", 99)),
     ("value", "wavelet.rec_lo", put("wavelet.rec_lo", np.zeros(3))),
     ("finite", "wavelet.rec_lo", put("wavelet.rec_lo", np.full(10, NAN))),
+    ("finite", "wavelet.rec_lo", put("wavelet.rec_hi", np.full(10, NAN))),
+    ("value", "wavelet.rec_lo", put("wavelet.rec_lo", np.full(10, -16.1))),
+    ("value", "wavelet.rec_lo", put("wavelet.rec_hi", np.full(10, 16.1))),
     ("finite", "coarse.mean", poke("coarse.mean", 3, float("inf"))),
     ("shape", "coarse.basis.shape", put("coarse.basis", pack(np.zeros((4, 11, 3))))),
     ("shape", "coarse.mlp", put("coarse.mlp", [])),
@@ -149,7 +195,14 @@ MALFORMED = [
     ("shape", "clips[0].translations.shape", put("clips.0.translations", pack(np.zeros((7, 2, 3))))),
     ("shape", "clips[0].translations.shape", put("clips.0.translations", pack(np.zeros((6, 1, 3))))),
     ("finite", "clips[0].translations", poke("clips.0.translations", 0, NAN)),
-    ("value", "clips[0].rate", put("clips.0.rate", 0)),
+    *[("value", "clips[0].rate", put("clips.0.rate", rate)) for rate in (NAN, 0, 1e-30, 0.99, 1001)],
+    ("value", "clips[0].rotations", endless),
+    ("value", "geometry.ll_basis", put("geometry.ll_basis.scale", np.full(44, 600.0))),
+    ("value", "geometry.ll_basis", put("geometry.ll_basis.scale", np.full(44, -600.0))),
+    *[("finite", "coarse.mean", poke("coarse.mean", -1 - k, NAN)) for k in range(3)],
+    ("finite", "skeleton.bind_translations", poke("skeleton.bind_translations", 8, NAN)),  # 4 bytes after whole words
+    *[("finite", "clips[0].translation", not_a_number(at)) for at in (17, 20)],  # the last is 2 bytes after whole words
+    ("value", "encoding.mean", poke("encoding.mean", 71, -65536)),
     ("value", "bounds", poke("bounds", 0, 5)),
     ("value", "thumbnail", put("thumbnail", np.frombuffer(b"GIF89a", np.uint8))),
 ]

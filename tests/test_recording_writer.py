@@ -199,6 +199,13 @@ def test_refuses_a_first_frame_that_is_not_finite(tmp_path: Path) -> None:
     assert not (tmp_path / "reference.npz").exists()
 
 
+@pytest.mark.parametrize("rate", [0, -30, 0.5, 1001, float("nan")])
+def test_refuses_a_rate_that_no_file_can_hold(tmp_path: Path, rate: float) -> None:
+    with pytest.raises(InputError, match=r"rate is .*, expected 1 to 1000 frames per second"):
+        TeacherWriter(tmp_path / "r", synthetic_rig(), rate=rate)
+    assert not (tmp_path / "r").exists()
+
+
 def test_refuses_a_frame_before_a_clip(tmp_path: Path) -> None:
     rig = synthetic_rig()
     with pytest.raises(InputError, match="start_clip comes before"):

@@ -4,6 +4,7 @@ import dataclasses
 import json
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,20 @@ def test_f32_file_returns_every_array_as_float32() -> None:
         unit = path.endswith(("rotations", "barycentrics"))  # renormalised by the reader
         bound = 4 * np.finfo(np.float32).eps if unit else 0
         np.testing.assert_allclose(back[path], np.asarray(expected, back[path].dtype), rtol=0, atol=bound, err_msg=path)
+
+
+def test_influences_are_written_with_the_largest_weight_first() -> None:
+    avatar = synthetic_avatar()
+    turned = replace(
+        avatar.rig, skin_indices=avatar.rig.skin_indices[:, ::-1], skin_weights=avatar.rig.skin_weights[:, ::-1]
+    )
+    back = decode_tree(parse_checked(encode(replace(avatar, rig=turned)))).rig
+    np.testing.assert_array_equal(back.skin_weights, avatar.rig.skin_weights)
+    own, other = (
+        [dict(zip(i[w > 0], w[w > 0], strict=True)) for i, w in zip(rig.skin_indices, rig.skin_weights, strict=True)]
+        for rig in (avatar.rig, back)
+    )
+    assert own == other
 
 
 @pytest.mark.parametrize("path", [".geometry.ll_basis", ".appearance.details[1].h", ".geometry.mlp[2].weight"])

@@ -164,7 +164,8 @@ FAULTS = {
             "dot(rows[1], rows[2]), dot(rows[2], rows[2])",
             "dot(rows[0], rows[2]), dot(rows[2], rows[2])",
         ),
-        Fault("scale not exponentiated", "exp(channels3(texel, SCALE))", "channels3(texel, SCALE)"),
+        Fault("scale not exponentiated", "exp(logScale)", "logScale"),
+        Fault("scale not bounded", "min(channels3(texel, SCALE), LARGEST_LOG_SCALE)", "channels3(texel, SCALE)"),
         Fault("rotations in the wrong order", "quaternionMultiply(dq.real, own)", "quaternionMultiply(own, dq.real)"),
         Fault("opacity inverted", "logit < 0 ? small : 1", "logit < 0 ? 1 : small"),
         Fault(

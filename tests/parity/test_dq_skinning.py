@@ -312,6 +312,29 @@ def test_hlsl_keeps_rotations_that_cancel_finite(device: Device) -> None:
     assert all(np.isfinite(found[name]).all() for name in ("centre", "covariance", "turn", "sh", "opacity"))
 
 
+def test_a_scale_beyond_any_is_held_at_the_largest_by_both(device: Device) -> None:
+    rng = np.random.default_rng(7)
+    vertex_dq, mesh, texels = random_joints(rng, 6).astype(np.float32), np.zeros((6, 3)), random_texels(rng, 9)
+    texels.texture[:, 7:10] = np.resize([10.0, 11.0, 65504.0], (9, 3))
+    texel_dq = blend_texels(vertex_dq, FACES, texels.triangles, texels.barycentrics)
+    _, _, scales, _ = skin_splats(texel_dq, mesh, FACES, texels.triangles, texels.barycentrics, texels.texture)
+    np.testing.assert_array_equal(scales, np.full((9, 3), np.exp(np.float32(10))))
+    found = skin_on(device, vertex_dq, mesh.astype(np.float32), FACES, texels)
+    assert np.isfinite(found["covariance"]).all()
+
+
+def test_an_influence_after_an_empty_one_counts_on_both(device: Device) -> None:
+    """Files are refused where a weight is larger than the one before; the blend itself takes them in any order."""
+    rng = np.random.default_rng(8)
+    joints = random_joints(rng).astype(np.float32)
+    indices = np.tile(np.arange(8) % JOINTS, (3, 1))
+    weights = np.zeros((3, 8), np.float32)
+    weights[:, [0, 3]] = 0.25, 0.75
+    expected = blend_vertices(joints, indices[:, [0, 3] * 4], weights[:, [0, 3, 1, 1, 1, 1, 1, 1]])
+    np.testing.assert_array_equal(blend_vertices(joints, indices, weights), expected)
+    np.testing.assert_allclose(blend_on(device, joints, indices, weights), expected, rtol=0, atol=BLEND_BOUND)
+
+
 @pytest.mark.parametrize("first", [0, 1, GROUP - 1])
 def test_hlsl_leaves_the_splats_of_others_alone(device: Device, first: int) -> None:
     rng = np.random.default_rng(6)

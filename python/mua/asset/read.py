@@ -11,7 +11,7 @@ from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wav
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.tensors import indices, reals
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.motion.clip import LARGEST_RATE, LEAST_RATE, Clip
 from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
@@ -23,6 +23,10 @@ WEIGHT_BOUND = 1e-4  # 8 weights rounded to f32, with room for a writer that rou
 BIND_BOUND = 1e-4  # metres and quaternion components: f32 forward kinematics over a deep chain
 MAX_SIZE = 4096
 MAX_LEVELS = 8
+MAX_TAPS = 40
+LARGEST_TAP = 16.0  # those of PyWavelets' wavelets stay below 5
+MAX_FRAMES = 1 << 20  # of a clip at the encoding's rate: 9 hours at 30 frames per second
+LEAST_SCALE = 1e-6  # of a descriptor's number: a thousandth of what 1 is on a person, of a figure 2 mm high
 GEOMETRY_CHANNELS, APPEARANCE_CHANNELS = 11, 12
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
@@ -100,7 +104,9 @@ def decode_tree(tree: Tree) -> Avatar:
         geometry=branches[0],
         appearance=branches[1],
         wavelet=wavelet,
-        clips=tuple(_clip(clip, f"clips[{i}]", skeleton, translated) for i, clip in enumerate(tree["clips"])),
+        clips=tuple(
+            _clip(clip, f"clips[{i}]", skeleton, translated, encoding.rate) for i, clip in enumerate(tree["clips"])
+        ),
         bounds=_bounds(tree["bounds"]),
         thumbnail=_thumbnail(tree["thumbnail"]),
         notes=tree["notes"],
@@ -170,14 +176,14 @@ def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> tuple[PoseEncodin
         translated=tuple(int(j) for j in translated),
     )
     scale = reals(tree["scale"], "encoding.scale", (encoding.width,))
-    if scale.min() <= 0:
-        _refuse("encoding.scale", f"{scale.min()}, expected more than 0")
+    if scale.min() < np.float32(LEAST_SCALE):
+        _refuse("encoding.scale", f"{scale.min()}, expected {LEAST_SCALE:g} or more")
     return encoding, Normalization(mean=reals(tree["mean"], "encoding.mean", (encoding.width,)), scale=scale)
 
 
 def _rate(rate: float, path: str) -> float:
-    if not 0 < rate < float("inf"):
-        _refuse(path, f"{rate} frames per second, expected more than 0")
+    if not LEAST_RATE <= rate <= LARGEST_RATE:
+        _refuse(path, f"{rate} frames per second, expected {LEAST_RATE:g} to {LARGEST_RATE:g}")
     return rate
 
 
@@ -192,6 +198,9 @@ def _rig(tree: Tree, skeleton: Skeleton, vertices: Array) -> Rig:
     if weights.min(initial=0) < 0 or np.abs(sums - 1).max(initial=0) > WEIGHT_BOUND:
         vertex = int(np.abs(sums - 1).argmax())
         _refuse("template.skin_weights", f"weights of vertex {vertex} sum to {sums[vertex]:.4g} or one is negative")
+    if np.any(weights[:, 1:] > weights[:, :-1]):
+        vertex = int((weights[:, 1:] > weights[:, :-1]).any(axis=1).argmax())
+        _refuse("template.skin_weights", f"weights of vertex {vertex} do not begin with the largest")
     return Rig(
         skeleton=skeleton,
         mesh=Mesh(vertices=vertices, faces=faces, uv=uv, uv_faces=uv_faces),
@@ -223,10 +232,13 @@ def _wavelet(tree: Tree) -> Wavelet:
     low, high = tree["rec_lo"], tree["rec_hi"]
     if not 1 <= tree["levels"] <= MAX_LEVELS:
         _refuse("wavelet.levels", f"{tree['levels']}, expected 1 to {MAX_LEVELS}")
-    if low.size != high.size or low.size % 2 or not 2 <= low.size <= 40:
-        _refuse("wavelet.rec_lo", f"{low.size} and {high.size} taps, expected an even number of each, 2 to 40")
+    if low.size != high.size or low.size % 2 or not 2 <= low.size <= MAX_TAPS:
+        _refuse("wavelet.rec_lo", f"{low.size} and {high.size} taps, expected an even number of each, 2 to {MAX_TAPS}")
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         raise FormatError("finite", "wavelet.rec_lo", "a value is not finite")
+    largest = max(np.abs(low).max(), np.abs(high).max())
+    if largest > LARGEST_TAP:
+        _refuse("wavelet.rec_lo", f"a tap of {largest:.4g}, expected {-LARGEST_TAP:g} to {LARGEST_TAP:g}")
     return Wavelet(name=tree["name"], levels=tree["levels"], rec_lo=low, rec_hi=high)
 
 
@@ -273,14 +285,17 @@ def _detail(tree: Tree, path: str, channels: int, size: int) -> DetailBand:
     )
 
 
-def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array) -> Clip:
+def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array, encoding_rate: float) -> Clip:
     rotations = _unit(tree["rotations"], f"{path}.rotations", (None, len(skeleton.names), 4))
     if not len(rotations):
         _refuse(f"{path}.rotations", "a clip needs at least one frame")
     translations = skeleton.with_root(reals(tree["translation"], f"{path}.translation", (len(rotations), 3)))
     if len(translated) or "translations" in tree:
         translations[:, translated] = _translations(tree, f"{path}.translations", (len(rotations), len(translated), 3))
-    return Clip(tree["name"], _rate(tree["rate"], f"{path}.rate"), rotations, translations)
+    rate = _rate(tree["rate"], f"{path}.rate")
+    if max(encoding_rate / rate, 1.0) * len(rotations) > MAX_FRAMES:
+        _refuse(f"{path}.rotations", f"{len(rotations)} frames at a rate of {rate:g}, expected at most {MAX_FRAMES}")
+    return Clip(tree["name"], rate, rotations, translations)
 
 
 def _translations(tree: Tree, path: str, shape: tuple[int, ...]) -> Array:

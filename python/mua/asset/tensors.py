@@ -18,6 +18,7 @@ DTYPES: dict[str, np.dtype[Any]] = {
     "I32": np.dtype("<i4"),
 }
 MAX_RANK = 4
+LARGEST = 65504.0  # of any real: f16's largest, so that what is decoded from a file is finite too
 
 
 def pack(values: Array, storage: Storage = "f32", *, rows: int = 0) -> Tree:
@@ -89,9 +90,9 @@ def indices(tensor: Tree, path: str, shape: tuple[int | None, ...], low: int, hi
 
 
 def reals(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
-    """Finite float32 values of `shape` (None: any length); f16 and i8 are expanded.
+    """Finite float32 values of `shape` (None: any length), at most LARGEST in magnitude; f16 and i8 are expanded.
 
-    Errors: FormatError with code `shape`, `type` or `finite`.
+    Errors: FormatError with code `shape`, `type`, `finite` or `value`.
     """
     values = stored(tensor, path)
     _check_shape(values, path, shape)
@@ -103,6 +104,9 @@ def reals(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
             values = (values.reshape(scale.size, -1).astype(np.float32) * scale[:, None]).reshape(values.shape)
     if not np.isfinite(values).all() or not np.isfinite(tensor.get("scale", np.zeros(1))).all():
         raise FormatError("finite", path, "a value is not finite")
+    if max(values.max(initial=0), -values.min(initial=0)) > LARGEST:
+        worst = values.ravel()[np.abs(values).argmax()]
+        raise FormatError("value", path, f"{worst:.6g}, expected {-LARGEST:.6g} to {LARGEST:.6g}")
     return values.astype(np.float32, copy=False)
 
 

@@ -118,12 +118,13 @@ def _joints(translated: Array) -> Tree:
 
 
 def _template(rig: Rig) -> Tree:
+    order = np.argsort(-rig.skin_weights, axis=1, kind="stable")  # largest first
     return {
         "faces": pack_indices(rig.mesh.faces),
         "uv": pack(rig.mesh.uv),
         "uv_faces": pack_indices(rig.mesh.uv_faces),
-        "skin_indices": pack_indices(rig.skin_indices),
-        "skin_weights": pack(rig.skin_weights),
+        "skin_indices": pack_indices(np.take_along_axis(rig.skin_indices, order, axis=1)),
+        "skin_weights": pack(np.take_along_axis(rig.skin_weights, order, axis=1)),
     }
 
 

@@ -14,6 +14,7 @@ METRES2_TO_MM2 = (
     1e6  # covariances are packed in mm^2: half floats hold 0.25 mm to 25 cm of standard deviation in full precision
 )
 PACKED_WORDS = 16
+LARGEST_LOG_SCALE = 10.0  # 22 km, far beyond what is packed; below it no exponential is infinite
 
 
 def blend_vertices(
@@ -25,9 +26,8 @@ def blend_vertices(
     reference = joints[indices[:, 0], :4]
     total = np.zeros((len(indices), 8), dtype=joints.dtype)
     for joint, weight in zip(indices.T, weights.T, strict=True):
-        if not weight.any():  # largest first: no vertex has more influences
-            break
-        _accumulate(total, joints[joint], weight, reference)
+        if weight.any():  # most vertices have fewer influences
+            _accumulate(total, joints[joint], weight, reference)
     return _normalize(total)
 
 
@@ -66,7 +66,7 @@ def skin_splats(
         canonical += weight[:, None].astype(texel_dq.dtype) * mesh[corner]
     centres = rotation.dual_transform(texel_dq, canonical)
     rotations = rotation.multiply(texel_dq[:, :4], _unit(texture[:, 3:7]))
-    scales = np.exp(texture[:, 7:10])
+    scales = np.exp(np.minimum(texture[:, 7:10], texture.dtype.type(LARGEST_LOG_SCALE)))
     opacities = 0.5 + 0.5 * np.tanh(0.5 * texture[:, 10])  # the logistic function, without overflow
     return centres, rotations, scales, opacities
 

@@ -6,6 +6,8 @@ from typing import Self
 from mua.arrays import Array
 from mua.rig.skeleton import Pose
 
+LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second that a file may say
+
 
 @dataclass(frozen=True)
 class Stretches:

@@ -10,6 +10,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.locks import DirectoryLock
+from mua.motion.clip import LARGEST_RATE, LEAST_RATE
 from mua.recording.encode import (
     HALF_MAX,
     Dynamic,
@@ -88,6 +89,9 @@ class TeacherWriter:
         filters(wavelet)
         if rig.texels.size % STEP:
             raise InputError(f"recording {directory}: texture size {rig.texels.size}, expected a multiple of {STEP}")
+        if not LEAST_RATE <= rate <= LARGEST_RATE:
+            expected = f"{LEAST_RATE:g} to {LARGEST_RATE:g} frames per second"
+            raise InputError(f"recording {directory}: rate is {rate:g}, expected {expected}")
         self.directory = Path(directory)
         self.rate = float(rate)
         self._header = Header.of(rig, rate=rate, wavelet=wavelet)

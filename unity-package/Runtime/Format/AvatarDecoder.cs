@@ -13,6 +13,10 @@ namespace Mua.Format
         private const int MaxWindow = 16;
         private const int MaxLevels = 8;
         private const int MaxTaps = 40;
+        private const double LargestTap = 16; // those of PyWavelets' wavelets stay below 5
+        private const float LeastRate = 1, LargestRate = 1000; // frames per second
+        private const int MaxFrames = 1 << 20; // of a clip at the encoding's rate: 9 hours at 30 frames per second
+        private const float LeastScale = 1e-6f; // of a descriptor's number, of a figure 2 mm high
         private const int GeometryChannels = 11;
         private const int AppearanceChannels = 12;
         private const int Bands = 3;
@@ -55,7 +59,7 @@ namespace Mua.Format
             {
                 throw Refusal.Of("geometry.details", "more levels of detail than the wavelet's {0}", levels);
             }
-            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton);
+            avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, avatar.Encoding.Rate);
             avatar.Bounds = Bounds(tree.Child("bounds"));
             avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
             return avatar;
@@ -85,9 +89,9 @@ namespace Mua.Format
             encoding.Scale = Floats(tensors.Reals(tree.Child("scale"), "encoding.scale", encoding.Width));
             foreach (float scale in encoding.Scale)
             {
-                if (scale <= 0)
+                if (scale < LeastScale)
                 {
-                    throw Refusal.Of("encoding.scale", "{0}, expected more than 0", scale);
+                    throw Refusal.Of("encoding.scale", "{0}, expected {1} or more", scale, LeastScale);
                 }
             }
             encoding.Mean = Floats(tensors.Reals(tree.Child("mean"), "encoding.mean", encoding.Width));
@@ -97,9 +101,9 @@ namespace Mua.Format
         private static float Rate(Table tree, string path)
         {
             float rate = tree.Real("rate");
-            if (!(rate > 0) || float.IsInfinity(rate))
+            if (!(rate >= LeastRate && rate <= LargestRate))
             {
-                throw Refusal.Of(path, "{0} frames per second, expected more than 0", rate);
+                throw Refusal.Of(path, "{0} frames per second, expected {1} to {2}", rate, LeastRate, LargestRate);
             }
             return rate;
         }
@@ -123,6 +127,15 @@ namespace Mua.Format
                 if (!IsFinite(low[i]) || !IsFinite(high[i]))
                 {
                     throw new AvatarFormatException("finite", "wavelet.rec_lo", "a value is not finite");
+                }
+            }
+            for (int i = 0; i < low.Length; i++)
+            {
+                if (Math.Max(Math.Abs(low[i]), Math.Abs(high[i])) > LargestTap)
+                {
+                    throw Refusal.Of(
+                        "wavelet.rec_lo", "a tap of {0:g4} or {1:g4}, expected {2} to {3}", low[i], high[i],
+                        -LargestTap, LargestTap);
                 }
             }
             return new Wavelet { Name = tree.Text("name"), Levels = (int)levels, RecLo = low, RecHi = high };
@@ -189,17 +202,17 @@ namespace Mua.Format
             };
         }
 
-        private Clip[] Clips(Table[] tree, Skeleton skeleton)
+        private Clip[] Clips(Table[] tree, Skeleton skeleton, double encodingRate)
         {
             var clips = new Clip[tree.Length];
             for (int i = 0; i < clips.Length; i++)
             {
-                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton);
+                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton, encodingRate);
             }
             return clips;
         }
 
-        private Clip Clip(Table tree, string path, Skeleton skeleton)
+        private Clip Clip(Table tree, string path, Skeleton skeleton, double encodingRate)
         {
             int joints = skeleton.JointCount;
             Tensor rotations = tensors.Reals(tree.Child("rotations"), path + ".rotations", Any, joints, 4);
@@ -210,11 +223,20 @@ namespace Mua.Format
             }
             Tensor translation = tensors.Reals(
                 tree.Child("translation"), path + ".translation", rotations.Shape[0], 3);
+            Tensor translations = Translations(
+                tree, path + ".translations", rotations.Shape[0], skeleton.Translated.Length);
+            float rate = Rate(tree, path + ".rate");
+            if (Math.Max(encodingRate / rate, 1) * rotations.Shape[0] > MaxFrames)
+            {
+                throw Refusal.Of(
+                    path + ".rotations", "{0} frames at a rate of {1}, expected at most {2}", rotations.Shape[0], rate,
+                    MaxFrames);
+            }
             return new Clip
             {
-                Translations = Translations(tree, path + ".translations", rotations.Shape[0], skeleton.Translated.Length),
+                Translations = translations,
                 Name = tree.Text("name"),
-                Rate = Rate(tree, path + ".rate"),
+                Rate = rate,
                 Rotations = rotations,
                 Translation = translation,
             };

@@ -159,18 +159,25 @@ namespace Mua.Format
         {
             for (int vertex = 0; vertex < weights.Shape[0]; vertex++)
             {
-                float sum = 0;
-                bool negative = false;
+                float sum = 0, before = float.PositiveInfinity;
+                bool negative = false, rising = false;
                 for (int i = 0; i < MaxInfluences; i++)
                 {
                     float weight = weights.Read(MaxInfluences * vertex + i);
                     sum += weight;
                     negative |= weight < 0;
+                    rising |= weight > before;
+                    before = weight;
                 }
                 if (negative || Math.Abs(sum - 1) > WeightBound)
                 {
                     throw Refusal.Of(
                         "template.skin_weights", "weights of vertex {0} sum to {1:g4} or one is negative", vertex, sum);
+                }
+                if (rising)
+                {
+                    throw Refusal.Of(
+                        "template.skin_weights", "weights of vertex {0} do not begin with the largest", vertex);
                 }
             }
         }

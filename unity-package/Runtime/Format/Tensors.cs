@@ -37,7 +37,7 @@ namespace Mua.Format
             return tensor;
         }
 
-        /// <summary>Finite reals of `shape`, stored as f32, f16 or i8.</summary>
+        /// <summary>Finite reals of `shape` within Finite.Largest, stored as f32, f16 or i8.</summary>
         public Tensor Reals(Table table, string path, params long[] shape)
         {
             Tensor tensor = Stored(table, path);
@@ -49,6 +49,10 @@ namespace Mua.Format
             if (!Finite.All(tensor))
             {
                 throw Fault("finite", path, "a value is not finite");
+            }
+            if (!Finite.Within(tensor))
+            {
+                throw Fault("value", path, "a value lies outside -" + Finite.Largest + " to " + Finite.Largest);
             }
             return tensor;
         }
