@@ -180,6 +180,12 @@ def test_normalizes_but_does_not_stretch_constant_columns() -> None:
     np.testing.assert_allclose(found.scale, [columns[:, 0].std(), 1, 1])
 
 
+@pytest.mark.parametrize(("deviation", "stretched"), [(0.9e-3, False), (1.1e-3, True)])
+def test_what_varies_by_less_than_a_millimetre_is_not_stretched(deviation: float, stretched: bool) -> None:
+    columns = deviation * np.array([[-1.0], [1]])
+    assert normalization(columns, np.ones(1)).scale == pytest.approx([deviation if stretched else 1])
+
+
 def test_a_small_figures_lengths_count_as_much_as_a_persons() -> None:
     """At a hundredth of the size, all lengths of a descriptor are a hundredth, and what the MLPs read is the same."""
     encoding = PoseEncoding((1, 2), rate=30.0, translated=(2,))

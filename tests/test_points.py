@@ -10,7 +10,7 @@ from limbs import limb_steps, limbs_apart, two_limbs
 from mua.student.checkpoint import Checkpoints
 from mua.student.conditioned import Whitening
 from mua.student.optimise import Run
-from mua.student.points import BLEND, draw_points, exchange, scatter
+from mua.student.points import BLEND, RADII, draw_points, exchange, scatter
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Generalisation, Schedule
 
@@ -29,6 +29,18 @@ def test_an_exchanged_part_is_whole_and_the_rest_is_that_of_one_frame() -> None:
     apart = mixed[:, 0] != mixed[:, 3]
     assert 0.2 < apart.float().mean() < 0.3  # a radius of 0; any larger one takes both limbs from one frame
     assert mixed.unique().tolist() == list(range(50))
+
+
+def test_an_exchanged_joint_brings_those_within_a_radius_along() -> None:
+    """Of a chain of ten, one joint at the end and up to so many more: never none, never all."""
+    chain = torch.arange(10)[None]
+    frames = torch.arange(500.0)[:, None].expand(-1, 10)
+    mixed = exchange(frames, chain, 3000, generator=seeded())
+    brought = (mixed == mixed[:, :1]).sum(1)
+    two = mixed[:, 0] != mixed[:, -1]  # but for points whose two frames are one
+    assert two.float().mean() > 0.99
+    assert sorted(brought[two].unique().tolist()) == list(range(1, RADII + 1))
+    assert torch.allclose((brought[two] == 1).float().mean(), torch.tensor(1 / RADII), atol=0.05)
 
 
 def test_scattered_points_lie_on_the_way_to_a_frame_but_for_noise() -> None:

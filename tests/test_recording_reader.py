@@ -126,6 +126,20 @@ def test_whole_frames_are_those_planned_or_every_nth(written: Path) -> None:
         np.testing.assert_array_equal(frame.mesh, original.mesh)
 
 
+def test_fingerprint_changes_with_reference_and_header(written: Path, tmp_path: Path) -> None:
+    """Shards hold differences: the same ones from another reference, or at another rate, are other frames."""
+    found = [Recording(written).fingerprint()]
+    shutil.copytree(written, tmp_path / "reference")
+    path = tmp_path / "reference" / "reference.npz"
+    arrays = dict(np.load(path))
+    np.savez(path, **{name: array + array.dtype.type(1) for name, array in arrays.items()})
+    shutil.copytree(written, tmp_path / "rate")
+    header = json.loads((written / "recording.json").read_text())
+    (tmp_path / "rate" / "recording.json").write_text(json.dumps(header | {"rate": 30.0}))
+    found += [Recording(tmp_path / changed).fingerprint() for changed in ("reference", "rate")]
+    assert len(set(found)) == 3
+
+
 def test_fingerprint_changes_with_content_only(written: Path, tmp_path: Path) -> None:
     write(tmp_path / "again")
     assert Recording(tmp_path / "again").fingerprint() == Recording(written).fingerprint()

@@ -130,6 +130,33 @@ def test_a_second_writer_is_refused_and_leaves_the_first_ones_frames(tmp_path: P
     TeacherWriter(tmp_path, rig, rate=RATE)
 
 
+def test_every_file_of_a_shard_is_on_the_disk_before_the_shard_has_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And the name itself after: so that a loss of power leaves a shard whole or not at all."""
+    fsync, rename = os.fsync, Path.rename
+    synced: set[int] = set()  # by inode, which a rename keeps
+    shards = 0
+
+    def syncing(descriptor: int) -> None:
+        synced.add(os.fstat(descriptor).st_ino)
+        fsync(descriptor)
+
+    def renaming(self: Path, target: Path) -> Path:
+        nonlocal shards
+        if target.parent.name == "shards":
+            shards += 1
+            assert {path.stat().st_ino for path in (self, *self.iterdir())} <= synced
+            synced.discard(target.parent.stat().st_ino)
+        return rename(self, target)
+
+    monkeypatch.setattr(os, "fsync", syncing)
+    monkeypatch.setattr(Path, "rename", renaming)
+    write(tmp_path / "r")
+    assert shards == 7
+    assert (tmp_path / "r" / "shards").stat().st_ino in synced
+
+
 def test_a_shard_that_finds_no_room_is_not_left_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither where a frame kept whole finds none, which is written at once, nor where the rest does."""
     write_bytes = Path.write_bytes

@@ -47,6 +47,17 @@ def test_hits_the_frames_of_a_whole_ratio() -> None:
     np.testing.assert_array_equal(found.translations, clip.translations[::4])
 
 
+@pytest.mark.parametrize(
+    ("rate", "other", "frames"), [(24, 120, 50), (25, 50, 30), (25, 100, 58), (30, 90, 22), (60, 90, 43), (100, 50, 59)]
+)
+def test_rounding_costs_no_last_frame(rate: int, other: int, frames: int) -> None:
+    clip = random_clip(frames, rate=rate)
+    found = resample(clip, other)
+    assert len(found) == (frames - 1) * other // rate + 1
+    assert (frames - 1) * other % rate == 0  # so that the ends meet
+    np.testing.assert_array_equal(found.translations[-1], clip.translations[-1])
+
+
 def test_goes_the_short_way_round() -> None:
     half = np.array([[1.0, 0, 0, 0], [-np.cos(0.1), -np.sin(0.1), 0, 0]])[:, None]
     found = resample(Clip("clip", 1.0, half, np.zeros((2, 1, 3))), 2.0)

@@ -62,6 +62,12 @@ BAD = [  # what is replaced, by what, and what the fault must say
         "    if (id.x >= count)\n        return;\n    shared_values[thread] =",
         "before a barrier",
     ),
+    (
+        "    GroupMemoryBarrierWithGroupSync();",
+        "    GroupMemoryBarrierWithGroupSync();\n    if (count == 0)\n        return;\n"
+        "    GroupMemoryBarrierWithGroupSync();",
+        "before a barrier",
+    ),
     ("    GroupMemory", "    if (id.x < count)\n        GroupMemory", "Scale has a barrier in a branch"),
     (
         "    GroupMemory",
@@ -99,6 +105,11 @@ def test_tells_a_broken_rule(tmp_path: Path, original: str, replacement: str, fa
     assert original in GOOD
     found = shader_rules.kernel_faults(written(tmp_path, GOOD.replace(original, replacement)))
     assert any(fault in line for line in found), found
+
+
+def test_a_return_after_the_last_barrier_is_no_fault(tmp_path: Path) -> None:
+    text = GOOD.replace("    if (id.x < count)\n", "    if (id.x >= count)\n        return;\n    if (id.x < count)\n")
+    assert shader_rules.kernel_faults(written(tmp_path, text)) == []
 
 
 def test_tells_a_ninth_buffer(tmp_path: Path) -> None:

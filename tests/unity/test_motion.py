@@ -74,6 +74,7 @@ def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frame
 CASES = {
     "own rate": (avatar_of(heading=True, window=3, rate=24, clips=[(24, 5), (24, 1)]), "f32"),
     "other rates": (avatar_of(heading=True, window=3, rate=24, clips=[(30, 11), (23.976, 9), (120, 41)]), "f32"),
+    "ends that rounding moves": (avatar_of(heading=True, window=3, rate=100, clips=[(25, 30), (50, 59)]), "f32"),
     "halves": (avatar_of(heading=True, window=2, rate=24, clips=[(24, 6), (60, 13)]), "f16"),
     "no heading": (avatar_of(heading=False, window=3, rate=30, clips=[(24, 7)]), "f32"),
     "one frame": (avatar_of(heading=True, window=1, rate=30, clips=[(30, 4)]), "f32"),
