@@ -1,5 +1,7 @@
 """Options of mua-bake are refused in one sentence, before anything is loaded."""
 
+import errno
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -78,3 +80,25 @@ def test_a_wrong_option_is_refused_before_torch_warp_or_readers_are_loaded(argum
     assert told.returncode == 10, told.stderr
     assert told.stderr.startswith("error: ")
     assert told.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("closed", ["", "work"])
+def test_a_work_directory_that_exists_is_asked_itself(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, closed: str
+) -> None:
+    """It may be the one place where something can be written, or a mount where nothing can."""
+    volume = tmp_path / "volume"
+    (volume / "work").mkdir(parents=True)
+    touch = Path.touch
+
+    def read_only(self: Path) -> None:
+        if self.parent == volume / closed:
+            raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(self))
+        touch(self)
+
+    monkeypatch.setattr(Path, "touch", read_only)
+    if not closed:
+        assert check_output(tmp_path / "a.muaavatar", volume / "work") == []
+        return
+    with pytest.raises(InputError, match=r"--work .*work: nothing can be written in .*work \(Read-only file system\)"):
+        check_output(tmp_path / "a.muaavatar", volume / "work")

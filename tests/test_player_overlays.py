@@ -129,6 +129,27 @@ def test_draws_every_joint_over_all_else(stage: Stage) -> None:
         np.testing.assert_allclose(image[row, column, :3], JOINT_COLOR, atol=HALF)
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(stage: Stage, side: int) -> None:
+    """One joint before the camera, the other behind: every point between them that is in the picture is drawn."""
+    _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
+    behind, ahead = joints[1:3][::side]
+    along = (ahead - behind) / np.linalg.norm(ahead - behind)
+    across = rotation.normalize(np.cross(along, [1.0, 0.2, 0.1]))
+    up = np.cross(across, along)
+    turn = np.stack([across, up, -along])  # looks along the bone
+    view = np.eye(4)
+    view[:3, :3], view[:3, 3] = turn, -turn @ (0.5 * (behind + ahead) - 0.02 * across - 0.03 * up)  # beside its middle
+    camera = replace(camera_at(joints), view=view)
+    between = behind + np.linspace(0, 1, 2000)[:, None] * (ahead - behind)
+    before = between[(between @ view[2, :3] + view[2, 3]) < -2 * camera.near]
+    at = pixels(camera, before)
+    inside = at[((at > 2) & (at < np.array(SCREEN) - 2)).all(axis=1)].astype(int)
+    assert np.ptp(inside, axis=0).max() > 20
+    image = stage.picture((camera,), "skeleton")
+    assert (image[inside[:, 1], inside[:, 0], 3] > 0.5).all()
+
+
 def test_casts_one_shadow_however_many_walls_overlap(stage: Stage) -> None:
     light, ground = np.array(LIGHT), stage.ground
     mesh = stage.frame.mesh

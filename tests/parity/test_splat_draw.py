@@ -369,6 +369,18 @@ def test_what_stands_before_a_splat_hides_it(device: Device) -> None:
     assert not found[..., 1].any()
 
 
+def test_a_splat_whose_middle_lies_before_the_near_plane_is_drawn(device: Device) -> None:
+    """Half of it may lie behind: quads are flat, so that the device would cut all of it."""
+    screen = (16, 16)
+    seen_by = facing(screen)
+    ellipses, colors, opacities = np.array([[8.0, 8, 1, 0, 4, 4]]), np.array([[0.25, 0.75, 1.5]]), np.array([0.875])
+    near = seen_by[0].near * np.array([0.5])
+    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), depth=near)
+    found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, seen_by)
+    exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=integration_bound(exact, 0.875, 4, 4).max())
+
+
 def draw_over_depth(
     device: Device, renderer: SplatRenderer, splats: SortedSplats, seen_by: Sequence[Camera], depth: float
 ) -> Array:

@@ -71,10 +71,22 @@ def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frame
     return Clip(f"{rate} Hz", rate, rotations, rng.normal(size=(frames, len(skeleton.names), 3)))
 
 
+def upside_down() -> Avatar:
+    """A root that is turned over, which leaves no heading, or next to none: what is smaller than rounding is none."""
+    avatar = avatar_of(heading=True, window=2, rate=24, clips=[(24, 5)])
+    turns = [[0, 1, 0, 0], [1e-6, 1, 0, -2e-6], [0, 0, 1, 0], [1e-10, 1, 0, 1e-10], [-3e-7, 0.6, 1e-6, 0.8]]
+    clip = avatar.clips[0]
+    clip.rotations[:, 0] = [1, 0, 0, 0]
+    clip.rotations[:, 1] = rotation.normalize(np.array(turns))
+    skeleton = replace(avatar.rig.skeleton, bind_rotations=np.tile([1.0, 0, 0, 0], (3, 1)))
+    return replace(avatar, rig=replace(avatar.rig, skeleton=skeleton))
+
+
 CASES = {
     "own rate": (avatar_of(heading=True, window=3, rate=24, clips=[(24, 5), (24, 1)]), "f32"),
     "other rates": (avatar_of(heading=True, window=3, rate=24, clips=[(30, 11), (23.976, 9), (120, 41)]), "f32"),
     "ends that rounding moves": (avatar_of(heading=True, window=3, rate=100, clips=[(25, 30), (50, 59)]), "f32"),
+    "turned over": (upside_down(), "f32"),
     "halves": (avatar_of(heading=True, window=2, rate=24, clips=[(24, 6), (60, 13)]), "f16"),
     "no heading": (avatar_of(heading=False, window=3, rate=30, clips=[(24, 7)]), "f32"),
     "one frame": (avatar_of(heading=True, window=1, rate=30, clips=[(30, 4)]), "f32"),

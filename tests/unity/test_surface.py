@@ -264,6 +264,24 @@ def test_depth_hides_surfaces_but_no_bones(painter: Painter, name: str) -> None:
     assert np.array_equal(free, expected) == (name == "Skeleton")
 
 
+def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> None:
+    """A wall so little behind a facet hides it, a wall farther behind does not; of the reference's posed template."""
+    scene, camera = painter.scene, painter.scene.cameras[0]
+    mesh = rotation.dual_transform(place_of(PLACE), posed(scene.avatar).mesh)
+    middles = mesh[scene.avatar.rig.mesh.faces].mean(axis=1) @ camera.view[:3, :3].T + camera.view[:3, 3]
+    clip = middles @ camera.projection[:, :3].T + camera.projection[:, 3]
+    columns, rows = ((clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN).astype(int).T
+    facet = np.argmin(np.where(columns < SCREEN[0] // 2 - 2, -middles[:, 2], np.inf))  # the nearest before the wall
+    seen = []
+    for behind in (0.005, 0.015):
+        distance = behind - middles[facet, 2]
+        depth = (camera.projection[2, 3] - camera.projection[2, 2] * distance) / distance  # -1 to 1, away from the eye
+        player = painter.player("Mesh", 0, plane=(1 + depth) / 2)
+        unity = painter.unity("Mesh", plane=(1 - depth) / 2)
+        seen.append([bool(image[rows[facet], columns[facet], 3]) for image in (player, unity)])
+    assert seen == [[False, False], [True, True]]
+
+
 @pytest.mark.parametrize("name", ["Geometry", "Mesh"])
 def test_a_linear_project_is_given_light(painter: Painter, name: str) -> None:
     srgb = painter.player(name, 0)

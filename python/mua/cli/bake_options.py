@@ -58,6 +58,6 @@ def check_output(output: Path, work: Path) -> list[Path]:
         raise InputError(f"{output}: is a directory, expected a file to write")
     if work.exists() and not work.is_dir():
         raise InputError(f"--work {work}: is a file, expected a directory")
-    named = (("-o", output.parent), ("--work", work.parent))
+    named = (("-o", output.parent), ("--work", work if work.exists() else work.parent))
     missing = [missing_directory(directory, option=option) for option, directory in named]
     return list(dict.fromkeys(directory for directory in missing if directory is not None))

@@ -171,6 +171,13 @@ def part_directory(directory: Path, part: int, parts: int) -> Path:
     return directory.with_name(f"{directory.name}.part-{part + 1}-of-{parts}")
 
 
+def remove_leftovers(directory: Path, parts: int) -> None:
+    """Remove shards that processes which have ended left half written in their parts; they may fill a disk."""
+    for part in range(parts):
+        for left in (part_directory(directory, part, parts) / SHARDS).glob(".*.part"):
+            shutil.rmtree(left, ignore_errors=True)
+
+
 def join_parts(directory: Path, plan: Sequence[PlannedClip]) -> None:
     """Make one recording of all parts of a plan, its clips in the plan's order, and remove the parts.
 

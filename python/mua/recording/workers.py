@@ -20,7 +20,7 @@ from typing import Any
 from mua.errors import InputError
 from mua.recording import damage
 from mua.recording.layout import HEADER, SHARDS
-from mua.recording.parts import divide, is_joined, join_parts, longest_first, part_directory, recorded
+from mua.recording.parts import divide, is_joined, join_parts, longest_first, part_directory, recorded, remove_leftovers
 from mua.recording.record import PlannedClip
 from mua.teachers.teacher import Teacher
 
@@ -131,6 +131,7 @@ def record_by_workers(
             _work_off(crew, left, progress)
         finally:
             crew.dismiss()
+            remove_leftovers(directory, len(parts))
     join_parts(directory, plan)
 
 
