@@ -137,9 +137,10 @@ def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(s
     along = (ahead - behind) / np.linalg.norm(ahead - behind)
     across = rotation.normalize(np.cross(along, [1.0, 0.2, 0.1]))
     up = np.cross(across, along)
-    turn = np.stack([across, up, -along])  # looks along the bone
+    look = np.cos(0.27) * along - np.sin(0.27) * across  # so that the bone's direction in the picture tells its end
+    turn = np.stack([np.cross(look, up), up, -look])
     view = np.eye(4)
-    view[:3, :3], view[:3, 3] = turn, -turn @ (0.5 * (behind + ahead) - 0.02 * across - 0.03 * up)  # beside its middle
+    view[:3, :3], view[:3, 3] = turn, -turn @ (0.75 * behind + 0.25 * ahead) + [-0.03, -0.04, 0]
     camera = replace(camera_at(joints), view=view)
     between = behind + np.linspace(0, 1, 2000)[:, None] * (ahead - behind)
     before = between[(between @ view[2, :3] + view[2, 3]) < -2 * camera.near]
