@@ -25,7 +25,7 @@ def seal_unread(content: bytes) -> bytes:
     """Seal a file that the parser may refuse."""
     try:
         return seal(content)
-    except FormatError:
+    except (FormatError, KeyError):  # or one without a checksum
         return content
 
 

@@ -230,6 +230,7 @@ def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Pa
     assert "--clips jump: there is no such clip, only walk, turn" in refused(tmp_path, "--clips", "jump")
 
 
+@pytest.mark.long
 def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
     """kill -9 while it records, then while it trains; the third run ends as an undisturbed one."""
     code = (

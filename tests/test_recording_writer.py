@@ -76,6 +76,7 @@ def test_death_at_any_step_of_a_write_loses_and_doubles_nothing(
     assert step > 50
 
 
+@pytest.mark.long
 def test_kill_9_at_random_moments_loses_and_doubles_nothing(written: Path, tmp_path: Path) -> None:
     program = "import sys, recordings as t; print('ready', flush=True); t.write(t.Path(sys.argv[1]))"
     paths = os.pathsep.join([str(Path(__file__).parent), *sys.path])

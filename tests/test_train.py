@@ -65,6 +65,25 @@ def test_explains_its_training_frames(tmp_path: Path) -> None:
         assert explained(found, band) > least
 
 
+def test_each_stage_improves_on_the_one_before(tmp_path: Path) -> None:
+    """Bases alone, their sweeps, the regression of their coefficients, the fine-tuning of all."""
+    descriptors, truth = bands_of_frames()
+
+    def gains(name: str, settings: Settings) -> torch.Tensor:
+        predicted = trained(tmp_path / name, settings).predict(descriptors)
+        return torch.tensor([explained(found, band) for found, band in zip(predicted, truth, strict=True)])
+
+    nothing = Schedule(steps=1, batch=1, rate=1e-12)
+    bases = gains("bases", replace(SETTINGS, regression=nothing, finetune=nothing))
+    regressed = gains("regressed", replace(SETTINGS, finetune=nothing))
+    tuned = gains("tuned", SETTINGS)
+    unswept = gains("unswept", replace(SETTINGS, sweeps=0))
+    assert (bases < 0.05).all()
+    assert (regressed > torch.tensor([0.95, 0.90, 0.85])).all()
+    assert (tuned > regressed).all()
+    assert (tuned[1:] > unswept[1:] + 0.005).all()  # of the details, whose factors alternate
+
+
 def test_mean_texture_is_kept_at_the_valid_texels(tmp_path: Path) -> None:
     student = trained(tmp_path, quick())
     mean = student.mean_lowpass() + student.static

@@ -254,6 +254,7 @@ def test_a_gpu_that_is_too_small_ends_in_a_sentence(
     assert "its memory is too small (CUDA out of memory); what was" in sentence(capsys.readouterr().err)
 
 
+@pytest.mark.long
 def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, undisturbed: Path, tmp_path: Path) -> None:
     """kill -9, three times at a random moment after a stage was announced; then a run that nothing disturbs."""
     moment = random.Random(7)

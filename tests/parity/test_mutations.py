@@ -35,6 +35,7 @@ def test_fault_is_not_stale(kernel: str, fault: Fault) -> None:
 
 
 @pytest.mark.parametrize("kernel", FAULTS)
+@pytest.mark.long
 def test_every_fault_fails_the_parity_test(kernel: str, tmp_path: Path) -> None:
     copy = shutil.copytree(sources.directory(), tmp_path / "shaders")
     environment = {**os.environ, "MUA_SHADERS": str(copy), "XDG_CACHE_HOME": str(tmp_path / "cache")}

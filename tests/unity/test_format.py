@@ -126,6 +126,7 @@ def batched(made: Iterator[bytes], size: int) -> Iterator[list[bytes]]:
         yield some
 
 
+@pytest.mark.long
 def test_a_million_mutated_bytes_neither_crash_nor_overallocate(
     csharp: CSharp, program: Path, tmp_path: Path, content: bytes
 ) -> None:
