@@ -13,7 +13,7 @@ from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_texels, blend_vertices
 from mua.rig.rig import Rig
 
-SEEN = 4e-3  # of the character's size: height of an arc above its chord from which on it is straightened
+SEEN = 1e-3  # of the character's size: height of an arc above its chord from which on it is straightened
 
 
 def straighten(
