@@ -210,7 +210,7 @@ def test_splats_look_like_the_character_that_they_are_of(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("pale", [True, False])
-def test_a_figure_stands_out_from_the_ground_of_its_sheet(tmp_path: Path, pale: bool) -> None:
+def test_a_figure_stands_out_from_the_background_of_its_sheet(tmp_path: Path, pale: bool) -> None:
     character = column(tmp_path)  # which is white
     likeness, _ = likeness_of(character, (), texels=TEXELS)
     assert likeness is not None
@@ -218,9 +218,9 @@ def test_a_figure_stands_out_from_the_ground_of_its_sheet(tmp_path: Path, pale: 
         shots = tuple(replace(shot, source=shot.source * [0.2, 0.2, 0.2, 1]) for shot in likeness.poses[0].shots)
         likeness = Likeness((replace(likeness.poses[0], shots=shots),))
     picture = np.asarray(likeness_sheet(likeness), int)[-SCREEN[1] :, : SCREEN[0]]
-    ground, figure = picture[-1, -1], picture[SCREEN[1] // 2, SCREEN[0] // 2]
-    assert (abs(figure - ground) > 80).all()
-    assert (ground == 255).all() == (not pale)
+    background, figure = picture[-1, -1], picture[SCREEN[1] // 2, SCREEN[0] // 2]
+    assert (abs(figure - background) > 80).all()
+    assert (background == 255).all() == (not pale)
 
 
 def test_wrong_colours_are_measured_and_told(tmp_path: Path) -> None:

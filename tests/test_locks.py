@@ -101,7 +101,7 @@ def test_a_place_where_nothing_can_be_written_is_refused(tmp_path: Path, monkeyp
 
 
 def test_a_file_system_without_locks_is_used_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fcntl = pytest.importorskip("fcntl", reason="Windows locks files another way")
+    fcntl = pytest.importorskip("fcntl", reason="needs fcntl: Linux or macOS; Windows locks otherwise")
 
     def without(*_: object) -> None:
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))

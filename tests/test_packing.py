@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
+from mua.rig import packing, packing_grid
 from mua.rig.chart_shapes import GUTTER
 from mua.rig.charts import areas
-from mua.rig.ground import GRID
 from mua.rig.packing import pack
+from mua.rig.packing_grid import GRID
 from mua.rig.texel_map import cover
 
 LENGTH_BOUND = 1e-9  # relative: float64 of a rotation and a scale
@@ -82,3 +83,14 @@ def test_a_chart_longer_than_the_square_makes_it_larger() -> None:
     placed = pack(corners, charts)
     np.testing.assert_allclose(lengths(placed)[0].max() / lengths(placed)[2].max(), np.hypot(20, 0.5) / ROOT_2)
     assert cover(placed * 512, 512)[1].max() == 1
+
+
+def test_more_charts_than_the_grid_has_room_for_make_it_larger(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (packing, packing_grid):
+        monkeypatch.setattr(module, "GRID", 16)
+    corners, charts = rectangles(np.full((300, 2), 1.0))
+    placed = packing.pack(corners, charts)
+    centres = placed.reshape(len(charts) // 2, -1, 2).mean(axis=1)
+    apart = np.abs(centres[:, None] - centres).max(axis=2)
+    np.fill_diagonal(apart, np.inf)
+    assert apart.min() > lengths(placed).min()  # none lies on another

@@ -1,7 +1,7 @@
 """C# source as words: without comments, strings emptied, and of conditions (`#if`) the branches that are compiled."""
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 
 WORDS = re.compile(r'"[^"]*"|[A-Za-z_@]\w*|\d[\w.]*|=>|::|==|!=|\?\?=?|\S')
 TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|\$?@\$?"(?:[^"]|"")*"|\$?"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
@@ -53,18 +53,15 @@ class _Condition:
         self._words, self._symbols = [*found, ""], symbols
 
     def holds(self) -> bool:
-        held = self._all()
-        while self._words[0] == "||":
-            del self._words[0]
-            held = self._all() or held
-        return held
+        return self._joined("||", lambda: self._joined("&&", self._equal))
 
-    def _all(self) -> bool:
-        held = self._equal()
-        while self._words[0] == "&&":
+    def _joined(self, sign: str, part: Callable[[], bool]) -> bool:
+        """Parts between signs; all are read, whatever the first says."""
+        held = [part()]
+        while self._words[0] == sign:
             del self._words[0]
-            held = self._equal() and held
-        return held
+            held.append(part())
+        return any(held) if sign == "||" else all(held)
 
     def _equal(self) -> bool:
         held = self._one()

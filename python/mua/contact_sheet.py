@@ -8,8 +8,8 @@ from PIL import Image, ImageDraw, ImageFont
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.decode import decode_clip_frame, pose_splats
+from mua.likeness.background import background_for, over
 from mua.likeness.compare import Likeness
-from mua.likeness.ground import ground_for, over
 from mua.likeness.sheet import worst_strips
 from mua.portrait import portrait
 from mua.recording import WholeFrame
@@ -40,7 +40,7 @@ def _strip(avatar: Avatar, frame: WholeFrame) -> Array:
     student = decode_clip_frame(avatar, frame.clip, frame=frame.index)
     camera = portrait(teacher, avatar.rig.skeleton, pose=pose, screen=CELL)
     drawn = [render_premultiplied(splats, camera) for splats in (teacher, student)]
-    shown = [over(image, ground_for(drawn[:1])) for image in drawn]
+    shown = [over(image, background_for(drawn[:1])) for image in drawn]
     difference = 1 - GAIN * np.abs(shown[0] - shown[1])
     picture = np.hstack([to_bytes(image) for image in (*shown, difference)])
     kind = "held out" if frame.clip.held_out else "trained on"

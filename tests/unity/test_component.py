@@ -37,6 +37,7 @@ def program(csharp: CSharp) -> Path:
         RUNTIME / "Kernels",
         PROGRAMS / "shared",
         PROGRAMS / "ComponentProgram.cs",
+        PROGRAMS / "ComponentRig.cs",
     ]
     return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
 

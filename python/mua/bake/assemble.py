@@ -11,7 +11,7 @@ from mua.asset.avatar import Avatar
 from mua.bake.playback import typical_frame
 from mua.bounds import playback_bounds
 from mua.decode import decode_clip_frame
-from mua.likeness.ground import ground_for, over
+from mua.likeness.background import background_for, over
 from mua.motion.clip import Clip
 from mua.motion.encoding import PoseEncoding
 from mua.portrait import portrait
@@ -61,5 +61,5 @@ def thumbnail(avatar: Avatar, clips: Sequence[Clip]) -> bytes:
     camera = portrait(frame, avatar.rig.skeleton, pose=clip.pose(index), screen=screen)
     stream = io.BytesIO()
     drawn = render_premultiplied(frame, camera)
-    Image.fromarray(to_bytes(over(drawn, ground_for([drawn])))).save(stream, "PNG")
+    Image.fromarray(to_bytes(over(drawn, background_for([drawn])))).save(stream, "PNG")
     return stream.getvalue()

@@ -4,8 +4,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mua.arrays import Array
+from mua.likeness.background import background_for, over
 from mua.likeness.compare import SCREEN, Likeness, PoseLikeness, Shot
-from mua.likeness.ground import ground_for, over
 from mua.render import to_bytes
 
 GAIN = 4  # the difference is shown this many times as strong
@@ -16,8 +16,8 @@ MARK = 14  # pixels from the middle of the worst place to the frame around it
 
 def likeness_sheet(likeness: Likeness) -> Image.Image:
     """Three cells for every view of every pose; a frame marks the worst place of each view."""
-    ground = _ground(likeness)
-    rows = [_strip(pose, shot, ground=ground) for pose in likeness.poses for shot in pose.shots]
+    background = _background(likeness)
+    rows = [_strip(pose, shot, background=background) for pose in likeness.poses for shot in pose.shots]
     rows += [np.full_like(rows[0], 255)] * (-len(rows) % COLUMNS)
     return Image.fromarray(np.vstack([np.hstack(rows[i : i + COLUMNS]) for i in range(0, len(rows), COLUMNS)]))
 
@@ -27,17 +27,17 @@ def worst_strips(
     cell: tuple[int, int],  # width, height, pixels
 ) -> list[Array]:
     """For each pose its worst view: source, splats and difference [h, 3 w, 3] uint8 under a caption."""
-    ground = _ground(likeness)
-    return [_strip(pose, pose.worst, cell, ground=ground) for pose in likeness.poses]
+    background = _background(likeness)
+    return [_strip(pose, pose.worst, cell, background=background) for pose in likeness.poses]
 
 
-def _ground(likeness: Likeness) -> float:
-    return ground_for(shot.source for pose in likeness.poses for shot in pose.shots)
+def _background(likeness: Likeness) -> float:
+    return background_for(shot.source for pose in likeness.poses for shot in pose.shots)
 
 
-def _strip(pose: PoseLikeness, shot: Shot, cell: tuple[int, int] = SCREEN, *, ground: float) -> Array:
+def _strip(pose: PoseLikeness, shot: Shot, cell: tuple[int, int] = SCREEN, *, background: float) -> Array:
     scale = min(cell[0] / SCREEN[0], cell[1] / SCREEN[1])
-    shown = [_fitted(image, cell, scale, ground) for image in (shot.source, shot.splats)]
+    shown = [_fitted(image, cell, scale, background) for image in (shot.source, shot.splats)]
     difference = 1 - GAIN * np.abs(shown[0] - shown[1])
     picture = Image.fromarray(np.hstack([to_bytes(image) for image in (*shown, difference)]))
     draw = ImageDraw.Draw(picture)
@@ -58,14 +58,14 @@ def _fitted(
     image: Array,  # [H, W, 4] premultiplied sRGB and alpha
     cell: tuple[int, int],
     scale: float,
-    ground: float,
+    background: float,
 ) -> Array:
-    """The image over a plain ground, [h, w, 3] in 0..1, at the top left of a cell."""
-    shown = over(image, ground)
+    """The image over a plain background, [h, w, 3] in 0..1, at the top left of a cell."""
+    shown = over(image, background)
     if scale != 1:
         size = round(scale * SCREEN[0]), round(scale * SCREEN[1])
         shown = np.asarray(Image.fromarray(to_bytes(shown)).resize(size), np.float32) / 255
-    filled = np.full((cell[1], cell[0], 3), ground, np.float32)
+    filled = np.full((cell[1], cell[0], 3), background, np.float32)
     filled[: shown.shape[0], : shown.shape[1]] = shown
     return filled
 

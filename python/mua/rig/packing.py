@@ -12,7 +12,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.rig.chart_shapes import Shape, narrowest_angles, points_on, rasterised, ways
 from mua.rig.charts import areas
-from mua.rig.ground import GRID, Ground
+from mua.rig.packing_grid import GRID, PackingGrid
 
 FULL = 0.93  # share of the square which charts and half of their gutters would fill; what does not fit goes beyond
 TRIES = ((False, 1.0), (True, 1.0), (False, 0.93), (True, 1.06))  # from the largest box instead? what share of FULL?
@@ -78,7 +78,7 @@ def _attempt(shapes: Sequence[Shape], points: Sequence[Array], *, scale: float, 
     """A layout in this scale, None where something fits nowhere."""
     cells = np.array([shape.cells for shape in shapes])
     order = np.argsort([-shape.mask.size for shape in shapes] if by_box else -cells, kind="stable").tolist()
-    ground = Ground(int(np.sqrt(2) * max(max(shape.mask.shape) for shape in shapes)) + 1)
+    grid = PackingGrid(int(np.sqrt(2) * max(max(shape.mask.shape) for shape in shapes)) + 1, len(shapes))
     turns, shifts = np.empty((len(shapes), 2, 2)), np.empty((len(shapes), 2))
     crumbs: dict[tuple[int, ...], list[int]] = {}
     for chart in order:
@@ -88,16 +88,16 @@ def _attempt(shapes: Sequence[Shape], points: Sequence[Array], *, scale: float, 
             continue
         if cells[chart] > LARGE * GRID**2:
             choice += ways(rasterised(points[chart], shapes[chart].angle + np.pi / 4))
-        place = ground.best(choice)
+        place = grid.best(choice)
         if place is None:
             return None
-        ground.take(place)
+        grid.take(place)
         turns[chart], shifts[chart] = place.shape.turn, place.shape.shift + place.at
     for box in sorted(crumbs, reverse=True):
-        found = ground.fill(box, len(crumbs[box]))
+        found = grid.fill(box, len(crumbs[box]))
         if len(found) < len(crumbs[box]):
             return None
         for chart, at in zip(crumbs[box], found, strict=True):
             lying = next(way for way in ways(shapes[chart]) if way.mask.shape == box)
             turns[chart], shifts[chart] = lying.turn, lying.shift + np.array(at)
-    return _Layout(turns, shifts, scale, ground.reach)
+    return _Layout(turns, shifts, scale, grid.reach)

@@ -11,7 +11,7 @@ NEAR_WHITE = 0.85  # of each channel: paler than this is hardly seen on white
 MOSTLY = 0.5  # of what the figure covers
 
 
-def ground_for(
+def background_for(
     images: Iterable[Array],  # [H, W, 4] premultiplied sRGB and alpha
 ) -> float:
     """The grey, 0..1, on which a figure is seen in all of its pictures."""
@@ -25,7 +25,7 @@ def ground_for(
 
 def over(
     image: Array,  # [..., 4] premultiplied sRGB and alpha
-    ground: float,
+    background: float,
 ) -> Array:
-    """The image [..., 3] in 0..1 over a plain ground."""
-    return np.asarray(np.clip(image[..., :3] + ground * (1 - image[..., 3:]), 0, 1))
+    """The image [..., 3] in 0..1 over a plain background."""
+    return np.asarray(np.clip(image[..., :3] + background * (1 - image[..., 3:]), 0, 1))

@@ -11,6 +11,7 @@ from mua.rig.taken_cells import TakenCells, beside, each_bit, first_bits, places
 
 GRID = 512  # cells along the square that is meant to be filled
 ROOM = 1.25  # cells along the whole grid, over those of the square
+LEAST = 1 + 2 * GUTTER  # cells along the smallest chart with its gutters
 NEAR = (2, 3, 5)  # cells from what is taken or from the border: within each of them a cell counts once more
 FARTHEST = max(NEAR)
 SAMPLES = 32  # cells of an outline that are looked at
@@ -33,13 +34,13 @@ class Place:
         return np.array([self.column, self.row])
 
 
-class Ground:
+class PackingGrid:
     """What is taken of the grid, and how wide the square around it is."""
 
-    def __init__(self, longest: int) -> None:
-        """`longest` cells are the longest run of any shape."""
+    def __init__(self, longest: int, count: int) -> None:
+        """`longest` cells are the longest run of any shape; `count` of the smallest fit, however many these are."""
         self.reach = GRID
-        self._side = int(ROOM * GRID)
+        self._side = int(ROOM * max(GRID, LEAST * np.sqrt(count)))
         self._taken = TakenCells(self._side, longest)
         self._near = np.zeros((self._side + 2 * FARTHEST,) * 2, np.uint8)  # FARTHEST cells wider on all sides
         for by in NEAR:

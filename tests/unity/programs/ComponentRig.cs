@@ -1,0 +1,187 @@
+// Stories of avatars that follow a rig, for ComponentProgram.cs.
+using System;
+using System.Collections.Generic;
+using System.IO;
+using Mua.Format;
+using Mua.Motion;
+using UnityEngine;
+
+namespace Mua
+{
+    internal static partial class ComponentProgram
+    {
+        private static void FollowsRig()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
+            var read = new double[4 * rig.Length];
+            var translations = new double[3 * rig.Length];
+            joints.Read(read, translations);
+            var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
+            var wanted = new double[4 * rig.Length];
+            var wantedTranslations = new double[3 * rig.Length];
+            clip.ReadFrame(2, wanted, wantedTranslations);
+            double turned = 0, moved = 0;
+            for (int i = 0; i < rig.Length; i++)
+            {
+                QuaternionD a = QuaternionD.Load(read, i), b = QuaternionD.Load(wanted, i);
+                turned = Math.Max(turned, 1 - Math.Abs(a.W * b.W + a.X * b.X + a.Y * b.Y + a.Z * b.Z));
+            }
+            for (int i = 0; i < translations.Length; i++)
+            {
+                moved = Math.Max(moved, Math.Abs(translations[i] - wantedTranslations[i]));
+            }
+            Say("turned", turned);
+            Say("translated", moved);
+            AvatarRenderer shown = Show(files[0]);
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Frames(10);
+            long before = GC.GetAllocatedBytesForCurrentThread();
+            Frames(72);
+            Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
+            UnityEngine.Object.DestroyImmediate(rig[avatar.Skeleton.Root].gameObject);
+            Frames(20);
+            Say("state", shown.State);
+        }
+
+        private static void RigRests()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            AvatarRenderer shown = Show(files[0]);
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Say("settling", Dispatches(72));
+            Say("idle", Dispatches(10));
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            Say("woken", Dispatches(72));
+            Say("idle", Dispatches(10));
+            shown.transform.position = new Vector3(5, 0, 0);
+            Say("carried", Dispatches(1));
+            Say("idle", Dispatches(10));
+            rig[avatar.Skeleton.Root].localPosition += new Vector3(0, 0.1f, 0);
+            Say("stepped", Dispatches(72));
+            shown.IsPlaying = false;
+            shown.Rig = null;
+            Say("left", Dispatches(1));
+        }
+
+        /// <summary>A pose that is held for long and then left: the window still holds what was before.</summary>
+        private static void RemembersRest()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
+            var pose = new AvatarPose(avatar);
+            double frame = 1 / avatar.Encoding.Rate;
+            int changes = 0;
+            for (int i = 0; i < 100; i++)
+            {
+                changes += pose.Sample(joints, i * frame) ? 1 : 0;
+            }
+            Say("changes", changes);
+            pose.IsFresh = false;
+            double[] rest = pose.Current.ToArray();
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            Say("changes", pose.Sample(joints, 100 * frame) ? 1 : 0);
+            Say("fresh", pose.IsFresh ? 1 : 0);
+            double[] window = pose.Window.ToArray();
+            int same = 0;
+            for (int age = 0; age < avatar.Encoding.Window; age++)
+            {
+                var held = new ReadOnlySpan<double>(window, age * rest.Length, rest.Length);
+                same += held.SequenceEqual(rest) ? 1 : 0;
+            }
+            Say("rests", avatar.Encoding.Window - same);
+        }
+
+        /// <summary>Which poses of a rig that moves all the time are in the window, newest first.</summary>
+        private static void WindowTakesTurns()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
+            var pose = new AvatarPose(avatar);
+            double frame = 1 / avatar.Encoding.Rate, now = 100;
+            var seen = new List<double[]>();
+            for (int i = 0; i <= 12; i++)
+            {
+                Turn(rig, joints, pose, now + i * frame / 3, seen);
+            }
+            Say("window", Indices(pose, seen));
+            now += 4 * frame;
+            Turn(rig, joints, pose, now + 3.75 * frame, seen);
+            Say("window", Indices(pose, seen));
+            Turn(rig, joints, pose, now + 7.5 * frame, seen);
+            Say("window", Indices(pose, seen));
+            Turn(rig, joints, pose, now + 8.5 * frame, seen);
+            Say("window", Indices(pose, seen));
+            Turn(rig, joints, pose, now + 8 * frame, seen);
+            Say("window", Indices(pose, seen));
+            var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
+            Say("before", clip.FrameCount - AvatarPose.Position(clip, -0.5 * frame));
+            Say("before", clip.FrameCount - AvatarPose.Position(clip, -(clip.FrameCount + 1) * frame));
+        }
+
+        private static void Turn(Transform[] rig, AvatarJoints joints, AvatarPose pose, double seconds, List<double[]> seen)
+        {
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 5 * seen.Count, 0);
+            pose.Sample(joints, seconds);
+            seen.Add(pose.Current.ToArray());
+        }
+
+        private static string Indices(AvatarPose pose, List<double[]> seen)
+        {
+            var found = new List<string>();
+            for (int at = 0; at < pose.Window.Length; at += pose.Current.Length)
+            {
+                double[] held = pose.Window.Slice(at, pose.Current.Length).ToArray();
+                found.Add(seen.FindIndex(each => new ReadOnlySpan<double>(each).SequenceEqual(held)).ToString());
+            }
+            return string.Join(" ", found.ToArray());
+        }
+
+        private static void LacksJoint()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            rig[rig.Length - 1].gameObject.name = "Another";
+            AvatarRenderer shown = Show(files[0]);
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Frames(20);
+            rig[avatar.Skeleton.Root].gameObject.name = "NoRoot";
+            shown.Rig = Scene[Scene.Count - 2].transform;
+            Frames(20);
+            Say("state", shown.State);
+        }
+
+        private static void IsScaled()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.transform.localScale = new Vector3(2, 2, 2);
+            Frames(20);
+            Say("state", shown.State);
+        }
+
+        /// <summary>Transforms that stand as frame 2 of the first clip, below a root that is moved and turned.</summary>
+        private static Transform[] MakeRig(AvatarFile avatar)
+        {
+            Skeleton skeleton = avatar.Skeleton;
+            var clip = new ClipSampler(avatar.Clips[0], skeleton, avatar.Encoding.Rate);
+            var rotations = new double[4 * skeleton.JointCount];
+            var translations = new double[3 * skeleton.JointCount];
+            clip.ReadFrame(2, rotations, translations);
+            GameObject root = Make("rig");
+            root.transform.SetPositionAndRotation(new Vector3(3, -1, 2), Quaternion.Euler(10, 200, -30));
+            var rig = new Transform[skeleton.JointCount];
+            for (int i = 0; i < rig.Length; i++)
+            {
+                rig[i] = new GameObject(skeleton.Names[i]).transform;
+                rig[i].SetParent(skeleton.Parents[i] < 0 ? root.transform : rig[skeleton.Parents[i]], false);
+                rig[i].localPosition = AvatarSpace.Position(Vector3D.Load(translations, i));
+                rig[i].localRotation = AvatarSpace.Rotation(QuaternionD.Load(rotations, i));
+            }
+            return rig;
+        }
+    }
+}
