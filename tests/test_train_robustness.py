@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -43,10 +44,14 @@ def undisturbed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 
 def change(path: Path, how: Callable[[Array], None]) -> None:
-    """Rewrite a .npy file with its array changed in place."""
+    """Rewrite a .npy file with its array changed in place, and its checksum, as another writer might have."""
     array = np.load(path)
     how(array)
     np.save(path, array)
+    index = path.with_name("index.json")
+    stored = json.loads(index.read_text())
+    stored["crc32"][path.name] = zlib.crc32(path.read_bytes())
+    index.write_text(json.dumps(stored))
 
 
 def put(value: float, *at: int) -> Callable[[Array], None]:
@@ -85,6 +90,16 @@ def with_nan(name: str, *at: int, value: float = np.nan) -> Callable[[Path], Non
     return lambda recording: change(recording / "shards" / name, put(value, *at))
 
 
+def with_a_bit_flipped(name: str) -> Callable[[Path], None]:
+    def flip(recording: Path) -> None:
+        path = recording / "shards" / name
+        content = bytearray(path.read_bytes())
+        content[-9] ^= 1
+        path.write_bytes(content)
+
+    return flip
+
+
 def no_recording(recording: Path) -> None:
     (recording / "recording.json").unlink()
 
@@ -102,6 +117,11 @@ DAMAGES = {
     "infinity in D3": (with_nan("00000/d3.npy", 3, value=np.inf), "00000/d3.npy: frame 6 of 'walk'"),
     "nan in a pose": (with_nan("00000/rotations.npy", 2), "00000/rotations.npy: a pose"),
     "nan in the sum": (with_nan("00006/sum.npy"), "00006/sum.npy: the sum"),
+    **{
+        f"a bit of {name}": (with_a_bit_flipped(name), f"{name}: is damaged, its checksum is another")
+        for name in ("00000/rotations.npy", "00001/translations.npy", "00000/meshes.npy", "00001/ll.npy")
+        + ("00001/d3.npy", "00000/d2.npy", "00006/sum.npy", "00000/whole_00000.npy")
+    },
     "nan in a whole frame": (with_nan("00000/whole_00000.npy"), "whole_00000.npy: frame 0 of 'walk'"),
 }
 
@@ -117,7 +137,7 @@ def test_a_damaged_recording_ends_in_a_sentence(
     assert mua_train(monkeypatch, recording, output) == 1
     assert told in sentence(capsys.readouterr().err)
     assert not list(recording.parent.rglob("*.part*"))
-    if damage != "nan in a whole frame":  # which is read to measure the avatar that is there by then
+    if "whole" not in damage:  # a frame that was kept whole is read to measure the avatar that is there by then
         assert output.read_bytes() == EARLIER
 
 
@@ -274,10 +294,12 @@ def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, undisturb
     assert not list(tmp_path.rglob("*.part*"))
 
 
-@pytest.mark.parametrize("left", ["a.work/student/.coarse mesh.1.part.pt", ".a.1.part.muaavatar"])
+@pytest.mark.parametrize("left", ["a.work/student/.coarse mesh.{}.part.pt", ".a.{}.part.muaavatar"])
 def test_removes_what_a_killed_run_left(
     written: Path, undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, left: str
 ) -> None:
+    with subprocess.Popen(["true"]) as killed:
+        left = left.format(killed.pid)
     shutil.copytree(undisturbed.with_suffix(".work"), tmp_path / "a.work")
     (tmp_path / left).write_bytes(b"half")
     assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar") == 0

@@ -1,6 +1,5 @@
 """Whether a recording is as the writer of a plan left it, to the byte; a bake asks before it goes on from one."""
 
-import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from mua.recording.layout import (
     Header,
     Index,
     Segment,
+    check_sum,
     read_indices,
     shard_name,
     whole_name,
@@ -54,8 +54,7 @@ def _check_sums(shard: Path, index: Index, header: Header, *, last: bool) -> Non
     if {SUM, *names} != set(index.crc32):
         raise InputError(f"{shard / INDEX}: lists other files than frames")
     for name in [*names, SUM] if last else names:  # only the last sum is kept
-        if zlib.crc32((shard / name).read_bytes()) != index.crc32.get(name):
-            raise InputError(f"{shard / name}: is damaged, its checksum is another")
+        check_sum(shard / name, index)
 
 
 def _check_indices(directory: Path, indices: Sequence[Index], plan: Sequence[PlannedClip]) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import mmap
+import zlib
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ WAVELET = "bior4.4"  # unless a writer is told another
 HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
 INDEX, SUM = "index.json", "sum.npy"
 DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2 vary with the frame, D1 and D0 are means (paper, Methodology)
+BLOCK = 1 << 20  # bytes of a file at once
 STEP = 2 ** (DYNAMIC_LEVELS + STATIC_LEVELS)
 
 
@@ -159,6 +161,16 @@ def open_array(path: Path, shape: tuple[int, ...], dtype: str) -> Array:
     if array.shape != shape or array.dtype != np.dtype(dtype):
         raise InputError(f"{path} holds {array.shape} of {array.dtype.str}, expected {shape} of {dtype}")
     return np.asarray(array)
+
+
+def check_sum(path: Path, index: Index) -> None:
+    """Raise InputError where a shard's file has not the checksum that was taken when it was written."""
+    found = 0
+    with path.open("rb") as file:
+        while block := file.read(BLOCK):
+            found = zlib.crc32(block, found)
+    if found != index.crc32.get(path.name):
+        raise InputError(f"{path}: is damaged, its checksum is another than {INDEX} says; copy it again or record anew")
 
 
 def forget(array: Array) -> None:

@@ -3,7 +3,7 @@
 import hashlib
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -25,6 +25,7 @@ from mua.recording.layout import (
     SUM,
     Header,
     Index,
+    check_sum,
     forget,
     open_array,
     read_header,
@@ -70,10 +71,18 @@ class _Shard:
     directory: Path
     index: Index
     arrays: dict[str, Array]  # memory maps by name
+    sound: set[str] = field(default_factory=set)  # the arrays whose checksum was found right
+
+    def read(self, name: str) -> Array:
+        """An array; raises InputError where its file, held against its checksum the first time, is damaged."""
+        if name not in self.sound:
+            check_sum(self.directory / f"{name}.npy", self.index)
+            self.sound.add(name)
+        return self.arrays[name]
 
 
 class Recording:
-    """The finished shards of a recording.
+    """The finished shards of a recording; what is read of them is held against their checksums.
 
     Rows of training (`held_out=False`) and of held-out frames are counted apart, each in the order of recording: clip
     after clip as `clips` lists them, within a clip as its `recorded` does. Values are absolute, in the teacher's units.
@@ -97,6 +106,7 @@ class Recording:
         if indices:
             last = self.directory / SHARDS / shard_name(len(indices) - 1) / SUM
             self._sum = open_array(last, (self.header.valid_texels, CHANNELS), "<f8")
+            check_sum(last, indices[-1])
             if not np.isfinite(self._sum).all():
                 raise not_finite(last, "the sum of all frames")
 
@@ -136,7 +146,7 @@ class Recording:
         total = np.zeros((self.header.vertices, 3))
         for number in np.unique(self._places[False][:, 0]):
             rows = self._places[False][self._places[False][:, 0] == number, 1]
-            total += self._shards[number].arrays["meshes"][rows].sum(axis=0, dtype=np.float64)
+            total += self._shards[number].read("meshes")[rows].sum(axis=0, dtype=np.float64)
             forget(self._shards[number].arrays["meshes"])
         return total / self._training_frames
 
@@ -148,8 +158,8 @@ class Recording:
             for row in shard.index.whole_rows:
                 segment, frame = owners[row]
                 if held_out is None or segment.held_out == held_out:
-                    texture = self.reference.texture + shard.arrays[whole_name(row)].astype(np.float32)
-                    mesh = np.array(shard.arrays["meshes"][row])
+                    texture = self.reference.texture + shard.read(whole_name(row)).astype(np.float32)
+                    mesh = np.array(shard.read("meshes")[row])
                     for name in (whole_name(row), "meshes"):
                         forget(shard.arrays[name])
                     if not np.isfinite(texture).all():
@@ -187,7 +197,7 @@ class Recording:
         picked: Array | None = None
         for number in np.unique(places[:, 0]):
             here = places[:, 0] == number
-            rows = self._shards[number].arrays[name][(slice(None), *part)][places[here, 1]]
+            rows = self._shards[number].read(name)[(slice(None), *part)][places[here, 1]]
             if picked is None:
                 picked = np.empty((len(places), *rows.shape[1:]), np.float32)
             picked[here] = rows
@@ -218,11 +228,13 @@ def _open(directory: Path, number: int, index: Index, header: Header) -> _Shard:
     shard = directory / SHARDS / shard_name(number)
     if index.rig not in ("", header.rig):
         raise InputError(f"{shard / INDEX}: holds frames of another rig than {RIG} of the recording")
-    arrays = {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()}
+    opened = _Shard(
+        shard, index, {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()}
+    )
     for name in ("rotations", "translations"):
-        if name in arrays and not np.isfinite(arrays[name]).all():
+        if name in expected and not np.isfinite(opened.read(name)).all():
             raise not_finite(shard / f"{name}.npy", "a pose")
-    return _Shard(shard, index, arrays)
+    return opened
 
 
 def _places(indices: Sequence[Index], *, held_out: bool) -> Array:
