@@ -1,6 +1,9 @@
 """Atomic writes: all or nothing, and a sentence where the system refuses."""
 
 import errno
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -60,12 +63,42 @@ def test_asking_whether_a_file_can_be_written_writes_none(tmp_path: Path) -> Non
     assert path.read_bytes() == b"old"
 
 
+def ended() -> int:
+    """The id of a process that is no more."""
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+        return process.pid
+
+
 def test_leftovers_of_this_file_alone_are_removed(tmp_path: Path) -> None:
-    kept = [tmp_path / name for name in ("a[1].txt", ".a1.7.part.txt", ".a[1].7.part.png", "b.7.part.txt")]
-    for path in (*kept, tmp_path / ".a[1].7.part.txt"):
+    gone = ended()
+    names = ("a[1].txt", f".a1.{gone}.part.txt", f".a[1].{gone}.part.png", f"b.{gone}.part.txt")
+    kept = [tmp_path / name for name in names]
+    left = [tmp_path / f".a[1].{writer}.part.txt" for writer in (gone, os.getpid(), 10**30, "0x", "")]
+    for path in (*kept, *left):
         path.touch()
     remove_leftovers(tmp_path / "a[1].txt")
     assert set(tmp_path.iterdir()) == set(kept)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs Linux or macOS: Windows keeps files that are open")
+def test_what_another_process_is_writing_is_no_leftover(tmp_path: Path) -> None:
+    """Two commands may be given the same output; one that begins must not spoil the end of the other."""
+    writing = (
+        "import sys; from pathlib import Path; from mua.files import replacing\n"
+        "with replacing(Path(sys.argv[1])) as temporary:\n"
+        "    temporary.write_bytes(b'first half'); print(temporary, flush=True); sys.stdin.read()"
+    )
+    path = tmp_path / "a.txt"
+    command = [sys.executable, "-c", writing, str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout is not None
+        temporary = Path(other.stdout.readline().strip())
+        remove_leftovers(path)
+        assert temporary.exists()
+        other.communicate("")
+    assert other.returncode == 0
+    assert path.read_bytes() == b"first half"
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_the_directory_that_would_be_made_is_the_highest_that_is_missing(tmp_path: Path) -> None:

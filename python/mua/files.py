@@ -2,6 +2,7 @@
 
 import glob
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,7 +17,7 @@ def replacing(path: Path) -> Iterator[Path]:
     The temporary keeps the suffix of `path`, because image writers choose their format by it. Raises InputError where
     the system refuses to write: no room, no such place, no permission.
     """
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    temporary = _temporary(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
@@ -41,7 +42,7 @@ def require_writable(path: Path) -> None:
     """Make the directory of `path`; raises InputError, ahead of hours of work, where nothing could be written there."""
     if path.is_dir():
         raise InputError(f"{path}: is a directory, expected a file to write")
-    probe = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    probe = _temporary(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         probe.touch()
@@ -75,9 +76,12 @@ def missing_directory(path: Path, *, option: str) -> Path | None:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove what killed writers of `path` left beside it; nobody may be writing it."""
-    for left in path.parent.glob(f".{glob.escape(path.stem)}.*.part{glob.escape(path.suffix)}"):
-        _remove(left)
+    """Remove what killed writers of `path` left beside it; what another process at work is writing stays."""
+    start, end = f".{path.stem}.", f".part{path.suffix}"
+    for left in path.parent.glob(f"{glob.escape(start)}*{glob.escape(end)}"):
+        writer = left.name[len(start) : -len(end)]
+        if not (writer.isdecimal() and _at_work(int(writer))):
+            _remove(left)
 
 
 def refused(path: Path, error: OSError, *, named: str = "") -> InputError:
@@ -95,6 +99,24 @@ def _concerns(error: OSError, path: Path, temporary: Path) -> bool:
         return True
     named = Path(os.fsdecode(error.filename))
     return named == temporary or named in (path, *path.parents)
+
+
+def _temporary(path: Path) -> Path:
+    """Where this process writes what is to become `path`; named after the process, by which leftovers are known."""
+    return path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+
+
+def _at_work(process: int) -> bool:
+    """Whether a process other than this one runs under an id; Windows keeps files that are open without being asked."""
+    if sys.platform == "win32" or process == os.getpid():
+        return False
+    try:
+        os.kill(process, 0)
+    except PermissionError:  # somebody else's
+        return True
+    except (ProcessLookupError, OverflowError):
+        return False
+    return True
 
 
 def _remove(path: Path) -> None:
