@@ -118,9 +118,11 @@ DAMAGES = {
     "nan in a pose": (with_nan("00000/rotations.npy", 2), "00000/rotations.npy: a pose"),
     "nan in the sum": (with_nan("00006/sum.npy"), "00006/sum.npy: the sum"),
     **{
-        f"a bit of {name}": (with_a_bit_flipped(name), f"{name}: is damaged, its checksum is another")
-        for name in ("00000/rotations.npy", "00001/translations.npy", "00000/meshes.npy", "00001/ll.npy")
-        + ("00001/d3.npy", "00000/d2.npy", "00006/sum.npy", "00000/whole_00000.npy")
+        f"a bit of {name}": (with_a_bit_flipped(f"{name}.npy"), f"{name}.npy: is damaged, its checksum is another")
+        for name in (
+            *("00000/rotations", "00001/translations", "00000/meshes", "00000/whole_00000"),
+            *("00001/ll", "00001/d3", "00000/d2", "00006/sum"),
+        )
     },
     "nan in a whole frame": (with_nan("00000/whole_00000.npy"), "whole_00000.npy: frame 0 of 'walk'"),
 }

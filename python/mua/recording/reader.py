@@ -228,9 +228,7 @@ def _open(directory: Path, number: int, index: Index, header: Header) -> _Shard:
     shard = directory / SHARDS / shard_name(number)
     if index.rig not in ("", header.rig):
         raise InputError(f"{shard / INDEX}: holds frames of another rig than {RIG} of the recording")
-    opened = _Shard(
-        shard, index, {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()}
-    )
+    opened = _Shard(shard, index, {name: open_array(shard / f"{name}.npy", *form) for name, form in expected.items()})
     for name in ("rotations", "translations"):
         if name in expected and not np.isfinite(opened.read(name)).all():
             raise not_finite(shard / f"{name}.npy", "a pose")
