@@ -17,7 +17,7 @@ from mua.texture.channels import GEOMETRY
 State = dict[str, torch.Tensor]
 Losses = dict[tuple[str, int], float | None]
 # Of losses and, in the Euclidean norm, of each tensor. A batch's sum in another order differs by some 1e-7; every step
-# of Adam, which divides by the gradient's own size, lets that grow. docs/training.md has what was measured.
+# of Adam, which divides by the gradient's own size, lets that grow.
 ROUNDING = 1e-3
 
 

@@ -22,7 +22,7 @@ def write(path: Path, avatar: Avatar, *, storage: Storage = "f16") -> None:
     """Write `avatar` to `path`, atomically; what the reader would refuse is never written.
 
     `storage` is the element type of bases, static offset and MLP weights; positions, means of LL and biases stay f32.
-    In an i8 file bases and last layers are i8; what costs quality as i8 (docs/accuracy.md, Storage) is f16.
+    In an i8 file bases and last layers are i8; what costs quality as i8 (docs/research/storage.md) is f16.
     Errors: InputError naming the field that a file cannot hold.
     """
     write_bytes(path, encode(avatar, storage=storage))

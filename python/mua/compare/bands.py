@@ -1,7 +1,8 @@
 """The systems that model wavelet subbands: by convolutions, by our blendshapes, or by both (paper, Ablations).
 
 What the paper leaves open of the convolutions is chosen here: kernels of 5 x 5, one network for LL and one each for
-geometry and appearance at a detail level. With these the published FLOPs come out nearly (docs/training.md).
+geometry and appearance at a detail level. With these the published FLOPs come out nearly
+(docs/research/comparisons.md).
 """
 
 from collections.abc import Iterable, Sequence

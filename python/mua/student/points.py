@@ -2,7 +2,8 @@
 
 An MLP follows a function where it was taught it, and little beyond. Unseen poses lie as far from the nearest frame as
 frames lie from each other, and most of them are seen parts in combinations that are not: an arm of one frame, the legs
-of another. With points there too, the MLP follows the function where unseen motion goes (docs/training.md).
+of another. With points there too, the MLP follows the function where unseen motion goes
+(docs/research/unseen_motion.md).
 """
 
 import torch

@@ -17,7 +17,7 @@ from mua.student.points import draw_points
 from mua.student.settings import Generalisation, Schedule
 from mua.student.smoother import Sum, fit_smoother
 
-# Measured on held-out CMU walks and turns, see docs/accuracy.md.
+# Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
 VISITS = 32  # to each point: the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9

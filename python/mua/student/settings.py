@@ -51,7 +51,7 @@ def fall(done: float) -> float:
 
 @dataclass(frozen=True)
 class Generalisation:
-    """What carries over to unseen motion; `tools/compare_options.py` measures it (docs/training.md)."""
+    """What carries over to unseen motion; `tools/compare_options.py` measures it (docs/research/unseen_motion.md)."""
 
     fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
     noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction

@@ -1,0 +1,105 @@
+"""The pages keep their word: links lead somewhere, files that they name are there, commands take what they show."""
+
+import importlib
+import os
+import re
+import shlex
+import sys
+import tomllib
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+import typer.core
+
+ROOT = Path(__file__).resolve().parents[1]
+SCRIPTS = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]["scripts"]
+BUILT = ("build", "node_modules", ".")  # folders that begin like this hold nobody's pages
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+CODE = re.compile(r"^```.*?^```|^ {4}.*?$|`[^`\n]+`", re.DOTALL | re.MULTILINE)
+NAMED = re.compile(r"`((?:ComputeShaders|docs|python|schemas|tests|tools|unity-package)/[\w./~-]*\w)`")
+TOOL = re.compile(r"python (?:-m )?((?:tools|tests)/[\w/]+\.py)")
+COMMAND = re.compile(r"(?:^|[\s/\\`])(mua-|-m mua\.cli\.)(\w+)(?=\s|$)(.*)$")
+REPLACED = re.compile(r"\.\.\.|\[[^\]]*\]")  # what stands for words of the reader's own
+
+
+def _pages() -> list[Path]:
+    found = []
+    for folder, below, files in os.walk(ROOT):
+        below[:] = [name for name in below if not name.startswith(BUILT)]
+        found += [Path(folder) / name for name in files if name.endswith(".md")]
+    return sorted(found)
+
+
+PAGES = {page.relative_to(ROOT).as_posix(): page for page in _pages()}
+
+
+@cache
+def anchors(page: Path) -> set[str]:
+    """What headings of a page are called in addresses, as GitHub makes them."""
+    text, seen, found = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.DOTALL | re.MULTILINE), Counter(), set()
+    for heading in re.findall(r"^#+ (.+?)\s*$", text, re.MULTILINE):
+        plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower()
+        slug = re.sub(r"[^\w\- ]", "", plain).replace(" ", "-")
+        found.add(slug if not seen[slug] else f"{slug}-{seen[slug]}")
+        seen[slug] += 1
+    return found
+
+
+def lost_links(page: Path) -> list[str]:
+    """Links of a page that lead nowhere in the repository."""
+    lost = []
+    for target in LINK.findall(CODE.sub("", page.read_text())):
+        path, _, anchor = target.partition("#")
+        if path.startswith(("http:", "https:", "mailto:")):
+            continue
+        other = page.parent / path if path else page
+        if not other.exists() or (anchor and anchor not in anchors(other)):
+            lost.append(target)
+    return lost
+
+
+def commands(page: Path) -> list[tuple[str, str]]:
+    """Names and arguments of the mua- commands in a page's code, continued lines joined."""
+    code = [found.group().strip("`") for found in CODE.finditer(page.read_text())]
+    lines = re.sub(r"\\\n\s*", " ", "\n".join(code)).splitlines()
+    found = [COMMAND.search(line.split(" # ")[0].split(";")[0].rstrip("\\ ")) for line in lines]
+    return [(one.group(2), REPLACED.sub("", one.group(3))) for one in found if one]
+
+
+SHOWN = sorted({(name, words, path) for path, page in PAGES.items() for name, words in commands(page)})
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_links_lead_somewhere(path: str) -> None:
+    assert lost_links(PAGES[path]) == []
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_files_that_are_named_exist(path: str) -> None:
+    text = PAGES[path].read_text()
+    missing = [name for name in NAMED.findall(text) + TOOL.findall(text) if not (ROOT / name).exists()]
+    assert missing == []
+
+
+@pytest.mark.parametrize(("name", "words", "path"), SHOWN, ids=[f"mua-{name}{words}" for name, words, _ in SHOWN])
+def test_commands_take_what_is_shown(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, words: str, path: str
+) -> None:
+    """Options exist and take such values; arguments may be left out, as in a sentence about one option."""
+    module, function = SCRIPTS[f"mua-{name}"].split(":")
+    monkeypatch.setattr(sys, "argv", [f"mua-{name}", *shlex.split(words)])
+    monkeypatch.setattr(typer.core.TyperCommand, "invoke", lambda *_: 0)  # what was understood is not done
+    with pytest.raises(SystemExit) as ended:
+        getattr(importlib.import_module(module), function)()
+    said = " ".join(capsys.readouterr().err.split())
+    assert ended.value.code == 0 or "Missing " in said, f"{path}: mua-{name}{words}: {said}"
+
+
+def test_a_lost_link_and_a_lost_anchor_are_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(
+        "# A *b*, c\n\n[x](#a-b-c) [x](#b) [x](page.md#a-b-c) [x](other.md) [x](https://host/y)\n\n`[x](z.md)`\n"
+    )
+    assert lost_links(page) == ["#b", "other.md"]
