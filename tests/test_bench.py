@@ -162,7 +162,7 @@ def test_measures_a_setting_without_a_file() -> None:
         ((), "expected one of the two"),
         (("a.muaavatar", "--setting", "tiny"), "expected one of the two"),
         (("--setting", "huge"), "expected one of tiny, preview, paper"),
-        (("absent.muaavatar",), "absent.muaavatar: No such file"),
+        (("absent.muaavatar",), "absent.muaavatar: there is no such file"),
         (("--setting", "tiny", "--size", "0"), "--size is '0'"),
         (("--setting", "tiny", "--device", "no such device"), "device no such device: "),
     ],

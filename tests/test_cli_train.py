@@ -18,7 +18,7 @@ from mua.cli import display
 from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record
 from mua.student import distil, source
-from mua.student.train import STAGES
+from mua.student.settings import STAGES
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,9 @@ import pytest
 import trimesh
 
 from mua.arrays import Array
+from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
 from mua.rig.read import read_character
-from mua.rig.rig import build_rig
 from mua.rig.skeleton import Skeleton
 from mua.rig.template import CLOSE_ENOUGH, make_template
 from mua.rig.texel_map import build_texel_map, points_on_surface

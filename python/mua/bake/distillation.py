@@ -27,8 +27,7 @@ from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.student.distil import distil, distil_stage
 from mua.student.model import Student
-from mua.student.settings import Settings
-from mua.student.train import StageName
+from mua.student.settings import Settings, StageName
 
 SHEET_FRAMES = 6
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from mua.cli.inputs import require_file, require_motion
 from mua.errors import InputError
 from mua.files import missing_directory
 from mua.student.settings import Settings, preset, with_recipe
@@ -28,12 +29,10 @@ def check_settings(name: str, recipe: str, *, seed: int, frames: int | None, tex
 
 def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
     """Raises InputError for a file that is not there."""
-    if character is not None and not character.is_file():
-        problem = "is a directory, expected a file" if character.is_dir() else "there is no such file"
-        raise InputError(f"{character}: {problem}")
+    if character is not None:
+        require_file(character)
     for motion in motions:
-        if not motion.exists():
-            raise InputError(f"--motion {motion}: there is no such file or directory")
+        require_motion(motion)
 
 
 def check_jobs(jobs: int | None) -> int:

@@ -4,7 +4,7 @@ import json
 import tempfile
 from contextlib import closing
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -13,16 +13,16 @@ from rich.table import Table
 
 from mua import files
 from mua.asset.write import write
-from mua.bench.measure import Measured, Timing, measure
-from mua.bench.random_avatar import random_avatar
-from mua.bench.report import as_json, rate, total_milliseconds, total_work
 from mua.bench.work import Work
 from mua.camera import EYE_DISTANCE
 from mua.cli.choices import parse_screen
 from mua.cli.failure import refusing
+from mua.cli.inputs import require_file
 from mua.errors import InputError
-from mua.gpu import open_device
 from mua.student.settings import PRESETS, preset
+
+if TYPE_CHECKING:  # loads wgpu
+    from mua.bench.measure import Measured, Timing
 
 COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
@@ -42,6 +42,14 @@ def bench(
     if (file is None) == (setting is None):
         raise InputError("mua-bench measures a FILE or a --setting, expected one of the two")
     screen, eyes = parse_screen(size), EYE_DISTANCE if stereo else None
+    if file is not None:
+        require_file(file)
+
+    from mua.bench.measure import measure  # here, so that a wrong name costs no time
+    from mua.bench.random_avatar import random_avatar
+    from mua.bench.report import as_json
+    from mua.gpu import open_device
+
     with closing(open_device(device)) as opened, tempfile.TemporaryDirectory() as scratch:
         path = file or Path(scratch) / "random.muaavatar"
         if setting is not None:
@@ -57,7 +65,9 @@ def run() -> None:
     refusing(bench)
 
 
-def _table(measured: Measured) -> Table:
+def _table(measured: "Measured") -> Table:
+    from mua.bench.report import total_milliseconds, total_work
+
     width, height = measured.screen
     title = f"{measured.avatar} on {measured.device}, median of {measured.frames} frames"
     caption = (
@@ -77,11 +87,13 @@ def _table(measured: Measured) -> Table:
 
 
 def _figures(milliseconds: float, spread: str, work: Work, copy_bandwidth: float) -> tuple[str, ...]:
+    from mua.bench.report import rate
+
     moved = rate(work.bytes, milliseconds)
     operations = (f"{work.flops / 1e6:.2f}", f"{rate(work.flops, milliseconds) / 1e9:.3g}") if work.flops else ()
     moving = (f"{work.bytes / 1e6:.2f}", f"{moved / 1e9:.3g}", f"{moved / copy_bandwidth:.1%}")
     return f"{milliseconds:.3f}", spread, *moving, *operations
 
 
-def _spread(timing: Timing) -> str:
+def _spread(timing: "Timing") -> str:
     return f"{timing.high - timing.low:.3f}"

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -11,16 +11,16 @@ from rich.table import Table
 
 from mua import files
 from mua.cli.failure import refusing
-from mua.deploy.avatars import Checked, check, push
-from mua.deploy.bench import Benched, as_json, bench, warnings
-from mua.deploy.build import build
-from mua.deploy.doctor import examine
-from mua.deploy.headset import Headset, connect
-from mua.deploy.player import install, read_apk, require_installed, start
-from mua.deploy.self_test import Case, self_test
+from mua.cli.inputs import require_file
 from mua.deploy.steady import RATES
 from mua.deploy.unity import find, project_version
 from mua.errors import InputError
+
+if TYPE_CHECKING:  # load adbutils, an optional package
+    from mua.deploy.avatars import Checked
+    from mua.deploy.bench import Benched
+    from mua.deploy.headset import Headset
+    from mua.deploy.self_test import Case
 
 
 def deploy(
@@ -48,13 +48,20 @@ def deploy(
         _examine(console, given, serial=serial, unity=unity, project=project)
         return
     _require_sense(given, apk=apk, project=project, unity=unity, seconds=seconds, rate=rate, output=output)
+    for avatar in given:
+        require_file(avatar)
+
+    from mua.deploy.avatars import check, push  # here, so that a wrong name costs no time
+    from mua.deploy.headset import connect
+    from mua.deploy.player import read_apk, start
+
     checked = check(given)
     if apk is not None:
         read_apk(apk)
     headset = connect(serial)
     _install(console, headset, _built(console, unity, project) if project else apk)
-    for avatar in checked:
-        console.print(f"pushed {avatar.name}, {push(headset, avatar) / 1e6:.1f} MB")
+    for sound in checked:
+        console.print(f"pushed {sound.name}, {push(headset, sound) / 1e6:.1f} MB")
     if test:
         _self_test(console, headset)
     if seconds is not None:
@@ -95,12 +102,16 @@ def _require_sense(
 
 
 def _built(console: Console, unity: Path | None, project: Path) -> Path:
+    from mua.deploy.build import build
+
     editor = find(unity, project)
     console.print(f"building with {editor.program}")
     return build(editor, project)
 
 
-def _install(console: Console, headset: Headset, apk: Path | None) -> None:
+def _install(console: Console, headset: "Headset", apk: Path | None) -> None:
+    from mua.deploy.player import install, require_installed
+
     if apk is None:
         require_installed(headset)
     else:
@@ -108,7 +119,9 @@ def _install(console: Console, headset: Headset, apk: Path | None) -> None:
         console.print(f"installed {apk}")
 
 
-def _self_test(console: Console, headset: Headset) -> None:
+def _self_test(console: Console, headset: "Headset") -> None:
+    from mua.deploy.self_test import self_test
+
     cases = self_test(headset)
     console.print(_kernels(cases))
     failed = [case for case in cases if case.what is not None]
@@ -121,7 +134,7 @@ def _self_test(console: Console, headset: Headset) -> None:
     console.print(f"{len(cases)} of {len(cases)} cases passed on {headset.serial}")
 
 
-def _kernels(cases: list[Case]) -> Table:
+def _kernels(cases: "list[Case]") -> Table:
     table = Table("kernel", "passed", "failed", box=SIMPLE_HEAD)
     for kernel in dict.fromkeys(case.kernel for case in cases):
         own = [case for case in cases if case.kernel == kernel]
@@ -131,8 +144,10 @@ def _kernels(cases: list[Case]) -> Table:
 
 
 def _bench(
-    console: Console, headset: Headset, avatars: list[Checked], *, seconds: int, rate: int, output: Path | None
+    console: Console, headset: "Headset", avatars: "list[Checked]", *, seconds: int, rate: int, output: Path | None
 ) -> None:
+    from mua.deploy.bench import as_json, bench, warnings
+
     benched = []
     for avatar in avatars:
         benched.append(bench(headset, avatar.name, seconds=seconds, rate=rate))
@@ -144,12 +159,12 @@ def _bench(
         files.write_bytes(output, json.dumps(content, indent=2).encode() + b"\n")
 
 
-def _heading(benched: Benched) -> str:
+def _heading(benched: "Benched") -> str:
     seconds = f"{len(benched.samples)} of {benched.seconds} seconds"
     return f"{benched.avatar} on {benched.model}, {seconds} at {benched.rate} Hz"
 
 
-def _figures(benched: Benched) -> Table:
+def _figures(benched: "Benched") -> Table:
     table = Table("", "min", "median", "95 %", box=SIMPLE_HEAD)
     for column in table.columns[1:]:
         column.justify = "right"
@@ -162,6 +177,8 @@ def _figures(benched: Benched) -> Table:
 def _examine(
     console: Console, avatars: list[Path], *, serial: str | None, unity: Path | None, project: Path | None
 ) -> None:
+    from mua.deploy.doctor import examine
+
     checks = examine(avatars, serial=serial, unity=unity, project=project)
     table = Table("check", "state", "found, and the fix", box=SIMPLE_HEAD)
     for one in checks:

@@ -2,16 +2,28 @@
 
 import sys
 from collections.abc import Callable
+from typing import NoReturn
 
 import typer
 
+from mua.cli.extras import missing_package
+from mua.cli.options import command_name, with_common_options
 from mua.errors import InputError
 
 
 def refusing(command: Callable[..., None]) -> None:
-    """Run a typer command; an InputError becomes its sentence."""
+    """Run a typer command; an InputError, or a package that is not installed, becomes its sentence."""
     try:
-        typer.run(command)
+        typer.run(with_common_options(command))
     except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(1)
+        _end(str(error))
+    except ModuleNotFoundError as error:
+        sentence = missing_package(command_name(), error.name or "")
+        if sentence is None:
+            raise
+        _end(sentence)
+
+
+def _end(sentence: str) -> NoReturn:
+    print(f"error: {sentence}", file=sys.stderr)
+    sys.exit(1)

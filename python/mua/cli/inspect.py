@@ -12,6 +12,7 @@ from mua.asset.count import flops, parameters, stored_bytes
 from mua.asset.flatbuffer import Tree
 from mua.asset.read import decode_tree, load
 from mua.cli.failure import refusing
+from mua.cli.inputs import require_file
 
 PARTS = ("skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail")
 
@@ -21,6 +22,7 @@ def inspect(
     verify: Annotated[bool, typer.Option(help="Only check the file: exit 0, or 1 with a sentence.")] = False,
 ) -> None:
     """Print what FILE holds: skeleton, texels, ranks, bytes by part, parameters, GFLOPs and clips."""
+    require_file(file)
     tree = load(file)
     avatar = decode_tree(tree)
     console = Console()

@@ -3,23 +3,23 @@
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.console import Console
 
 from mua.asset.tensors import Storage
-from mua.bake.distillation import Distillation, finish, teach, teach_stage
-from mua.bake.playback import choose, whole_clips
-from mua.bake.report import UNSAID
 from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
+from mua.cli.inputs import require_recording
 from mua.files import require_writable
 from mua.locks import DirectoryLock
-from mua.processes import Processes, joined
-from mua.recording import Recording
-from mua.student.settings import preset, with_recipe
-from mua.student.train import StageName
+from mua.student.settings import StageName, preset, with_recipe
+
+if TYPE_CHECKING:  # torch takes seconds to load
+    from mua.bake.distillation import Distillation
+    from mua.processes import Processes
+    from mua.recording import Recording
 
 
 def main(
@@ -47,6 +47,14 @@ def main(
     command is given again. Under torchrun several processes train together.
     """
     settings = with_recipe(replace(preset(preset_name), seed=seed), recipe)
+    require_recording(recording)
+
+    from mua.bake.distillation import Distillation  # seconds of loading: only once the options are known to be good
+    from mua.bake.playback import choose, whole_clips
+    from mua.bake.report import UNSAID
+    from mua.processes import joined
+    from mua.recording import Recording
+
     with joined() as processes:
         opened = Recording(recording)
         choose(whole_clips(opened.clips), clips)  # before hours of work
@@ -70,7 +78,7 @@ def run() -> None:
     refusing(main)
 
 
-def _alone(order: Distillation) -> AbstractContextManager[object]:
+def _alone(order: "Distillation") -> AbstractContextManager[object]:
     """Keeps other commands out of the work directory; of processes that train together the first one does."""
     if not order.processes.first:
         return nullcontext()
@@ -78,7 +86,9 @@ def _alone(order: Distillation) -> AbstractContextManager[object]:
     return DirectoryLock(order.work, name=f"--work {order.work}")
 
 
-def _carry_out(order: Distillation, recording: Recording, stage: StageName | None, processes: Processes) -> None:
+def _carry_out(order: "Distillation", recording: "Recording", stage: StageName | None, processes: "Processes") -> None:
+    from mua.bake.distillation import finish, teach, teach_stage
+
     console = Console(quiet=not processes.first)
     with Display(console) as display:
         if stage is not None:

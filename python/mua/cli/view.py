@@ -18,16 +18,14 @@ from mua.asset.read import read
 from mua.camera import EYE_DISTANCE, Camera
 from mua.cli.choices import is_video, parse_color, parse_frame, parse_frames, parse_screen, require_format
 from mua.cli.failure import refusing
+from mua.cli.inputs import require_file, require_motion
 from mua.errors import InputError
 from mua.files import replacing
-from mua.gpu import adapters, open_device
 from mua.motion.clip import Clip
 from mua.motion.mapping import read_mapping
-from mua.player.buffers import AvatarBuffers
 from mua.player.motion import named_clip, player_clips
-from mua.player.offscreen import Offscreen, over, reference_picture, write_video
-from mua.player.scene import Toggles, parse_toggles
 from mua.player.shot import Shot, film
+from mua.player.toggles import Toggles, parse_toggles
 
 Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
 
@@ -35,6 +33,8 @@ Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premu
 def _list_devices(wanted: bool) -> None:
     """Print every graphics device and stop, before FILE is asked for."""
     if wanted:
+        from mua.gpu import adapters  # here, as all that needs a device: pictures by the CPU do without
+
         for index, adapter in enumerate(adapters()):
             print(f"{index}: {adapter}, {adapter.kind}")
         raise typer.Exit
@@ -70,8 +70,13 @@ def view(
     ] = False,
 ) -> None:
     """Show FILES in a window, or with -o write a picture or a video of one."""
+    for file in files:
+        require_file(file)
+    if motion is not None:
+        require_motion(motion)
     joints = None if mapping is None else read_mapping(mapping)
     if output is None:
+        from mua.gpu import open_device
         from mua.player.window import show as show_window  # here, because pictures need no window system
 
         show_window(files, open_device(device), clip=clip, motion=motion, mapping=joints)
@@ -93,6 +98,8 @@ def view(
     color, toggles = parse_color(background), parse_toggles(show)
     if reference and toggles != Toggles():
         raise InputError(f"--show is {show!r}; --reference draws splats alone")
+    from mua.player.offscreen import over  # here, because it loads wgpu: a wrong option costs no time
+
     with _opened(files[0], device, toggles, reference=reference) as (avatar, painter):
         chosen = _chosen(avatar, files[0], clip, motion=motion, mapping=joints)
         shown = parse_frames(frames, chosen) if video else parse_frame(frame, chosen)
@@ -111,6 +118,10 @@ def _opened(
     file: Path, device: str | None, toggles: Toggles, *, reference: bool
 ) -> Iterator[tuple[Avatar, Callable[[Clip], Painter]]]:
     """The avatar, and what paints frames of a clip of it, for as long as the device is open."""
+    from mua.gpu import open_device
+    from mua.player.buffers import AvatarBuffers
+    from mua.player.offscreen import Offscreen, reference_picture
+
     if reference:
         avatar = read(file)
         yield avatar, lambda clip: partial(reference_picture, avatar, clip)
@@ -138,6 +149,8 @@ def _part(clip: Clip, frames: range) -> Clip:
 def _save(output: Path, pictures: Iterator[Array], *, count: int, rate: float) -> None:
     """Write a picture, or a video with a progress bar."""
     if is_video(output):
+        from mua.player.offscreen import write_video
+
         bar = track(pictures, description=output.name, total=count, console=Console(stderr=True))
         write_video(output, iter(bar), rate=rate)
     else:

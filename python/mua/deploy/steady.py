@@ -2,9 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-from mua.deploy.headset import Headset
 from mua.errors import InputError
+
+if TYPE_CHECKING:  # loads adbutils
+    from mua.deploy.headset import Headset
 
 RATES = (72, 80, 90, 120)  # Hz of Quest 3's display
 LEVEL = 4  # of CPU and GPU: held without throttling on Quest 3
@@ -16,7 +19,7 @@ AS_SENSED = ("am", "broadcast", "-a", f"{SENSOR}.automation_disable")
 
 
 @contextmanager
-def awake(headset: Headset) -> Iterator[None]:
+def awake(headset: "Headset") -> Iterator[None]:
     """The headset behaves as if it were worn, so that the player keeps the focus."""
     with _undoing(headset, [AS_SENSED]):
         headset.tell(*WORN)
@@ -24,7 +27,7 @@ def awake(headset: Headset) -> Iterator[None]:
 
 
 @contextmanager
-def steady(headset: Headset, rate: int) -> Iterator[None]:
+def steady(headset: "Headset", rate: int) -> Iterator[None]:
     """Awake, with fixed clocks and fixed foveation and a display at `rate` Hz."""
     wanted = {
         "debug.oculus.cpuLevel": str(LEVEL),
@@ -44,7 +47,7 @@ def steady(headset: Headset, rate: int) -> Iterator[None]:
 
 
 @contextmanager
-def _undoing(headset: Headset, commands: Sequence[tuple[str, ...]]) -> Iterator[None]:
+def _undoing(headset: "Headset", commands: Sequence[tuple[str, ...]]) -> Iterator[None]:
     """Run `commands` at the end, whatever happened; one that fails becomes part of the sentence."""
     told = ""
     try:

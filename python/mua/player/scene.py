@@ -1,45 +1,20 @@
 """What one picture shows: background, shadow, geometry or template, splats and skeleton, in this order."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
 
 import wgpu
 
 from mua.arrays import Array
 from mua.camera import Camera
-from mua.errors import InputError
 from mua.gpu import Device
 from mua.gpu.failure import naming
 from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye
 from mua.player.overlays import Overlays, PosedBuffers
 from mua.player.splats import SplatFrame
+from mua.player.toggles import Toggles
 
 DEPTH_FORMAT = "depth32float"
 CLEAR = (0.0, 0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class Toggles:
-    """What is shown (paper, section System)."""
-
-    splats: bool = True
-    geometry: bool = False  # the texel grid as a lit mesh
-    template: bool = False
-    skeleton: bool = False
-    shadow: bool = False
-
-
-def parse_toggles(text: str) -> Toggles:
-    """The toggles that a list such as `splats,shadow` names.
-
-    Errors: InputError for a word that is none of them.
-    """
-    names = [field.name for field in fields(Toggles)]
-    shown = [word.strip() for word in text.split(",")]
-    unknown = [word for word in shown if word not in names]
-    if unknown:
-        raise InputError(f"--show is {text!r}; expected some of {', '.join(names)}, separated by commas")
-    return replace(Toggles(), **{name: name in shown for name in names})
 
 
 class Scene:

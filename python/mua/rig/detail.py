@@ -7,7 +7,6 @@ import numpy as np
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig.body_parts import BODY_PARTS, BodyPart
-from mua.rig.charts import find_charts
 
 Detail = Mapping[BodyPart, float]  # texels along a metre, over those of a part that is not named
 
@@ -83,6 +82,8 @@ def split_by_factor(
 
 def _pieces(nodes: Array, corners: Array, labels: Array) -> Array:
     """Number the parts of charts [F] whose triangles hang together and share both labels [F, 2]."""
+    from mua.rig.charts import find_charts  # here, because options are read without scipy
+
     rows = np.column_stack([np.repeat(labels, 3, axis=0), nodes.ravel()])
     return find_charts(np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1, 3), corners)
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
@@ -54,6 +53,8 @@ def points_on_surface(texels: TexelMap, dense: TexelMap) -> tuple[Array, Array]:
         return np.empty(0, np.int32), np.empty((0, 3), np.float32)
     row_of_texel = np.full(dense.size * dense.size, -1, np.int64)
     row_of_texel[dense.texels] = np.arange(len(dense.texels))
+    from scipy.spatial import cKDTree  # here, because reading a file needs no scipy
+
     rows = row_of_texel[texels.texels]
     empty = rows < 0
     if empty.any():

@@ -23,8 +23,8 @@ from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.local import body_parts
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress
-from mua.student.settings import Settings
-from mua.student.train import Samples, StageName, stages, train
+from mua.student.settings import Settings, StageName
+from mua.student.train import Samples, stages, train
 from mua.teachers.bones import figure_scale
 
 GPU_SECONDS = 1.0  # between two questions about the GPU

@@ -2,9 +2,12 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, get_args
 
 from mua.errors import InputError
+
+StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
+STAGES: tuple[StageName, ...] = get_args(StageName)
 
 
 @dataclass(frozen=True)

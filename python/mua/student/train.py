@@ -3,7 +3,6 @@
 import time
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal, get_args
 
 import torch
 from torch import Tensor
@@ -23,14 +22,12 @@ from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
 from mua.student.regress import regress, squared_error
 from mua.student.selection import validation_rows
-from mua.student.settings import Settings
+from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, still_channels
 from mua.teachers.bones import figure_scale
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
-StageName = Literal["coarse", "bases", "regression", "fine-tuning"]
-STAGES: tuple[StageName, ...] = get_args(StageName)
 BRANCHES = ("geometry", "appearance")
 
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from mua import rotation
 from mua.motion.clip import Stretches
+from mua.rig.build import build_rig
 from mua.rig.character import Character
-from mua.rig.rig import build_rig
 from mua.rig.skeleton import Pose
 from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale

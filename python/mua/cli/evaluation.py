@@ -1,0 +1,134 @@
+"""The comparison that mua-eval makes, once its options are known to be good."""
+
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import torch
+from rich.console import Console
+
+from mua.cli.display import Display
+from mua.compare import entries, judge, plots, report
+from mua.compare.images import Studio
+from mua.compare.metrics import Lpips
+from mua.compare.system import Budget
+from mua.errors import InputError
+from mua.files import replacing, write_bytes
+from mua.gpu import Device, open_device
+from mua.locks import DirectoryLock
+from mua.recording import Recording
+from mua.student.checkpoint import Checkpoints, run_key
+from mua.student.optimise import Progress, Run
+from mua.student.settings import Settings, preset
+
+
+@dataclass(frozen=True)
+class EvaluationOrder:
+    """What a user asks to have compared."""
+
+    recording: Path
+    avatars: list[Path]
+    systems: list[str]  # those of the paper's tables, or all
+    seconds: float  # of training of each system, unless there are steps
+    steps: int | None
+    preset: str  # whose sizes the systems have
+    frames: int | None  # of each kind; None: all that are kept whole
+    views: int
+    size: int  # pixels along a side
+    own_mesh: bool
+    lpips_weights: Path | None
+    seed: int
+    device: str | None
+    output: Path
+
+
+def compare(order: EvaluationOrder) -> None:
+    """Carry out an order, and write and print what comes of it."""
+    recording = Recording(order.recording)
+    chosen = judge.choose_frames(recording, order.frames)
+    if not chosen:
+        raise InputError(f"recording {order.recording}: no frame is kept whole, expected at least one to compare with")
+    names = list(entries.SYSTEMS) if order.systems == ["all"] else list(dict.fromkeys(order.systems))
+    entries.check_systems(names)
+    settings = replace(preset(order.preset), texels=recording.rig.texels.size, seed=order.seed)
+    budget = Budget(seconds=order.seconds) if order.steps is None else Budget(steps=order.steps)
+    lpips = Lpips(order.lpips_weights) if order.lpips_weights is not None else None
+    console = Console()
+    output, size = order.output, order.size
+    with closing(open_device(order.device)) as opened, Display(console) as display:
+        studio = Studio(opened, recording.rig, chosen, views=order.views, size=size)
+        rows = [entries.mean_entry(recording)]
+        rows += _avatars(opened, order.avatars, recording, size=size, own_mesh=order.own_mesh, display=display)
+        if names:
+            with DirectoryLock(output / "work", name=f"-o {output}"):
+                rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
+        display.stage("pictures")
+        results = judge.judge(studio, chosen, rows, lpips=lpips, progress=display.step)
+        setting = report.Setting(
+            recording=order.recording.name,
+            device=str(opened.adapter),
+            frames={kind: sum(f.clip.held_out == held for f in chosen) for kind, held in judge.KINDS.items()},
+            views=order.views,
+            size=size,
+            seconds=budget.seconds,
+            steps=budget.steps,
+            preset=order.preset,
+            lpips=None if lpips is None else lpips.network,
+            covered=sum(s.covered for s in results[0].samples) / max(len(results[0].samples), 1),
+        )
+        _write(output, results, setting)
+        display.stage("contact sheets")
+        for kind, held_out in judge.KINDS.items():
+            picked = plots.sheet_frames(chosen, results, held_out=held_out)
+            if picked:
+                with replacing(output / f"{kind.replace(' ', '_')}.png") as temporary:
+                    plots.contact_sheet(studio, picked, results).save(temporary)
+    console.print(report.table(results, setting))
+    console.print(output, highlight=False)
+
+
+def _avatars(
+    device: Device, paths: list[Path], recording: Recording, *, size: int, own_mesh: bool, display: Display
+) -> list[entries.Entry]:
+    """The rows of the files; what is wrong with one ends the command, before anything is trained."""
+    rows: list[entries.Entry] = []
+    for path in paths:
+        display.stage(path.name)
+        rows += entries.avatar_entries(device, path, recording.rig, size=size, played=own_mesh)
+    return rows
+
+
+def _systems(
+    names: list[str], recording: Recording, settings: Settings, *, budget: Budget, work: Path, display: Display
+) -> list[entries.Entry]:
+    """Train one system after the other; those that the work directory holds are taken from there."""
+    generator = torch.Generator().manual_seed(settings.seed)
+    checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), budget.seconds, budget.steps), []))
+    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+
+    def step(progress: Progress) -> None:
+        loss = "" if progress.loss is None else f"loss {progress.loss:.4f}"
+        display.step(progress.step, progress.steps, detail=loss)
+
+    display.stage("coarse mesh")
+    frames = entries.prepare_systems(recording, settings, run=Run(generator, checkpoints, step, device))
+    rows = []
+    for name in names:
+        display.stage(name)
+        rows.append(entries.system_entry(name, recording, frames, budget=budget, checkpoints=checkpoints, report=step))
+        if rows[-1].failure:
+            display.note(f"{name}: {rows[-1].failure}")
+    return rows
+
+
+def _write(output: Path, results: list[judge.Result], setting: report.Setting) -> None:
+    """All figures, each file whole or as it was."""
+    contents = {
+        "results.md": report.markdown(results, setting).encode(),
+        "results.csv": report.as_csv(results).encode(),
+        "results.json": report.as_json(results, setting).encode(),
+        "error_by_frame.png": plots.error_by_frame(results),
+        "rate_distortion.png": plots.rate_distortion(results),
+    }
+    for name, content in contents.items():
+        write_bytes(output / name, content)

@@ -1,0 +1,29 @@
+"""Whether what a command was given is there; asked before anything is loaded, so that a wrong name costs no time."""
+
+from pathlib import Path
+
+from mua.errors import InputError
+
+HEADER = "recording.json"  # as mua.recording, which takes torch to load, calls it
+
+
+def require_file(path: Path) -> None:
+    """Raises InputError where there is no file of that name."""
+    if not path.is_file():
+        problem = "is a directory, expected a file" if path.is_dir() else "there is no such file"
+        raise InputError(f"{path}: {problem}")
+
+
+def require_motion(path: Path) -> None:
+    """Raises InputError where there is neither a file nor a directory of that name."""
+    if not path.exists():
+        raise InputError(f"--motion {path}: there is no such file or directory")
+
+
+def require_recording(path: Path) -> None:
+    """Raises InputError where there is no directory of that name, or one that is no recording."""
+    if not path.is_dir():
+        problem = "is a file, expected the directory of a recording" if path.is_file() else "there is no such directory"
+        raise InputError(f"{path}: {problem}")
+    if not (path / HEADER).is_file():
+        raise InputError(f"{path}: not a recording, it holds no {HEADER}")
