@@ -1,12 +1,12 @@
 # `make demo` bakes the procedural character; `make test` checks everything, `make package` packs what
-# Unity installs. All set up what they need.
+# Unity installs, `make mutants` puts the tests to the test. All set up what they need.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO := build/demo
 
-.PHONY: demo test test-long gallery check package setup clean
+.PHONY: demo test test-long gallery mutants check package setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -22,6 +22,12 @@ test-long: setup
 gallery: setup
 	@test -n "$(GALLERY)" || { echo "GALLERY=folder make gallery: the folder with the files of tools/gallery.toml" >&2; exit 1; }
 	$(BIN)/python tools/gallery.py $(GALLERY) $(GALLERY_FLAGS)
+
+# Puts 200 faults into a copy of the tree, one at a time, and prints the share that the tests catch and every survivor:
+# SEED=7 NUMBER=60 LANGUAGE=hlsl JOBS=2 make mutants, each of which may be left out. The languages: python, hlsl, csharp.
+mutants: setup
+	$(BIN)/python tools/run_mutants.py $(if $(SEED),--seed $(SEED)) $(if $(NUMBER),--number $(NUMBER)) \
+		$(if $(LANGUAGE),--language $(LANGUAGE)) $(if $(JOBS),--jobs $(JOBS))
 
 check: setup
 	$(BIN)/ruff check

@@ -1,0 +1,176 @@
+"""Puts faults into a copy of the tree one at a time and says which of them the tests catch.
+
+    python tools/run_mutants.py                                # 200 faults, a third of each language
+    python tools/run_mutants.py --seed 7 --language hlsl --number 40
+    python tools/run_mutants.py --file python/mua/rotation.py
+
+Each fault meets only the test files that see its place, fastest first, up to the first failure. Which these are is
+recorded once in build/mutants and then kept; `--record` does it anew. Faults that do not compile count apart, and so do
+those that tools/mutants.toml names, with a reason, as no change of behaviour.
+"""
+
+import argparse
+import fnmatch
+import os
+import random
+import shutil
+import subprocess
+import tomllib
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+
+from mutant_sites import Mutant, mutants
+from mutant_tests import FAILED, NOT_COMPILED, Checkout, Seen, record, seeing
+
+ROOT = Path(__file__).resolve().parents[1]
+WORK = ROOT / "build" / "mutants"
+EQUIVALENT = ROOT / "tools" / "mutants.toml"
+TOOLS = ("gallery", "gen_*", "*upm*", "shader_*", "check_*", "csharp_*", "engine_use")  # those that tests run
+LANGUAGES = {
+    "python": ("python/mua/**/*.py", *(f"tools/{name}.py" for name in TOOLS)),
+    "hlsl": (
+        *("ComputeShaders/*.hlsl", "ComputeShaders/*.compute", "python/mua/player/shaders/*.hlsl"),
+        *("unity-package/**/*.hlsl", "unity-package/**/*.shader"),
+    ),
+    "csharp": ("unity-package/Runtime/**/*.cs", "unity-package/Editor/**/*.cs", "unity-package/Samples~/**/*.cs"),
+}
+CAUGHT, TIMED_OUT, SURVIVED, EQUAL, UNCOMPILED = "caught", "timed out", "survived", "equivalent", "does not compile"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one fault."""
+
+    mutant: Mutant
+    result: str
+    by: str  # the test that failed; how many test files ran where none did
+
+    def __str__(self) -> str:
+        line, before, after = self.mutant.lines((ROOT / self.mutant.path).read_text())
+        shown = f"{self.result:9} {self.mutant.path}:{line} {self.mutant.operator}"
+        if self.result in (CAUGHT, TIMED_OUT):
+            return f"{shown}, by {self.by}"
+        return f"{shown}\n    {before}\n    {after}" + (f"\n    {self.by}" if self.by else "")
+
+
+def drawn(language: str, seed: int, only: str = "") -> Iterator[Mutant]:
+    """Faults in an order that the seed decides: every line as likely as any other, then every fault of the line."""
+    files = sorted({path for pattern in LANGUAGES[language] for path in ROOT.glob(pattern)})
+    lines: dict[tuple[str, int], list[Mutant]] = {}
+    for path in files:
+        if not only or path == ROOT / only:
+            text = path.read_text(encoding="utf-8")
+            for mutant in mutants(path, ROOT):
+                lines.setdefault((mutant.path, mutant.lines(text)[0]), []).append(mutant)
+    rng = random.Random(f"{seed} {language}")
+    for _, found in rng.sample(sorted(lines.items()), len(lines)):
+        yield rng.choice(found)
+
+
+def reason(mutant: Mutant, text: str, known: list[dict[str, str]]) -> str:
+    """Why a fault changes no behaviour, where the list says so."""
+    _, before, after = mutant.lines(text)
+    for entry in known:
+        same = fnmatch.fnmatchcase(mutant.path, entry["file"]) and mutant.operator == entry["operator"]
+        if same and entry.get("line", before) == before and entry.get("becomes", after) == after:
+            return entry["reason"]
+    return ""
+
+
+def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen]) -> Outcome:
+    """Put a fault in, run the tests that see it, take it out."""
+    path, tests = checkout.root / mutant.path, seeing(mutant, seen)
+    mutated = mutant.apply(path.read_text(encoding="utf-8"))
+    if path.suffix == ".py":
+        try:
+            compile(mutated, str(path), "exec")
+        except SyntaxError as error:
+            return Outcome(mutant, UNCOMPILED, str(error))
+    if not tests:
+        return Outcome(mutant, SURVIVED, "no test sees it")
+    path.write_text(mutated, encoding="utf-8")
+    os.utime(path, (mutant.start + 1, mutant.start + 1))  # of its own, or Python might take the compiled former one
+    try:
+        return _judged(mutant, checkout, tests, 120 + 4 * sum(seen[name].seconds for name in tests))
+    finally:
+        shutil.copy2(ROOT / mutant.path, path)
+
+
+def _judged(mutant: Mutant, checkout: Checkout, tests: list[str], seconds: float) -> Outcome:
+    status, printed = checkout.pytest(tests, seconds=seconds)
+    if status is None:
+        return Outcome(mutant, TIMED_OUT, f"{seconds:.0f} s")
+    if status in (0, 5):
+        return Outcome(mutant, SURVIVED, f"{len(tests)} test files pass")
+    if mutant.path.endswith(".py") or not (error := NOT_COMPILED.search(printed)):
+        failed = FAILED.search(printed)
+        return Outcome(mutant, CAUGHT, failed[1] if failed else f"exit status {status}")
+    return Outcome(mutant, UNCOMPILED, printed[error.start() :].splitlines()[0])
+
+
+def run(waiting: Iterator[Mutant], number: int, checkouts: list[Checkout], seen: dict[str, Seen]) -> list[Outcome]:
+    """Outcomes until `number` of the faults, taken in order, compiled and are not known as equivalent."""
+    known, free = tomllib.loads(EQUIVALENT.read_text())["equivalent"], list(checkouts)
+
+    def outcome(mutant: Mutant) -> Outcome:
+        if why := reason(mutant, (ROOT / mutant.path).read_text(encoding="utf-8"), known):
+            return Outcome(mutant, EQUAL, why)
+        checkout = free.pop()
+        try:
+            return tried(mutant, checkout, seen)
+        finally:
+            free.append(checkout)
+
+    outcomes: list[Outcome] = []
+    with ThreadPoolExecutor(len(checkouts)) as pool:
+        while missing := number - sum(each.result in (CAUGHT, TIMED_OUT, SURVIVED) for each in outcomes):
+            batch = [mutant for mutant, _ in zip(waiting, range(missing), strict=False)]
+            for done in pool.map(outcome, batch):
+                outcomes.append(done)
+                print(done, flush=True)
+            if len(batch) < missing:
+                break
+    return outcomes
+
+
+def table(outcomes: dict[str, list[Outcome]]) -> str:
+    """The share caught by language and in all, then every survivor."""
+    lines = [f"{'':10}{'faults':>8}{'caught':>8}{'share':>8}{'equivalent':>12}{'do not compile':>16}"]
+    everything = list(chain.from_iterable(outcomes.values()))
+    for name, found in {**outcomes, "all": everything}.items():
+        count: Callable[..., int] = lambda *results: sum(each.result in results for each in found)  # noqa: B023, E731
+        caught, meant = count(CAUGHT, TIMED_OUT), count(CAUGHT, TIMED_OUT, SURVIVED)
+        share = f"{100 * caught / meant:.1f} %" if meant else "none"
+        lines.append(f"{name:10}{meant:8}{caught:8}{share:>8}{count(EQUAL):12}{count(UNCOMPILED):16}")
+    return "\n".join(["", *(str(each) for each in everything if each.result == SURVIVED), "", *lines])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--number", type=int, default=200, help="faults in all, shared evenly by the languages")
+    parser.add_argument("--seed", type=int, default=1, help="another seed draws other faults")
+    parser.add_argument("--language", choices=LANGUAGES, action="append", help="only this one; may be repeated")
+    parser.add_argument("--file", default="", help="only faults of this file")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="faults tried at once")
+    parser.add_argument("--record", action="store_true", help="find out anew which tests see what")
+    given = parser.parse_args()
+    checkouts = [Checkout(WORK / f"job-{k}") for k in range(given.jobs)]
+    for checkout in checkouts:
+        checkout.refresh(ROOT)
+    seen = record(checkouts, WORK / "seen.json", again=given.record)
+    languages = given.language or list(LANGUAGES)
+    outcomes = {}
+    for k, language in enumerate(languages):
+        number = (given.number + k) // len(languages)
+        outcomes[language] = run(drawn(language, given.seed, given.file), number, checkouts, seen)
+    commit = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    print(table(outcomes), f"\nseed {given.seed}, commit {commit.stdout.strip()}")
+
+
+if __name__ == "__main__":
+    main()
