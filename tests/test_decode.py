@@ -87,6 +87,15 @@ def test_a_frame_of_a_clip_is_its_window_newest_first() -> None:
         np.testing.assert_array_equal(decode_clip_frame(avatar, clip, frame=frame).centres, expected.centres)
 
 
+def test_depth_is_keyed_over_the_files_box_about_the_root() -> None:
+    """As players do, who know no box of the splats themselves."""
+    avatar = synthetic_avatar()
+    clip = avatar.clips[0]
+    posed = decode_clip_frame(avatar, clip, frame=3, dtype=np.float64)
+    root = avatar.rig.skeleton.world(clip.rotations[3], clip.translations[3])[1][avatar.rig.skeleton.root]
+    np.testing.assert_array_equal(posed.bounds, avatar.bounds + root)
+
+
 def test_an_avatar_without_texels_decodes_to_no_splats() -> None:
     avatar = synthetic_avatar()
     texels = dataclasses.replace(

@@ -8,7 +8,7 @@ import pytest
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import Camera, orbit
-from mua.decode import Frame
+from mua.decode import Frame, box_of
 from mua.kernels.splat_draw import MOST_ALPHA
 from mua.render import frame_bounds, render, render_premultiplied
 from mua.texture.channels import SH_C0
@@ -32,6 +32,7 @@ def splats(centres: Array, colors: Array, *, scale: float = 0.05, opacity: float
         opacities=np.full(count, opacity),
         sh=sh,
         texel_dq=np.eye(1, 8).repeat(count, axis=0),
+        bounds=box_of(np.asarray(centres, float).reshape(count, 3)),
     )
 
 

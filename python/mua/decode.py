@@ -32,6 +32,7 @@ class Frame:
     opacities: Array  # [N] in 0..1
     sh: Array  # [N, 12] degree 1, canonical space
     texel_dq: Array  # [N, 8] bind pose to world; the real part is R_tex
+    bounds: Array  # [2, 3] lowest and highest corner of the box over which depth is keyed
 
 
 def decode(
@@ -48,7 +49,8 @@ def decode(
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
-    return pose_splats(avatar.rig, canonical, texture=texture, pose=Pose(rotations[0], translations[0]))
+    pose = Pose(rotations[0], translations[0])
+    return pose_splats(avatar.rig, canonical, texture=texture, pose=pose, bounds=avatar.bounds)
 
 
 def decode_clip_frame(
@@ -104,6 +106,7 @@ def pose_splats(
     *,
     texture: Array,  # [N, 23] raw channels at the valid texels; its dtype is that of the frame
     pose: Pose,
+    bounds: Array | None = None,  # [2, 3] of the splats about the root joint, metres; their own box if left out
 ) -> Frame:
     """Skin mesh and texture, a student's or a teacher's, into the world."""
     dtype = texture.dtype
@@ -114,6 +117,7 @@ def pose_splats(
     vertex_dq = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
     texel_dq = blend_texels(vertex_dq, faces, triangles, barycentrics)
     centres, rotations, scales, opacities = skin_splats(texel_dq, canonical, faces, triangles, barycentrics, texture)
+    root = rig.skeleton.world(pose.rotations, pose.translations)[1][rig.skeleton.root]
     return Frame(
         canonical=canonical,
         mesh=rotation.dual_transform(vertex_dq, canonical),
@@ -124,7 +128,15 @@ def pose_splats(
         opacities=opacities,
         sh=texture[:, APPEARANCE],
         texel_dq=texel_dq,
+        bounds=box_of(centres) if bounds is None else (bounds + root).astype(dtype),
     )
+
+
+def box_of(points: Array) -> Array:
+    """Lowest and highest corner [2, 3] of points [N, 3]; zeros where there are none."""
+    if len(points) == 0:
+        return np.zeros((2, 3), dtype=points.dtype)
+    return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def _mlp(mlp: Mlp, x: Array) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.camera import Camera
-from mua.decode import Frame
+from mua.decode import Frame, box_of
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors, splat_draw
 from mua.kernels.splat_project import splat_project
@@ -62,7 +62,7 @@ def projected(frame: Frame, camera: Camera) -> Projected:
         camera.projection[None],
         screen=camera.screen,
         near=camera.near,
-        bounds=frame_bounds(frame),
+        bounds=frame.bounds,
     )
     colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], camera.position)
     return Projected(ellipses[0], colors, frame.opacities[splats], splat_sort(keys))
@@ -70,9 +70,7 @@ def projected(frame: Frame, camera: Camera) -> Projected:
 
 def frame_bounds(frame: Frame) -> Array:
     """Lowest and highest corner [2, 3] of the splat centres, metres; zeros where there are none."""
-    if len(frame.centres) == 0:
-        return np.zeros((2, 3))
-    return np.stack([frame.centres.min(axis=0), frame.centres.max(axis=0)])
+    return box_of(frame.centres)
 
 
 def to_bytes(image: Array) -> Array:

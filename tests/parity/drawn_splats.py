@@ -9,14 +9,13 @@ from sorted_keys import append_sort
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera
-from mua.decode import Frame
+from mua.decode import Frame, box_of
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances, pack_splats
 from mua.kernels.splat_draw import splat_colors, splat_draw
 from mua.kernels.splat_project import splat_project
 from mua.kernels.splat_sort import splat_sort
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image
-from mua.render import frame_bounds
 
 PROJECTED = 256  # splats that one group projects
 EYE_DISTANCE = 0.063  # metres
@@ -42,16 +41,18 @@ def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], 
     least, largest = np.log(deviations)
     size = np.exp(rng.uniform(least, largest, (count, 1)))
     turns = rotation.normalize(rng.normal(size=(count, 4)))
+    centres = middle + half * rng.uniform(-1.2, 1.2, (count, 3))
     return Frame(
         canonical=np.zeros((0, 3)),
         mesh=np.zeros((0, 3)),
         texture=np.zeros((0, 23)),
-        centres=middle + half * rng.uniform(-1.2, 1.2, (count, 3)),
+        centres=centres,
         rotations=rotation.normalize(rng.normal(size=(count, 4))),
         scales=size * np.exp(rng.uniform(-1, 0, (count, 3))),
         opacities=np.where(rng.random(count) < 0.5, rng.uniform(0, 0.3, count), rng.uniform(0.3, 0.999, count)),
         sh=0.4 * rng.normal(size=(count, 12)),
         texel_dq=np.concatenate([turns, np.zeros((count, 4))], axis=1),
+        bounds=box_of(centres),
     )
 
 
@@ -60,7 +61,7 @@ def sort_frame(device: Device, frame: Frame, cameras: Sequence[Camera]) -> Sorte
     covariance = covariances(frame.rotations, frame.scales)
     packed = pack_splats(frame.centres, covariance, frame.opacities, frame.texel_dq, frame.sh)
     count, groups = len(packed), -(-len(packed) // PROJECTED)
-    bounds = np.concatenate([frame_bounds(frame), np.ones((2, 1))], axis=1)
+    bounds = np.concatenate([frame.bounds, np.ones((2, 1))], axis=1)
     splats = device.buffer(packed, name="splats")
     ellipses = device.buffer(24 * len(cameras) * count, name="ellipses")
     colors = device.buffer(8 * count, name="colors")
@@ -117,7 +118,7 @@ def reference_frame(frame: Frame, cameras: Sequence[Camera]) -> Array:
         np.stack([camera.projection for camera in cameras]),
         screen=cameras[0].screen,
         near=NEAR,
-        bounds=frame_bounds(frame),
+        bounds=frame.bounds,
     )
     middle = np.mean([camera.position for camera in cameras], axis=0)
     colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], middle)

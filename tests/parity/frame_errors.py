@@ -13,7 +13,7 @@ from packed_splats import unpacked
 from splat_rounding import exact_keys
 
 from mua.arrays import Array
-from mua.bounds import frame_boxes, root_positions, union
+from mua.bounds import frame_boxes, union
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import Frame, decode_clip_frame
 from mua.gpu import Device, open_device
@@ -48,7 +48,7 @@ class PosedFrame:
         window = avatar.encoding.frames(index)
         self.frame, self.exact = frame, decode_clip_frame(avatar, clip, frame=index, dtype=np.float64)
         self.cameras = cameras_of(avatar.rig, clip, eyes=eyes, screen=screen)
-        self.bounds = avatar.bounds + root_positions(avatar.rig, clip)[index]
+        self.bounds = self.exact.bounds
         commands = device.commands()
         gpu.decode(commands, clip.rotations[window], clip.translations[window])
         frame.sort(commands, self.cameras)

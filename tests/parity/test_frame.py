@@ -224,6 +224,13 @@ def test_depth_keys_follow_the_figure_away_from_the_origin(device: Device, tmp_p
     assert posed.errors().position < POSITION_BOUND
 
 
+def test_depth_is_keyed_over_the_references_box(device: Device, tmp_path: Path) -> None:
+    frame = opened(device, synthetic_avatar(), tmp_path)
+    avatar = frame.avatars[0].avatar.avatar
+    posed = PosedFrame(device, frame, avatar.clips[0], 3, eyes=1, screen=64)
+    np.testing.assert_allclose(frame.box(), posed.exact.bounds, rtol=0, atol=4 * np.finfo(np.float32).eps)
+
+
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_an_avatar_of_few_texels_is_drawn(device: Device, tmp_path: Path, count: int) -> None:
     few = part(synthetic_avatar(), slice(300, 300 + count))

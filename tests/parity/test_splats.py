@@ -17,7 +17,7 @@ from mua.asset import write
 from mua.asset.avatar import Avatar
 from mua.bounds import union
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
-from mua.decode import Frame, decode_clip_frame
+from mua.decode import Frame, box_of, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
@@ -47,11 +47,14 @@ def moved(frame: Frame, place: Array) -> Frame:
         centres=rotation.dual_transform(place, frame.centres),
         rotations=rotation.multiply(place[:4], frame.rotations),
         texel_dq=rotation.dual_multiply(place, frame.texel_dq),
+        bounds=box_of(rotation.dual_transform(place, np.stack(np.meshgrid(*frame.bounds.T), axis=-1).reshape(-1, 3))),
     )
 
 
 def joined(frames: Sequence[Frame]) -> Frame:
-    return Frame(**{field.name: np.concatenate([getattr(f, field.name) for f in frames]) for field in fields(Frame)})
+    """Frames as one, the box around all of theirs."""
+    whole = Frame(**{field.name: np.concatenate([getattr(f, field.name) for f in frames]) for field in fields(Frame)})
+    return replace(whole, bounds=box_of(whole.bounds))
 
 
 def three() -> list[Avatar]:
