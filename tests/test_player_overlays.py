@@ -5,11 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rasterised
+from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, compare
 from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.asset.read import read
 from mua.asset.write import write
 from mua.camera import Camera, orbit, stereo
 from mua.decode import Frame, decode_clip_frame
@@ -20,17 +23,23 @@ from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import view_projection
 from mua.player.overlays import (
+    BONE_COLOR,
+    BONE_WIDTH,
     DARKNESS,
     GEOMETRY_COLOR,
     JOINT_COLOR,
+    JOINT_WIDTH,
     LIGHT,
     MASK_SIZE,
+    OUTLINE,
+    OUTLINE_COLOR,
     TEMPLATE_COLOR,
     ground_height,
     shadow_area,
 )
 from mua.player.scene import Scene, Toggles, draw_picture, parse_toggles
 from mua.player.splats import SplatFrame
+from mua.player.surface import build_surface
 from mua.rig.skeleton import Pose
 
 SCREEN = (97, 131)  # pixels
@@ -43,8 +52,9 @@ class Stage:
     """The synthetic avatar at one frame of its clip, on the device and by the reference."""
 
     def __init__(self, device: Device, path: Path) -> None:
-        self.device, self.avatar = device, synthetic_avatar()
-        write(path, self.avatar, storage="f32")
+        self.device = device
+        write(path, synthetic_avatar(), storage="f32")
+        self.avatar = read(path)
         self.gpu = SplatFrame(device, [AvatarBuffers(device, path)])
         self.scene = Scene(device, self.gpu)
         self.clip = self.avatar.clips[0]
@@ -84,30 +94,32 @@ def drawn_box(image: Array) -> Array:
     return np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1])
 
 
-@pytest.mark.parametrize("azimuth", [0.0, 1.6, 3.1, 4.7])
-@pytest.mark.parametrize("show", ["geometry", "template"])
-def test_covers_the_outline_of_the_reference(stage: Stage, show: str, azimuth: float) -> None:
-    points = stage.frame.centres if show == "geometry" else stage.frame.mesh
-    camera = camera_at(points, azimuth=azimuth)
-    at = pixels(camera, points)
-    expected = np.concatenate([at.min(axis=0), at.max(axis=0)])
-    # a pixel is drawn where its centre is covered, so a sharp tip may lose one more on the way
-    assert np.abs(drawn_box(stage.picture((camera,), show)) - expected).max() < 2
+def expected(stage: Stage, camera: Camera, show: str) -> Picture:
+    """What numpy draws of the reference's posed splats, template or joints."""
+    rig = stage.avatar.rig
+    if show == "geometry":
+        triangles = build_surface(rig.mesh, rig.texels).triangles.astype(np.int64)
+        return rasterised.smooth(camera, stage.frame.centres, triangles, GEOMETRY_COLOR)
+    if show == "template":
+        return rasterised.flat(camera, stage.frame.mesh, rig.mesh.faces, TEMPLATE_COLOR)
+    _, joints = rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
+    bones = [joints[[child, parent]] for child, parent in enumerate(rig.skeleton.parents) if parent >= 0]
+    dots = [joints[[joint, joint]] for joint in range(len(joints))]
+    styles = (
+        (bones, OUTLINE_COLOR, BONE_WIDTH + 2 * OUTLINE),
+        (bones, BONE_COLOR, BONE_WIDTH),
+        (dots, OUTLINE_COLOR, JOINT_WIDTH + 2 * OUTLINE),
+        (dots, JOINT_COLOR, JOINT_WIDTH),
+    )
+    return rasterised.strokes(camera, [Stroke(ends, color, width) for lines, color, width in styles for ends in lines])
 
 
-def test_lights_the_template_by_its_facets(stage: Stage) -> None:
-    camera = camera_at(stage.frame.mesh)
-    image = stage.picture((camera,), "template")
-    corners = stage.frame.mesh[stage.avatar.rig.mesh.faces]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    middle = corners.mean(axis=1)
-    to_camera = camera.position - middle
-    facing = np.einsum("fi,fi->f", rotation.normalize(normal), rotation.normalize(to_camera))
-    nearest = np.argmax(facing)
-    column, row = pixels(camera, middle)[nearest].astype(int)
-    expected = np.array(TEMPLATE_COLOR) * (AMBIENT + (1 - AMBIENT) * facing[nearest])
-    # the pixel's centre lies within a pixel of the facet's middle; differences of f32 positions make its normal
-    np.testing.assert_allclose(image[row, column, :3], expected, atol=0.01)
+@pytest.mark.parametrize(("azimuth", "elevation"), [(0.0, 0.0), (1.6, 0.4), (3.1, -0.9), (4.7, 1.5)])
+@pytest.mark.parametrize("show", ["geometry", "template", "skeleton"])
+def test_draws_the_picture_that_numpy_draws(stage: Stage, show: str, azimuth: float, elevation: float) -> None:
+    camera = camera_at(stage.frame.centres, azimuth=azimuth, elevation=elevation)
+    bound = STROKES_BOUND if show == "skeleton" else SURFACE_BOUND
+    compare(stage.picture((camera,), show), expected(stage, camera, show), bound)
 
 
 def test_shows_the_outside_of_the_surface_bright_and_the_inside_dark(stage: Stage) -> None:

@@ -1,19 +1,21 @@
 """The package's surfaces: the texel grid that mono builds, and every pass of surface.shader, recorded and replayed.
 
-Against the desktop player's grid and its draws of the same buffers; shadows against the reference's posed template.
+The grid is held against the desktop player's; pictures against those that numpy draws of the reference's posed avatar.
 """
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import rasterised
 import synthetic_avatar as module
 import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
+from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
 from replay import Drawn, replay
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
@@ -29,7 +31,16 @@ from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.player.draw import image_format
-from mua.player.overlays import Overlays, PosedBuffers
+from mua.player.overlays import (
+    BONE_COLOR,
+    BONE_WIDTH,
+    GEOMETRY_COLOR,
+    JOINT_COLOR,
+    JOINT_WIDTH,
+    OUTLINE,
+    OUTLINE_COLOR,
+    TEMPLATE_COLOR,
+)
 from mua.player.surface import build_surface
 from mua.rig.character import Mesh
 from mua.rig.charts import find_charts
@@ -42,10 +53,8 @@ FRAME = 3  # of a clip of 24 Hz
 PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446)  # Unity's position, then rotation (x, y, z, w)
 PASSES = ("Geometry", "Mesh", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
-LEAST_PSNR = 60.0  # dB; matrices are rounded to float32 on another way, and the depth of one of the two is reversed
-FEW_PIXELS = 3e-3  # of those covered, that a rounded edge may move
-SPLAT_WORDS = 16
 MAP = 512  # pixels along a shadow map
+STEEPEST = 2.3  # of light over sRGB, near white
 METRES = 4.0  # that it spans
 
 
@@ -117,7 +126,6 @@ class Scene:
     cameras: tuple[Camera, ...]
     drawn: dict[str, Drawn]  # by pass
     said: dict[str, list[int]]
-    first_splat: int
 
 
 @pytest.fixture(scope="module")
@@ -126,8 +134,8 @@ def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factor
     files = [folder / f"{index}.muaavatar" for index in range(2)]
     for seed, file in enumerate(files):
         write(file, synthetic_avatar(seed + 1), storage="f32")
-    first, avatar = (read(file) for file in files)
-    centres = rotation.dual_transform(place_of(PLACE), posed(avatar).centres)
+    avatar = read(files[1])
+    centres = placed(posed(avatar).centres)
     bounds = np.stack([centres.min(axis=0), centres.max(axis=0)])
     cameras = stereo(orbit(bounds, screen=SCREEN, azimuth=0.7, elevation=0.3), EYE_DISTANCE)
     lines = ["screen {} {} {}".format(*SCREEN, NEAR)]
@@ -140,7 +148,7 @@ def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factor
     said = csharp.run(surface_program, "draw", ROOT / "ComputeShaders", folder / "recording", scenario, *files)
     draws = {PASSES[drawn.pass_index]: drawn for drawn in replay(device, folder / "recording").draws}
     spoken = {words[0]: [int(word) for word in words[1:]] for words in map(str.split, said.splitlines())}
-    return Scene(avatar, cameras, draws, spoken, len(first.rig.texels.texels))
+    return Scene(avatar, cameras, draws, spoken)
 
 
 def posed(avatar: Avatar) -> Any:
@@ -179,31 +187,32 @@ class Painter:
         given = {"unity_StereoEyeIndex": 0, **rows(turned=turned), **engine}
         return target.image(lambda render_pass: draw.draw(render_pass, **given), half(plane))
 
-    def player(self, name: str, eye: int, *, plane: float | None = None, shared: bool = False) -> Array:
-        """[H, W, 4] of one eye; `shared`: with the other avatar's splats before its own."""
+    def expected(self, name: str, eye: int, *, wall: Wall | None = None) -> Picture:
+        """What numpy draws of the posed avatar where it stands."""
         scene = self.scene
-        first = 0 if shared else scene.first_splat
-        splats, vertex_dq, mesh = (
-            self.device.buffer(scene.drawn[owner].buffers[name][skipped:], name=name)
-            for owner, name, skipped in (
-                ("Geometry", "splats", SPLAT_WORDS * first),
-                ("Mesh", "vertex_dq", 0),
-                ("Mesh", "mesh", 0),
-            )
-        )
-        buffers = PosedBuffers(splats, vertex_dq, mesh, first_splat=scene.first_splat - first)
-        overlays = Overlays(self.device, scene.avatar, buffers, color=self.format, depth=DEPTH_FORMAT)
-        clip, camera = scene.avatar.clips[0], scene.cameras[eye]
-        overlays.pose(clip.rotations[FRAME], clip.translations[FRAME], ground=0.0)
-        if name == "Skeleton":  # whose joints stand where the avatar's own space has them
-            camera = replace(camera, view=camera.view @ rigid(PLACE))
-        draws: dict[str, Callable[[wgpu.GPURenderPassEncoder, Camera], None]] = {
-            "Geometry": overlays.draw_geometry,
-            "Mesh": overlays.draw_template,
-            "Skeleton": overlays.draw_skeleton,
-        }
-        target = Target(self.device, self.format, SCREEN, 1.0, self.folder)
-        return target.image(lambda render_pass: draws[name](render_pass, camera), half(plane))
+        rig, frame, camera = scene.avatar.rig, posed(scene.avatar), scene.cameras[eye]
+        if name == "Geometry":
+            triangles = build_surface(rig.mesh, rig.texels).triangles.astype(np.int64)
+            return rasterised.smooth(camera, placed(frame.centres), triangles, GEOMETRY_COLOR, wall=wall)
+        if name == "Mesh":
+            return rasterised.flat(camera, placed(frame.mesh), rig.mesh.faces, TEMPLATE_COLOR, wall=wall)
+        clip = scene.avatar.clips[0]
+        _, joints = rig.skeleton.world(clip.rotations[FRAME], clip.translations[FRAME])
+        return rasterised.strokes(camera, list(skeleton_strokes(rig.skeleton.parents, placed(joints))))
+
+
+def skeleton_strokes(parents: Array, joints: Array) -> Iterator[Stroke]:
+    """Bones and then joints, each with its outline before it."""
+    bones = [joints[[child, parent]] for child, parent in enumerate(parents) if parent >= 0]
+    dots = [joints[[joint, joint]] for joint in range(len(joints))]
+    for lines, width, color in ((bones, BONE_WIDTH, BONE_COLOR), (dots, JOINT_WIDTH, JOINT_COLOR)):
+        yield from (Stroke(ends, OUTLINE_COLOR, width + 2 * OUTLINE) for ends in lines)
+        yield from (Stroke(ends, color, width) for ends in lines)
+
+
+def placed(points: Array) -> Array:
+    """Points of the avatar's own space where it stands, in the kernels' world."""
+    return rotation.dual_transform(place_of(PLACE), points)
 
 
 def half(plane: float | None) -> tuple[float, tuple[int, int, int, int]] | None:
@@ -211,82 +220,66 @@ def half(plane: float | None) -> tuple[float, tuple[int, int, int, int]] | None:
     return None if plane is None else (plane, (0, 0, SCREEN[0] // 2, SCREEN[1]))
 
 
-def rigid(place: tuple[float, ...]) -> Array:
-    """The matrix [4, 4] of a Unity position and rotation in the kernels' world."""
-    matrix = np.eye(4)
-    matrix[:3, 3] = rotation.dual_transform(place_of(place), np.zeros(3))
-    matrix[:3, :3] = (rotation.dual_transform(place_of(place), np.eye(3)) - matrix[:3, 3]).T
-    return matrix
-
-
-def agree(found: Array, expected: Array) -> None:
-    """Over the pixels that both cover; a rounded edge may move a few."""
-    covered = (found[..., 3] > 0) | (expected[..., 3] > 0)
-    apart = np.abs(found - expected).max(axis=-1) > 1e-2
-    assert np.mean(covered) > 0.01
-    assert np.mean(apart[covered]) < FEW_PIXELS
-    error = np.mean(np.square(found - expected)[covered & ~apart])
-    assert -10 * np.log10(max(error, 1e-12)) > LEAST_PSNR
+def agree(found: Array, expected: Picture, name: str) -> None:
+    compare(found, expected, STROKES_BOUND if name == "Skeleton" else SURFACE_BOUND)
 
 
 @pytest.mark.parametrize("turned", [False, True], ids=["back buffer", "texture"])
 @pytest.mark.parametrize("name", VIEWS)
-def test_each_view_is_as_the_player_draws_it(painter: Painter, name: str, turned: bool) -> None:
+def test_each_view_is_as_numpy_draws_it(painter: Painter, name: str, turned: bool) -> None:
     found = painter.unity(name, turned=turned)
-    agree(found[::-1] if turned else found, painter.player(name, 0))
-
-
-def test_the_player_draws_an_avatar_wherever_its_splats_begin(painter: Painter) -> None:
-    np.testing.assert_array_equal(painter.player("Geometry", 0, shared=True), painter.player("Geometry", 0))
+    agree(found[::-1] if turned else found, painter.expected(name, 0), name)
 
 
 @pytest.mark.parametrize("eye", [0, 1])
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_stereo_mode_draws_its_eye(painter: Painter, name: str, eye: int) -> None:
-    expected = painter.player(name, eye)
-    agree(painter.unity(name, variant="instanced", replayed_layer=eye), expected)
-    agree(painter.unity(name, variant="multiview", replayed_view=eye), expected)
-    agree(painter.unity(name, unity_StereoEyeIndex=eye), expected)
-    with pytest.raises(AssertionError):
-        agree(painter.unity(name, unity_StereoEyeIndex=1 - eye), expected)
+    expected = painter.expected(name, eye)
+    agree(painter.unity(name, variant="instanced", replayed_layer=eye), expected, name)
+    agree(painter.unity(name, variant="multiview", replayed_view=eye), expected, name)
+    agree(painter.unity(name, unity_StereoEyeIndex=eye), expected, name)
+    with pytest.raises(AssertionError, match="pixels"):
+        agree(painter.unity(name, unity_StereoEyeIndex=1 - eye), expected, name)
 
 
 @pytest.mark.parametrize("name", VIEWS)
 def test_depth_hides_surfaces_but_no_bones(painter: Painter, name: str) -> None:
-    """A plane through the avatar; the player's depth is not reversed, so the two share no mistake of it."""
+    """A plane through the avatar."""
     camera = painter.scene.cameras[0]
-    centres = rotation.dual_transform(place_of(PLACE), posed(painter.scene.avatar).centres)
+    centres = placed(posed(painter.scene.avatar).centres)
     distance = -(centres @ camera.view[2, :3] + camera.view[2, 3]).mean()
+    found = painter.unity(name, plane=depth_at(camera, distance))
+    agree(found, painter.expected(name, 0, wall=Wall(distance)), name)
+    assert np.array_equal(found, painter.unity(name)) == (name == "Skeleton")
+
+
+def depth_at(camera: Camera, distance: float) -> float:
+    """What the device keeps of a distance along the camera's axis: from 1 near to 0 far."""
     row = camera.projection[2]
-    depth = (row[3] - row[2] * distance) / distance  # -1 to 1, away from the eye
-    free, expected = painter.player(name, 0), painter.player(name, 0, plane=(1 + depth) / 2)
-    agree(painter.unity(name, plane=(1 - depth) / 2), expected)
-    assert np.array_equal(free, expected) == (name == "Skeleton")
+    return float(1 - (row[3] - row[2] * distance) / distance) / 2
 
 
 def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> None:
-    """A wall so little behind a facet hides it, a wall farther behind does not; of the reference's posed template."""
+    """A wall so little behind a facet hides it, a wall farther behind does not."""
     scene, camera = painter.scene, painter.scene.cameras[0]
-    mesh = rotation.dual_transform(place_of(PLACE), posed(scene.avatar).mesh)
+    mesh = placed(posed(scene.avatar).mesh)
     middles = mesh[scene.avatar.rig.mesh.faces].mean(axis=1) @ camera.view[:3, :3].T + camera.view[:3, 3]
     clip = middles @ camera.projection[:, :3].T + camera.projection[:, 3]
     columns, rows = ((clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN).astype(int).T
     facet = np.argmin(np.where(columns < SCREEN[0] // 2 - 2, -middles[:, 2], np.inf))  # the nearest before the wall
     seen = []
     for behind in (0.005, 0.015):
-        distance = behind - middles[facet, 2]
-        depth = (camera.projection[2, 3] - camera.projection[2, 2] * distance) / distance  # -1 to 1, away from the eye
-        player = painter.player("Mesh", 0, plane=(1 + depth) / 2)
-        unity = painter.unity("Mesh", plane=(1 - depth) / 2)
-        seen.append([bool(image[rows[facet], columns[facet], 3]) for image in (player, unity)])
-    assert seen == [[False, False], [True, True]]
+        image = painter.unity("Mesh", plane=depth_at(camera, behind - middles[facet, 2]))
+        seen.append(bool(image[rows[facet], columns[facet], 3]))
+    assert seen == [False, True]
 
 
 @pytest.mark.parametrize("name", ["Geometry", "Mesh"])
 def test_a_linear_project_is_given_light(painter: Painter, name: str) -> None:
-    srgb = painter.player(name, 0)
-    light = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    agree(painter.unity(name, space=()), np.dstack([light[..., :3], srgb[..., 3]]))
+    srgb = painter.expected(name, 0)
+    image = srgb.image.copy()
+    image[..., :3] = np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)[..., :3]
+    agree(painter.unity(name, space=()), Picture(image, STEEPEST * srgb.spread), name)
 
 
 def light_from(axis: int, span: float, middle: float = 0) -> Array:
@@ -326,7 +319,7 @@ def shadow_depths(painter: Painter, matrix: Array) -> Array:
 @pytest.mark.parametrize("axis", range(3))
 def test_shadows_are_cast_by_the_posed_template_in_unitys_world(painter: Painter, axis: int) -> None:
     """A light along each axis: its depths are a coordinate of every vertex, its pixels the two others."""
-    world = rotation.dual_transform(place_of(PLACE), posed(painter.scene.avatar).mesh) * [-1, 1, 1]
+    world = placed(posed(painter.scene.avatar).mesh) * [-1, 1, 1]
     clip = np.column_stack([world, np.ones(len(world))]) @ light_from(axis, METRES).T
     column, row = ((clip[:, :2] * [1, -1] + 1) / 2 * MAP).astype(int).T
     depths = shadow_depths(painter, light_from(axis, METRES))
@@ -336,7 +329,7 @@ def test_shadows_are_cast_by_the_posed_template_in_unitys_world(painter: Painter
 
 
 def test_what_lies_before_a_lights_volume_still_casts_a_shadow(painter: Painter) -> None:
-    world = rotation.dual_transform(place_of(PLACE), posed(painter.scene.avatar).mesh) * [-1, 1, 1]
+    world = placed(posed(painter.scene.avatar).mesh) * [-1, 1, 1]
     span, middle = 0.5, world[:, 1].mean()  # metres; the avatar reaches farther to both sides
     depth = 0.5 - (world[:, 1] - middle) / span
     depths = shadow_depths(painter, light_from(1, span, middle))
