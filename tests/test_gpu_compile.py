@@ -37,13 +37,13 @@ def shader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def runs(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The entries that were compiled, not taken from the cache."""
     entries: list[str] = []
-    compiled = compile._compiled
+    compile_entry = compile.compile_entry
 
-    def counted(compiler: compilers.Compiler, path: Path, entry: str, *rest: object) -> bytes:
-        entries.append(entry)
-        return compiled(compiler, path, entry, *rest)  # type: ignore[arg-type]
+    def counted(compiler: compilers.Compiler, path: Path, options: tuple[str, ...]) -> bytes:
+        entries.append(options[0])
+        return compile_entry(compiler, path, options)
 
-    monkeypatch.setattr(compile, "_compiled", counted)
+    monkeypatch.setattr(compile, "compile_entry", counted)
     return entries
 
 

@@ -48,6 +48,14 @@ def rule_faults() -> list[str]:
     return faults + shader_rules.package_faults(kernels, draws, ROOT)
 
 
+def entry_points() -> list[tuple[Path, str, str]]:
+    """File, entry point and stage of all that is compiled for a device."""
+    entries = [(shader.path, entry, "comp") for shader in kernel_shaders() for entry in shader.kernels]
+    for shader, names in draw_shaders():
+        entries += [(shader.path, name, STAGES[name[-4:]]) for name in names]
+    return entries
+
+
 def messages(compiler: compilers.Compiler, path: Path, entry: str, stage: str) -> list[str]:
     """The warnings and errors of compiling one entry point; none if it is accepted without one."""
     defines = sources.kernels(sources.read(path)).get(entry, ())
@@ -60,12 +68,9 @@ def messages(compiler: compilers.Compiler, path: Path, entry: str, stage: str) -
 
 def compile_all(found: list[compilers.Compiler], console: Console) -> dict[tuple[str, str, str], list[str]]:
     """The messages of each compiler by file, entry point and compiler."""
-    entries = [(shader.path, entry, "comp") for shader in kernel_shaders() for entry in shader.kernels]
-    for shader, names in draw_shaders():
-        entries += [(shader.path, name, STAGES[name[-4:]]) for name in names]
     return {
         (path.name, entry, compiler.name): messages(compiler, path, entry, stage)
-        for path, entry, stage in track(entries, "compiling", console=console, transient=True)
+        for path, entry, stage in track(entry_points(), "compiling", console=console, transient=True)
         for compiler in found
     }
 

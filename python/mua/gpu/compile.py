@@ -1,4 +1,7 @@
-"""HLSL to SPIR-V by a compiler of this machine; compiled code is kept on disk by the content that it came from."""
+"""HLSL to SPIR-V: what comes compiled with the package, else by a compiler of this machine.
+
+What is compiled here is kept on disk by the content that it came from.
+"""
 
 import hashlib
 import os
@@ -11,32 +14,45 @@ from pathlib import Path
 
 from mua import files
 from mua.errors import InputError
-from mua.gpu import compilers, sources
+from mua.gpu import compiled, compilers, sources
 
 ERROR = re.compile(r"\berror(?::|\[| X)", re.IGNORECASE)
 
 
 def spirv(path: Path, entry: str, *, stage: str = "comp", compiler: str = "glslang") -> bytes:
-    """The SPIR-V of one entry point of a shader, from the cache if nothing that it depends on changed.
+    """The SPIR-V of one entry point of a shader: as it comes with the package, from the cache, or compiled.
 
-    Raises InputError if the compiler is absent, the file declares no such kernel, or the code does not compile.
+    Raises InputError if a compiler is needed and absent, the file declares no such kernel, or it does not compile.
     """
-    chosen = find_compiler(compiler)
-    texts = sources.with_includes(path)
-    defines: tuple[str, ...] = ()
-    if stage == "comp":
-        declared = sources.kernels(texts.get(path, ""))
-        if entry not in declared:
-            raise InputError(f"{path}: has no kernel {entry}; it has {', '.join(declared) or 'none'}")
-        defines = declared[entry]
-    key = _key(chosen, texts, (entry, stage, *defines))
+    texts, options = made_from(path, entry, stage)
+    if compiler == compiled.COMPILER and (code := compiled.find(path, texts.values(), options)) is not None:
+        return code
+    try:
+        chosen = find_compiler(compiler)
+    except InputError as error:
+        raise InputError(f"{path}: {entry} as it stands here does not come compiled, and {error}") from error
+    key = _key(chosen, texts, options)
     cached = cache_directory() / f"{key}.spv"
     if cached.is_file():
         return cached.read_bytes()
-    code = _compiled(chosen, path, entry, stage, defines)
+    code = compile_entry(chosen, path, options)
     with suppress(InputError):  # a home that cannot be written to costs time, not the picture
         files.write_bytes(cached, code)
     return code
+
+
+def made_from(path: Path, entry: str, stage: str) -> tuple[dict[Path, str], tuple[str, ...]]:
+    """The texts of a shader and its includes, and (entry, stage, *defines).
+
+    Raises InputError if the file declares no such kernel.
+    """
+    texts = sources.with_includes(path)
+    if stage != "comp":
+        return texts, (entry, stage)
+    declared = sources.kernels(texts.get(path, ""))
+    if entry not in declared:
+        raise InputError(f"{path}: has no kernel {entry}; it has {', '.join(declared) or 'none'}")
+    return texts, (entry, stage, *declared[entry])
 
 
 def find_compiler(name: str) -> compilers.Compiler:
@@ -67,10 +83,16 @@ def _key(compiler: compilers.Compiler, texts: dict[Path, str], options: tuple[st
     return digest.hexdigest()
 
 
-def _compiled(compiler: compilers.Compiler, path: Path, entry: str, stage: str, defines: tuple[str, ...]) -> bytes:
+def compile_entry(
+    compiler: compilers.Compiler,
+    path: Path,
+    options: tuple[str, ...],  # (entry, stage, *defines)
+) -> bytes:
+    """Compile one entry point, whatever is kept of it elsewhere; raises InputError where it does not compile."""
+    entry, stage, *defines = options
     with tempfile.TemporaryDirectory() as scratch:
         output = Path(scratch) / "code.spv"
-        done = run_compiler(compiler, path, entry, stage, output, defines)
+        done = run_compiler(compiler, path, entry, stage, output, tuple(defines))
         if done.returncode or not output.is_file():
             raise InputError(f"{path}: {entry} does not compile: {_first_error(done.stdout + done.stderr)}")
         return compiler.finish(output.read_bytes())

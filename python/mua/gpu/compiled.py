@@ -1,0 +1,41 @@
+"""The SPIR-V that comes with the package, so that nobody needs a compiler who does not change a shader.
+
+`tools/gen_spirv.py` writes the folder: a file for each entry point, and an index that says what each was made from.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+FOLDER = Path(__file__).with_name("spirv")
+INDEX = "index.json"
+COMPILER = "glslang"
+
+
+def find(path: Path, texts: Iterable[str], options: tuple[str, ...]) -> bytes | None:
+    """The code of an entry point if it was made from these very texts; `options` begin with (entry, stage)."""
+    name = file_name(path, *options[:2])
+    if index().get(name) != digest(texts, options):
+        return None
+    return (FOLDER / name).read_bytes()
+
+
+def file_name(path: Path, entry: str, stage: str) -> str:
+    return f"{path.stem}.{entry}.{stage}.spv"
+
+
+def digest(texts: Iterable[str], options: tuple[str, ...]) -> str:
+    """What one entry point is made from: a shader's text, those of its includes, entry, stage and defines."""
+    found = hashlib.sha256()
+    for part in (*options, *texts):
+        found.update(len(part).to_bytes(8, "little") + part.encode())
+    return found.hexdigest()
+
+
+@cache
+def index() -> dict[str, str]:
+    """The digest of each file of the folder."""
+    entries: dict[str, str] = json.loads((FOLDER / INDEX).read_text())["made from"]
+    return entries

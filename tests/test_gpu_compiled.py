@@ -1,0 +1,106 @@
+"""Nobody needs a compiler who changes no shader: every entry point comes compiled, from the text that is here."""
+
+import shutil
+from pathlib import Path
+
+import check_shaders
+import gen_spirv
+import pytest
+
+from mua.errors import InputError
+from mua.gpu import compile, compiled, compilers, sources
+from mua.gpu.reflect import reflect
+
+ENTRIES = check_shaders.entry_points()
+
+
+@pytest.fixture
+def without_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A machine without a shader compiler, on which nothing has been compiled yet."""
+    monkeypatch.setattr(compilers, "find", lambda _: None)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+@pytest.fixture
+def copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The shaders' directory, as of a checkout in which they are edited."""
+    directory = tmp_path / "shaders"
+    shutil.copytree(sources.directory(), directory)
+    monkeypatch.setenv("MUA_SHADERS", str(directory))
+    return directory
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A copy of what comes compiled."""
+    return Path(shutil.copytree(compiled.FOLDER, tmp_path / "compiled"))
+
+
+@pytest.mark.parametrize(("path", "entry", "stage"), ENTRIES, ids=[entry for _, entry, _ in ENTRIES])
+def test_every_entry_point_runs_without_a_compiler(without_compiler: None, path: Path, entry: str, stage: str) -> None:
+    interface = reflect(compile.spirv(path, entry, stage=stage))
+    assert (interface.threads != (1, 1, 1)) == (stage == "comp")
+
+
+def test_what_comes_compiled_is_up_to_date() -> None:
+    assert gen_spirv.faults(compiled.FOLDER) == []
+
+
+def test_shaders_elsewhere_with_the_same_text_come_compiled_too(without_compiler: None, copied: Path) -> None:
+    path = sources.find("mlp_matmul.compute")
+    assert path.parent == copied
+    assert compile.spirv(path, "MlpMatmul") == (compiled.FOLDER / "mlp_matmul.MlpMatmul.comp.spv").read_bytes()
+
+
+@pytest.mark.parametrize("edited", ["mlp_matmul.compute", "common.hlsl"])
+def test_a_changed_shader_asks_for_a_compiler_in_one_sentence(
+    without_compiler: None, copied: Path, edited: str
+) -> None:
+    with (copied / edited).open("a") as file:
+        file.write("// edited\n")
+    path = copied / "mlp_matmul.compute"
+    told = r"mlp_matmul\.compute: MlpMatmul as it stands here does not come compiled, and .* glslang-tools"
+    with pytest.raises(InputError, match=told):
+        compile.spirv(path, "MlpMatmul")
+
+
+def test_a_changed_shader_is_compiled_anew(copied: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    path = copied / "mlp_matmul.compute"
+    path.write_text(path.read_text().replace("numthreads(LANES, ROWS", "numthreads(ROWS, LANES"))
+    assert reflect(compile.spirv(path, "MlpMatmul")).threads == (8, 32, 1)
+
+
+def _flip(folder: Path) -> None:
+    content = bytearray((folder / "splat.SplatVert.vert.spv").read_bytes())
+    content[-1] ^= 1
+    (folder / "splat.SplatVert.vert.spv").write_bytes(content)
+
+
+def _of_another_text(folder: Path) -> None:
+    index = folder / compiled.INDEX
+    name = "splat.SplatVert.vert.spv"
+    index.write_text(index.read_text().replace(gen_spirv.read_index(folder)["made from"][name], 64 * "0"))
+
+
+@pytest.mark.parametrize(
+    ("damage", "told"),
+    [
+        (_flip, "splat.SplatVert.vert.spv is not what the compiler makes"),
+        (_of_another_text, "splat.SplatVert.vert.spv was made from another text"),
+        (lambda folder: (folder / "splat.SplatVert.vert.spv").unlink(), "splat.SplatVert.vert.spv is missing"),
+        (lambda folder: (folder / "old.Old.comp.spv").touch(), "old.Old.comp.spv belongs to no entry point"),
+    ],
+    ids=["code", "text", "missing", "left over"],
+)
+def test_the_check_names_what_is_out_of_date(folder: Path, damage, told: str) -> None:  # type: ignore[no-untyped-def]
+    damage(folder)
+    assert gen_spirv.faults(folder) == [told]
+
+
+def test_writing_mends_what_is_out_of_date(folder: Path) -> None:
+    _flip(folder)
+    (folder / "old.Old.comp.spv").touch()
+    gen_spirv.write(folder)
+    assert gen_spirv.faults(folder) == []
+    assert (folder / compiled.INDEX).read_bytes() == (compiled.FOLDER / compiled.INDEX).read_bytes()
