@@ -18,7 +18,7 @@ from pathlib import Path
 
 from mutant_sites import Mutant
 
-# They hold that a listed line, or a shader that comes compiled, stands as it stood, so that any change of it fails them.
+# They hold that a listed line, or a compiled shader, stands as it stood, so that any change of it fails them.
 LEFT_OUT = (
     "tests/parity/test_mutations.py",
     "tests/test_gpu_compiled.py",
