@@ -96,6 +96,14 @@ def endless(tree: Tree) -> None:
         clip[name] = pack(np.repeat(values[:1], frames, axis=0).reshape(shape), "f16")
 
 
+def manifold(tree: Tree) -> None:
+    """Each clip has few enough frames, all of them together gain too many joints at the rate of the encoding."""
+    clip, joints = tree["clips"][0], 3
+    tree["encoding"]["rate"], clip["rate"] = 1000.0, 1.0
+    gained = (1000 - 1) * len(clip["rotations"]["data"]) // (joints * 4 * 2) * joints
+    tree["clips"] = [clip] * ((1 << 24) // gained + 1)
+
+
 def not_a_number(at: int) -> Callable[[Tree], None]:
     """An odd number of halves, one of them NaN."""
 
@@ -197,6 +205,7 @@ MALFORMED = [
     ("finite", "clips[0].translations", poke("clips.0.translations", 0, NAN)),
     *[("value", "clips[0].rate", put("clips.0.rate", rate)) for rate in (NAN, 0, 1e-30, 0.99, 1001)],
     ("value", "clips[0].rotations", endless),
+    ("value", "clips[799].rotations", manifold),
     ("value", "geometry.ll_basis", put("geometry.ll_basis.scale", np.full(44, 600.0))),
     ("value", "geometry.ll_basis", put("geometry.ll_basis.scale", np.full(44, -600.0))),
     *[("finite", "coarse.mean", poke("coarse.mean", -1 - k, NAN)) for k in range(3)],

@@ -26,6 +26,7 @@ MAX_LEVELS = 8
 MAX_TAPS = 40
 LARGEST_TAP = 16.0  # those of PyWavelets' wavelets stay below 5
 MAX_FRAMES = 1 << 20  # of a clip at the encoding's rate: 9 hours at 30 frames per second
+MAX_ADDED = 1 << 24  # joints in all frames that clips gain at the encoding's rate: 46 minutes of 100, 30 to 90 Hz
 LEAST_SCALE = 1e-6  # of a descriptor's number: a thousandth of what 1 is on a person, of a figure 2 mm high
 GEOMETRY_CHANNELS, APPEARANCE_CHANNELS = 11, 12
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -104,9 +105,7 @@ def decode_tree(tree: Tree) -> Avatar:
         geometry=branches[0],
         appearance=branches[1],
         wavelet=wavelet,
-        clips=tuple(
-            _clip(clip, f"clips[{i}]", skeleton, translated, encoding.rate) for i, clip in enumerate(tree["clips"])
-        ),
+        clips=_clips(tree["clips"], skeleton, translated, encoding.rate),
         bounds=_bounds(tree["bounds"]),
         thumbnail=_thumbnail(tree["thumbnail"]),
         notes=tree["notes"],
@@ -285,17 +284,30 @@ def _detail(tree: Tree, path: str, channels: int, size: int) -> DetailBand:
     )
 
 
-def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array, encoding_rate: float) -> Clip:
+def _clips(trees: list[Tree], skeleton: Skeleton, translated: Array, encoding_rate: float) -> tuple[Clip, ...]:
+    clips: list[Clip] = []
+    added = 0.0
+    for i, tree in enumerate(trees):
+        clip = _clip(tree, f"clips[{i}]", skeleton, translated)
+        times = max(encoding_rate / clip.rate, 1.0)
+        added += (times - 1) * len(clip) * len(skeleton.names)
+        if times * len(clip) > MAX_FRAMES or added > MAX_ADDED:
+            _refuse(
+                f"clips[{i}].rotations",
+                f"{len(clip)} frames at a rate of {clip.rate:g}, too many for the encoding's rate of {encoding_rate:g}",
+            )
+        clips.append(clip)
+    return tuple(clips)
+
+
+def _clip(tree: Tree, path: str, skeleton: Skeleton, translated: Array) -> Clip:
     rotations = _unit(tree["rotations"], f"{path}.rotations", (None, len(skeleton.names), 4))
     if not len(rotations):
         _refuse(f"{path}.rotations", "a clip needs at least one frame")
     translations = skeleton.with_root(reals(tree["translation"], f"{path}.translation", (len(rotations), 3)))
     if len(translated) or "translations" in tree:
         translations[:, translated] = _translations(tree, f"{path}.translations", (len(rotations), len(translated), 3))
-    rate = _rate(tree["rate"], f"{path}.rate")
-    if max(encoding_rate / rate, 1.0) * len(rotations) > MAX_FRAMES:
-        _refuse(f"{path}.rotations", f"{len(rotations)} frames at a rate of {rate:g}, expected at most {MAX_FRAMES}")
-    return Clip(tree["name"], rate, rotations, translations)
+    return Clip(tree["name"], _rate(tree["rate"], f"{path}.rate"), rotations, translations)
 
 
 def _translations(tree: Tree, path: str, shape: tuple[int, ...]) -> Array:

@@ -16,6 +16,7 @@ namespace Mua.Format
         private const double LargestTap = 16; // those of PyWavelets' wavelets stay below 5
         private const float LeastRate = 1, LargestRate = 1000; // frames per second
         private const int MaxFrames = 1 << 20; // of a clip at the encoding's rate: 9 hours at 30 frames per second
+        private const int MaxAdded = 1 << 24; // joints in all frames that clips gain at the encoding's rate
         private const float LeastScale = 1e-6f; // of a descriptor's number, of a figure 2 mm high
         private const int GeometryChannels = 11;
         private const int AppearanceChannels = 12;
@@ -205,14 +206,25 @@ namespace Mua.Format
         private Clip[] Clips(Table[] tree, Skeleton skeleton, double encodingRate)
         {
             var clips = new Clip[tree.Length];
+            double added = 0;
             for (int i = 0; i < clips.Length; i++)
             {
-                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton, encodingRate);
+                clips[i] = Clip(tree[i], "clips[" + i + "]", skeleton);
+                int frames = clips[i].FrameCount;
+                double times = Math.Max(encodingRate / clips[i].Rate, 1);
+                added += (times - 1) * frames * skeleton.JointCount;
+                if (times * frames > MaxFrames || added > MaxAdded)
+                {
+                    throw Refusal.Of(
+                        "clips[" + i + "].rotations",
+                        "{0} frames at a rate of {1}, too many for the encoding's rate of {2}", frames, clips[i].Rate,
+                        encodingRate);
+                }
             }
             return clips;
         }
 
-        private Clip Clip(Table tree, string path, Skeleton skeleton, double encodingRate)
+        private Clip Clip(Table tree, string path, Skeleton skeleton)
         {
             int joints = skeleton.JointCount;
             Tensor rotations = tensors.Reals(tree.Child("rotations"), path + ".rotations", Any, joints, 4);
@@ -226,12 +238,6 @@ namespace Mua.Format
             Tensor translations = Translations(
                 tree, path + ".translations", rotations.Shape[0], skeleton.Translated.Length);
             float rate = Rate(tree, path + ".rate");
-            if (Math.Max(encodingRate / rate, 1) * rotations.Shape[0] > MaxFrames)
-            {
-                throw Refusal.Of(
-                    path + ".rotations", "{0} frames at a rate of {1}, expected at most {2}", rotations.Shape[0], rate,
-                    MaxFrames);
-            }
             return new Clip
             {
                 Translations = translations,
