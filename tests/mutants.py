@@ -1,4 +1,4 @@
-"""Files that nobody wrote: sound ones with bytes, numbers or whole tensors changed, and sealed again."""
+"""Files that nobody wrote: sound ones with bytes, numbers, tensors or whole tables changed, and sealed again."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -13,13 +13,19 @@ TABLES = 4000  # of the first bytes of a file are mostly tables
 BYTES = (0, 1, 4, 0x7F, 0x80, 0xFF)
 NUMBERS = (0.0, -0.0, 1e-38, -1e-7, 0.5, 1.0, -1.0, 88.0, 1e4, 65504.0, -65504.0, 65536.0, 1e30, np.inf, np.nan)
 INTEGERS = (0, 1, 2, 3, -1, 7, 255, 4096, 2**31 - 1)
+SIDES = (0, 1, 2, 3, 4, 7, 2**16, 2**32 - 1)
+UNCHANGED = ("_at", "crc32", "version_major", "version_minor")
 
 
 def mutants(contents: list[bytes], rng: np.random.Generator, count: int) -> Iterator[bytes]:
-    """Mutants of sound files, by turns of their bytes and of what stands in them."""
+    """Mutants of sound files, by turns of their bytes, of what stands in them and of how it is arranged."""
     for k in range(count):
         content = contents[k % len(contents)]
-        yield _bytes(content, rng) if rng.random() < 0.5 else malformed(content, lambda tree: _numbers(tree, rng))
+        kind = rng.random()
+        if kind < 0.4:
+            yield _bytes(content, rng)
+        else:
+            yield malformed(content, lambda tree: (_numbers if kind < 0.8 else _arrangement)(tree, rng))  # noqa: B023
 
 
 def _bytes(content: bytes, rng: np.random.Generator) -> bytes:
@@ -46,17 +52,71 @@ def _numbers(tree: Tree, rng: np.random.Generator) -> None:
             table[name] = int(rng.choice(INTEGERS)) % 2**32 if isinstance(value, int) else float(rng.choice(NUMBERS))
 
 
+def _arrangement(tree: Tree, rng: np.random.Generator) -> None:
+    """Leave out or repeat a part, exchange two of a kind, or give a tensor other sides or another type."""
+    parts = list(_parts(tree))
+    tensors = [part for part in parts if _is_tensor(part[0][part[1]])]
+    lists = [part for part in parts if isinstance(part[0][part[1]], list) and part[0][part[1]]]
+    table, name = _one(tensors, rng)
+    match rng.integers(6):
+        case 0:
+            table, name = _one(parts, rng)
+            del table[name]
+        case 1:
+            table, name = _one(lists, rng)
+            table[name] = table[name] * int(rng.choice([2, 3, 40]))
+        case 2:
+            other, its = _one(tensors, rng)
+            table[name], other[its] = other[its], table[name]
+        case 3:
+            table[name] = _resized(table[name], rng)
+        case 4:
+            shape = table[name]["shape"].copy()
+            shape[rng.integers(len(shape))] = rng.choice(SIDES)
+            table[name] = {**table[name], "shape": shape if rng.random() < 0.7 else shape[::-1].copy()}
+        case 5:
+            table[name] = {**table[name], "type": str(rng.choice([*DTYPES]))}
+
+
 def _places(tree: Any) -> Iterator[tuple[Any, Any]]:
     """Everything of a file that is a number or holds them."""
     for name, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
-        if name in ("_at", "crc32", "version_major", "version_minor"):
+        if name in UNCHANGED:
             continue
-        if isinstance(value, dict) and "data" in value:
+        if _is_tensor(value):
             yield tree, name
         elif isinstance(value, dict | list):
             yield from _places(value)
         elif isinstance(value, int | float | np.ndarray):
             yield tree, name
+
+
+def _parts(tree: Any) -> Iterator[tuple[Any, Any]]:
+    """Every table, list and tensor of a file."""
+    for name, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
+        if name not in UNCHANGED and isinstance(value, dict | list):
+            yield tree, name
+            if not _is_tensor(value):
+                yield from _parts(value)
+
+
+def _is_tensor(value: Any) -> bool:
+    return isinstance(value, dict) and "data" in value
+
+
+def _one(parts: list[tuple[Any, Any]], rng: np.random.Generator) -> tuple[Any, Any]:
+    return parts[rng.integers(len(parts))]
+
+
+def _resized(tensor: Tree, rng: np.random.Generator) -> Tree:
+    """Some rows along one side are left out or repeated; the bytes fill the new shape."""
+    values = tensor["data"].view(DTYPES[tensor["type"]]).reshape(tensor["shape"])
+    axis = int(rng.integers(values.ndim))
+    rows = np.sort(rng.integers(0, max(values.shape[axis], 1), rng.choice([0, 1, values.shape[axis] + 1])))
+    if not values.shape[axis]:
+        return tensor
+    taken = np.ascontiguousarray(np.take(values, rows, axis=axis))
+    return {**tensor, "shape": np.array(taken.shape, "<u4"), "data": taken.reshape(-1).view(np.uint8)}
 
 
 def _tensor(tensor: Tree, rng: np.random.Generator) -> Tree:

@@ -6,19 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from malformed import DAMAGED, MALFORMED, malformed
-from mutants import mutants
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset.flatbuffer import FormatError, Tree
-from mua.asset.read import MAX_FRAMES, decode_tree, parse_checked, read
-from mua.asset.tensors import Storage
+from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode, seal
-from mua.decode import decode_clip_frame
 from mua.errors import InputError
-from mua.motion.resample import resample
 
-MUTATIONS = 3000
-STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32")
+MUTATIONS = 1000
 
 
 @pytest.fixture(scope="module")
@@ -62,24 +57,6 @@ def test_mutated_bytes_with_a_right_checksum_never_escape_the_reader(content: by
         except FormatError:
             refused += 1
     assert 0 < refused < MUTATIONS
-
-
-@pytest.mark.parametrize("count", [300, pytest.param(100_000, marks=pytest.mark.long)])
-def test_what_the_reader_accepts_decodes_to_finite_numbers(count: int) -> None:
-    contents = [encode(synthetic_avatar(), storage=storage) for storage in STORAGES]
-    accepted = 0
-    for number, mutant in enumerate(mutants(contents, np.random.default_rng(count), count)):
-        try:
-            avatar = decode_tree(parse_checked(mutant))
-        except FormatError:
-            continue
-        accepted += 1
-        for clip in avatar.clips:
-            played = resample(clip, avatar.encoding.rate)
-            assert len(played) <= MAX_FRAMES
-            frame = decode_clip_frame(avatar, played, frame=min(3, len(played) - 1))
-            assert all(np.isfinite(values).all() for values in vars(frame).values()), f"mutant {number}"
-    assert count / 10 < accepted < count
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,6 @@
 """The C# reader gives the values of the Python reader bit for bit, and refuses the same files for the same reasons."""
 
 import zlib
-from collections.abc import Iterator
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +8,6 @@ import numpy as np
 import pytest
 from csharp import PROGRAMS, RUNTIME, CSharp
 from malformed import DAMAGED, MALFORMED, malformed
-from mutants import mutants
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
@@ -21,7 +18,6 @@ from mua.asset.tensors import Storage, stored
 from mua.asset.write import encode
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "synthetic.muaavatar"
-BATCH = 500  # files on the disk at once
 MUTATED_BYTES = 1_000_000
 CUTS = 211  # every so many bytes both readers are asked, which the Python reader can do in a second
 
@@ -107,25 +103,6 @@ def test_truncation_at_every_offset_is_refused(csharp: CSharp, program: Path) ->
     assert [answers[length] for length in cuts] == [python_answer(golden[:length]) for length in cuts]
 
 
-@pytest.mark.parametrize("count", [400, pytest.param(100_000, marks=pytest.mark.long)])
-def test_mutated_files_get_the_same_code_and_field(
-    csharp: CSharp, program: Path, tmp_path: Path, content: bytes, count: int
-) -> None:
-    found = set()
-    made = mutants([content, encode(synthetic_avatar(), storage="f16")], np.random.default_rng(count), count)
-    for some in batched(made, BATCH):
-        expected = [python_answer(file) for file in some]
-        assert csharp_answers(csharp, program, write_all(tmp_path, some)) == expected
-        found |= set(expected)
-    assert ("ok",) in found
-    assert len(found) > 20
-
-
-def batched(made: Iterator[bytes], size: int) -> Iterator[list[bytes]]:
-    while some := list(islice(made, size)):
-        yield some
-
-
 @pytest.mark.long
 def test_a_million_mutated_bytes_neither_crash_nor_overallocate(
     csharp: CSharp, program: Path, tmp_path: Path, content: bytes
@@ -168,7 +145,7 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
     floats: dict[str, Any] = {
         "template.uv": rig.mesh.uv,
         "template.skin_weights": rig.skin_weights,
-        "texels.barycentrics": rig.texels.barycentrics[:, :2],
+        "texels.barycentrics": stored(tree["texels"]["barycentrics"], "barycentrics"),  # not yet within 0 to 1
         "coarse.mean": avatar.coarse.mean,
         "coarse.basis": avatar.coarse.basis,
         "encoding.rate": encoding.rate,
@@ -179,7 +156,7 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         **branch_values("geometry", avatar.geometry),
         **branch_values("appearance", avatar.appearance),
     }
-    clips: dict[str, Any] = {f"clip {clip.name}": clip.rate for clip in avatar.clips}
+    clips: dict[str, Any] = {f"clips.{i}.rate": clip.rate for i, clip in enumerate(avatar.clips)}
     for i, clip in enumerate(tree["clips"]):  # as stored: rotations not yet of unit length
         clips |= {f"clips.{i}.{key}": stored(clip[key], key) for key in CLIP_TENSORS if key in clip}
     doubles: dict[str, Any] = {
@@ -195,6 +172,7 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         "notes": avatar.notes,
         "wavelet.name": wavelet.name,
         "skeleton.names": "\n".join(skeleton.names),
+        **{f"clips.{i}.name": clip.name for i, clip in enumerate(avatar.clips)},
     }
     return {
         **{name: ("i4", np.asarray(value, "<i4").tobytes()) for name, value in integers.items()},

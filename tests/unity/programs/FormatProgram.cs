@@ -11,6 +11,9 @@ using Mua.Format;
 
 internal static class FormatProgram
 {
+    /// <summary>Takes name, kind and bytes of a value that is dumped.</summary>
+    private static Action<string, string, byte[]> print = PrintDigits;
+
     private static int Main(string[] arguments)
     {
         CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
@@ -24,6 +27,12 @@ internal static class FormatProgram
                 foreach (string path in arguments.Skip(1))
                 {
                     Console.WriteLine(Answer(File.ReadAllBytes(path)));
+                }
+                return 0;
+            case "digests":
+                foreach (string path in arguments.Skip(1))
+                {
+                    Console.WriteLine(Digest(File.ReadAllBytes(path)));
                 }
                 return 0;
             case "truncate":
@@ -66,6 +75,23 @@ internal static class FormatProgram
         {
             return error.Code + "\t" + error.Field + "\t" + error.Message;
         }
+    }
+
+    /// <summary>The bytes that reading takes, then the answer, for a sound file with a digest of all its values.</summary>
+    private static string Digest(byte[] content)
+    {
+        long before = GC.GetAllocatedBytesForCurrentThread();
+        string answer = Answer(content);
+        string allocated = GC.GetAllocatedBytesForCurrentThread() - before + "\t";
+        if (answer != "ok")
+        {
+            return allocated + answer;
+        }
+        ulong sum = 0;
+        print = (name, kind, bytes) => sum += Crc32.Append(
+            Crc32.Append(0, Encoding.UTF8.GetBytes(name + kind), 0, name.Length + kind.Length), bytes, 0, bytes.Length);
+        Dump(AvatarFile.Read(content));
+        return allocated + "ok\t" + sum;
     }
 
     /// <summary>
@@ -173,10 +199,11 @@ internal static class FormatProgram
         Print("texels.size", new[] { avatar.Texels.Size });
         Print("bounds", avatar.Bounds);
         ArraySegment<byte> thumbnail = avatar.Thumbnail;
-        Print("thumbnail", "u1", thumbnail.Array.Skip(thumbnail.Offset).Take(thumbnail.Count).ToArray());
-        foreach (Clip clip in avatar.Clips)
+        print("thumbnail", "u1", thumbnail.Array.Skip(thumbnail.Offset).Take(thumbnail.Count).ToArray());
+        for (int i = 0; i < avatar.Clips.Length; i++)
         {
-            Print("clip " + clip.Name, new[] { clip.Rate });
+            Print("clips." + i + ".name", avatar.Clips[i].Name);
+            Print("clips." + i + ".rate", new[] { avatar.Clips[i].Rate });
         }
     }
 
@@ -251,15 +278,15 @@ internal static class FormatProgram
         string kind = values is int[] ? "i4" : values is float[] ? "f4" : "f8";
         var bytes = new byte[Buffer.ByteLength(values)];
         Buffer.BlockCopy(values, 0, bytes, 0, bytes.Length);
-        Print(name, kind, bytes);
+        print(name, kind, bytes);
     }
 
     private static void Print(string name, string text)
     {
-        Print(name, "text", Encoding.UTF8.GetBytes(text));
+        print(name, "text", Encoding.UTF8.GetBytes(text));
     }
 
-    private static void Print(string name, string kind, byte[] bytes)
+    private static void PrintDigits(string name, string kind, byte[] bytes)
     {
         var hex = new StringBuilder(2 * bytes.Length);
         foreach (byte value in bytes)
