@@ -69,6 +69,7 @@ def test_nothing_is_changed_that_python_only_says(line: str) -> None:
         ("{ GroupBarrier(); }", "dropped call", "{ ; }"),
         ("{ a = max(b, 0.5); }", "dropped call", "{ a = (b); }"),
         ('{ a = F("x", b, G(c, d)); }', "swapped argument", '{ a = F("x", G(c, d), b); }'),
+        ('{ a = F(b + "x", c); }', "swapped argument", '{ a = F(c, b + "x"); }'),
         ('{ a = F("x", b, G(c, d)); }', "swapped argument", '{ a = F("x", b, G(d, c)); }'),
     ],
 )
@@ -100,6 +101,11 @@ def test_only_the_programs_of_a_shader_file_are_changed() -> None:
     assert [mutant.lines(text) for mutant in text_mutants("a.shader", text)] == [(5, "int a = 3;", "int a = 4;")]
 
 
+def test_the_room_of_a_shaders_array_is_left_alone() -> None:
+    assert becomes("a.hlsl", "float4 f(float3 rows[3])") == set()
+    assert becomes("a.hlsl", "{ a = rows[3]; }") == {("constant", "{ a = rows[4]; }")}
+
+
 def test_a_python_fault_knows_the_function_about_it() -> None:
     text = "A = 1\nclass B:\n    c = 2\n    def d(self):\n        def e():\n            return 3\n        return e\n"
     assert [mutant.scope for mutant in python_mutants("a.py", text)] == ["", "", "B.d"]
@@ -111,8 +117,8 @@ def test_letters_beyond_ascii_do_not_shift_a_fault() -> None:
 
 def test_arguments_end_at_their_own_bracket() -> None:
     code = "f(a, g(b, c)[d, e], h)(i)"
-    assert [code[part.start : part.stop] for part in arguments(code, 1)] == ["a", "g(b, c)[d, e]", "h"]
-    assert arguments("f( )", 1) == []
+    assert [code[part.start : part.stop] for part in arguments(code, 1, code)] == ["a", "g(b, c)[d, e]", "h"]
+    assert arguments("f( )", 1, "f( )") == []
 
 
 def test_a_fault_over_several_lines_is_told_in_one() -> None:

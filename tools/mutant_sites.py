@@ -30,6 +30,7 @@ SYMMETRIC = {  # functions that do not care for the order of two arguments
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|\$?@?"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)+\'', re.DOTALL)
 DIRECTIVE = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
 ATTRIBUTE = re.compile(r"^[ \t]*\[[A-Za-z][^\n]*\][ \t]*$", re.MULTILINE)
+ROOM = re.compile(r"\b(?:u?int|float|half|bool)\d?(?:x\d)?\s+\w+\[\w+\]")  # of an HLSL array: more of it is as good
 SAID = re.compile(r"\bthrow\b[^;]*;|\b(?:Debug\.Log\w*|EditorGUILayout\.\w*|RunLog\.\w+)\([^;]*;")
 HLSL_PART = re.compile(r"\bHLSL(?:PROGRAM|INCLUDE)\b(.*?)\bENDHLSL\b", re.DOTALL)
 TOKENS = (  # operator, what is found, what takes its place
@@ -106,7 +107,7 @@ def _code(name: str, text: str) -> str:
     if name.endswith(".shader"):
         kept = [range(*found.span(1)) for found in HLSL_PART.finditer(text)]
         text = "".join(c if c == "\n" or any(i in part for part in kept) else " " for i, c in enumerate(text))
-    for pattern in (COMMENT_OR_TEXT, DIRECTIVE, ATTRIBUTE, SAID):
+    for pattern in (COMMENT_OR_TEXT, DIRECTIVE, ATTRIBUTE, SAID, *([] if name.endswith(".cs") else [ROOM])):
         text = pattern.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
     return text
 
@@ -116,7 +117,7 @@ def _beside_text(text: str, start: int, end: int) -> bool:
 
 
 def _call(name: str, text: str, code: str, call: re.Match[str]) -> Iterator[Mutant]:
-    parts = arguments(code, call.end() - 1)
+    parts = arguments(code, call.end() - 1, text)
     end = closing(code, call.end() - 1) + 1
     head = code[: call.start()]
     if head.rstrip()[-1:] in ("{", "}", ";", ")") and head[-1:].isspace() and code[end : end + 1] == ";":
@@ -137,13 +138,13 @@ def _swapped(name: str, text: str, code: str, parts: list[range]) -> Iterator[Mu
             yield Mutant(name, "swapped argument", a.start, b.stop, second + text[a.stop : b.start] + first)
 
 
-def arguments(code: str, at: int) -> list[range]:
+def arguments(code: str, at: int, text: str) -> list[range]:
     """Where each argument stands, without blanks about it, of the call whose bracket opens at a place."""
     depth, start, found = 0, at + 1, []
     for end in range(at, closing(code, at) + 1):
         depth += (code[end] in "([{") - (code[end] in ")]}")
         if depth == 0 or (depth == 1 and code[end] == ","):
-            part = code[start:end]
+            part = text[start:end]
             found.append(range(start + len(part) - len(part.lstrip()), start + len(part.rstrip())))
             start = end + 1
     return [part for part in found if len(part)]

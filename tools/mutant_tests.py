@@ -40,7 +40,8 @@ def entered(frame, event, argument):
     if id(code) not in seen:
         seen[id(code)] = code
         if code.co_filename.startswith(root):
-            note(code.co_filename[len(root):] + "\\t" + code.co_qualname)
+            is_function = code.co_flags & 1  # not the body of a module or class, which an import runs
+            note(code.co_filename[len(root):] + "\\t" + (code.co_qualname if is_function else "<module>"))
 def opened(event, arguments):
     if event == "open" and isinstance(arguments[0], (str, os.PathLike)):
         path = os.path.abspath(os.fspath(arguments[0]))
@@ -174,7 +175,7 @@ def seeing(mutant: Mutant, seen: dict[str, Seen]) -> list[str]:
     else:
         entered = {name: set(each.functions.get(mutant.path, ())) for name, each in sound.items()}
         chosen = [name for name, functions in entered.items() if mutant.scope in functions]
-        chosen = chosen or [name for name, functions in entered.items() if functions - {"<module>"}]
+        chosen = chosen or [name for name, functions in entered.items() if any(f[0] != "<" for f in functions)]
         chosen = chosen or [name for name, functions in entered.items() if functions]
     stem = Path(mutant.path).stem
     return sorted(chosen, key=lambda name: (stem not in Path(name).stem, sound[name].seconds))
