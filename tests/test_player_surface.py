@@ -104,6 +104,25 @@ def test_lists_every_triangle_about_each_of_its_corners() -> None:
     assert len(about) == len(turned)
 
 
+@pytest.mark.parametrize("mirrored", [0, 6])
+def test_every_square_of_texels_inside_a_chart_has_two_triangles_cut_along_its_shorter_diagonal(mirrored: int) -> None:
+    mesh = cube(mirrored=mirrored)
+    texels = build_texel_map(mesh, 31)
+    at = places(mesh, texels)
+    of_texel = {(t // 31, t % 31): n for n, t in enumerate(texels.texels.tolist())}
+    side = texels.triangles // (len(mesh.faces) // 6)  # each a chart
+    triangles = {frozenset(triangle) for triangle in build_surface(mesh, texels).triangles.tolist()}
+    squares = 0
+    for row, column in of_texel:
+        corners = [of_texel.get((row + r, column + c)) for r in (0, 1) for c in (0, 1)]
+        if None not in corners and len({side[n] for n in corners}) == 1:
+            a, b, c, d = corners
+            along = {a, d} if np.linalg.norm(at[a] - at[d]) <= np.linalg.norm(at[b] - at[c]) else {b, c}
+            assert {t for t in triangles if t <= {a, b, c, d}} == {frozenset(along | {n}) for n in {a, b, c, d} - along}
+            squares += 1
+    assert squares > 300
+
+
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_makes_no_triangle_of_too_few_texels(count: int) -> None:
     mesh = tube().mesh

@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
@@ -101,18 +102,8 @@ class Checkout:
             "TMPDIR": str(self.folder / "tmp"),
             "XDG_CACHE_HOME": str(self.folder / "cache"),
         }
-        command = [
-            sys.executable,
-            "-m",
-            "pytest",
-            "-x",
-            "-q",
-            "--tb=short",
-            "-p",
-            "no:cacheprovider",
-            "-p",
-            "no:randomly",
-        ]
+        words = "-m pytest -x -q -rfE --tb=short -p no:cacheprovider -p no:randomly"
+        command = [sys.executable, *words.split()]
         process = subprocess.Popen(
             [*command, *tests], cwd=self.root, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             text=True, errors="replace", start_new_session=True,
@@ -131,14 +122,16 @@ def record(checkouts: list[Checkout], kept: Path, *, again: bool = False) -> dic
     known = {} if again or not kept.is_file() else json.loads(kept.read_text())
     wanted = {path.relative_to(root).as_posix(): _digest(path) for path in sorted(root.glob("tests/**/test_*.py"))}
     found = {name: Seen(**seen) for name, seen in known.items() if wanted.get(name) == seen["digest"]}
-    free = list(checkouts)
+    free, one_at_a_time = list(checkouts), threading.Lock()
 
     def watched(name: str) -> None:
         checkout = free.pop()
-        found[name] = _watch(checkout, name, wanted[name])
-        print(f"{found[name].seconds:6.1f} s  {name}{'' if found[name].passes else '  FAILS'}", flush=True)
-        kept.write_text(json.dumps({name: asdict(found[name]) for name in sorted(found)}))
+        watching = _watch(checkout, name, wanted[name])
         free.append(checkout)
+        print(f"{watching.seconds:6.1f} s  {name}{'' if watching.passes else '  FAILS'}", flush=True)
+        with one_at_a_time:
+            found[name] = watching
+            kept.write_text(json.dumps({name: asdict(found[name]) for name in sorted(found)}))
 
     with ThreadPoolExecutor(len(checkouts)) as pool:
         list(pool.map(watched, [name for name in wanted if name not in found and name not in LEFT_OUT]))

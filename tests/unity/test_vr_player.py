@@ -162,6 +162,40 @@ def test_buttons_do_what_the_table_says(story: Story) -> None:
     }
 
 
+def test_nobody_grows_beyond_twice_shrinks_below_an_eighth_or_looks_over_the_top(story: Story) -> None:
+    told = story("Limits")
+    assert (told["size after UpArrow"], told["size after DownArrow"]) == (["0.125"], ["2.000"])
+    assert told["looks after 4000"] == ["0.00 1.00 0.09"]  # 85 degrees
+    assert told["looks after -8000"] == ["0.00 -1.00 0.09"]
+
+
+def test_a_stick_walks_by_its_way_beyond_the_dead_zone(story: Story) -> None:
+    told = story("Sticks")
+    whole = 10 * 1.5 / 72  # frames, metres a second, frames a second
+    assert float(told["0.140"][0]) == 0
+    for push, share in (("0.160", 0.01 / 0.85), ("0.575", 0.5), ("-0.575", -0.5), ("1.000", 1)):
+        assert float(told[push][0]) == pytest.approx(share * whole, abs=1e-4)
+
+
+def test_the_texts_stand_on_either_side_and_turn_to_the_user(story: Story) -> None:
+    told = story("Furniture", files=())
+    assert (told["eyes"], told["sees"]) == (["1.60"], ["0.05 to 100"])
+    assert told["light falls"] == ["-0.32 -0.77 0.56"]
+    assert told["Panel"] == ["-1.60 1.90 0.20 faces -0.50 0.00 0.87"]
+    assert told["Help"] == ["0.70 1.90 0.20 faces 0.50 0.00 0.87"]
+    assert told["letters"] == ["0.0280 UpperLeft", "0.0280 UpperLeft"]
+
+
+def test_where_no_avatars_are_streamed_there_is_no_index(story: Story) -> None:
+    told = story("Index", files=())
+    assert (told["of nothing"], told["of what is gone"], told["nowhere"]) == (["False"], ["False"], ["False"])
+
+
+def test_a_headset_that_is_taken_off_is_set_up_again_when_it_comes_back(story: Story) -> None:
+    told = story("HeadsetGoes")
+    assert (told["worn"], told["taken off"], told["worn again"]) == (["True"], ["False"], ["True 0.5"])
+
+
 def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
     told = story("Headset")
     assert told["head"] == ["0.50 1.80 -1.95 looks 1.00 0.00 0.00"]
