@@ -43,10 +43,11 @@ namespace Mua.Editor
             Tell("before", ProjectSetup.Check(target));
             Tell("after", ProjectSetup.Apply(target));
             Flush();
-            Dialogs.Dirtied = 0;
+            Say("saved", string.Join(" ", Dialogs.Saved.Distinct().OrderBy(kind => kind, StringComparer.Ordinal)));
+            Dialogs.Dirtied.Clear();
             Tell("again", ProjectSetup.Apply(target));
             Say("changed again", StandIns.Console.Lines.Count);
-            Say("dirtied again", Dialogs.Dirtied);
+            Say("dirtied again", Dialogs.Dirtied.Count);
         }
 
         private static void KeepsWhatIsRight(string[] arguments)

@@ -6,7 +6,7 @@ namespace UnityEditor
     public static class AssetDatabase
     {
         public static void Refresh() { }
-        public static void SaveAssets() { }
+        public static void SaveAssets() { StandIns.Dialogs.Saved.AddRange(StandIns.Dialogs.Dirtied); }
         public static void CreateAsset(UnityEngine.Object asset, string path)
         {
             asset.name = System.IO.Path.GetFileNameWithoutExtension(path);

@@ -11,7 +11,7 @@ namespace UnityEditor
             StandIns.Dialogs.Shown.Add(message);
             return StandIns.Dialogs.Answer;
         }
-        public static void SetDirty(UnityEngine.Object target) { StandIns.Dialogs.Dirtied++; }
+        public static void SetDirty(UnityEngine.Object target) { StandIns.Dialogs.Dirtied.Add(target.GetType().Name); }
     }
 }
 
@@ -22,6 +22,7 @@ namespace StandIns
     {
         public static readonly List<string> Shown = new List<string>();
         public static bool Answer = true;
-        public static int Dirtied; // objects that were marked to be saved
+        public static readonly List<string> Dirtied = new List<string>(); // kinds of what was marked to be saved
+        public static readonly List<string> Saved = new List<string>(); // and of what was saved then
     }
 }
