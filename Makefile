@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 DEMO := build/demo
 
-.PHONY: demo test test-long gallery mutants check package setup clean
+.PHONY: demo test test-long test-wheel gallery mutants check package wheel setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -17,6 +17,10 @@ test: setup check
 
 test-long: setup
 	$(BIN)/pytest -m long
+
+# The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
+test-wheel: demo
+	$(BIN)/python tools/check_wheel.py
 
 # The characters of tools/gallery.toml, from a folder: GALLERY=folder make gallery; GALLERY_FLAGS=--bake bakes them too.
 gallery: setup
@@ -43,6 +47,10 @@ check: setup
 
 package: setup
 	$(BIN)/python tools/pack_upm.py
+
+wheel: setup
+	rm -rf python/build  # what an older checkout had would go in too
+	$(BIN)/python -m pip wheel -q --no-deps -w build ./python
 
 setup: $(VENV)/.installed
 

@@ -11,8 +11,9 @@ from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
 from mua.rig.read import read_character
 from mua.rig.skeleton import Skeleton
+from mua.rig.surface_points import points_on_surface
 from mua.rig.template import CLOSE_ENOUGH, make_template
-from mua.rig.texel_map import build_texel_map, points_on_surface
+from mua.rig.texel_map import build_texel_map
 
 TWO_JOINTS = Skeleton(
     names=("low", "high"),

@@ -7,7 +7,8 @@ import pytest
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
-from mua.rig.texel_map import TexelMap, build_texel_map, points_on_surface
+from mua.rig.surface_points import points_on_surface
+from mua.rig.texel_map import TexelMap, build_texel_map
 
 # A barycentric is a quotient of areas of a few float64 operations, then rounded to float32.
 BARYCENTRIC_BOUND = 4 * np.finfo(np.float32).eps

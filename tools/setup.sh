@@ -38,4 +38,4 @@ case "$missing" in *python3-venv*) exit 1 ;; esac
 [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
 # torch by itself first: asked for by another package, pip may choose a build for a GPU that is not there
 "$venv/bin/python" -m pip install -q "torch==2.13.0"
-"$venv/bin/python" -m pip install -q -e "./python[dev,eval]"
+"$venv/bin/python" -m pip install -q -e "./python[dev]"

@@ -1,28 +1,27 @@
 """Which optional packages of the installation each command needs."""
 
-EXTRAS = {  # of python/pyproject.toml: the names under which the packages that each brings are imported
-    "view": ("glfw", "imageio_ffmpeg", "imgui_bundle", "pywt", "rendercanvas", "scipy", "wgpu", "xatlas"),
-    "train": ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "xatlas"),
-    "bake": ("DracoPy", "meshoptimizer", "moderngl", "pxr", "pygltflib", "pywt", "scipy", "torch", "warp", "xatlas"),
-    "eval": ("flip_evaluator", "matplotlib", "torchmetrics"),
-    "deploy": ("adbutils",),
+# The extras of python/pyproject.toml, by the names under which their packages are imported.
+READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
+TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "xatlas")
+VIEWING = (*READING, "glfw", "imageio_ffmpeg", "imgui_bundle", "rendercanvas", "wgpu")
+EXTRAS = {  # the smaller ones first: of several that bring a package the first is proposed
+    "view": frozenset(VIEWING),
+    "train": frozenset(TRAINING),
+    "bake": frozenset((*READING, *TRAINING, "pxr", "warp")),
+    "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
+    "deploy": frozenset(("adbutils",)),
 }
-OF_COMMAND = {"mua-bench": "view"}  # where it is not the command's own name
+OF_COMMAND = {"mua-bench": "view"}  # where the extra is not called as the command
 
 
 def missing_package(command: str, module: str) -> str | None:
-    """The sentence for a package that is not installed; None where no extra brings it."""
+    """The sentence for a module that is not installed; None where no extra brings its package."""
     package = module.partition(".")[0]
     bringing = [extra for extra, packages in EXTRAS.items() if package in packages]
     if not bringing:
         return None
     own = OF_COMMAND.get(command, command.removeprefix("mua-"))
-    extra = own if own in EXTRAS else bringing[0]
-    wanted = extra if package in whole(extra) else ",".join((extra, bringing[0]))
-    return f'{command} needs the Python package {package}, which is not installed: pip install "mua[{wanted}]"'
-
-
-def whole(extra: str) -> set[str]:
-    """All that an extra brings, with the extras that it includes."""
-    included = ("view", "train") if extra == "eval" else ()
-    return {package for name in (extra, *included) for package in EXTRAS[name]}
+    wanted = [own] if own in EXTRAS else []
+    if own not in bringing:
+        wanted.append(bringing[0])
+    return f'{command} needs the Python package {package}, which is not here: pip install "mua[{",".join(wanted)}]"'

@@ -41,29 +41,6 @@ def build_texel_map(mesh: Mesh, size: int) -> TexelMap:
     )
 
 
-def points_on_surface(texels: TexelMap, dense: TexelMap) -> tuple[Array, Array]:
-    """Give every valid texel of a template a point on the dense surface that the template stands for.
-
-    Where the dense map leaves a texel empty (decimation moves chart borders by fractions of a texel) the nearest
-    texel that it covers lends its point.
-
-    Returns triangles [N] int32 into the dense faces and barycentrics [N, 3] float32, in the order of `texels`.
-    """
-    if not texels.texels.size:
-        return np.empty(0, np.int32), np.empty((0, 3), np.float32)
-    row_of_texel = np.full(dense.size * dense.size, -1, np.int64)
-    row_of_texel[dense.texels] = np.arange(len(dense.texels))
-    from scipy.spatial import cKDTree  # here, because reading a file needs no scipy
-
-    rows = row_of_texel[texels.texels]
-    empty = rows < 0
-    if empty.any():
-        covered = np.stack(np.divmod(dense.texels, dense.size), axis=1)
-        wanted = np.stack(np.divmod(texels.texels[empty], texels.size), axis=1)
-        rows[empty] = cKDTree(covered).query(wanted)[1]
-    return dense.triangles[rows], dense.barycentrics[rows]
-
-
 def cover(
     corners: Array,  # [F, 3, 2] UV triangles, in texels
     size: int,

@@ -6,7 +6,8 @@ from scipy import sparse
 from mua.arrays import Array
 from mua.rig.character import Character
 from mua.rig.rig import Rig
-from mua.rig.texel_map import TexelMap, build_texel_map, points_on_surface
+from mua.rig.surface_points import points_on_surface
+from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teachers.light import Light
 from mua.texture.albedo import sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1

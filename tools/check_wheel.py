@@ -1,0 +1,171 @@
+"""Build the wheel, install it into an empty environment, and run every command there without any compiler.
+
+Extras are installed one after the other, with torch's build for the CPU; after each its commands run from another
+directory, with nothing on the PATH and empty caches. Prints what each step brought the environment to. Downloads about
+1 GB; `make test-wheel` runs it.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.box import SIMPLE
+from rich.console import Console
+from rich.table import Table
+
+ROOT = Path(__file__).resolve().parents[1]
+TORCH = "torch==2.13.0"
+SENTENCE = "which is not here: pip install"
+AVATAR, SMALL = "a.muaavatar", ("--size", "128")
+BAKE = ("mua-bake", "--preset", "tiny", "--frames", "24", "-o", AVATAR)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A command, what it is to write, and what it is to print."""
+
+    words: tuple[str, ...]
+    writes: str | None = None
+    prints: str = ""
+    status: int = 0
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is installed, and what then runs."""
+
+    name: str
+    packages: tuple[str, ...]  # for pip; {wheel} stands for the wheel
+    runs: tuple[Run, ...]
+
+
+STEPS = (
+    Step(
+        "base",
+        ("{wheel}",),
+        (
+            Run(("mua-inspect", "{avatar}"), prints="GFLOPs"),
+            Run(("mua-view", "{avatar}", "--reference", *SMALL, "-o", "cpu.png"), writes="cpu.png"),
+            Run(("mua-view", "{avatar}", *SMALL, "-o", "gpu.png"), prints=f'{SENTENCE} "mua[view]"', status=1),
+            Run(("mua-bench", "{avatar}"), prints=f'{SENTENCE} "mua[view]"', status=1),
+            Run(BAKE, prints=f'{SENTENCE} "mua[bake]"', status=1),
+            Run(("mua-deploy", "{avatar}"), prints=f'{SENTENCE} "mua[deploy]"', status=1),
+        ),
+    ),
+    Step(
+        "view",
+        ("{wheel}[view]",),
+        (
+            Run(("mua-view", "--list-devices"), prints="0: "),
+            Run(("mua-view", "{avatar}", *SMALL, "-o", "gpu.png"), writes="gpu.png"),
+            Run(
+                ("mua-view", "{avatar}", *SMALL, "--show", "geometry,template,skeleton,shadow", "-o", "all.png"),
+                writes="all.png",
+            ),
+            Run(("mua-view", "{avatar}", *SMALL, "-o", "gpu.mp4"), writes="gpu.mp4"),
+            Run(("mua-bench", "{avatar}", *SMALL, "--frames", "2"), prints="splats visible"),
+        ),
+    ),
+    Step("torch for the CPU", (TORCH,), ()),
+    Step("train", ("{wheel}[train]",), (Run(("mua-train", "{avatar}"), prints="expected the directory", status=1),)),
+    Step(
+        "bake",
+        ("{wheel}[bake]",),
+        (
+            Run(BAKE, writes=AVATAR),
+            Run(("mua-inspect", "--verify", AVATAR), prints="sound"),
+            Run(("mua-view", AVATAR, *SMALL, "-o", "baked.png"), writes="baked.png"),
+            Run(("mua-train", "{recording}", "--preset", "tiny", "-o", "b.muaavatar"), writes="b.muaavatar"),
+        ),
+    ),
+    Step(
+        "eval",
+        ("{wheel}[eval]",),
+        (
+            Run(
+                ("mua-eval", "{recording}", AVATAR, "--frames", "1", "--views", "1", "--size", "128", "-o", "figures"),
+                writes="figures/results.json",
+            ),
+        ),
+    ),
+    Step("all", ("{wheel}[all]",), (Run(("mua-deploy", "--doctor"), prints="adb", status=1),)),
+)
+
+
+def build(folder: Path) -> Path:
+    """The wheel of this checkout."""
+    shutil.rmtree(ROOT / "python" / "build", ignore_errors=True)  # what an older checkout had would go in too
+    command = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", str(folder), str(ROOT / "python")]
+    subprocess.run(command, check=True)
+    (wheel,) = folder.glob("mua-*.whl")
+    return wheel
+
+
+def megabytes(folder: Path) -> float:
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file() and not path.is_symlink()) / 1e6
+
+
+def fault(run: Run, folder: Path, programs: Path, named: dict[str, str]) -> str | None:
+    """Carry out a run in a folder; what is wrong with it, if anything is."""
+    words = [word.format(**named) for word in run.words]
+    environment = {
+        "PATH": str(programs),  # and no compiler
+        "HOME": str(folder),
+        "XDG_CACHE_HOME": str(folder / "cache"),
+        "COLUMNS": "200",
+        **{name: os.environ[name] for name in ("SYSTEMROOT", "VK_ICD_FILENAMES", "TMPDIR") if name in os.environ},
+    }
+    words[0] = str(programs / words[0])
+    ended = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    printed = ended.stdout + ended.stderr
+    if ended.returncode != run.status:
+        return f"status {ended.returncode}: {printed[-600:]}"
+    if run.prints not in printed:
+        return f"does not print {run.prints!r}: {printed[-600:]}"
+    if run.writes is not None and not (folder / run.writes).is_file():
+        return f"does not write {run.writes}: {printed[-600:]}"
+    return None
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--avatar", type=Path, default=ROOT / "build" / "demo" / "avatar.muaavatar")
+    avatar = parser.parse_args().avatar.resolve()
+    if not avatar.is_file():
+        sys.exit(f"error: {avatar}: there is no such file; make demo bakes one")
+    console, faults = Console(), []
+    shown = Table("installed", "MB", "runs", box=SIMPLE)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / "elsewhere"
+        folder.mkdir()
+        wheel, venv = build(Path(scratch)), Path(scratch) / "venv"
+        subprocess.run([sys.executable, "-m", "venv", str(venv)], check=True)
+        programs = venv / ("Scripts" if os.name == "nt" else "bin")
+        empty = megabytes(venv)
+        for step in STEPS:
+            packages = [package.format(wheel=wheel) for package in step.packages]
+            subprocess.run([str(programs / "python"), "-m", "pip", "install", "-q", *packages], check=True)
+            size = megabytes(venv) - empty
+            for run in step.runs:
+                recording = next(folder.glob("a.work/recording-*"), Path("none"))
+                named = {"avatar": str(avatar), "recording": str(recording)}
+                if (found := fault(run, folder, programs, named)) is not None:
+                    faults.append(f"{step.name}: {' '.join(run.words)}: {found}")
+            console.print(f"{step.name}: {size:.0f} MB, {len(step.runs)} commands")
+            shown.add_row(step.name, f"{size:.0f}", str(len(step.runs)))
+        compiled = [path.name for path in folder.rglob("*.spv")]
+    if compiled:
+        faults.append(f"a shader was compiled: {', '.join(compiled)}")
+    console.print(f"the wheel is {wheel.name}", shown)
+    for line in faults:
+        console.print(line, style="red", highlight=False, markup=False, soft_wrap=True)
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
