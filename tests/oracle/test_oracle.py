@@ -1,0 +1,166 @@
+"""decode() against a decoder written from schemas/README.md and the schema alone, on bind poses that are turned."""
+
+import ast
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import decoder
+import numpy as np
+import pytest
+import torch
+from shared_data import SharedData
+from silent import Silent
+from synthetic_avatar import synthetic_avatar, synthetic_clip
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.asset.read import read
+from mua.asset.tensors import Storage
+from mua.asset.write import write
+from mua.bake.pipeline import Order, bake
+from mua.bounds import playback_bounds
+from mua.camera import orbit
+from mua.decode import decode_clip_frame
+from mua.kernels.dq_skinning import covariances
+from mua.kernels.splat_draw import splat_colors
+from mua.kernels.splat_project import splat_project
+from mua.motion.encoding import PoseEncoding
+from mua.motion.resample import resample
+from mua.render import frame_bounds
+from mua.rig.skeleton import Skeleton
+from mua.student.settings import preset
+
+POSITION, COLOUR = 1e-6, 1e-5  # metres; of 1: stored f32 numbers are rounded by 6e-8 of themselves
+STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8")
+PAGE = decoder.SCHEMA.with_name("README.md")
+INDEPENDENT = {"re", "collections.abc", "dataclasses", "pathlib", "typing", "numpy", "pywt", "flatbuffers"}
+
+
+def turned_avatar(*, heading: bool, rate: float = 30.0) -> Avatar:
+    """Joints that are turned in the bind pose, a root that hangs on another joint, a clip of another rate."""
+    rng = np.random.default_rng(5)
+    avatar = synthetic_avatar(3)
+    turns, places = rotation.normalize(rng.normal(size=(3, 4))), rng.normal(size=(3, 3))
+    parents = avatar.rig.skeleton.parents
+    skeleton = Skeleton(("hook", "root", "tip"), parents, turns, places, root=1)
+    encoding = PoseEncoding(joints=(0, 2), rate=24.0, heading=heading, translated=(2,))
+    assert encoding.width == avatar.encoding.width
+    clip = replace(synthetic_clip(skeleton, rng, frames=12), rate=rate)
+    rig = replace(avatar.rig, skeleton=skeleton)
+    bright = replace(avatar.appearance, ll_mean=200 * avatar.appearance.ll_mean)  # some colours fall below 0
+    changed = replace(avatar, rig=rig, encoding=encoding, clips=(clip,), appearance=bright)
+    return replace(changed, bounds=playback_bounds(rig, [clip]))
+
+
+def assert_decodes_alike(path: Path, *, frames: int) -> None:
+    """Some frames of the first clip by both decoders, and what a camera sees of each."""
+    avatar, tree = read(path), decoder.read(path)
+    clip, poses = resample(avatar.clips[0], avatar.encoding.rate), decoder.poses(tree, tree["clips"][0])
+    assert len(poses) == len(clip)
+    for index in np.linspace(0, len(clip) - 1, min(frames, len(clip))).astype(int):
+        ours, theirs = (
+            decode_clip_frame(avatar, clip, frame=index, dtype=np.float64),
+            decoder.decode(tree, poses, index),
+        )
+        camera = orbit(frame_bounds(ours), screen=(64, 64), azimuth=0.3 * index)
+        colours = splat_colors(ours.centres, ours.texel_dq, ours.sh, camera.position)
+        np.testing.assert_allclose(theirs.canonical, ours.canonical, rtol=0, atol=POSITION)
+        np.testing.assert_allclose(theirs.centres, ours.centres, rtol=0, atol=POSITION)
+        np.testing.assert_allclose(theirs.rotations, ours.rotations, rtol=0, atol=COLOUR)
+        np.testing.assert_allclose(theirs.scales, ours.scales, rtol=COLOUR, atol=0)
+        np.testing.assert_allclose(theirs.opacities, ours.opacities, rtol=0, atol=COLOUR)
+        np.testing.assert_allclose(theirs.colours(camera.position), colours, rtol=0, atol=COLOUR)
+        seen, keys, _ = splat_project(
+            ours.centres,
+            covariances(ours.rotations, ours.scales),
+            ours.opacities,
+            camera.view[None],
+            camera.projection[None],
+            screen=camera.screen,
+            near=camera.near,
+            bounds=ours.bounds,
+        )
+        assert_same_keys(decoder.keys(tree, theirs, camera.view, camera.near)[seen], keys)
+
+
+def assert_same_keys(found: Array, expected: Array) -> None:
+    """But for what lies within a rounding of two keys."""
+    assert len(found) > 0
+    assert np.abs(found - expected).max() <= 1
+    assert np.mean(found != expected) <= 0.01
+
+
+@pytest.mark.parametrize("heading", [True, False])
+@pytest.mark.parametrize("storage", STORAGES)
+def test_a_decoder_written_from_the_page_decodes_alike(tmp_path: Path, storage: Storage, heading: bool) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, turned_avatar(heading=heading), storage=storage)
+    assert_decodes_alike(path, frames=4)
+
+
+@pytest.mark.parametrize("rate", [24.0, 7.5, 60.0])
+def test_clips_of_any_rate_are_resampled_as_the_page_says(tmp_path: Path, rate: float) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, turned_avatar(heading=True, rate=rate), storage="f16")
+    assert_decodes_alike(path, frames=3)
+
+
+@pytest.mark.parametrize("turn", [[0.0, 1, 0, 0], [0.0, 0.6, 0, 0.8]])
+def test_a_root_without_twist_has_no_heading(tmp_path: Path, turn: list[float]) -> None:
+    """Upside down about a horizontal axis, relative to the bind pose."""
+    avatar = turned_avatar(heading=True, rate=24.0)
+    clip, skeleton = avatar.clips[0], avatar.rig.skeleton
+    bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)[0]
+    rotations = clip.rotations.copy()
+    above = rotations[:, 0]
+    rotations[:, 1] = rotation.multiply(rotation.conjugate(above), rotation.multiply(np.array(turn), bind[1]))
+    path = tmp_path / "a.muaavatar"
+    write(path, replace(avatar, clips=(replace(clip, rotations=rotations),)), storage="f32")
+    assert_decodes_alike(path, frames=3)
+
+
+def test_files_of_version_1_decode_alike() -> None:
+    assert_decodes_alike(Path(__file__).parents[1] / "golden" / "version_1.muaavatar", frames=3)
+
+
+def test_the_decoder_shares_no_code_with_mua() -> None:
+    nodes = list(ast.walk(ast.parse(Path(decoder.__file__).read_text())))
+    imported = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    imported |= {str(node.module) for node in nodes if isinstance(node, ast.ImportFrom)}
+    assert {name for name in imported if name.split(".")[0] not in INDEPENDENT and name not in INDEPENDENT} == set()
+
+
+def test_every_step_of_the_decoder_is_on_the_page() -> None:
+    numbers = set(re.findall(r"^\*\*(\d\.\d)", PAGE.read_text(), re.MULTILINE))
+    source = Path(decoder.__file__).read_text()
+    said = set(re.findall(r"(?<![\d.])([1-7]\.[1-9])(?![\de])", source))
+    assert said <= numbers
+    assert numbers - said <= {"1.4", "5.1", "5.2", "5.3", "5.4", "7.1", "7.2"}  # of section 5 in one function; drawing
+
+
+CHARACTERS = {"White_F_3_Casual": ("motion/cmu/01_01.bvh",), "Fox": (), "lumberjack": ()}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", CHARACTERS)
+def test_a_baked_character_decodes_alike(shared_data: SharedData, tmp_path: Path, name: str) -> None:
+    """Ten frames in every storage; the student need not be good."""
+    tiny = preset("tiny")
+    small = replace(tiny, texels=96, frames=40, finetune=replace(tiny.finetune, steps=20))
+    order = Order(
+        tmp_path / "a.muaavatar",
+        tmp_path / "work",
+        replace(small, regression=replace(tiny.regression, steps=200)),
+        torch.device("cpu"),
+        character=shared_data.path(f"characters/{name}.glb"),
+        motions=tuple(shared_data.path(motion) for motion in CHARACTERS[name]),
+        storage="f32",
+    )
+    bake(order, Silent())
+    avatar = read(order.output)
+    assert np.abs(avatar.rig.skeleton.bind_rotations - [1, 0, 0, 0]).max() > 0.1
+    for storage in STORAGES:
+        write(order.output, avatar, storage=storage)
+        assert_decodes_alike(order.output, frames=10)
