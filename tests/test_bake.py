@@ -256,33 +256,3 @@ def test_a_command_is_refused_where_another_is_at_work(baked: Baked, tmp_path: P
 def test_a_work_directory_below_a_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     assert "--work" in refused(tmp_path, "--work", tmp_path / "file" / "a" / "work")
-
-
-@pytest.mark.long
-def test_of_two_commands_in_one_work_directory_one_is_refused_and_one_ends_as_alone(
-    baked: Baked, tmp_path: Path
-) -> None:
-    """Ten pairs, the second one started at any moment of the first; both end well where the first had ended."""
-    code = (
-        "import sys, torch; from pathlib import Path; sys.path.insert(0, sys.argv[1]); from test_bake import *\n"
-        "from mua.cli.failure import refusing\n"
-        "d = Path(sys.argv[2]); order = Order(d / 'a.muaavatar', d / 'work', SMALL, torch.device('cpu'), jobs=2)\n"
-        "try: bake(order, Silent())\n"
-        "except InputError as error: sys.exit(str(error))"
-    )
-    moments, seconds = np.random.default_rng(4), 0.0
-    for pair in range(10):
-        directory = tmp_path / str(pair)
-        run = [sys.executable, "-c", code, str(Path(__file__).parent), str(directory)]
-        started = time.monotonic()
-        first = subprocess.Popen(run, stderr=subprocess.PIPE, text=True)
-        time.sleep(moments.uniform(0, seconds))
-        second = subprocess.Popen(run, stderr=subprocess.PIPE, text=True)
-        told = [process.communicate()[1] for process in (first, second)]
-        seconds = max(seconds, time.monotonic() - started)
-        assert 0 in (first.returncode, second.returncode)
-        assert all(
-            process.returncode == 0 or "is at work there" in sentence
-            for process, sentence in zip((first, second), told, strict=True)
-        )
-        assert (directory / "a.muaavatar").read_bytes() == baked.output.read_bytes()
