@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import map_coordinates
 
 from mua.arrays import Array
 from mua.camera import Camera
@@ -99,6 +100,42 @@ def strokes(camera: Camera, lines: Iterable[Stroke]) -> Picture:
     return Picture(image, np.zeros(image.shape[:2]))
 
 
+def shadow(
+    camera: Camera,
+    places: Array,  # [N, 3] metres
+    triangles: Array,
+    *,
+    light: Array,  # [3] the direction along which it falls
+    area: Array,  # [4] lowest x and z of a square on the ground, its side, the ground's height; metres
+    size: int,  # samples along the square
+    darkness: float,
+) -> Picture:
+    """What a surface takes of the light on the ground: seen or not by each sample, a cubic spline between them."""
+    *low, side, ground = area
+    fallen = places - light * ((places[:, 1:2] - ground) / light[1])
+    corners = (fallen[:, [0, 2]] - low) / side * size
+    samples = CENTRES[:, None, None] + np.stack(np.meshgrid(np.arange(size), np.arange(size)), axis=-1)
+    mask = np.zeros(samples.shape[:3])
+    for triangle in corners[triangles]:
+        box = _box(triangle)
+        mask[box][(_shares(samples[box], triangle) >= 0).all(axis=-1)] = 1
+    across, down = np.moveaxis((_on_ground(camera, ground) - low) / side * size - 0.5, -1, 0)
+    images = np.zeros((*across.shape, 4))[None].repeat(len(mask), axis=0)
+    for image, own in zip(images, mask, strict=True):
+        image[..., 3] = darkness * map_coordinates(own, [down, across], order=3, mode="constant", prefilter=False)
+    return Picture(images[0], np.abs(images - images[0]).max(axis=(0, -1)))
+
+
+def _on_ground(camera: Camera, height: float) -> Array:
+    """The x and z [H, W, 2] of the ground that each pixel's middle shows; not a number above the horizon."""
+    across, down = np.moveaxis(_samples(camera)[0] / camera.screen * [2, -2] + [-1, 1], -1, 0)
+    projection = camera.projection
+    x, y = (across + projection[0, 2]) / projection[0, 0], (down + projection[1, 2]) / projection[1, 1]
+    ray = np.stack([x, y, -np.ones_like(x)], axis=-1) @ camera.view[:3, :3]
+    reach = (height - camera.position[1]) / ray[..., 1]
+    return np.where(reach > 0, reach, np.nan)[..., None] * ray[..., [0, 2]] + camera.position[[0, 2]]
+
+
 def _samples(camera: Camera) -> Array:
     """[5, H, W, 2] columns and rows."""
     width, height = camera.screen
@@ -124,9 +161,7 @@ def _nearest(camera: Camera, places: Array, triangles: Array, wall: Wall | None)
         nearness[:, :, : camera.screen[0] // 2] = 1 / wall.distance
     owner, weights = np.full(nearness.shape, -1), np.zeros((*nearness.shape, 3))
     for number, corners in enumerate(triangles):
-        low = np.floor(at[corners].min(axis=0) - 1).astype(int).clip(0)
-        high = np.ceil(at[corners].max(axis=0) + 1).astype(int).clip(0)
-        box = (slice(None), slice(low[1], high[1]), slice(low[0], high[0]))
+        box = _box(at[corners])
         share = _shares(samples[box], at[corners])
         near = share @ (1 / yielding[corners])
         seen = (share >= 0).all(axis=-1) & (near >= nearness[box])
@@ -134,6 +169,13 @@ def _nearest(camera: Camera, places: Array, triangles: Array, wall: Wall | None)
         owner[box][seen] = number
         weights[box][seen] = share[seen] / distance[corners]  # even in space
     return owner, weights / np.maximum(weights.sum(axis=-1, keepdims=True), 1e-12)
+
+
+def _box(corners: Array) -> tuple[slice, slice, slice]:
+    """Which samples [5, H, W] may lie in a triangle [3, 2]."""
+    low = np.floor(corners.min(axis=0) - 1).astype(int).clip(0)
+    high = np.ceil(corners.max(axis=0) + 1).astype(int).clip(0)
+    return slice(None), slice(low[1], high[1]), slice(low[0], high[0])
 
 
 def _shares(at: Array, corners: Array) -> Array:

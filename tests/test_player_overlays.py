@@ -37,9 +37,10 @@ from mua.player.overlays import (
     ground_height,
     shadow_area,
 )
-from mua.player.scene import Scene, Toggles, draw_picture, parse_toggles
+from mua.player.scene import Scene, draw_picture
 from mua.player.splats import SplatFrame
 from mua.player.surface import build_surface
+from mua.player.toggles import Toggles, parse_toggles
 from mua.rig.skeleton import Pose
 
 SCREEN = (97, 131)  # pixels
@@ -163,23 +164,22 @@ def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(s
     assert (image[inside[:, 1], inside[:, 0], 3] > 0.5).all()
 
 
-def test_casts_one_shadow_however_many_walls_overlap(stage: Stage) -> None:
-    light, ground = np.array(LIGHT), stage.ground
-    mesh = stage.frame.mesh
-    fallen = mesh - light * ((mesh[:, 1:2] - ground) / light[1])
-    camera = camera_at(fallen, elevation=1.5)
-    image = stage.picture((camera,), "shadow")
-    assert image[..., :3].max() == 0
-    assert image[..., 3].max() <= DARKNESS * (1 + HALF)
-    inside = pixels(camera, fallen[stage.avatar.rig.mesh.faces].mean(axis=1)).astype(int)
-    darkness = image[inside[:, 1], inside[:, 0], 3]
-    assert np.mean(darkness > 0.9 * DARKNESS) > 0.5  # but for facets at the soft edge
-    outline = drawn_box(image)
-    at = pixels(camera, fallen)
-    softness = 2 * shadow_area(stage.avatar.bounds, ground)[2] / MASK_SIZE  # two samples of the mask, metres
-    pixel = np.ptp(pixels(camera, np.array([[0, ground, 0], [1, ground, 0]])), axis=0)[0]
-    reach = softness * pixel + 2
-    assert np.abs(outline - np.concatenate([at.min(axis=0), at.max(axis=0)])).max() < reach
+@pytest.mark.parametrize(("azimuth", "elevation"), [(0.0, 1.5), (2.2, 0.6), (4.7, 0.1)])
+def test_casts_the_shadow_that_numpy_casts(stage: Stage, azimuth: float, elevation: float) -> None:
+    """Walls that overlap darken once."""
+    root = stage.avatar.rig.skeleton.root
+    _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
+    camera = camera_at(stage.frame.mesh - np.array([0, 0.3, 0]), azimuth=azimuth, elevation=elevation)
+    cast = rasterised.shadow(
+        camera,
+        stage.frame.mesh,
+        stage.avatar.rig.mesh.faces,
+        light=np.array(LIGHT),
+        area=shadow_area(stage.avatar.bounds + joints[root], stage.ground),
+        size=MASK_SIZE,
+        darkness=DARKNESS,
+    )
+    compare(stage.picture((camera,), "shadow"), cast, SURFACE_BOUND)
 
 
 def test_hides_splats_behind_the_surface(stage: Stage) -> None:
