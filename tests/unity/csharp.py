@@ -43,8 +43,9 @@ class CSharp:
             command = ["mcs", *options, f"-target:{kind}", f"-out:{target}", *map(str, files)]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout + done.stderr
-            for reference in references:  # mono looks for them beside the program
-                shutil.copy(reference, folder)
+            for reference in references:  # mono looks for them beside the program, maybe that of another test run
+                copy = Path(shutil.copy(reference, scratch))
+                copy.replace(folder / copy.name)
             target.replace(built)
         return built
 
