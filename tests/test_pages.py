@@ -94,7 +94,8 @@ def test_commands_take_what_is_shown(
     with pytest.raises(SystemExit) as ended:
         getattr(importlib.import_module(module), function)()
     said = " ".join(capsys.readouterr().err.split())
-    assert ended.value.code == 0 or "Missing " in said or "requires an argument" in said, f"{path}: mua-{name}{words}: {said}"
+    enough = ended.value.code == 0 or "Missing " in said or "requires an argument" in said
+    assert enough, f"{path}: mua-{name}{words}: {said}"
 
 
 def test_a_lost_link_and_a_lost_anchor_are_found(tmp_path: Path) -> None:
