@@ -19,7 +19,7 @@ BASIS_RATE = 3.0  # learning rate of the bases relative to that of the MLP
 
 
 def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
-    """5 |LL| + |D3| + |D2|, L1 (paper, Eq. L_rec)."""
+    """5 |LL| + |D3| + |D2|, L1 (paper, Eq. L_rec), each as a mean over its numbers (docs/research/paper.md)."""
     ll, d3, d2 = ((a - b).abs().mean() for a, b in zip(predicted, truth, strict=True))
     return LL_WEIGHT * ll + d3 + d2
 
