@@ -90,6 +90,7 @@ def test_every_operator_changes_text(name: str, line: str, operator: str, mutate
         "float f(float a, float b);",
         "List<int> a;",
         "{ a = 0xff; }",
+        "{ a = 1e-38; }",
     ],
 )
 def test_nothing_is_changed_that_text_only_says(line: str) -> None:

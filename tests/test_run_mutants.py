@@ -86,10 +86,12 @@ def test_faults_meet_the_tests_that_enter_their_function() -> None:
         "tests/test_e.py": Seen("", 1, True, {"a.py": ["<module>"]}, []),
     }
     named_first_then_fastest = ["tests/test_a.py", "tests/test_c.py", "tests/test_b.py"]
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", "f"), seen) == named_first_then_fastest
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", "g"), seen) == ["tests/test_c.py"]
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", ""), seen) == named_first_then_fastest  # outside of any function
-    assert seeing(Mutant("a.cs", "sign", 0, 1, ""), seen) == ["tests/test_a.py", "tests/test_b.py"]
+    assert seeing(Mutant("a.py", "sign", 0, 1, "", "f"), seen, {}) == named_first_then_fastest
+    assert seeing(Mutant("a.py", "sign", 0, 1, "", "g"), seen, {}) == ["tests/test_c.py"]
+    assert seeing(Mutant("a.py", "sign", 0, 1, "", ""), seen, {}) == named_first_then_fastest  # outside of any function
+    caught = {(".", "tests/test_b.py"): 2, ("b", "tests/test_c.py"): 9}
+    assert seeing(Mutant("a.py", "sign", 0, 1, "", "f"), seen, caught)[1:] == ["tests/test_b.py", "tests/test_c.py"]
+    assert seeing(Mutant("a.cs", "sign", 0, 1, ""), seen, {}) == ["tests/test_a.py", "tests/test_b.py"]
 
 
 def test_what_does_not_compile_counts_apart() -> None:

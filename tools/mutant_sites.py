@@ -41,7 +41,11 @@ TOKENS = (  # operator, what is found, what takes its place
     ("sign", re.compile(r"(?<=return )(-)(?=[A-Za-z_(\d])"), lambda found: ""),
     ("logic", re.compile(r"(?<=\s)(&&|\|\||&|\|)(?=\s)"), lambda found: {"&": "|", "|": "&"}[found[0]] * len(found)),
     ("logic", re.compile(r"(?<![\w)\]])(!)(?=[A-Za-z_(])"), lambda found: ""),
-    ("constant", re.compile(r"(?<![\w.])(\d+)(?=[uUL]?\b)(?!\.\d|[fdm]\b)"), lambda found: str(int(found) + 1)),
+    (
+        "constant",
+        re.compile(r"(?<![\w.])(?<![eE][-+])(\d+)(?=[uUL]?\b)(?!\.\d|[fdm]\b)"),
+        lambda found: str(int(found) + 1),
+    ),
     ("constant", re.compile(r"(?<![\w.])(\d+\.\d+|\d+(?=[fd]\b))(?=[fd]?\b)"), lambda found: _twice(float(found))),
     ("constant", re.compile(r"\b(true|false)\b"), {"true": "false", "false": "true"}.__getitem__),
 )

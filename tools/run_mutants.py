@@ -16,6 +16,7 @@ import random
 import shutil
 import subprocess
 import tomllib
+from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ from itertools import chain
 from pathlib import Path
 
 from mutant_sites import Mutant, mutants
-from mutant_tests import FAILED, NOT_COMPILED, Checkout, Seen, record, seeing
+from mutant_tests import FAILED, NOT_COMPILED, Checkout, Seen, folder_of, record, seeing
 
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / "build" / "mutants"
@@ -80,9 +81,9 @@ def reason(mutant: Mutant, text: str, known: list[dict[str, str]]) -> str:
     return ""
 
 
-def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen]) -> Outcome:
+def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen], caught: Counter[tuple[str, str]]) -> Outcome:
     """Put a fault in, run the tests that see it, take it out."""
-    path, tests = checkout.root / mutant.path, seeing(mutant, seen)
+    path, tests = checkout.root / mutant.path, seeing(mutant, seen, caught)
     mutated = mutant.apply(path.read_text(encoding="utf-8"))
     if path.suffix == ".py":
         try:
@@ -114,13 +115,16 @@ def _judged(mutant: Mutant, checkout: Checkout, tests: list[str], seconds: float
 def run(waiting: Iterator[Mutant], number: int, checkouts: list[Checkout], seen: dict[str, Seen]) -> list[Outcome]:
     """Outcomes until `number` of the faults, taken in order, compiled and are not known as equivalent."""
     known, free = tomllib.loads(EQUIVALENT.read_text())["equivalent"], list(checkouts)
+    caught = Counter[tuple[str, str]]()  # by folder of the fault and test file
 
     def outcome(mutant: Mutant) -> Outcome:
         if why := reason(mutant, (ROOT / mutant.path).read_text(encoding="utf-8"), known):
             return Outcome(mutant, EQUAL, why)
         checkout = free.pop()
         try:
-            return tried(mutant, checkout, seen)
+            done = tried(mutant, checkout, seen, caught)
+            caught[folder_of(mutant), done.by.split("::")[0]] += done.result == CAUGHT
+            return done
         finally:
             free.append(checkout)
 
