@@ -18,10 +18,10 @@ from silent import Silent
 
 from mua.asset import read, write
 from mua.asset.tensors import Storage
-from mua.bake.assemble import assemble
-from mua.bake.pipeline import Baked, Order, bake, recording_key
-from mua.bake.plan import plan, split
-from mua.bake.sources import RATE, load_character
+from mua.baking.assemble import assemble
+from mua.baking.pipeline import Baked, Order, bake, recording_key
+from mua.baking.plan import plan, split
+from mua.baking.sources import RATE, load_character
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.locks import DirectoryLock

@@ -16,7 +16,7 @@ from test_bake import SMALL
 from test_likeness import column_file
 from typer.testing import CliRunner
 
-from mua.bake.pipeline import Order, bake
+from mua.baking.pipeline import Order, bake
 from mua.cli.bake import main
 from mua.contact_sheet import CAPTION, CELL
 from mua.errors import InputError

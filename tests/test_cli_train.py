@@ -13,7 +13,7 @@ from synthetic_avatar import synthetic_rig
 from trainings import STAGE_NAMES, mua_train, sentence
 
 from mua.asset import read
-from mua.bake.report import UNSAID
+from mua.baking.report import UNSAID
 from mua.cli import display
 from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record

@@ -8,8 +8,9 @@ import pywt
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters
+from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.motion.encoding import PoseEncoding
 from mua.student.settings import Ranks, preset
 

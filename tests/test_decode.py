@@ -9,8 +9,9 @@ from synthetic_avatar import synthetic_avatar, synthetic_rig
 
 from mua import rotation
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Branch, Mlp
-from mua.decode import Frame, decode, decode_clip_frame, pose_splats
+from mua.asset.avatar import Avatar
+from mua.decode import Splats, decode, decode_clip_frame, pose_splats
+from mua.model import Branch, Mlp
 from mua.motion.descriptor import describe
 from mua.rig.skeleton import Pose
 
@@ -72,7 +73,7 @@ def test_float32_stays_near_float64() -> None:
     avatar = synthetic_avatar()
     single = decode_clip_frame(avatar, avatar.clips[0], frame=3)
     double = decode_clip_frame(avatar, avatar.clips[0], frame=3, dtype=np.float64)
-    for field in dataclasses.fields(Frame):
+    for field in dataclasses.fields(Splats):
         found, expected = getattr(single, field.name), getattr(double, field.name)
         assert (found.dtype, expected.dtype) == (np.float32, np.float64)
         bound = OPERATIONS * np.finfo(np.float32).eps * max(np.abs(double.texture).max(), 1)

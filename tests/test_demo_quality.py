@@ -10,7 +10,7 @@ import pytest
 import torch
 from silent import Silent
 
-from mua.bake.pipeline import Order, bake
+from mua.baking.pipeline import Order, bake
 from mua.evaluate import TRAINING, Errors
 from mua.student.settings import preset
 

@@ -11,7 +11,7 @@ from synthetic_student import SETTINGS, quick
 
 from mua.asset.read import read
 from mua.asset.write import write
-from mua.bake.assemble import assemble
+from mua.baking.assemble import assemble
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.motion.descriptor import describe

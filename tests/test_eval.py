@@ -31,7 +31,7 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.offscreen import Offscreen
 from mua.player.scene import Toggles
 from mua.recording import PlannedClip, Recording, TeacherWriter, WholeFrame, record
-from mua.render import render
+from mua.rendering import render_over
 from mua.rig.skeleton import Pose
 from mua.student import settings as presets
 from mua.student.optimise import Report
@@ -130,7 +130,7 @@ def test_pictures_agree_with_the_cpu_rasteriser(studio: Studio, frames: list[Who
     )
     drawn = studio.draw(frame, frame.texture)
     for camera, picture in zip(studio.cameras(frame), drawn, strict=True):
-        assert psnr(picture, np.clip(render(posed, camera, background=(0, 0, 0)), 0, 1)) > LEAST_PSNR
+        assert psnr(picture, np.clip(render_over(posed, camera, background=(0, 0, 0)), 0, 1)) > LEAST_PSNR
     assert psnr(drawn[0], drawn[1]) < 30  # the views differ
 
 

@@ -5,21 +5,21 @@ import pywt
 import torch
 from synthetic_student import INPUTS, bands_of_frames, random_student
 
+from mua import model
 from mua.arrays import Array
-from mua.asset import avatar
 from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
 
 RELATIVE = 1e-5  # the project's bound for a float32 asset against the torch student
 
 
-def numpy_mlp(mlp: avatar.Mlp, x: Array) -> Array:
+def numpy_mlp(mlp: model.Mlp, x: Array) -> Array:
     for i, layer in enumerate(mlp):
         x = x @ layer.weight.T.astype(float) + layer.bias
         x = np.maximum(x, 0) if i < len(mlp) - 1 else x
     return x
 
 
-def numpy_bands(branch: avatar.Branch, x: Array) -> list[Array]:
+def numpy_bands(branch: model.Branch, x: Array) -> list[Array]:
     """LL [F, C, n, n] and the detail bands [F, 3, C, n, n], coarse first, in double precision."""
     flat = numpy_mlp(branch.mlp, x)
     sizes = np.cumsum([branch.channels * rank for rank in branch.ranks])

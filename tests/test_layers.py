@@ -55,7 +55,7 @@ def test_modules_import_only_from_above() -> None:
 
 
 def test_reading_and_decoding_import_no_torch() -> None:
-    code = "import sys, mua.asset.read, mua.decode, mua.render; sys.exit('torch' in sys.modules)"
+    code = "import sys, mua.asset.read, mua.decode, mua.rendering; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -8,12 +8,12 @@ import gltf_files
 import moderngl
 import numpy as np
 import pytest
-from test_render import sphere
+from test_rendering import sphere
 from tube import tube
 
 from mua import rotation
 from mua.arrays import Array
-from mua.bake.check import WITHOUT_FILE, likeness_of
+from mua.baking.check import WITHOUT_FILE, likeness_of
 from mua.camera import Camera, orbit
 from mua.kernels.splat_project import LEAST_OPACITY
 from mua.likeness import splats as splat_painting
@@ -25,7 +25,7 @@ from mua.likeness.painter import Painter
 from mua.likeness.posing import Poser, skinned
 from mua.likeness.sheet import likeness_sheet
 from mua.likeness.splats import SplatPainter
-from mua.render import frame_bounds, render_premultiplied
+from mua.rendering import frame_bounds, render_premultiplied
 from mua.rig.character import Character
 from mua.rig.read import read_character
 from mua.rig.scene import Material, Part, Source

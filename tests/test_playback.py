@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mua.bake.playback import choose, held_out, held_out_sentence, typical_frame, whole_clips
+from mua.baking.playback import choose, held_out, held_out_sentence, typical_frame, whole_clips
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.recording import RecordedClip

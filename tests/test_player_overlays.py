@@ -15,7 +15,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.write import write
 from mua.camera import Camera, orbit, stereo
-from mua.decode import Frame, decode_clip_frame
+from mua.decode import Splats, decode_clip_frame
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.dq_skinning import blend_vertices
@@ -61,7 +61,7 @@ class Stage:
         self.clip = self.avatar.clips[0]
         self.window = self.avatar.encoding.frames(INDEX)
         self.ground = ground_height(self.avatar.rig, self.clip)
-        self.frame: Frame = decode_clip_frame(self.avatar, self.clip, frame=INDEX, dtype=np.float64)
+        self.frame: Splats = decode_clip_frame(self.avatar, self.clip, frame=INDEX, dtype=np.float64)
 
     def picture(self, cameras: tuple[Camera, ...], show: str) -> Array:
         commands = self.device.commands()

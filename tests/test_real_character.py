@@ -7,7 +7,7 @@ import torch
 from shared_data import SharedData
 from silent import Silent
 
-from mua.bake.pipeline import Order, bake
+from mua.baking.pipeline import Order, bake
 from mua.evaluate import TRAINING
 from mua.student.settings import preset
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from mua.bake.report import HELD_OUT, Stored, as_json, closing, markdown, table
+from mua.baking.report import HELD_OUT, Stored, as_json, closing, markdown, table
 from mua.cli.display import Display
 from mua.evaluate import Errors, Picture, held_out_errors
 from mua.motion.clip import Clip

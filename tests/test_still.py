@@ -6,7 +6,7 @@ from tube import HEIGHT, RADIUS, tube
 
 from mua.camera import orbit
 from mua.decode import pose_splats
-from mua.render import render_premultiplied
+from mua.rendering import render_premultiplied
 from mua.teachers import texels
 from mua.teachers.still import StillTeacher
 

@@ -14,7 +14,7 @@ from mua.arrays import Array
 from mua.asset.read import read
 from mua.camera import orbit
 from mua.decode import decode_clip_frame
-from mua.render import frame_bounds, render_premultiplied, to_bytes
+from mua.rendering import frame_bounds, render_premultiplied, to_bytes
 
 FRAMES = 2  # of each clip
 SCREEN = (480, 720)

@@ -1,3 +1,70 @@
-"""MUA: an open pipeline and player for photoreal, animatable human avatars."""
+"""MUA: an open pipeline and player for photoreal, animatable human avatars.
+
+Reading an avatar, decoding and drawing it on the CPU:
+
+    import mua
+
+    avatar = mua.load("hero.muaavatar")
+    splats = avatar.decode("walk", 12)
+    mua.render(splats).save("hero.png")
+
+Names are loaded when they are first used: `import mua` is quick, and the lines above need numpy, flatbuffers and pillow
+alone. Bad input raises `InputError` with a sentence.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from mua.errors import InputError
+
+if TYPE_CHECKING:
+    from mua.asset.avatar import Avatar
+    from mua.asset.read import read as load
+    from mua.asset.write import write as save
+    from mua.camera import Camera
+    from mua.decode import Splats
+    from mua.motion.clip import Clip
+    from mua.recording import Recording, TeacherWriter
+    from mua.rendering import render
+    from mua.rig.skeleton import Pose
 
 __version__ = "0.1.0"
+__all__ = [
+    "Avatar",
+    "Camera",
+    "Clip",
+    "InputError",
+    "Pose",
+    "Recording",
+    "Splats",
+    "TeacherWriter",
+    "load",
+    "render",
+    "save",
+]
+
+_PLACES = {
+    "Avatar": "mua.asset.avatar:Avatar",
+    "Camera": "mua.camera:Camera",
+    "Clip": "mua.motion.clip:Clip",
+    "Pose": "mua.rig.skeleton:Pose",
+    "Recording": "mua.recording:Recording",
+    "Splats": "mua.decode:Splats",
+    "TeacherWriter": "mua.recording:TeacherWriter",
+    "load": "mua.asset.read:read",
+    "render": "mua.rendering:render",
+    "save": "mua.asset.write:write",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first used."""
+    if name not in _PLACES:
+        raise AttributeError(f"module 'mua' has no attribute {name!r}")
+    module, _, attribute = _PLACES[name].partition(":")
+    globals()[name] = value = getattr(import_module(module), attribute)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -16,7 +16,7 @@ EYE_DISTANCE = 0.063  # metres, of an adult
 FILL = 0.92  # of the image's half size, that the framed box reaches
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Camera:
     """One eye."""
 

@@ -13,7 +13,7 @@ from mua.likeness.compare import Likeness
 from mua.likeness.sheet import worst_strips
 from mua.portrait import portrait
 from mua.recording import WholeFrame
-from mua.render import render_premultiplied, to_bytes
+from mua.rendering import render_premultiplied, to_bytes
 
 CELL = (288, 416)  # width, height, pixels
 CAPTION = 22  # pixels

@@ -7,20 +7,21 @@ import numpy.typing as npt
 
 from mua import rotation
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Branch, Mlp, Wavelet
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
 from mua.kernels.inverse_dwt import add_static, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
+from mua.model import Branch, Mlp, Model, Wavelet
 from mua.motion.clip import Clip
 from mua.motion.descriptor import describe_window
+from mua.motion.resample import sample
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.texture.channels import APPEARANCE
 
 
-@dataclass(frozen=True)
-class Frame:
+@dataclass(frozen=True, eq=False, repr=False)
+class Splats:
     """A posed avatar, in the dtype it was decoded in; world space, metres; N splats in the order of the texel map."""
 
     canonical: Array  # [V, 3] canonical vertices
@@ -34,14 +35,20 @@ class Frame:
     texel_dq: Array  # [N, 8] bind pose to world; the real part is R_tex
     bounds: Array  # [2, 3] lowest and highest corner of the box over which depth is keyed
 
+    def __len__(self) -> int:
+        return len(self.centres)
+
+    def __repr__(self) -> str:
+        return f"<mua.Splats: {len(self):,} splats, {self.centres.dtype}>"
+
 
 def decode(
-    avatar: Avatar,
+    avatar: Model,
     rotations: Array,  # [k, J, 4] local joint rotations, newest first
     *,
     translations: Array,  # [k, J, 3] local joint translations, metres
     dtype: npt.DTypeLike = np.float32,
-) -> Frame:
+) -> Splats:
     """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
     descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
     x = ((descriptor - avatar.normalization.mean) / avatar.normalization.scale).astype(dtype)
@@ -54,19 +61,19 @@ def decode(
 
 
 def decode_clip_frame(
-    avatar: Avatar,
-    clip: Clip,  # at the rate of the avatar's encoding
+    avatar: Model,
+    clip: Clip,
     *,
-    frame: int,
+    frame: int,  # at the rate of the avatar's encoding
     dtype: npt.DTypeLike = np.float32,
-) -> Frame:
+) -> Splats:
     """Decode one frame of a clip; before its first frame, the clip is held still."""
-    window = np.maximum(frame - np.arange(avatar.encoding.window), 0)
-    return decode(avatar, clip.rotations[window], translations=clip.translations[window], dtype=dtype)
+    window = sample(clip, np.array(avatar.encoding.frames(frame)), rate=avatar.encoding.rate)
+    return decode(avatar, window.rotations, translations=window.translations, dtype=dtype)
 
 
 def expand_mesh(
-    avatar: Avatar,
+    avatar: Model,
     x: Array,  # [k D] normalised descriptor
 ) -> Array:
     """Canonical vertices [V, 3]: F_temp, then the PCA basis."""
@@ -107,7 +114,7 @@ def pose_splats(
     texture: Array,  # [N, 23] raw channels at the valid texels; its dtype is that of the frame
     pose: Pose,
     bounds: Array | None = None,  # [2, 3] of the splats about the root joint, metres; their own box if left out
-) -> Frame:
+) -> Splats:
     """Skin mesh and texture, a student's or a teacher's, into the world."""
     dtype = texture.dtype
     canonical = canonical.astype(dtype, copy=False)
@@ -118,7 +125,7 @@ def pose_splats(
     texel_dq = blend_texels(vertex_dq, faces, triangles, barycentrics)
     centres, rotations, scales, opacities = skin_splats(texel_dq, canonical, faces, triangles, barycentrics, texture)
     root = rig.skeleton.world(pose.rotations, pose.translations)[1][rig.skeleton.root]
-    return Frame(
+    return Splats(
         canonical=canonical,
         mesh=rotation.dual_transform(vertex_dq, canonical),
         texture=texture,

@@ -43,7 +43,7 @@ UNITS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Picture:
     """What stands beside a teacher's frame."""
 

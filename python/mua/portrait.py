@@ -4,9 +4,9 @@ import numpy as np
 
 from mua import rotation
 from mua.camera import Camera, orbit
-from mua.decode import Frame
+from mua.decode import Splats
 from mua.motion.descriptor import heading_of
-from mua.render import frame_bounds
+from mua.rendering import frame_bounds
 from mua.rig.skeleton import Pose, Skeleton
 
 THREE_QUARTER = np.radians(25)  # from the front
@@ -14,7 +14,7 @@ ABOVE = np.radians(8)
 
 
 def portrait(
-    frame: Frame,
+    frame: Splats,
     skeleton: Skeleton,
     *,
     pose: Pose,

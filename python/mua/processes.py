@@ -27,7 +27,7 @@ LOST = ("gloo", "Gloo", "NCCL", "Connection closed", "Connection reset")  # what
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Share:
     """What one process computes of a batch that is drawn for all of them."""
 

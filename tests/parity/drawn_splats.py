@@ -9,7 +9,7 @@ from sorted_keys import append_sort
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera
-from mua.decode import Frame, box_of
+from mua.decode import Splats, box_of
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances, pack_splats
 from mua.kernels.splat_draw import splat_colors, splat_draw
@@ -34,7 +34,7 @@ def stereo(camera: Camera) -> tuple[Camera, Camera]:
     )
 
 
-def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], seed: int = 0) -> Frame:
+def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], seed: int = 0) -> Splats:
     """Splats in and around the bounds, from the least to the largest of `deviations` in metres, half of them faint."""
     rng = np.random.default_rng(seed)
     middle, half = bounds.mean(axis=0), np.ptp(bounds, axis=0) / 2
@@ -42,7 +42,7 @@ def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], 
     size = np.exp(rng.uniform(least, largest, (count, 1)))
     turns = rotation.normalize(rng.normal(size=(count, 4)))
     centres = middle + half * rng.uniform(-1.2, 1.2, (count, 3))
-    return Frame(
+    return Splats(
         canonical=np.zeros((0, 3)),
         mesh=np.zeros((0, 3)),
         texture=np.zeros((0, 23)),
@@ -56,7 +56,7 @@ def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], 
     )
 
 
-def sort_frame(device: Device, frame: Frame, cameras: Sequence[Camera]) -> SortedSplats:
+def sort_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> SortedSplats:
     """The frame's splats projected and sorted by the shaders, as a player does it."""
     covariance = covariances(frame.rotations, frame.scales)
     packed = pack_splats(frame.centres, covariance, frame.opacities, frame.texel_dq, frame.sh)
@@ -101,14 +101,14 @@ def sort_frame(device: Device, frame: Frame, cameras: Sequence[Camera]) -> Sorte
     return SortedSplats(count, splats, ellipses, colors, order, arguments)
 
 
-def draw_frame(device: Device, frame: Frame, cameras: Sequence[Camera]) -> Array:
+def draw_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> Array:
     """The shaders' picture [E, H, W, 4], premultiplied."""
     splats = sort_frame(device, frame, cameras)
     image = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, cameras)
     return np.stack(np.split(image, len(cameras), axis=1))
 
 
-def reference_frame(frame: Frame, cameras: Sequence[Camera]) -> Array:
+def reference_frame(frame: Splats, cameras: Sequence[Camera]) -> Array:
     """The reference's picture [E, H, W, 4], premultiplied: one order and one colour for both eyes."""
     splats, keys, ellipses = splat_project(
         frame.centres,

@@ -15,7 +15,7 @@ from splat_rounding import exact_keys
 from mua.arrays import Array
 from mua.bounds import frame_boxes, union
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
-from mua.decode import Frame, decode_clip_frame
+from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device, open_device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
@@ -81,7 +81,7 @@ def cameras_of(rig: Rig, clip: Clip, *, eyes: int, screen: int) -> Sequence[Came
     return (camera,) if eyes == 1 else stereo(camera, EYE_DISTANCE)
 
 
-def exact_colors(frame: Frame, cameras: Sequence[Camera]) -> Array:
+def exact_colors(frame: Splats, cameras: Sequence[Camera]) -> Array:
     """Colours [N, 3] towards the mean of the eyes."""
     middle = np.mean([camera.position for camera in cameras], axis=0)
     return splat_colors(frame.centres, frame.texel_dq, frame.sh, middle)

@@ -22,7 +22,7 @@ from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.offscreen import Offscreen, reference_picture
 from mua.player.scene import Toggles
 from mua.player.splats import SplatFrame
-from mua.render import frame_bounds, render_premultiplied
+from mua.rendering import frame_bounds, render_premultiplied
 from mua.student.settings import preset
 
 POSITION_BOUND = 5e-5  # metres; float32 leaves a fiftieth of it on a person two metres from the origin

@@ -17,13 +17,13 @@ from synthetic_avatar import synthetic_avatar
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera, orbit
-from mua.decode import Frame, decode_clip_frame
+from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels import splat_draw as kernel
 from mua.kernels.splat_draw import MOST_ALPHA, pixel_integral, splat_colors, splat_draw
 from mua.kernels.splat_project import half_lengths
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image, read_image
-from mua.render import frame_bounds, render_premultiplied
+from mua.rendering import frame_bounds, render_premultiplied
 
 # How far the logistic S(x) and its slope lie from the normal distribution and its density, at most, over all x.
 CUMULATIVE_BOUND = 4e-4
@@ -202,7 +202,7 @@ FIELDS = ["centres", "rotations", "scales", "opacities", "sh", "texel_dq"]
 
 
 @cache
-def reference_scene(eyes: int) -> tuple[Frame, tuple[Camera, ...], Array]:
+def reference_scene(eyes: int) -> tuple[Splats, tuple[Camera, ...], Array]:
     """The scene and the reference's picture of it [E, H, W, 4]."""
     frame, seen_by = scene(eyes)
     return frame, seen_by, reference_frame(frame, seen_by)
@@ -213,7 +213,7 @@ def cameras(bounds: Array, eyes: int, screen: tuple[int, int] = PICTURE) -> tupl
     return (camera,) if eyes == 1 else stereo(camera)
 
 
-def scene(eyes: int) -> tuple[Frame, tuple[Camera, ...]]:
+def scene(eyes: int) -> tuple[Splats, tuple[Camera, ...]]:
     """Thin and round splats of 0.05 to 100 pixels, some beside the screen and some behind the camera."""
     seen_by = cameras(BOX, eyes)
     small = random_frame(4000, BOX, deviations=(1e-4, 0.05))

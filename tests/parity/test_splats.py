@@ -17,14 +17,14 @@ from mua.asset import write
 from mua.asset.avatar import Avatar
 from mua.bounds import union
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
-from mua.decode import Frame, box_of, decode_clip_frame
+from mua.decode import Splats, box_of, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.splats import SplatFrame
-from mua.render import frame_bounds, render_premultiplied
+from mua.rendering import frame_bounds, render_premultiplied
 
 INDICES = (0, 3, 6)  # of the frame that each avatar shows
 VISIBLE_WORD = 7  # of `arguments`
@@ -39,7 +39,7 @@ def turned(angle: float, place: Sequence[float]) -> Array:
 PLACES = (turned(0, (0, 0, 0)), turned(1.2, (0.35, 0.1, -0.2)), turned(-2.5, (-0.4, 0, 0.3)))  # they interpenetrate
 
 
-def moved(frame: Frame, place: Array) -> Frame:
+def moved(frame: Splats, place: Array) -> Splats:
     """A posed avatar elsewhere."""
     return replace(
         frame,
@@ -51,9 +51,9 @@ def moved(frame: Frame, place: Array) -> Frame:
     )
 
 
-def joined(frames: Sequence[Frame]) -> Frame:
+def joined(frames: Sequence[Splats]) -> Splats:
     """Frames as one, the box around all of theirs."""
-    whole = Frame(**{field.name: np.concatenate([getattr(f, field.name) for f in frames]) for field in fields(Frame)})
+    whole = Splats(**{field.name: np.concatenate([getattr(f, field.name) for f in frames]) for field in fields(Splats)})
     return replace(whole, bounds=box_of(whole.bounds))
 
 

@@ -11,7 +11,7 @@ from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
-from mua.asset.avatar import Layer
+from mua.model import Layer
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 

@@ -11,11 +11,11 @@ from malformed import DAMAGED, MALFORMED, malformed
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
-from mua.asset.avatar import Branch, Mlp
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.read import decode_tree, parse_checked
 from mua.asset.tensors import Storage, stored
 from mua.asset.write import encode
+from mua.model import Branch, Mlp
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "synthetic.muaavatar"
 MUTATED_BYTES = 1_000_000

@@ -12,10 +12,11 @@ from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Layer, Mlp
+from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
+from mua.model import Layer, Mlp
 from mua.motion.clip import Clip
 from mua.motion.descriptor import describe
 from mua.motion.encoding import Normalization, PoseEncoding

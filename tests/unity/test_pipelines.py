@@ -26,7 +26,7 @@ from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-from mua.render import render_premultiplied
+from mua.rendering import render_premultiplied
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 

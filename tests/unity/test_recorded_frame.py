@@ -17,12 +17,12 @@ from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
 from mua.bounds import root_positions
 from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
-from mua.decode import Frame, decode_clip_frame
+from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-from mua.render import render_premultiplied
+from mua.rendering import render_premultiplied
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
@@ -107,7 +107,7 @@ class Recorded:
         self.said = [line.split() for line in said.splitlines()]
         self.replayed: Replayed = replay(device, folder / "recording")
 
-    def _exact(self, shot: Shot) -> Frame:
+    def _exact(self, shot: Shot) -> Splats:
         return joined(
             [
                 moved(decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64), place_of(place))

@@ -1,96 +1,101 @@
 """An avatar in memory: exactly what a `.muaavatar` file holds (schemas/muaavatar.fbs), as numpy arrays.
 
 The student exports one, the writer stores it, the reader returns it and the kernels decode it.
-Spatial tensors are channel-first: a GPU reads them plane by plane.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mua.arrays import Array
+import numpy as np
+import numpy.typing as npt
+
+from mua.arguments import finite_array, float_type, told, unit_quaternions, whole_number
+from mua.decode import Splats, decode, decode_clip_frame
+from mua.errors import InputError
+from mua.model import Model
 from mua.motion.clip import Clip
-from mua.motion.encoding import Normalization, PoseEncoding
-from mua.rig.rig import Rig
+from mua.motion.resample import frames_at
+from mua.rig.skeleton import Pose
 
 
-@dataclass(frozen=True)
-class Layer:
-    """y = act(W x + b); ReLU on every layer but the last of its MLP."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Avatar(Model):
+    """Everything that a player needs: what is decoded, clips to play, and what a person reads of it.
 
-    weight: Array  # [out, in]
-    bias: Array  # [out]
-
-
-Mlp = tuple[Layer, ...]
-
-
-@dataclass(frozen=True)
-class DetailBand:
-    """The three detail subbands of one level: mean + sum_r alpha(r, c) h (x) w (paper, Dynamic mid-frequency subbands).
-
-    Subbands are in the order of pywt's (cH, cV, cD): high-pass along rows' axis 0, along axis 1, along both.
+    `mua.load` gives one; `avatar.clips` are its motions, `avatar.rig.skeleton` its joints.
     """
-
-    mean: Array  # [3, C, n, n]
-    h: Array  # [3, C, R, n] along axis 0 (rows)
-    w: Array  # [3, C, R, n] along axis 1 (columns)
-
-
-@dataclass(frozen=True)
-class Branch:
-    """Geometry (C = 11) or appearance (C = 12): one coefficient MLP and the subbands that its output drives.
-
-    The MLP's output is the concatenation of alpha_LL [C, R_LL], alpha_D3 [C, R_3], alpha_D2 [C, R_2], each row-major.
-    """
-
-    mlp: Mlp
-    ll_mean: Array  # [C, n, n]
-    ll_basis: Array  # [C, R, n, n]
-    details: tuple[DetailBand, ...]  # coarse first: D3, D2
-    static: Array  # [C, N] static IDWT offset at the valid texels: IDWT(0, 0, 0, mean D1, mean D0)
-
-    @property
-    def channels(self) -> int:
-        return int(self.ll_mean.shape[0])
-
-    @property
-    def ranks(self) -> tuple[int, ...]:
-        """Ranks of LL, D3, D2."""
-        return (int(self.ll_basis.shape[1]), *(int(band.h.shape[2]) for band in self.details))
-
-
-@dataclass(frozen=True)
-class Coarse:
-    """The coarse mesh: F_temp predicts the PCA coefficients of the canonical vertices (paper, Coarse Geometry)."""
-
-    mlp: Mlp
-    mean: Array  # [V, 3] metres
-    basis: Array  # [K, V, 3]
-
-
-@dataclass(frozen=True)
-class Wavelet:
-    """Synthesis filters of a biorthogonal wavelet in periodization mode; texture size = LL size x 2^levels."""
-
-    name: str  # as in PyWavelets, e.g. bior4.4
-    levels: int  # 4
-    rec_lo: Array  # [L] float64
-    rec_hi: Array  # [L] float64
-
-
-@dataclass(frozen=True)
-class Avatar:
-    """Everything that a player needs."""
 
     name: str
     producer: str  # program and version that trained it
-    rig: Rig
-    encoding: PoseEncoding
-    normalization: Normalization
-    coarse: Coarse
-    geometry: Branch
-    appearance: Branch
-    wavelet: Wavelet
     clips: tuple[Clip, ...]
-    bounds: Array  # [2, 3] lowest and highest corner of all playback poses about the root joint's position, metres
     thumbnail: bytes  # PNG, may be empty
     notes: str  # e.g. that the teacher is a simulated stand-in
+
+    def decode(
+        self,
+        clip: str | Clip | Sequence[Pose],
+        frame: int = 0,
+        *,
+        dtype: npt.DTypeLike = np.float32,
+    ) -> Splats:
+        """The splats of one frame, in world space, metres.
+
+        `clip` is the name of one of the avatar's clips, a `Clip` of its skeleton at any rate, or a window of poses,
+        newest first: as many as `avatar.encoding.window` says, `1 / avatar.encoding.rate` seconds apart. `frame` counts
+        from 0 at the avatar's rate, `avatar.encoding.rate` frames per second; a window has no other frame than 0.
+        `dtype` is float32 or float64.
+
+        Errors: InputError for a clip or frame that is not there, and for poses of another skeleton's shape.
+
+        Example:
+
+            splats = avatar.decode("walk", 12)
+            splats.centres.shape  # (number of splats, 3)
+        """
+        number, element = whole_number(frame, "frame"), float_type(dtype, "dtype")
+        if isinstance(clip, str):
+            clip = self.clip(clip)
+        if isinstance(clip, Clip):
+            self._check_clip(clip, number)
+            return decode_clip_frame(self, clip, frame=number, dtype=element)
+        if number != 0:
+            raise InputError(f"frame is {number}; a window of poses has frame 0 alone")
+        rotations, translations = self._window(clip)
+        return decode(self, rotations, translations=translations, dtype=element)
+
+    def clip(self, name: str) -> Clip:
+        """The clip of that name; raises InputError where there is none."""
+        for clip in self.clips:
+            if clip.name == name:
+                return clip
+        held = ", ".join(repr(clip.name) for clip in self.clips) or "no clips"
+        raise InputError(f"clip is {told(name)}; the avatar holds {held}")
+
+    def __repr__(self) -> str:
+        texels, joints = self.rig.texels, len(self.rig.skeleton.names)
+        clips = "1 clip" if len(self.clips) == 1 else f"{len(self.clips)} clips"
+        return (
+            f"<mua.Avatar {self.name!r}: {joints} joints, {len(self.rig.mesh.vertices):,} vertices, "
+            f"{len(texels.texels):,} splats of {texels.size} x {texels.size} texels, {clips}>"
+        )
+
+    def _check_clip(self, clip: Clip, frame: int) -> None:
+        joints, of = len(self.rig.skeleton.names), f"of clip {clip.name!r}"
+        rotations = unit_quaternions(clip.rotations, f"rotations {of}", (None, joints, 4))
+        finite_array(clip.translations, f"translations {of}", (len(rotations), joints, 3))
+        if not len(clip):
+            raise InputError(f"clip {clip.name!r} has no frames; expected at least one")
+        count = frames_at(clip, self.encoding.rate)
+        if not 0 <= frame < count:
+            raise InputError(f"frame is {frame}; clip {clip.name!r} has frames 0 to {count - 1}")
+
+    def _window(self, poses: Sequence[Pose]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Rotations [k, J, 4] and translations [k, J, 3]."""
+        if not isinstance(poses, Sequence) or not all(isinstance(pose, Pose) for pose in poses):
+            raise InputError(f"clip is {told(poses)}; expected a clip's name, a Clip or poses, newest first")
+        if len(poses) != self.encoding.window:
+            raise InputError(f"the window has {len(poses)} poses; expected {self.encoding.window}, newest first")
+        joints = len(self.rig.skeleton.names)
+        rotations = [unit_quaternions(pose.rotations, "rotations of a pose", (joints, 4)) for pose in poses]
+        translations = [finite_array(pose.translations, "translations of a pose", (joints, 3)) for pose in poses]
+        return np.stack(rotations), np.stack(translations)

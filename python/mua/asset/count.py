@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from mua.asset.avatar import Avatar, Branch, Mlp
+from mua.asset.avatar import Avatar
+from mua.model import Branch, Mlp
 
 
 def parameters(avatar: Avatar) -> dict[str, int]:

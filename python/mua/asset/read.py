@@ -1,16 +1,17 @@
 """Read a `.muaavatar` file: every shape relation, range and finiteness is checked before an Avatar leaves here."""
 
 import zlib
-from pathlib import Path
 
 import numpy as np
 
 from mua import rotation
+from mua.arguments import PathLike, as_path
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.tensors import indices, reals
 from mua.errors import InputError
+from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.motion.clip import LARGEST_RATE, LEAST_RATE, Clip
 from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.character import MAX_INFLUENCES, Mesh
@@ -32,10 +33,14 @@ GEOMETRY_CHANNELS, APPEARANCE_CHANNELS = 11, 12
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
-def read(path: Path) -> Avatar:
-    """The avatar in the file at `path`; stored f16 and i8 are expanded to float32.
+def read(path: PathLike) -> Avatar:
+    """The avatar in the `.muaavatar` file at `path`; stored f16 and i8 are expanded to float32.
 
     Errors: InputError with one sentence that names the file, the field and what is wrong with it.
+
+    Example:
+
+        avatar = mua.load("hero.muaavatar")
     """
     try:
         return decode_tree(load(path))
@@ -43,11 +48,12 @@ def read(path: Path) -> Avatar:
         raise error.inside(str(path)) from error
 
 
-def load(path: Path) -> Tree:
+def load(path: PathLike) -> Tree:
     """The file at `path` as a tree whose bytes and checksum are sound; tensors stay in their stored type.
 
     Errors: InputError naming the file and field.
     """
+    path = as_path(path, "path")
     try:
         content = path.read_bytes()
     except OSError as error:

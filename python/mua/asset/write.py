@@ -2,29 +2,43 @@
 
 import struct
 import zlib
-from pathlib import Path
+from typing import get_args
 
 import numpy as np
 
+from mua.arguments import PathLike, as_path, told
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Mlp
+from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import VERSION, Tree, build, parse
 from mua.asset.read import decode_tree, parse_checked
 from mua.asset.tensors import Storage, pack, pack_indices
+from mua.errors import InputError
 from mua.files import write_bytes
+from mua.model import Branch, Coarse, DetailBand, Mlp
 from mua.motion.clip import Clip
 from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Skeleton
 
 
-def write(path: Path, avatar: Avatar, *, storage: Storage = "f16") -> None:
+def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
     """Write `avatar` to `path`, atomically; what the reader would refuse is never written.
 
-    `storage` is the element type of bases, static offset and MLP weights; positions, means of LL and biases stay f32.
-    In an i8 file bases and last layers are i8; what costs quality as i8 (docs/research/storage.md) is f16.
+    `storage` is the element type of bases, static offset and MLP weights: f32, f16 or i8. Positions, means of LL and
+    biases stay f32. In an i8 file bases and last layers are i8; what costs quality as i8 (docs/accuracy.md, Storage) is
+    f16.
+
     Errors: InputError naming the field that a file cannot hold.
+
+    Example:
+
+        mua.save("hero_small.muaavatar", avatar, storage="i8")
     """
+    path = as_path(path, "path")
+    if not isinstance(avatar, Avatar):
+        raise InputError(f"avatar is {told(avatar)}; expected a mua.Avatar")
+    if storage not in get_args(Storage):
+        raise InputError(f"storage is {told(storage)}; expected f32, f16 or i8")
     write_bytes(path, encode(avatar, storage=storage))
 
 

@@ -12,7 +12,8 @@ import pywt
 
 from mua import rotation
 from mua.arrays import Array
-from mua.asset.avatar import Avatar, Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.asset.avatar import Avatar
+from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.motion.clip import Clip
 from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.character import MAX_INFLUENCES, Mesh

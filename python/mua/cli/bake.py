@@ -89,7 +89,7 @@ def main(
     size = FigureSize(scale=scale, height=height)
 
     if check:
-        from mua.bake.check import CheckOrder
+        from mua.baking.check import CheckOrder
         from mua.cli.check import check_and_show
 
         looked_at = CheckOrder(
@@ -98,8 +98,8 @@ def main(
         check_and_show(looked_at, json)
         return
 
-    from mua.bake.pipeline import Order, bake  # seconds of loading: only once the options are known to be good
-    from mua.bake.report import STAND_IN
+    from mua.baking.pipeline import Order, bake  # seconds of loading: only once the options are known to be good
+    from mua.baking.report import STAND_IN
     from mua.cli.display import Display, choose_device, show
 
     order = Order(

@@ -5,7 +5,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from mua.bake.check import Check, CheckOrder, check, write_json
+from mua.baking.check import Check, CheckOrder, check, write_json
 from mua.cli.display import Display
 from mua.files import require_writable
 from mua.likeness.compare import Likeness

@@ -11,7 +11,7 @@ from mua.errors import InputError
 if TYPE_CHECKING:  # torch takes seconds to load, and a check needs none of it
     import torch
 
-    from mua.bake.distillation import Baked
+    from mua.baking.distillation import Baked
 
 LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
 
@@ -101,7 +101,7 @@ class Display:
 
 def show(console: Console, baked: "Baked", *, teacher: str) -> None:
     """Print what a bake or a training ends with: the table of errors, and what was written where."""
-    from mua.bake.report import closing, table
+    from mua.baking.report import closing, table
 
     if baked.errors:
         console.print(table(baked.errors, teacher=teacher))

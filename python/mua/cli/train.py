@@ -17,7 +17,7 @@ from mua.locks import DirectoryLock
 from mua.student.settings import StageName, preset, with_recipe
 
 if TYPE_CHECKING:  # torch takes seconds to load
-    from mua.bake.distillation import Distillation
+    from mua.baking.distillation import Distillation
     from mua.processes import Processes
     from mua.recording import Recording
 
@@ -49,9 +49,9 @@ def main(
     settings = with_recipe(replace(preset(preset_name), seed=seed), recipe)
     require_recording(recording)
 
-    from mua.bake.distillation import Distillation  # seconds of loading: only once the options are known to be good
-    from mua.bake.playback import choose, whole_clips
-    from mua.bake.report import UNSAID
+    from mua.baking.distillation import Distillation  # seconds of loading: only once the options are known to be good
+    from mua.baking.playback import choose, whole_clips
+    from mua.baking.report import UNSAID
     from mua.processes import joined
     from mua.recording import Recording
 
@@ -87,7 +87,7 @@ def _alone(order: "Distillation") -> AbstractContextManager[object]:
 
 
 def _carry_out(order: "Distillation", recording: "Recording", stage: StageName | None, processes: "Processes") -> None:
-    from mua.bake.distillation import finish, teach, teach_stage
+    from mua.baking.distillation import finish, teach, teach_stage
 
     console = Console(quiet=not processes.first)
     with Display(console) as display:

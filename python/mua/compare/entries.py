@@ -31,7 +31,7 @@ MEAN = "mean texture"
 PLAYED = ", own mesh"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Picture:
     """What an entry makes of a frame."""
 

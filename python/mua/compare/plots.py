@@ -17,7 +17,7 @@ from mua.compare.images import Studio
 from mua.compare.judge import KINDS, Result
 from mua.compare.metrics import compare
 from mua.recording import WholeFrame
-from mua.render import to_bytes
+from mua.rendering import to_bytes
 
 DPI = 120
 LABEL_GAP = 0.055  # of an axis' height, between labels

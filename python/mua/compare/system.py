@@ -23,7 +23,7 @@ from mua.texture.channels import CHANNELS
 ALL = slice(0, CHANNELS)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sizes:
     """What the shape of every system follows from."""
 
@@ -46,7 +46,7 @@ class Budget:
     clock: Callable[[], float] = time.monotonic  # or time.process_time, where others use the machine as well
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """F frames as the systems see them."""
 
@@ -65,7 +65,7 @@ class Motion:
         return Motion(self.descriptors.to(device), self.canonical.to(device), self.posed.to(device))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TrainingFrames:
     """The training frames of a recording (`mua.compare.motion.training_frames`)."""
 

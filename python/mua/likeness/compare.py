@@ -28,7 +28,7 @@ ROUND = {"front": 0.0, "left": 90.0, "back": 180.0, "front, right": -40.0}  # de
 IN_MOTION = ("front, right", -40.0), ("back, left", 140.0)  # one side for each frame, by turns
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shot:
     """One pose from one side, drawn twice."""
 

@@ -50,7 +50,7 @@ void main()
 """.replace("SOLID", str(SOLID))
 
 
-@dataclass
+@dataclass(eq=False)
 class _Piece:
     """The triangles of one part on the device."""
 

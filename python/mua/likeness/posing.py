@@ -18,7 +18,7 @@ AGREED = 0.5  # of the surface: where less of it is turned alike, it has no head
 ALIKE = 30.0  # degrees
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Moment:
     """One pose, of the character's skeleton and of its source's nodes."""
 

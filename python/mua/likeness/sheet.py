@@ -6,7 +6,7 @@ from PIL import Image, ImageDraw, ImageFont
 from mua.arrays import Array
 from mua.likeness.background import background_for, over
 from mua.likeness.compare import SCREEN, Likeness, PoseLikeness, Shot
-from mua.render import to_bytes
+from mua.rendering import to_bytes
 
 GAIN = 4  # the difference is shown this many times as strong
 CAPTION = 22  # pixels

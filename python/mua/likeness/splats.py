@@ -7,11 +7,11 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.camera import Camera
-from mua.decode import Frame
+from mua.decode import Splats
 from mua.kernels.splat_draw import MOST_ALPHA
 from mua.kernels.splat_project import half_lengths
 from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
-from mua.render import projected
+from mua.rendering import projected
 
 SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part
 
@@ -65,7 +65,7 @@ class SplatPainter:
         self._canvas = Canvas(context, screen, samples=SAMPLES, dtype="f4")
         set_uniform(self._program, "screen", self._canvas.size)
 
-    def __call__(self, frame: Frame, camera: Camera) -> Array:
+    def __call__(self, frame: Splats, camera: Camera) -> Array:
         """Premultiplied sRGB and alpha [H, W, 4] float32, as `render.render_premultiplied` has every sample."""
         splats = projected(frame, replace(camera, screen=self._canvas.size))
         visible = splats.order[splats.ellipses[splats.order, 4] > 0]

@@ -25,7 +25,7 @@ WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
 Z_UP_TO_Y_UP = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0])  # a quarter turn about X
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Node:
     name: str
     parent: int

@@ -9,7 +9,7 @@ from mua.rig.skeleton import Pose
 LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second that a file may say
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Stretches:
     """What rigid joints cannot carry: some scale or shear the surface about themselves, before they move it."""
 
@@ -17,7 +17,7 @@ class Stretches:
     matrices: Array  # [F, K, 3, 3] in the axes of the bind pose; the identity does nothing
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Clip:
     """Poses at a steady rate; local rotations and translations of every joint.
 
@@ -32,6 +32,10 @@ class Clip:
 
     def __len__(self) -> int:
         return len(self.rotations)
+
+    def __repr__(self) -> str:
+        joints = self.rotations.shape[1] if self.rotations.ndim == 3 else "?"
+        return f"<mua.Clip {self.name!r}: {len(self)} frames at {self.rate:g} a second, {joints} joints>"
 
     def pose(self, index: int) -> Pose:
         return Pose(self.rotations[index], self.translations[index])

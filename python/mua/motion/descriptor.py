@@ -16,7 +16,7 @@ MOVES = 1e-3  # of the character's size; standard deviation below which a joint 
 SCALE_FLOOR = 1e-3  # a millimetre of a person of 1.75 m, or 0.06 degrees: what varies less is not stretched
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Frames:
     """What every frame adds to the windows that hold it."""
 

@@ -31,7 +31,7 @@ class PoseEncoding:
         return [max(index - age, 0) for age in range(self.window)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Normalization:
     """Mean and scale that a descriptor passes before the first layer: (x - mean) / scale."""
 

@@ -15,7 +15,7 @@ from mua.motion.trunk import AT_EASE, SIDES, Trunk, lean_of, leaned, stands, tru
 from mua.rig.skeleton import Skeleton
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Side:
     """One of two skeletons: places [..., J, 3] of its joints in metres, and which joint begins a role."""
 
@@ -59,7 +59,7 @@ class Side:
         return [joint for joint in found if joint is not None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pair:
     """Both skeletons over the same frames."""
 

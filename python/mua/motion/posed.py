@@ -30,7 +30,7 @@ _CARRIERS = {"hand": "forearm", "foot": "shin"}  # for rigs whose hands and feet
 _OUTWARDS = {role: i for i, role in enumerate(ROLES)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Frames:
     """The target's bind pose and the source, frame by frame."""
 

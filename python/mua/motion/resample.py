@@ -13,11 +13,25 @@ LAST_FRAME_SLACK = 1e-6  # frames by which rounding may place the end of a clip 
 
 def resample(clip: Clip, rate: float) -> Clip:
     """Return `clip` sampled at `rate` frames per second from its first frame on, never past its last."""
+    return clip if rate == clip.rate else sample(clip, np.arange(frames_at(clip, rate)), rate=rate)
+
+
+def frames_at(clip: Clip, rate: float) -> int:
+    """How many frames a clip has at `rate` frames per second."""
+    return int((len(clip) - 1) / clip.rate * rate + LAST_FRAME_SLACK) + 1 if len(clip) else 0
+
+
+def sample(
+    clip: Clip,
+    frames: Array,  # [N] int, from 0, each below frames_at(clip, rate)
+    *,
+    rate: float,
+) -> Clip:
+    """Those of the frames that `clip` has at `rate` frames per second."""
     if rate == clip.rate:
-        return clip
+        return clip.cut(frames)
     last = len(clip) - 1
-    count = int(last / clip.rate * rate + LAST_FRAME_SLACK) + 1
-    times = np.minimum(np.arange(count) * (clip.rate / rate), last)  # in frames of `clip`
+    times = np.minimum(frames * (clip.rate / rate), last)  # in frames of `clip`
     before = times.astype(int)
     after = np.minimum(before + 1, last)
     t = times - before

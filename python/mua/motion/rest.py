@@ -22,7 +22,7 @@ IDENTITY = np.array([1.0, 0, 0, 0])
 Y = np.array([0.0, 1, 0])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rest:
     """Both skeletons at rest in the world, and which source joints move which target joints."""
 

@@ -26,7 +26,7 @@ AROUND = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trunk:
     """A trunk in the world: directions [..., 3] up, and left at the hips and at the shoulders."""
 

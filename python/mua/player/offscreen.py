@@ -23,7 +23,7 @@ from mua.player.draw import image_format
 from mua.player.overlays import ground_height
 from mua.player.scene import Scene, Toggles, draw_picture
 from mua.player.splats import SplatFrame
-from mua.render import render_premultiplied, to_bytes
+from mua.rendering import render_premultiplied, to_bytes
 
 BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
 ENCODING = (

@@ -24,7 +24,7 @@ REACH = (
 SMALL_HOLE = 12  # edges round a hole that is closed wherever it is; the template's own openings are longer
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """Triangles over N texels, counter-clockwise seen from outside, and the triangles about each texel."""
 

@@ -13,7 +13,7 @@ ZOOM_STEP = 1.15  # of the distance, for one notch of the wheel
 TURN = float(np.radians(0.4))  # for one pixel of a drag
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Viewpoint:
     """Where the camera is about its target."""
 

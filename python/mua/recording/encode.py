@@ -18,7 +18,7 @@ from mua.wavelets import analyse_lowpass, wavedec2
 HALF_MAX = float(np.finfo(np.float16).max)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Dynamic:
     """The subbands that vary with the frame; detail bands in the order of pywt's (cH, cV, cD)."""
 
@@ -34,7 +34,7 @@ class Dynamic:
         return float(max(np.abs(band).max() for band in (self.ll, self.d3, self.d2)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reference:
     """The frame that all others are stored relative to, and the hemisphere that their rotations are brought to."""
 

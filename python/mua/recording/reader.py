@@ -12,6 +12,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.clip import Clip
@@ -39,7 +40,7 @@ from mua.texture.channels import CHANNELS
 Rows = Sequence[int] | Array | Tensor  # recorded frames of one kind, counted from 0 in the order of recording
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RecordedClip(Clip):
     """The poses of all frames of a clip and which of them were recorded with mesh and texture."""
 
@@ -48,7 +49,7 @@ class RecordedClip(Clip):
     complete: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WholeFrame:
     """A frame that was kept whole."""
 
@@ -66,7 +67,7 @@ class Subbands(NamedTuple):
     d2: Tensor  # [F, 3, C, 2n, 2n] float32
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Shard:
     directory: Path
     index: Index
@@ -88,9 +89,9 @@ class Recording:
     after clip as `clips` lists them, within a clip as its `recorded` does. Values are absolute, in the teacher's units.
     """
 
-    def __init__(self, directory: Path | str) -> None:
+    def __init__(self, directory: PathLike) -> None:
         """Raises InputError, a sentence that names the file, for anything missing, cut short or of another shape."""
-        self.directory = Path(directory)
+        self.directory = as_path(directory, "directory")
         self.header = read_header(self.directory)
         self.rate, self.wavelet = self.header.rate, self.header.wavelet
         self.rig = load_rig(self.directory / RIG)
@@ -109,6 +110,10 @@ class Recording:
             check_sum(last, indices[-1])
             if not np.isfinite(self._sum).all():
                 raise not_finite(last, "the sum of all frames")
+
+    def __repr__(self) -> str:
+        frames = f"{self.count()} training and {self.count(held_out=True)} held-out frames"
+        return f"<mua.Recording {str(self.directory)!r}: {frames} of {len(self.clips)} clips>"
 
     def count(self, held_out: bool = False) -> int:
         """Number of frames with mesh and subbands."""

@@ -59,7 +59,7 @@ class _ClipState:
     complete: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Encoded:
     """A frame as it is stored."""
 

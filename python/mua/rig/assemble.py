@@ -24,7 +24,7 @@ LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
 OTHER_SIZE = "--height METRES makes it another height; --scale FACTOR multiplies the units of the file."
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surfaces:
     """A rigged character whose materials still have a texture each; `mua.rig.uv.build_atlas` makes it a Character.
 
@@ -50,7 +50,7 @@ class Surfaces:
     size_notes: tuple[str, ...] = ()  # those of the notes that say so
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Mesh:
     """All parts in one index space, before welding."""
 

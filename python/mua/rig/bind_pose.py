@@ -19,7 +19,7 @@ STRETCHED = 1e-3  # scale of a joint between bind and rest pose below which noth
 OFFSET_TRUST = 0.02  # of the character's size: how far a joint without weights may bind from its place at rest
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bind:
     """Joints in parent-before-child order, with the matrices that the mesh was bound to."""
 

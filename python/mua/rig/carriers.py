@@ -35,7 +35,7 @@ SKIN_DIRECTIONS = 8  # of the space of weights, in which neighbours are sought
 AT_ONCE = 1000  # texels that choose together
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Carried:
     """The texels of a dense surface on its template."""
 

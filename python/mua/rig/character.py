@@ -11,7 +11,7 @@ from mua.rig.skeleton import Skeleton
 MAX_INFLUENCES = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Triangles, counter-clockwise seen from outside, whose UV corners are indexed apart from their positions.
 
@@ -24,7 +24,7 @@ class Mesh:
     uv_faces: Array  # [F, 3] int32 into uv
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Character:
     """The dense surface that a teacher deforms, with the bind pose as canonical pose."""
 

@@ -13,7 +13,7 @@ ANGLES = 32  # over a right angle, among which that of a chart's narrowest box i
 WAYS = [(swap, down, right) for swap in (False, True) for down in (1, -1) for right in (1, -1)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shape:
     """A chart on the grid in one of its ways: it lies at `turn @ point + shift`, x right and y down."""
 

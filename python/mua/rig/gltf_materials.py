@@ -25,7 +25,7 @@ UNLIT = "KHR_materials_unlit"
 VARIANTS = "KHR_materials_variants"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Coordinates:
     """What a material reads of a mesh's vertices: which TEXCOORD set, moved how, and their colours."""
 

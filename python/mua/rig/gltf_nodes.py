@@ -12,7 +12,7 @@ from mua.rig.gltf_document import Document
 VISIBILITY = "KHR_node_visibility"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tree:
     """The node hierarchy of a file."""
 

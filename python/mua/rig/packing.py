@@ -22,7 +22,7 @@ CRUMB = 8  # cells along the longer side of a chart with its gutters that is tak
 SMALLER = 0.95  # each time that something fits nowhere
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Layout:
     """Where each chart lies: at `turns @ point + shifts`."""
 

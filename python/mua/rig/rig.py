@@ -8,7 +8,7 @@ from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rig:
     """A skinned template of a few thousand vertices and the texels on it (paper, Data Assumption)."""
 

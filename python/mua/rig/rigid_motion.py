@@ -9,7 +9,7 @@ from mua.rig.bind_pose import Bind, rotations_of
 from mua.rig.scene import Motion
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RigidMotion:
     """Joints of one motion in the world, and how far they stretch."""
 

@@ -19,7 +19,7 @@ EXACT = 1e-6  # the same for root and joints above it, which move all others
 TOLD_SCALE = 0.01
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rigged:
     """A skeleton, the nodes that its joints were, its clips, and a sentence for each thing changed or lost."""
 

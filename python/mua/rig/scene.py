@@ -15,7 +15,7 @@ Wrap: TypeAlias = Literal["repeat", "clamp", "mirror"]
 AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Material:
     """Base colour of some faces: a picture with the material's factor already multiplied in."""
 
@@ -37,7 +37,7 @@ def wrapped(index: Array, count: int, wrap: Wrap) -> Array:
     return np.clip(index, 0, count - 1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Skin:
     """Joints that carry a mesh; `rigid` marks a mesh without weights that only hangs on one joint."""
 
@@ -46,7 +46,7 @@ class Skin:
     rigid: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Part:
     """Triangles of one material on one skin; vertices of parts of one group may be welded."""
 
@@ -64,7 +64,7 @@ class Part:
     colors: Array | None = None  # [F, 3, 4] linear colour and opacity of the corners, multiplied into the material
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Node-to-world matrices of a clip at a steady rate."""
 
@@ -73,7 +73,7 @@ class Motion:
     worlds: Array  # [F, nodes, 4, 4] metres, Y up
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scene:
     """Nodes in parent-before-child order with their rest pose, and all that hangs on them; metres, Y up."""
 
@@ -97,7 +97,7 @@ class Scene:
         return mass
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Source:
     """A scene that became a character: in metres and facing +Z as the character does, its meshes as in the file."""
 

@@ -9,7 +9,7 @@ from mua import rotation
 from mua.arrays import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pose:
     """One moment of a skeleton: what moves each joint relative to its parent."""
 
@@ -17,7 +17,7 @@ class Pose:
     translations: Array  # [J, 3] local joint translations, metres
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Skeleton:
     """Joints in parent-before-child order; metres, Y up, right-handed; column vectors.
 

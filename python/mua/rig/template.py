@@ -19,7 +19,7 @@ SKIN_DIRECTIONS = 24  # of the space of skin weights; the library takes 32 attri
 NO_ERROR_LIMIT = c_float(1e9)  # the number of triangles alone ends the decimation
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Template:
     """The surface whose vertices a student predicts; each is a vertex of the dense mesh, with its skin weights."""
 

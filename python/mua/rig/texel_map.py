@@ -11,7 +11,7 @@ from mua.rig.character import Mesh
 CANDIDATES_AT_ONCE = 1 << 20  # texel-in-triangle tests held in memory together, about 100 MB
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TexelMap:
     """The valid texels of a square texture, in row-major order; texel centres lie at (col + 0.5, row + 0.5) / size."""
 

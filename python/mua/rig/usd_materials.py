@@ -22,7 +22,7 @@ WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clam
 CHANNELS = {"r": 0, "g": 1, "b": 2, "a": 3}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Look:
     """A material, the primvar of its texture coordinates, and the affine map [2, 3] on them (v up)."""
 

@@ -16,7 +16,7 @@ NO_TIME = Usd.TimeCode.EarliestTime()
 WIDTHS = {"displayOpacity": 1}  # components of a primvar that is read as colour; others have 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Topology:
     """How the polygons of a mesh fall into triangles."""
 

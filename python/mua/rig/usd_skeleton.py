@@ -14,7 +14,7 @@ PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
 NO_TIME = Usd.TimeCode.EarliestTime()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bones:
     """One UsdSkel skeleton and where its nodes begin: its prim as a static node, then its joints."""
 

@@ -23,7 +23,7 @@ LOSS_ALLOWED = 0.02  # share of texels claimed twice, or of surface with next to
 BORDER = 1e-3  # a UV this far beyond the texture counts as inside
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Source:
     """The surface with the UVs that its file gave it."""
 
@@ -36,7 +36,7 @@ class _Source:
     starved: Array  # [F] bool, has next to no texels for its surface, or none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Layout:
     """Where each face lies in the atlas."""
 

@@ -13,7 +13,7 @@ from mua.student.regress import absolute_error, regress
 from mua.student.settings import Settings
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MeshPca:
     """meshes = mean + coefficients @ basis; the basis is orthonormal, coefficients are metres."""
 

@@ -15,7 +15,7 @@ from mua.student.model import build_mlp, linear_layers
 INPUT_FLOOR = 1.0  # variance added to each direction of the normalised descriptors; measured on held-out CMU walks
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Whitening:
     """An affine map of descriptors whose directions vary alike: x -> (x - mean) @ turn."""
 

@@ -15,7 +15,7 @@ POWER_ITERATIONS = 3
 PROXIMAL = 1e-5  # weight of the previous factor in an update, relative to the Gram matrix's mean diagonal
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Blendshapes:
     """A linear model of one channel of LL: samples = coefficients @ basis, coefficients of unit variance."""
 
@@ -23,7 +23,7 @@ class Blendshapes:
     basis: Tensor  # [R, P]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Factors:
     """A coupled CP model of the three detail bands of one channel: X[f, s] = sum_r a[f, r] h[s, r] (x) w[s, r]."""
 

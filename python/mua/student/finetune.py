@@ -24,7 +24,7 @@ def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
     return LL_WEIGHT * ll + d3 + d2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frames:
     """Frames as a branch sees them."""
 

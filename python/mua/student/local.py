@@ -23,7 +23,7 @@ LL_TEXELS = 16  # along a side of a sample of LL and D3
 D2_TEXELS = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Parts:
     """P body parts: which part each sample belongs to, and how many joints lie between it and each descriptor entry."""
 
@@ -45,7 +45,7 @@ class Parts:
         return self.fine.to(texels.device)[texels // size // D2_TEXELS, texels % size // D2_TEXELS]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Locality:
     """How the targets of a regression are made of parts: its sum over parts is what is taught."""
 

@@ -17,7 +17,7 @@ RIDGE = 3e-3  # noise variance that a frame's value is granted, relative to the 
 RANK_FLOOR = 1e-12  # of the kernel matrix's largest eigenvalue: what lies below is rounding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Smoother:
     """f(x) = kernel(x, centres) @ values."""
 
@@ -55,7 +55,7 @@ def fit_smoother(
     return Smoother(centres, solved.to(targets), width)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sum:
     """f(x) = sum_p smoother_p(x @ turns[p])."""
 

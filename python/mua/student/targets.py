@@ -19,7 +19,7 @@ LEAST_SPREAD = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3
 GRAM_RIDGE = 1e-6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Targets:
     """F frames of K joint coordinates; coefficients = coordinates @ expand."""
 

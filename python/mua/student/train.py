@@ -31,7 +31,7 @@ from mua.texture.channels import APPEARANCE, GEOMETRY
 BRANCHES = ("geometry", "appearance")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Samples:
     """F training frames as the student sees them."""
 

@@ -14,7 +14,7 @@ SHORTEST = 0.03  # metres
 BODY = 0.6  # vertices of larger looseness are clothes and do not tell where the body is
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bones:
     """Capsules in the bind pose, each carried along by one joint."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from mua.arrays import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Light:
     """Light that a surface sends out, by vertex, in world space."""
 

@@ -99,7 +99,7 @@ def relax(
     relax_block(wp.tid(), vertices, starts, neighbours, lengths, shares, evenings, slack, even, now, ahead)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Blocks:
     """Vertices in blocks, and the edges to their neighbours in rows of a block's width."""
 

@@ -10,7 +10,7 @@ from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TeacherFrame:
     """One frame of a teacher."""
 

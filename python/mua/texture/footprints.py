@@ -21,7 +21,7 @@ AVERTED = -0.2  # cosine between normals below which a texel lies on the other s
 FAR = 1.5  # steps from the nearest texel: surface that lies farther away is bare, no texel grows so far
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Samples:
     """Points spread evenly over a surface, each with the texel that has to cover it."""
 
@@ -31,7 +31,7 @@ class Samples:
     bare: Array  # [S] bool, no texel lies near
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TexelPoints:
     """The texels of a texture as points of a surface."""
 

@@ -27,7 +27,7 @@ CELL = 1.3  # standard deviation over that of the surface nearest to a texel: ne
 LEAST = 1e-6  # of the surface's size, of any standard deviation: a texel where the surface has no extent
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surfels:
     """The Gaussians of the texels on a surface at rest."""
 

@@ -9,7 +9,7 @@ from mua.arrays import Array
 EDGE = 0.0012  # metres over which one colour turns into the next
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """What is known of the texels of a part, all over [H, W]."""
 

@@ -11,7 +11,7 @@ from mua.rig.character import Mesh
 GUTTER = 1.5 / 256  # half of the empty strip between two charts, in UV
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Part:
     """A tube: rings from its upper to its lower end, columns counter-clockwise from above, seam at the back.
 

@@ -19,7 +19,7 @@ _BALL = PLACES["LeftToeBase"] - PLACES["LeftFoot"]
 _BALL_ON_GROUND = np.array([0.0, -0.085, _BALL[2]])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Foot:
     """Where a foot treads, frame by frame."""
 
@@ -29,7 +29,7 @@ class Foot:
     toes_flat: Array  # [F] 0..1 how much the toes keep to the ground while the heel is up
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Arm:
     """Directions in the frame of the chest, x outward for either side; need not be unit."""
 
@@ -37,7 +37,7 @@ class Arm:
     fore: Array  # [F, 3]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Performance:
     """All that a clip shows; angles in radians: lean (about X, forward), twist (Y, to the left), tilt (Z)."""
 

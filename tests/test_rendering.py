@@ -8,21 +8,21 @@ import pytest
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import Camera, orbit
-from mua.decode import Frame, box_of
+from mua.decode import Splats, box_of
 from mua.kernels.splat_draw import MOST_ALPHA
-from mua.render import frame_bounds, render, render_premultiplied
+from mua.rendering import frame_bounds, render_over, render_premultiplied
 from mua.texture.channels import SH_C0
 
 RED, GREEN = (1.0, 0, 0), (0, 1.0, 0)
 BOX = np.array([[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]])
 
 
-def splats(centres: Array, colors: Array, *, scale: float = 0.05, opacity: float = 1.0) -> Frame:
+def splats(centres: Array, colors: Array, *, scale: float = 0.05, opacity: float = 1.0) -> Splats:
     """Round splats of one colour from all sides."""
     count = len(centres)
     sh = np.zeros((count, 12))
     sh[:, :3] = (np.asarray(colors).reshape(count, 3) - 0.5) / SH_C0
-    return Frame(
+    return Splats(
         canonical=np.zeros((0, 3)),
         mesh=np.zeros((0, 3)),
         texture=np.zeros((count, 23)),
@@ -36,11 +36,11 @@ def splats(centres: Array, colors: Array, *, scale: float = 0.05, opacity: float
     )
 
 
-def cast(frame: Frame, dtype: type) -> Frame:
-    return Frame(**{f.name: getattr(frame, f.name).astype(dtype) for f in dataclasses.fields(Frame)})
+def cast(frame: Splats, dtype: type) -> Splats:
+    return Splats(**{f.name: getattr(frame, f.name).astype(dtype) for f in dataclasses.fields(Splats)})
 
 
-def sphere(count: int, *, radius: float = 0.4) -> Frame:
+def sphere(count: int, *, radius: float = 0.4) -> Splats:
     """Overlapping flat surfels on a sphere (Fibonacci lattice)."""
     i = np.arange(count) + 0.5
     height, angle = 1 - 2 * i / count, np.pi * (1 + np.sqrt(5)) * i
@@ -63,12 +63,12 @@ def front(screen: tuple[int, int] = (65, 65)) -> Camera:
 def test_no_splats_give_the_background(screen: tuple[int, int]) -> None:
     empty = splats(np.zeros((0, 3)), np.zeros((0, 3)))
     np.testing.assert_array_equal(frame_bounds(empty), np.zeros((2, 3)))
-    image = render(empty, front(screen), background=(0.2, 0.4, 0.6))
+    image = render_over(empty, front(screen), background=(0.2, 0.4, 0.6))
     np.testing.assert_array_equal(image, np.broadcast_to([0.2, 0.4, 0.6], (*screen[::-1], 3)))
 
 
 def test_one_splat_shows_its_colour_in_the_middle() -> None:
-    image = render(splats([[0, 0, 0]], [RED], scale=0.1), front())
+    image = render_over(splats([[0, 0, 0]], [RED], scale=0.1), front())
     expected = MOST_ALPHA * np.array(RED) + (1 - MOST_ALPHA)
     np.testing.assert_allclose(image[32, 32], expected, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(image[0, 0], 1)
@@ -78,7 +78,7 @@ def test_one_splat_shows_its_colour_in_the_middle() -> None:
 def test_the_nearer_splat_hides_the_farther_in_any_order(first: tuple[float, float, float]) -> None:
     colors = [first, GREEN if first == RED else RED]
     places = [[0, 0, 0.3 if color == GREEN else -0.3] for color in colors]
-    image = render(splats(places, colors, scale=0.2), front())
+    image = render_over(splats(places, colors, scale=0.2), front())
     assert image[32, 32].argmax() == 1
 
 
@@ -99,14 +99,14 @@ def test_background_shows_through_by_one_minus_alpha() -> None:
     image = render_premultiplied(frame, front())
     assert image[..., 3].min() >= 0
     assert image[..., 3].max() <= 1
-    black, white = (render(frame, front(), background=(level,) * 3) for level in (0.0, 1.0))
+    black, white = (render_over(frame, front(), background=(level,) * 3) for level in (0.0, 1.0))
     np.testing.assert_array_equal(black, image[..., :3])
     np.testing.assert_allclose(white - black, 1 - image[..., 3:].repeat(3, axis=2), rtol=0, atol=1e-14)
 
 
 def test_two_renders_are_equal_to_the_bit() -> None:
     frame = sphere(503)
-    np.testing.assert_array_equal(render(frame, front()), render(frame, front()))
+    np.testing.assert_array_equal(render_over(frame, front()), render_over(frame, front()))
 
 
 def test_an_image_does_not_depend_on_the_order_of_the_splats() -> None:
@@ -114,12 +114,12 @@ def test_an_image_does_not_depend_on_the_order_of_the_splats() -> None:
     order = np.random.default_rng(0).permutation(211)
     names = ("centres", "rotations", "scales", "opacities", "sh", "texel_dq")
     mixed = dataclasses.replace(frame, **{name: getattr(frame, name)[order] for name in names})
-    np.testing.assert_allclose(render(mixed, front()), render(frame, front()), rtol=0, atol=1e-11)
+    np.testing.assert_allclose(render_over(mixed, front()), render_over(frame, front()), rtol=0, atol=1e-11)
 
 
 def test_float32_image_is_the_float64_image_to_a_fraction_of_a_grey_level() -> None:
     frame = cast(sphere(503), np.float32)
-    single, double = render(frame, front()), render(cast(frame, float), front())
+    single, double = render_over(frame, front()), render_over(cast(frame, float), front())
     np.testing.assert_allclose(single, double, rtol=0, atol=0.25 / 255)
 
 
@@ -131,10 +131,10 @@ def test_a_camera_inside_the_splats_sees_finite_colours() -> None:
     around = np.random.default_rng(0).normal(size=(211, 3)) * 0.2
     frame = splats(np.concatenate([np.zeros((1, 3)), around]), np.full((212, 3), 0.5), scale=0.1)
     np.testing.assert_allclose(inside.position, 0, atol=1e-12)
-    assert np.isfinite(render(frame, inside)).all()
+    assert np.isfinite(render_over(frame, inside)).all()
 
 
 def test_a_one_pixel_image_holds_the_mean_colour() -> None:
-    image = render(sphere(101), front((1, 1)), background=(0, 0, 0))
+    image = render_over(sphere(101), front((1, 1)), background=(0, 0, 0))
     assert image.shape == (1, 1, 3)
     assert np.all(image > 0.1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from mua.bake.sources import RATE, load_character
+from mua.baking.sources import RATE, load_character
 from mua.errors import InputError
 from mua.files import replacing, require_writable, write_bytes
 from mua.likeness import told
@@ -26,7 +26,7 @@ from mua.rig.detail import Detail
 from mua.rig.figure_size import AS_FOUND, FigureSize
 
 if TYPE_CHECKING:
-    from mua.bake.distillation import Listener  # with torch, which takes seconds to load
+    from mua.baking.distillation import Listener  # with torch, which takes seconds to load
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
 

@@ -10,12 +10,12 @@ import torch
 
 from mua import __version__
 from mua.asset.tensors import Storage
-from mua.bake.check import likeness_of
-from mua.bake.distillation import Baked, Distillation, Listener, finish, teach
-from mua.bake.plan import plan, split
-from mua.bake.playback import ALL, choose
-from mua.bake.report import STAND_IN
-from mua.bake.sources import RATE, load_character, load_clips
+from mua.baking.check import likeness_of
+from mua.baking.distillation import Baked, Distillation, Listener, finish, teach
+from mua.baking.plan import plan, split
+from mua.baking.playback import ALL, choose
+from mua.baking.report import STAND_IN
+from mua.baking.sources import RATE, load_character, load_clips
 from mua.files import require_writable
 from mua.likeness import told
 from mua.likeness.compare import Likeness

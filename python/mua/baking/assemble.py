@@ -8,14 +8,14 @@ from PIL import Image
 
 from mua import __version__
 from mua.asset.avatar import Avatar
-from mua.bake.playback import typical_frame
+from mua.baking.playback import typical_frame
 from mua.bounds import playback_bounds
 from mua.decode import decode_clip_frame
 from mua.likeness.background import background_for, over
 from mua.motion.clip import Clip
 from mua.motion.encoding import PoseEncoding
 from mua.portrait import portrait
-from mua.render import render_premultiplied, to_bytes
+from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.rig import Rig
 from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
 from mua.student.model import Student

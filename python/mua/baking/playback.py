@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from mua.bake.plan import ENDING
+from mua.baking.plan import ENDING
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.recording import RecordedClip

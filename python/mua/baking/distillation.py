@@ -14,8 +14,8 @@ from mua.asset.count import stored_bytes
 from mua.asset.read import decode_tree, load
 from mua.asset.tensors import Storage
 from mua.asset.write import write
-from mua.bake import playback, report
-from mua.bake.assemble import assemble
+from mua.baking import playback, report
+from mua.baking.assemble import assemble
 from mua.contact_sheet import contact_sheet
 from mua.errors import InputError
 from mua.evaluate import Errors, evaluate

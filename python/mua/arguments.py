@@ -1,0 +1,78 @@
+"""What a caller of the public functions may pass; what is of another kind is refused in a sentence."""
+
+import operator
+import os
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from mua.arrays import Array
+from mua.errors import InputError
+
+UNIT_BOUND = 2e-3  # a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
+PathLike: TypeAlias = str | os.PathLike[str]
+
+
+def as_path(path: PathLike, name: str) -> Path:
+    """The path that argument `name` gives; raises InputError for anything but a str or os.PathLike."""
+    if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str):
+        return Path(text)
+    raise InputError(f"{name} is {told(path)}; expected a path, as a str or an os.PathLike")
+
+
+def whole_number(value: Any, name: str) -> int:
+    """An integer of Python or numpy; raises InputError for anything else, True and False among it."""
+    try:
+        if not isinstance(value, bool | np.bool_):
+            return operator.index(value)
+    except TypeError:
+        pass
+    raise InputError(f"{name} is {told(value)}; expected a whole number")
+
+
+def float_type(dtype: npt.DTypeLike, name: str) -> np.dtype[Any]:
+    """float32 or float64; raises InputError for any other element type."""
+    try:
+        found = np.dtype(dtype)
+    except (TypeError, ValueError):
+        found = np.dtype(object)
+    if found not in (np.dtype(np.float32), np.dtype(np.float64)):
+        raise InputError(f"{name} is {told(dtype)}; expected float32 or float64")
+    return found
+
+
+def finite_array(values: Any, name: str, shape: tuple[int | None, ...]) -> Array:
+    """Finite real numbers of `shape` (None: any length) as float64; raises InputError for anything else."""
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of several lengths
+        raise InputError(f"{name}: no array, expected one of the shape {_written(shape)}") from None
+    if array.dtype.kind not in "iuf":
+        raise InputError(f"{name}: elements of type {array.dtype}, expected real numbers")
+    if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
+        raise InputError(f"{name}: the shape is {_written(array.shape)}, expected {_written(shape)}")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name}: a value is not finite")
+    return array.astype(np.float64, copy=False)
+
+
+def unit_quaternions(values: Any, name: str, shape: tuple[int | None, ...]) -> Array:
+    """Unit quaternions of `shape` as float64; raises InputError for anything else."""
+    quaternions = finite_array(values, name, shape)
+    lengths = np.linalg.norm(quaternions, axis=-1).ravel()
+    if len(lengths) and np.abs(lengths - 1).max() > UNIT_BOUND:
+        raise InputError(f"{name}: a quaternion of length {lengths[np.abs(lengths - 1).argmax()]:.4g}, expected 1")
+    return quaternions
+
+
+def told(value: object) -> str:
+    """A value in a sentence, with its type where the value does not show it."""
+    shown = repr(value)
+    shown = shown if len(shown) <= 60 and "\n" not in shown else "a value"
+    return shown if isinstance(value, str | None) else f"{shown} ({type(value).__name__})"
+
+
+def _written(shape: tuple[int | None, ...]) -> str:
+    return f"[{', '.join('any' if n is None else str(n) for n in shape)}]"

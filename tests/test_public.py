@@ -1,0 +1,202 @@
+"""The names of `import mua`: what they take, what they refuse, and what they load."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar
+
+import mua
+from mua.decode import decode_clip_frame
+from mua.motion.resample import resample
+
+AVATAR = synthetic_avatar()
+WAVE = AVATAR.clips[0]
+WINDOW = [WAVE.pose(f) for f in (2, 1, 0)]
+SPLATS = AVATAR.decode(WAVE.name, 2)
+
+
+class Somewhere:
+    """A path of another library."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def __fspath__(self) -> str:
+        return str(self._path)
+
+
+def test_every_public_name_is_there() -> None:
+    assert set(mua.__all__) <= set(dir(mua))
+    for name in mua.__all__:
+        assert getattr(mua, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'lod'"):
+        mua.lod  # noqa: B018 asking is the test
+
+
+@pytest.mark.parametrize("kind", [str, Path, Somewhere])
+def test_an_avatar_is_saved_and_loaded_by_any_kind_of_path(kind: Callable[[Path], Any], tmp_path: Path) -> None:
+    path = kind(tmp_path / "a.muaavatar")
+    mua.save(path, AVATAR, storage="f32")
+    np.testing.assert_array_equal(mua.load(path).geometry.static, AVATAR.geometry.static)
+
+
+def test_a_clip_is_decoded_by_its_name_by_itself_and_by_its_window() -> None:
+    expected = decode_clip_frame(AVATAR, WAVE, frame=2).centres
+    for decoded in (SPLATS, AVATAR.decode(WAVE, 2), AVATAR.decode(WINDOW)):
+        np.testing.assert_array_equal(decoded.centres, expected)
+
+
+def test_numpys_numbers_do_for_frames_and_names_for_element_types() -> None:
+    assert AVATAR.decode(WAVE.name, np.int64(2), dtype="float64").centres.dtype == np.float64
+
+
+@pytest.mark.parametrize("rate", [10.0, 24.0, 60.0])
+def test_a_clip_of_another_rate_is_resampled_to_the_avatars(rate: float) -> None:
+    other = replace(WAVE, rate=rate)
+    resampled = resample(other, AVATAR.encoding.rate)
+    for frame in (0, 1, len(resampled) - 1):
+        expected = AVATAR.decode(resampled, frame).centres
+        np.testing.assert_array_equal(AVATAR.decode(other, frame).centres, expected)
+    with pytest.raises(
+        mua.InputError, match=f"frame is {len(resampled)}; clip .* has frames 0 to {len(resampled) - 1}"
+    ):
+        AVATAR.decode(other, len(resampled))
+
+
+def test_a_picture_shows_all_splats_on_the_background() -> None:
+    picture = np.asarray(mua.render(SPLATS, size=(48, 64), azimuth=30, elevation=10, background="#ff0000"))
+    assert picture.shape == (64, 48, 3)
+    assert picture.dtype == np.uint8
+    np.testing.assert_array_equal(picture[0], np.tile([255, 0, 0], (48, 1)))
+    assert (picture != [255, 0, 0]).any()
+
+
+def test_a_picture_turns_with_the_azimuth_in_degrees() -> None:
+    front, left, back = (np.asarray(mua.render(SPLATS, size=(32, 32), azimuth=turn)) for turn in (0, 90, 360))
+    np.testing.assert_array_equal(front, back)
+    assert (front != left).any()
+
+
+def _turned(scale: float = 1.0, **changes: Any) -> mua.Clip:
+    return replace(WAVE, rotations=scale * WAVE.rotations, **changes)
+
+
+WRONG: dict[str, tuple[Callable[[], object], str]] = {
+    "a number as path": (lambda: mua.load(3), r"path is 3 \(int\); expected a path, as a str or an os\.PathLike"),  # type: ignore[arg-type]
+    "bytes as path": (lambda: mua.load(b"a"), "expected a path, as a str"),  # type: ignore[arg-type]
+    "no such file": (lambda: mua.load("none.muaavatar"), r"none\.muaavatar: No such file"),
+    "storage": (lambda: mua.save("a", AVATAR, storage="f8"), "storage is 'f8'; expected f32, f16 or i8"),  # type: ignore[arg-type]
+    "no avatar to save": (lambda: mua.save("a", "b"), "avatar is 'b'; expected a mua.Avatar"),  # type: ignore[arg-type]
+    "clip name": (lambda: AVATAR.decode("jump"), "clip is 'jump'; the avatar holds 'wave'"),
+    "no clip": (lambda: AVATAR.decode(7), r"clip is 7 \(int\); expected a clip's name"),  # type: ignore[arg-type]
+    "frame too late": (lambda: AVATAR.decode("wave", 10**6), "frame is 1000000; clip 'wave' has frames 0 to"),
+    "frame before the first": (lambda: AVATAR.decode("wave", -1), "frame is -1; clip 'wave' has frames 0 to"),
+    "half a frame": (lambda: AVATAR.decode("wave", 0.5), r"frame is 0\.5 \(float\); expected a whole number"),  # type: ignore[arg-type]
+    "truth as frame": (lambda: AVATAR.decode("wave", True), r"frame is True \(bool\)"),
+    "element type": (lambda: AVATAR.decode("wave", dtype="int8"), "dtype is 'int8'; expected float32 or float64"),
+    "unknown element type": (lambda: AVATAR.decode("wave", dtype="f17"), "dtype is 'f17'; expected"),
+    "short window": (lambda: AVATAR.decode(WINDOW[:2]), "the window has 2 poses; expected 3, newest first"),
+    "frame of a window": (lambda: AVATAR.decode(WINDOW, 1), "a window of poses has frame 0 alone"),
+    "window of other things": (lambda: AVATAR.decode([1, 2, 3]), "expected a clip's name, a Clip or poses"),  # type: ignore[list-item]
+    "joints of another skeleton": (
+        lambda: AVATAR.decode([mua.Pose(np.ones((5, 4)) / 2, np.zeros((5, 3)))] * 3),
+        r"rotations of a pose: the shape is \[5, 4\], expected \[3, 4\]",
+    ),
+    "translations of another length": (
+        lambda: AVATAR.decode(_turned(translations=WAVE.translations[1:])),
+        r"translations of clip 'wave': the shape is .*, expected \[",
+    ),
+    "no unit quaternion": (lambda: AVATAR.decode(_turned(2.0)), "a quaternion of length 2, expected 1"),
+    "not finite": (lambda: AVATAR.decode(_turned(np.nan)), "rotations of clip 'wave': a value is not finite"),
+    "rows of several lengths": (
+        lambda: AVATAR.decode([mua.Pose([[1.0, 0, 0, 0], [1.0]], np.zeros((3, 3)))] * 3),  # type: ignore[arg-type]
+        "rotations of a pose: no array",
+    ),
+    "text as rotations": (
+        lambda: AVATAR.decode([mua.Pose(np.full((3, 4), "a"), np.zeros((3, 3)))] * 3),
+        "elements of type .*, expected real numbers",
+    ),
+    "a clip without frames": (lambda: AVATAR.decode(WAVE.cut(slice(0))), "clip 'wave' has no frames"),
+    "no splats": (lambda: mua.render(WAVE), "splats is <mua.Clip .*; expected what Avatar.decode returns"),  # type: ignore[arg-type]
+    "colour": (lambda: mua.render(SPLATS, background="whitish"), "background is 'whitish'; expected a colour name"),
+    "number as colour": (lambda: mua.render(SPLATS, background=3), r"background is 3 \(int\)"),  # type: ignore[arg-type]
+    "one side": (lambda: mua.render(SPLATS, size=64), r"size is 64 \(int\); expected width and height"),  # type: ignore[arg-type]
+    "empty picture": (lambda: mua.render(SPLATS, size=(0, 64)), "expected sides of 1 to 8192 pixels"),
+    "angle": (lambda: mua.render(SPLATS, azimuth=np.inf), "azimuth: a value is not finite"),
+    "no camera": (lambda: mua.render(SPLATS, "front"), "camera is 'front'; expected a mua.Camera"),  # type: ignore[arg-type]
+    "camera and angle": (
+        lambda: mua.render(SPLATS, mua.Camera(np.eye(4), np.eye(4), (64, 64)), azimuth=3),
+        "camera comes with a size, an azimuth or an elevation",
+    ),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_a_wrong_call_ends_in_a_sentence(wrong: str) -> None:
+    call, sentence = WRONG[wrong]
+    with pytest.raises(mua.InputError, match=sentence) as told:
+        call()
+    assert "\n" not in str(told.value)
+
+
+def test_an_avatar_says_what_it_is_in_a_line() -> None:
+    assert repr(AVATAR) == (
+        f"<mua.Avatar 'synthetic': 3 joints, 12 vertices, {len(SPLATS)} splats of 32 x 32 texels, 1 clip>"
+    )
+    assert repr(WAVE) == f"<mua.Clip 'wave': {len(WAVE)} frames at {WAVE.rate:g} a second, 3 joints>"
+    assert repr(SPLATS) == f"<mua.Splats: {len(SPLATS)} splats, float32>"
+
+
+def test_records_that_hold_arrays_are_compared_by_identity() -> None:
+    """Arrays compare element by element: an equality made of them fails, and a hash does too."""
+    wrong = []
+    for path in sorted(Path(mua.__file__).parent.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ClassDef) and _is_record_of_arrays(node):
+                written = " ".join(map(ast.unparse, node.decorator_list))
+                if "eq=False" not in written:
+                    wrong.append(f"{path.name}: {node.name}")
+    assert wrong == []
+    assert replace(AVATAR) != AVATAR
+    assert len({AVATAR, AVATAR}) == 1
+
+
+def _is_record_of_arrays(node: ast.ClassDef) -> bool:
+    fields = [ast.unparse(line.annotation) for line in node.body if isinstance(line, ast.AnnAssign)]
+    holds = any(kind in field for field in fields for kind in ("Array", "Tensor", "ndarray"))
+    return holds and any("dataclass" in ast.unparse(decorator) for decorator in node.decorator_list)
+
+
+ALONE = """
+import sys
+ALLOWED = {*sys.stdlib_module_names, "mua", "numpy", "flatbuffers", "PIL"}
+
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] not in ALLOWED:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Absent())
+import mua
+loaded = [name for name in sys.modules if name.startswith(("numpy", "mua."))]
+avatar = mua.load(sys.argv[1])
+mua.save(sys.argv[1], avatar, storage="i8")
+mua.render(avatar.decode(avatar.clips[0].name, 1), size=(16, 16)).save(sys.argv[2])
+print(loaded)
+"""
+
+
+def test_reading_decoding_and_a_picture_need_three_packages_alone(tmp_path: Path) -> None:
+    file, picture = tmp_path / "a.muaavatar", tmp_path / "a.png"
+    mua.save(file, AVATAR)
+    told = subprocess.run([sys.executable, "-c", ALONE, file, picture], capture_output=True, text=True, check=False)
+    assert told.returncode == 0, told.stderr
+    assert picture.is_file()
+    assert told.stdout.strip() == "['mua.errors']", "importing mua loads what is not asked for"
