@@ -19,7 +19,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
-from mua.bake.pipeline import Order, bake
+from mua.baking.pipeline import Order, bake
 from mua.bounds import playback_bounds
 from mua.camera import orbit
 from mua.decode import decode_clip_frame
@@ -28,7 +28,7 @@ from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import splat_project
 from mua.motion.encoding import PoseEncoding
 from mua.motion.resample import resample
-from mua.render import frame_bounds
+from mua.rendering import frame_bounds
 from mua.rig.skeleton import Skeleton
 from mua.student.settings import preset
 
