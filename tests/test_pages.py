@@ -19,7 +19,7 @@ BUILT = ("build", "node_modules", ".")  # folders that begin like this hold nobo
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"^```.*?^```|^ {4}.*?$|`[^`\n]+`", re.DOTALL | re.MULTILINE)
 NAMED = re.compile(r"`((?:ComputeShaders|docs|python|schemas|tests|tools|unity-package)/[\w./~-]*\w)`")
-TOOL = re.compile(r"python (?:-m )?((?:tools|tests)/[\w/]+\.py)")
+TOOL = re.compile(r"python ((?:tools|tests)/[\w/]+\.py)(.*)")
 COMMAND = re.compile(r"(?:^|[\s/\\`])(mua-|-m mua\.cli\.)(\w+)(?=\s|$)(.*)$")
 REPLACED = re.compile(r"\.\.\.|\[[^\]]*\]")  # what stands for words of the reader's own
 
@@ -79,8 +79,17 @@ def test_links_lead_somewhere(path: str) -> None:
 @pytest.mark.parametrize("path", PAGES)
 def test_files_that_are_named_exist(path: str) -> None:
     text = PAGES[path].read_text()
-    missing = [name for name in NAMED.findall(text) + TOOL.findall(text) if not (ROOT / name).exists()]
-    assert missing == []
+    names = [*NAMED.findall(text), *(tool for tool, _ in TOOL.findall(text))]
+    assert [name for name in names if not (ROOT / name).exists()] == []
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_tools_have_the_options_that_are_shown(path: str) -> None:
+    """Of argparse as a string, of typer as a parameter."""
+    for tool, words in TOOL.findall(PAGES[path].read_text()):
+        source = (ROOT / tool).read_text()
+        for option in re.findall(r"--([\w-]+)", words):
+            assert re.search(rf'"--{option}"|\b{option.replace("-", "_")}: Annotated', source), f"{tool} --{option}"
 
 
 @pytest.mark.parametrize(("name", "words", "path"), SHOWN, ids=[f"mua-{name}{words}" for name, words, _ in SHOWN])
