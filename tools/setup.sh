@@ -9,7 +9,7 @@ python=${PYTHON:-python3}
 missing=""
 "$python" -c 'import ensurepip, venv' 2>/dev/null || missing="$missing python3-venv"
 command -v flatc >/dev/null || missing="$missing flatbuffers-compiler"
-# shaders: a compiler, and a Vulkan driver (this package has one that runs on the CPU)
+# shaders come compiled, but tests compile changed ones; a Vulkan driver (this package has one that runs on the CPU)
 command -v glslangValidator >/dev/null || missing="$missing glslang-tools"
 find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2>/dev/null | grep -q . ||
     missing="$missing mesa-vulkan-drivers"
