@@ -104,7 +104,7 @@ def run_bare(code: str, *arguments: str | Path) -> subprocess.CompletedProcess[s
     return subprocess.run(line, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("module", ["mua.asset", "mua.decode", "mua.render", "mua.cli.inspect"])
+@pytest.mark.parametrize("module", ["mua.asset", "mua.decode", "mua.rendering", "mua.cli.inspect"])
 def test_reading_and_picturing_on_the_cpu_need_no_extra(module: str) -> None:
     ended = run_bare(f"import {module}")
     assert (ended.returncode, ended.stderr) == (0, "")

@@ -151,7 +151,7 @@ def carry_out(scratch: Path, avatar: Path, constraints: list[str], console: Cons
     faults = []
     for step in STEPS:
         packages = [package.format(wheel=wheel) for package in step.packages]
-        subprocess.run([programs / "python", "-m", "pip", "install", "-q", "-c", listed, *packages], check=True)
+        subprocess.run([programs / "python", "-I", "-m", "pip", "install", "-q", "-c", listed, *packages], check=True)
         console.print(f"{step.name}: {megabytes(venv) - empty:.0f} MB", highlight=False)
         for run in step.runs:
             recording = next(folder.glob("a.work/recording-*"), Path("none"))
