@@ -29,7 +29,7 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.offscreen import Offscreen
-from mua.player.scene import Toggles
+from mua.player.toggles import Toggles
 from mua.recording import PlannedClip, Recording, TeacherWriter, WholeFrame, record
 from mua.rendering import render_over
 from mua.rig.skeleton import Pose

@@ -8,7 +8,8 @@ import pytest
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.player.offscreen import over, write_video
+from mua.player.picture import over
+from mua.player.video import write_video
 
 
 def pictures(count: int) -> Iterator[Array]:

@@ -1,13 +1,20 @@
 """Where the camera stands while a clip plays."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from synthetic_avatar import synthetic_avatar
 
+from mua import rotation
 from mua.arrays import Array
-from mua.bounds import frame_boxes, root_positions
+from mua.bounds import frame_boxes, root_positions, union
 from mua.camera import EYE_DISTANCE, Camera
-from mua.player.shot import Shot, film
+from mua.errors import InputError
+from mua.motion.clip import Clip
+from mua.player.focus import find_focus
+from mua.player.shot import Shot, film, full_turn
 
 AVATAR = synthetic_avatar()
 RIG, CLIP = AVATAR.rig, AVATAR.clips[0]
@@ -45,6 +52,61 @@ def test_a_turning_camera_goes_round_at_its_speed() -> None:
     step = np.arccos((np.trace(turned[1] @ turned[0].T) - 1) / 2)
     assert step == pytest.approx(np.pi / CLIP.rate)
     assert film(shot, RIG, CLIP)[1][0].position[0] > film(shot, RIG, CLIP)[0][0].position[0]  # to its left
+
+
+def test_a_turning_camera_keeps_its_distance() -> None:
+    still = CLIP.cut(np.zeros(7, int))
+    cameras = [camera for (camera,) in film(Shot((64, 96), turning=5.0), RIG, still)]
+    middle = union(frame_boxes(RIG, still)).mean(axis=0)
+    away = np.linalg.norm([camera.position - middle for camera in cameras], axis=-1)
+    np.testing.assert_allclose(away, away[0])
+
+
+@pytest.mark.parametrize("degrees", [0.0, 70, 180])
+def test_the_camera_stands_before_the_figures_front(degrees: float) -> None:
+    turn = Rotation.from_euler("y", degrees, degrees=True).as_quat(scalar_first=True)
+    rotations = np.tile(RIG.skeleton.bind_rotations, (3, 1, 1))
+    rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
+    clip = Clip("turned", 24, rotations, np.tile(RIG.skeleton.bind_translations, (3, 1, 1)))
+    (camera,) = film(Shot((64, 64), azimuth=0.3), RIG, clip)[0]
+    away = camera.position - union(frame_boxes(RIG, clip)).mean(axis=0)
+    assert np.arctan2(away[0], away[2]) == pytest.approx(wrapped(np.radians(degrees) + 0.3))
+
+
+def wrapped(angle: float) -> float:
+    """The same angle within half a turn of 0."""
+    return float(np.angle(np.exp(1j * angle)))
+
+
+def test_what_is_looked_at_stays_in_the_middle_at_its_size() -> None:
+    shot = Shot((64, 96), look_at="middle", zoom=3.0)
+    places = find_focus(RIG, "middle").places(RIG.skeleton, CLIP.rotations, CLIP.translations)
+    depths = []
+    for (camera,), place in zip(film(shot, RIG, CLIP), places, strict=True):
+        np.testing.assert_allclose(ndc(camera, place[None]), 0, atol=ROUNDING)
+        depths.append(np.linalg.norm(camera.position - place))
+    np.testing.assert_allclose(depths, depths[0])
+    (far,) = film(replace(shot, zoom=1.0), RIG, CLIP)[0]
+    assert np.linalg.norm(far.position - places[0]) == pytest.approx(3 * depths[0])
+
+
+def test_refuses_to_look_at_what_is_not_there() -> None:
+    with pytest.raises(InputError, match="--look-at is 'tail'"):
+        film(Shot((64, 64), look_at="tail"), RIG, CLIP)
+
+
+@pytest.mark.parametrize("speed", [-60.0, 0.0, 7.0, 360.0])
+def test_after_a_full_turn_comes_the_first_picture_again(speed: float) -> None:
+    shot, count, rate = full_turn(Shot((64, 64), turning=np.radians(speed)))
+    turns = shot.turning * count / rate / (2 * np.pi)
+    assert turns == pytest.approx(-1 if speed < 0 else 1)
+    assert count == round(360 * rate / abs(speed or 60))
+
+
+@pytest.mark.parametrize("speed", [0.5, 1000.0])
+def test_a_turntable_too_slow_or_too_fast_is_refused(speed: float) -> None:
+    with pytest.raises(InputError, match=f"--orbit is {speed:g}; a turntable turns by 1 to 360 degrees per second"):
+        full_turn(Shot((64, 64), turning=np.radians(speed)))
 
 
 def test_two_eyes_stand_about_the_one() -> None:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,21 +21,28 @@ from PIL import ImageGrab
 from rendercanvas.offscreen import RenderCanvas
 from synthetic_avatar import synthetic_avatar
 
+from mua import rotation
 from mua.arrays import Array
 from mua.asset.write import write
 from mua.camera import orbit
+from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.motion.clip import Clip
+from mua.player.focus import find_focus
 from mua.player.panel import KEYS, WIDTH
-from mua.player.scene import Toggles
-from mua.player.session import BACKGROUND, Session, Source
+from mua.player.session import Session
+from mua.player.shot import Look
+from mua.player.source import Source
+from mua.player.toggles import Toggles
 from mua.player.viewer import Viewer
 from mua.player.viewpoint import FARTHEST, NEAREST, Viewpoint, framing
 from mua.player.window import show
 
 SIZE = (640, 360)
-COLOR = tuple(round(255 * c) for c in BACKGROUND[:3])
+FRONT = np.zeros(1)
+LOOK = look_of(Asked(), None)
+COLOR = tuple(round(255 * c) for c in LOOK.background or ())
 DEADLINE = 120.0  # seconds for a window to open on a busy machine; it takes a few
 EMPTY = (slice(300, 350), slice(WIDTH + 20, WIDTH + 60))  # rows and columns beside panel and figure
 
@@ -62,9 +70,9 @@ def window(device: Device, files: tuple[Path, ...]) -> Iterator["Driven"]:
 class Driven:
     """A window on a canvas without a display, at rest."""
 
-    def __init__(self, device: Device, files: tuple[Path, ...]) -> None:
+    def __init__(self, device: Device, files: tuple[Path, ...], look: Look = LOOK) -> None:
         self.canvas = RenderCanvas(size=SIZE)
-        self.viewer = Viewer(self.canvas, device, Source(files))
+        self.viewer = Viewer(self.canvas, device, Source(files), look)
         self.session: Session = self.viewer.session
         self.session.playing = False
         self.picture()  # frames the view
@@ -246,9 +254,102 @@ def test_draws_two_eyes_beside_each_other(window: Driven) -> None:
         assert (half != COLOR).any()
 
 
+def asked(**options: Any) -> Look:
+    return look_of(Asked(**options), None)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"show": "skeleton"},
+        {"azimuth": 90.0},
+        {"elevation": 50.0},
+        {"zoom": 2.0},
+        {"look_at": "tip", "zoom": 1.0},
+        {"stereo": True},
+    ],
+)
+def test_shows_what_the_options_ask_for(device: Device, files: tuple[Path, ...], options: dict[str, Any]) -> None:
+    shown = []
+    for look in (LOOK, asked(**options)):
+        driven = Driven(device, files, look)
+        shown.append(driven.picture()[:, WIDTH + 20 :])
+        driven.canvas.close()
+    assert (shown[0] != shown[1]).any()
+
+
+def test_has_the_background_asked_for(device: Device, files: tuple[Path, ...]) -> None:
+    driven = Driven(device, files, asked(background="#204060"))
+    np.testing.assert_array_equal(driven.picture()[EMPTY][0, 0], [0x20, 0x40, 0x60])
+    driven.canvas.close()
+
+
+def session(device: Device, source: Source, **options: Any) -> Session:
+    return Session(device, source, asked(**options), color_format="rgba8unorm")
+
+
+def test_opens_with_the_camera_asked_for(device: Device, files: tuple[Path, ...]) -> None:
+    plain, chosen = (
+        session(device, Source(files), **options)._framed((400, 300))
+        for options in ({}, {"azimuth": 30.0, "elevation": 20.0, "zoom": 2.5})
+    )
+    assert chosen.azimuth - plain.azimuth == pytest.approx(np.radians(30))
+    assert chosen.elevation == pytest.approx(np.radians(20))
+    assert plain.distance / chosen.distance == pytest.approx(2.5, rel=0.1)  # the box is another from above
+    assert session(device, Source(files), stereo=True, follow=False).stereo
+    assert not session(device, Source(files), stereo=True, follow=False).follow
+
+
+def test_goes_round_while_it_plays(device: Device, files: tuple[Path, ...]) -> None:
+    turning = session(device, Source(files), orbit=90.0)
+    turning.view = turning._framed((400, 300))
+    before = turning.view.azimuth
+    turning.advance(0.5)
+    assert turning.view.azimuth - before == pytest.approx(np.radians(45))
+    turning.playing = False
+    turning.advance(0.5)
+    assert turning.view.azimuth - before == pytest.approx(np.radians(45))
+
+
+def test_rests_at_the_frame_asked_for(device: Device, files: tuple[Path, ...]) -> None:
+    resting = session(device, Source(files, frame=3))
+    assert (resting.index, resting.playing) == (3, False)
+    with pytest.raises(InputError, match="--frame is 7; clip 'wave' has frames 0 to 6"):
+        session(device, Source(files, frame=7))
+
+
+def test_keeps_what_it_looks_at_in_the_middle(device: Device, files: tuple[Path, ...]) -> None:
+    looking = session(device, Source(files), look_at="tip")
+    places = find_focus(looking._stage.rig, "tip").places(
+        looking._stage.rig.skeleton, looking.clip.rotations, looking.clip.translations
+    )
+    for index in (0, 4):
+        looking.step(index - looking.index)
+        (camera,) = looking._cameras((400, 300))
+        x, y, _, w = camera.projection @ camera.view @ np.append(places[index], 1)
+        np.testing.assert_allclose([x / w, y / w], 0, atol=1e-9)
+    with pytest.raises(InputError, match="--look-at is 'tail'"):
+        session(device, Source(files), look_at="tail")
+
+
+def test_another_clip_is_seen_from_the_same_side(device: Device, files: tuple[Path, ...]) -> None:
+    watching = session(device, Source(files), azimuth=20.0)
+    clip, root = watching.clip, watching._stage.rig.skeleton.root
+    rotations = clip.rotations.copy()
+    half_turn = np.array([0.0, 0, 1, 0])  # about the vertical
+    rotations[:, root] = rotation.multiply(half_turn, rotations[:, root])
+    watching._cameras((400, 300))
+    assert watching.view is not None
+    before = watching.view
+    watching.choose_clip(replace(clip, rotations=rotations))
+    turned = watching.view.azimuth - before.azimuth
+    assert np.cos(turned) == pytest.approx(-1)
+    np.testing.assert_allclose(watching.view.target, before.target * [-1, 1, -1], atol=1e-9)
+
+
 def test_refuses_a_clip_that_is_not_there(device: Device, files: tuple[Path, ...]) -> None:
     with pytest.raises(InputError, match="--clip is 'run'"):
-        Session(device, Source(files), clip="run", color_format="rgba8unorm")
+        Session(device, Source(files, clip="run"), LOOK, color_format="rgba8unorm")
 
 
 def test_keeps_what_is_panned_under_the_mouse() -> None:
@@ -263,7 +364,7 @@ def test_keeps_what_is_panned_under_the_mouse() -> None:
 @pytest.mark.parametrize("size", [1.3e-3, 1.8, 40.0])
 def test_a_figure_of_any_size_is_framed_before_the_near_plane_and_can_be_come_close_to(size: float) -> None:
     bounds = size * np.array([[-0.3, 0, -0.2], [0.3, 1, 0.2]])
-    view = framing(bounds, (300, 500))
+    view = framing(bounds, (300, 500), azimuths=FRONT)
     assert 1 < view.distance / size < 5
     for seen in (view, view.zoomed(10), view.zoomed(1000)):
         camera = seen.camera((300, 500))
@@ -278,7 +379,7 @@ def test_holds_distance_and_elevation() -> None:
     assert view.zoomed(-1000).distance == 2 * FARTHEST
     assert view.turned(0, 1e6).elevation < np.pi / 2
     bounds = np.array([[-0.5, 0, -0.3], [0.5, 1.8, 0.3]])
-    framed, screen = framing(bounds, (300, 500)), (300, 500)
+    framed, screen = framing(bounds, (300, 500), azimuths=FRONT), (300, 500)
     np.testing.assert_allclose(framed.camera(screen).view, orbit(bounds, screen=screen).view, atol=1e-12)
 
 
@@ -287,14 +388,12 @@ def test_loads_no_window_system_before_there_is_a_display() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_says_that_there_is_no_display(
-    device: Device, files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_says_that_there_is_no_display(files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     with pytest.raises(InputError, match="a window needs a display and there is none; -o writes a picture"):
-        show(files, device)
+        show(Source(files), LOOK)
 
 
 @pytest.fixture
@@ -317,19 +416,22 @@ def display() -> Iterator[str]:
     server.wait()
 
 
-def test_opens_a_window_on_a_display(display: str, files: tuple[Path, ...]) -> None:
-    code = "import sys; from pathlib import Path; from mua.gpu import open_device; from mua.player.window import show\n"
-    code += f"import os; show([Path({str(files[0])!r})], open_device(os.environ.get('MUA_DEVICE')))"
+@pytest.mark.parametrize("options", [[], ["--size", "760x600", "--background", "#204060"]])
+def test_opens_a_window_on_a_display(display: str, files: tuple[Path, ...], options: list[str]) -> None:
+    color = (0x20, 0x40, 0x60) if options else COLOR
+    covered = 0.15 if options else 0.3  # of the screen, at least
+    device = ["--device", os.environ["MUA_DEVICE"]] if "MUA_DEVICE" in os.environ else []
+    code = "from mua.cli.view import run; run()"
     environment = {**os.environ, "DISPLAY": display}
     environment.pop("WAYLAND_DISPLAY", None)
-    child = subprocess.Popen([sys.executable, "-c", code], env=environment)
+    child = subprocess.Popen([sys.executable, "-c", code, str(files[0]), *options, *device], env=environment)
     try:
         deadline = time.monotonic() + DEADLINE
         while True:
             assert child.poll() is None, "the window closed by itself"
             screen = np.asarray(ImageGrab.grab(xdisplay=display))[..., :3]
-            background = (screen == COLOR).all(axis=2)
-            if background.mean() > 0.3 and background[:150, :WIDTH].mean() < 0.1:  # the panel covers its corner
+            background = (screen == color).all(axis=2)
+            if background.mean() > covered and background[:150, :WIDTH].mean() < 0.1:  # the panel covers its corner
                 break
             assert time.monotonic() < deadline, "no window within the deadline"
             time.sleep(0.2)

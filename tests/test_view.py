@@ -37,12 +37,13 @@ def command(*arguments: str | Path, **environment: str) -> subprocess.CompletedP
     return subprocess.run(line, capture_output=True, text=True, check=False, env=kept | environment)
 
 
-def video(path: Path, *, side: int) -> np.ndarray:
-    """Pictures [F, H, W, 3] of a video of square pictures."""
-    line = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
-    return np.frombuffer(subprocess.run(line, capture_output=True, check=True).stdout, np.uint8).reshape(
-        -1, side, side, 3
-    )
+def video(path: Path, *, side: int, channels: int = 3) -> np.ndarray:
+    """Pictures [F, H, W, channels] of a video of square pictures."""
+    clear = ["-c:v", "libvpx-vp9"] if path.suffix == ".webm" else []  # whose decoder reads transparency
+    layout = "rgba" if channels == 4 else "rgb24"
+    line = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", *clear, "-i", path, "-f", "rawvideo", "-pix_fmt", layout]
+    read = subprocess.run([*line, "-fps_mode", "passthrough", "-"], capture_output=True, check=True).stdout
+    return np.frombuffer(read, np.uint8).reshape(-1, side, side, channels)
 
 
 def pixels(path: Path) -> np.ndarray:
@@ -59,7 +60,7 @@ def test_writes_an_image_of_the_size_and_background_asked_for(avatar_file: Path,
 
 
 def test_frames_and_angles_differ(avatar_file: Path, tmp_path: Path) -> None:
-    choices = [{}, {"frame": 5}, {"azimuth": 90.0}, {"elevation": 60.0}]
+    choices = [{}, {"frame": 5}, {"azimuth": 90.0}, {"elevation": 60.0}, {"zoom": 3.0}, {"look_at": "middle"}]
     for i, choice in enumerate(choices):
         view([avatar_file], output=tmp_path / f"{i}.png", size="32", clip="wave", **choice)
     images = {pixels(tmp_path / f"{i}.png").tobytes() for i in range(len(choices))}
@@ -90,6 +91,49 @@ def test_refuses_with_a_sentence_and_writes_nothing(
 def test_refuses_a_suffix_that_is_no_image(avatar_file: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"-o is .*v\.txt"):
         view([avatar_file], output=tmp_path / "v.txt")
+
+
+@pytest.mark.parametrize(("name", "written"), [("v.png", "v.png: 40 x 60 pixels"), ("v.gif", "v.gif: 2 pictures of")])
+def test_names_the_file_that_it_has_written(
+    avatar_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, written: str
+) -> None:
+    frames = {"frames": "0:2"} if name == "v.gif" else {}
+    view([avatar_file], output=tmp_path / name, size="40x60", **frames)
+    assert capsys.readouterr().out.startswith(f"{tmp_path}/{written}")
+
+
+def test_a_transparent_picture_shows_the_figure_alone(avatar_file: Path, tmp_path: Path) -> None:
+    for name, background in (("clear", "transparent"), ("black", "black"), ("white", "white")):
+        view([avatar_file], output=tmp_path / f"{name}.png", size="40x60", background=background)
+    clear, black, white = (pixels(tmp_path / f"{name}.png").astype(float) for name in ("clear", "black", "white"))
+    assert clear.shape == (60, 40, 4)
+    assert clear[0, 0, 3] == 0
+    assert clear[..., 3].max() > 128
+    alpha = clear[..., 3:] / 255
+    for shown, paper in ((black, 0), (white, 255)):
+        composed = alpha * clear[..., :3] + (1 - alpha) * paper
+        assert np.abs(composed - shown).max() <= SHADES
+
+
+@pytest.mark.parametrize("name", ["v.webm", "v.gif"])
+def test_a_transparent_video_is_clear_about_the_figure_alone(avatar_file: Path, tmp_path: Path, name: str) -> None:
+    view([avatar_file], output=tmp_path / name, size="64", frames="0:3", background="transparent")
+    alpha = video(tmp_path / name, side=64, channels=4)[..., 3]
+    assert len(alpha) == 3
+    assert alpha[:, 0, 0].max() == 0
+    assert (alpha > 200).mean() > 0.02
+
+
+def test_a_turntable_shows_one_frame_from_all_sides_and_repeats_without_a_seam(
+    avatar_file: Path, tmp_path: Path
+) -> None:
+    chosen = {"size": "48", "frame": 3, "orbit": 180.0}
+    view([avatar_file], output=tmp_path / "v.webm", turntable=True, **chosen)
+    pictures = video(tmp_path / "v.webm", side=48).astype(float)
+    assert len(pictures) == 60  # two seconds
+    steps = np.abs(pictures - np.roll(pictures, -1, axis=0)).mean(axis=(1, 2, 3))
+    assert steps[-1] < 2 * np.median(steps)  # from the last to the first it is a step as any other
+    assert np.abs(pictures[0] - pictures[30]).mean() > 2 * steps.max()
 
 
 def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
@@ -171,8 +215,6 @@ def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Pa
         ("v.mp4", {"frames": "a:b"}, "--frames is 'a:b'"),
         ("v.mp4", {"frames": "3:3"}, "--frames is '3:3'; clip 'wave' has frames 0 to 6"),
         ("v.mp4", {"frames": "0:8"}, "--frames is '0:8'; clip 'wave' has frames 0 to 6"),
-        ("v.mp4", {"frame": 3}, "a video takes --frames FIRST:END, a picture --frame"),
-        ("v.png", {"frames": "0:3"}, "a video takes --frames FIRST:END, a picture --frame"),
         ("v.png", {"device": "no such device"}, "device no such device: no graphics device"),
         ("v.png", {"show": "splats,hat"}, "--show is 'splats,hat'"),
         ("v.png", {"show": "skeleton", "reference": True}, "--reference draws splats alone"),

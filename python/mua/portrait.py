@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from mua import rotation
 from mua.camera import Camera, orbit
 from mua.decode import Splats
-from mua.motion.descriptor import heading_of
+from mua.motion.facing import front_of
 from mua.rendering import frame_bounds
 from mua.rig.skeleton import Pose, Skeleton
 
@@ -21,8 +20,5 @@ def portrait(
     screen: tuple[int, int],  # width, height, pixels
 ) -> Camera:
     """A camera that frames all of the figure."""
-    posed, _ = skeleton.world(pose.rotations, pose.translations)
-    bind, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    twist = heading_of(rotation.multiply(posed[skeleton.root], rotation.conjugate(bind[skeleton.root])))
-    yaw = 2 * np.arctan2(twist[2], twist[0])
-    return orbit(frame_bounds(frame), screen=screen, azimuth=float(yaw + THREE_QUARTER), elevation=float(ABOVE))
+    front = front_of(skeleton, pose.rotations, pose.translations)
+    return orbit(frame_bounds(frame), screen=screen, azimuth=float(front + THREE_QUARTER), elevation=float(ABOVE))

@@ -20,8 +20,8 @@ from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.offscreen import Offscreen, reference_picture
-from mua.player.scene import Toggles
 from mua.player.splats import SplatFrame
+from mua.player.toggles import Toggles
 from mua.rendering import frame_bounds, render_premultiplied
 from mua.student.settings import preset
 

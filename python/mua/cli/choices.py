@@ -1,14 +1,19 @@
 """What the texts of mua-view's options mean."""
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
-
-from PIL import Image, ImageColor
 
 from mua.errors import InputError
 from mua.motion.clip import Clip
+from mua.player.motion import require_frame
+from mua.player.viewpoint import FARTHEST, NEAREST
 
 LARGEST = 8192  # pixels along a side
-VIDEO = ".mp4"
+VIDEOS = (".mp4", ".webm", ".gif")
+EVEN = (".mp4", ".webm")  # whose colours are coarser than their pixels
+CLEAR = (".webm", ".gif", ".png", ".webp", ".tif", ".tiff")  # that can be transparent
+TRANSPARENT = "transparent"
 
 
 def parse_screen(size: str, *, even: bool = False) -> tuple[int, int]:
@@ -22,20 +27,39 @@ def parse_screen(size: str, *, even: bool = False) -> tuple[int, int]:
     return width, height
 
 
-def parse_color(text: str) -> tuple[float, float, float]:
-    """sRGB in 0..1 from a colour name or #rrggbb."""
+def parse_color(text: str, output: Path | None) -> tuple[float, float, float] | None:
+    """sRGB in 0..1 from a colour name or #rrggbb; None where the output is to be transparent."""
+    if text == TRANSPARENT:
+        if output is None or output.suffix.lower() not in CLEAR:
+            where = "the window" if output is None else str(output)
+            raise InputError(f"--background is transparent, which {where} cannot be; expected -o with {listed(CLEAR)}")
+        return None
+    from PIL import ImageColor
+
     try:
         red, green, blue = ImageColor.getrgb(text)[:3]
     except ValueError as error:
-        raise InputError(f"--background is {text!r}; expected a colour name or #rrggbb") from error
+        raise InputError(f"--background is {text!r}; expected a colour name, #rrggbb or {TRANSPARENT}") from error
     return red / 255, green / 255, blue / 255
+
+
+def parse_angle(option: str, degrees: float) -> float:
+    """Radians; InputError for what is no angle."""
+    if not math.isfinite(degrees):
+        raise InputError(f"{option} is {degrees}; expected degrees")
+    return math.radians(degrees)
+
+
+def parse_zoom(zoom: float) -> float:
+    """How many times nearer; InputError for what the mouse could not reach either."""
+    if not 1 / FARTHEST <= zoom <= 1 / NEAREST:
+        raise InputError(f"--zoom is {zoom:g}; expected {1 / FARTHEST:.2f} to {1 / NEAREST:g}")
+    return zoom
 
 
 def parse_frame(frame: int | None, clip: Clip) -> range:
     """The one frame of a picture, the first if none is given."""
-    index = 0 if frame is None else frame
-    if not 0 <= index < len(clip):
-        raise InputError(f"--frame is {index}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
+    index = require_frame(clip, 0 if frame is None else frame)
     return range(index, index + 1)
 
 
@@ -53,10 +77,20 @@ def parse_frames(text: str | None, clip: Clip) -> range:
 
 
 def is_video(output: Path) -> bool:
-    return output.suffix.lower() == VIDEO
+    return output.suffix.lower() in VIDEOS
 
 
 def require_format(output: Path) -> None:
     """Refuse a suffix that neither an image format nor a video has, before any work is done."""
-    if not is_video(output) and output.suffix.lower() not in Image.registered_extensions():
-        raise InputError(f"-o is {output}; expected a suffix of an image format, such as .png, or {VIDEO}")
+    if is_video(output):
+        return
+    from PIL import Image
+
+    kind = Image.registered_extensions().get(output.suffix.lower())
+    if kind not in Image.SAVE:
+        raise InputError(f"-o is {output}; expected a suffix of a picture, such as .png, or {listed(VIDEOS)}")
+
+
+def listed(words: Sequence[str]) -> str:
+    """As a sentence has them: a, b or c."""
+    return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

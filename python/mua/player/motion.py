@@ -30,6 +30,13 @@ def player_clips(
     return [resample(clip, rate) for clip in avatar.clips], ()
 
 
+def require_frame(clip: Clip, frame: int) -> int:
+    """The frame; InputError where the clip does not have it."""
+    if not 0 <= frame < len(clip):
+        raise InputError(f"--frame is {frame}; clip {clip.name!r} has frames 0 to {len(clip) - 1}")
+    return frame
+
+
 def named_clip(
     clips: Sequence[Clip],
     name: str | None,

@@ -5,8 +5,8 @@ from dataclasses import fields
 
 from imgui_bundle import imgui
 
-from mua.player.scene import Toggles
 from mua.player.session import Session
+from mua.player.toggles import Toggles
 
 WIDTH = 300  # logical pixels
 SLOWEST, FASTEST = 0.1, 2.0  # of the clip's own speed

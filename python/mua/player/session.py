@@ -1,48 +1,44 @@
 """What an interactive player shows and how it moves, apart from any window."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import wgpu
 
 from mua.arrays import Array
-from mua.camera import EYE_DISTANCE, Camera, stereo
+from mua.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.motion.clip import Clip
+from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
-from mua.player.motion import named_clip, player_clips
+from mua.player.focus import find_focus
+from mua.player.motion import named_clip, player_clips, require_frame
 from mua.player.overlays import ground_height
-from mua.player.scene import Scene, Toggles
+from mua.player.scene import CLEAR, Scene
+from mua.player.shot import GROUND, Look, eyes_of
+from mua.player.source import Source
 from mua.player.splats import SplatFrame
 from mua.player.viewpoint import Viewpoint, framing
 
-BACKGROUND = (0.93, 0.94, 0.95, 1.0)  # sRGB
 SMOOTHING = 0.1  # share of the newest frame in the times on screen
-HORIZONTAL = np.array([1.0, 0, 1])  # a camera that follows keeps its height
-
-
-@dataclass(frozen=True)
-class Source:
-    """What the player was asked to show."""
-
-    files: tuple[Path, ...]  # avatars
-    motion: Path | None = None  # in place of the files' own clips
-    mapping: Mapping[str, str] | None = None  # avatar's joint to joint of the motion
+ROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)  # radians: all sides of a figure
 
 
 class Stage:
     """One loaded avatar."""
 
-    def __init__(self, device: Device, source: Source, file: Path, *, color_format: str) -> None:
-        """Errors: InputError where the file is broken or too large, or the motion does not fit."""
+    def __init__(self, device: Device, source: Source, file: Path, look: Look, *, color_format: str) -> None:
+        """Errors: InputError where the file is broken or too large, the motion does not fit or a joint is missing."""
         avatar = AvatarBuffers(device, file)
         self.clips, self.notes = player_clips(avatar.avatar, file, motion=source.motion, mapping=source.mapping)
         self.frame = SplatFrame(device, [avatar])
-        self.scene = Scene(device, self.frame, color_format=color_format, background=BACKGROUND)
+        background = CLEAR if look.background is None else (*look.background, 1.0)
+        self.scene = Scene(device, self.frame, color_format=color_format, background=background)
         self.rig, self.encoding, self.bounds = avatar.avatar.rig, avatar.avatar.encoding, avatar.avatar.bounds
+        self.focus = None if look.shot.look_at is None else find_focus(self.rig, look.shot.look_at)
         self._grounds: dict[str, float] = {}
 
     def ground(self, clip: Clip) -> float:
@@ -51,26 +47,33 @@ class Stage:
             self._grounds[clip.name] = ground_height(self.rig, clip)
         return self._grounds[clip.name]
 
+    def front(self, clip: Clip) -> float:
+        """Azimuth of the figure's front at the start of a clip, radians."""
+        return front_of(self.rig.skeleton, clip.rotations[0], clip.translations[0])
+
 
 class Session:
     """The state behind the window; every change shows in the next `draw`."""
 
-    def __init__(self, device: Device, source: Source, *, clip: str | None, color_format: str) -> None:
+    def __init__(self, device: Device, source: Source, look: Look, *, color_format: str) -> None:
         """Load the first avatar.
 
-        Errors: InputError as of Stage, or where no clip has that name.
+        Errors: InputError as of Stage, or where no clip has that name or so many frames.
         """
         self._device, self._source, self._color_format = device, source, color_format
         self._stages: dict[Path, Stage] = {}
-        self.toggles = Toggles(shadow=True)
-        self.stereo, self.follow = False, True
+        self._look, self.toggles = look, look.toggles
+        self.stereo, self.follow = look.shot.eyes is not None, look.shot.follow
+        self.turning = look.shot.turning
         self.playing, self.speed, self.time = True, 1.0, 0.0  # time in frames of the clip
         self.failure = ""  # why the last avatar asked for is not shown
         self.milliseconds: dict[str, float] = {}  # by kernel, smoothed
         self.timed = False  # whether to measure them
         self.file = source.files[0]
         self._stage = self._load(self.file)
-        self._clip = named_clip(self._stage.clips, clip, source=source.motion or self.file)
+        self._clip = named_clip(self._stage.clips, source.clip, source=source.motion or self.file)
+        if source.frame is not None:
+            self.step(require_frame(self._clip, source.frame))
         self._drawn: tuple[object, ...] = ()  # what the frame holds: avatar, clip, index
         self.view: Viewpoint | None = None  # framed by the first draw
 
@@ -122,7 +125,9 @@ class Session:
         self.view = None
 
     def choose_clip(self, clip: Clip) -> None:
-        """Play another clip from its start."""
+        """Play another clip from its start, seen from the same side of the figure."""
+        if self.view is not None:
+            self.view = self.view.gone_round(self._stage.front(clip) - self._stage.front(self._clip))
         self._clip, self.time = clip, 0.0
 
     def step(self, frames: int) -> None:
@@ -133,6 +138,8 @@ class Session:
         """Play on for so long, round and round."""
         if self.playing:
             self.time = (self.time + seconds * self.speed * self._clip.rate) % len(self._clip)
+            if self.view is not None:
+                self.view = replace(self.view, azimuth=self.view.azimuth + self.turning * seconds)
 
     def toggle(self, name: str) -> None:
         """Show or hide one of Toggles."""
@@ -158,23 +165,33 @@ class Session:
 
     def _load(self, file: Path) -> Stage:
         if file not in self._stages:
-            self._stages[file] = Stage(self._device, self._source, file, color_format=self._color_format)
+            self._stages[file] = Stage(self._device, self._source, file, self._look, color_format=self._color_format)
         return self._stages[file]
 
-    def _root(self) -> Array:
-        """Where the root joint is, [3] metres, with the height that it has at the start of the clip."""
-        skeleton, clip = self._stage.rig.skeleton, self._clip
+    def _followed(self) -> Array:
+        """What the view's target is relative to, [3] metres: the root at its first height, or what is looked at."""
+        skeleton, clip, focus = self._stage.rig.skeleton, self._clip, self._stage.focus
         frames = [self.index, 0]
-        _, placed = skeleton.world(clip.rotations[frames], clip.translations[frames])
-        now, start = placed[:, skeleton.root]
-        return np.where(HORIZONTAL > 0, now if self.follow else start, start)
+        rotations, translations = clip.rotations[frames], clip.translations[frames]
+        if focus is not None:
+            now, start = focus.places(skeleton, rotations, translations)
+            return np.asarray(now if self.follow else start)
+        now, start = skeleton.world(rotations, translations)[1][:, skeleton.root]
+        return np.asarray(start + (now - start) * GROUND * self.follow)
 
     def _cameras(self, screen: tuple[int, int]) -> tuple[Camera, ...]:
-        root = self._root()
         if self.view is None:
-            self.view = framing(self._stage.bounds, screen)
-        camera = replace(self.view, target=self.view.target + root).camera(screen)
-        return stereo(camera, EYE_DISTANCE) if self.stereo else (camera,)
+            self.view = self._framed(screen)
+        view = replace(self.view, target=self.view.target + self._followed())
+        return eyes_of(view, screen, (self._look.shot.eyes or EYE_DISTANCE) if self.stereo else None)
+
+    def _framed(self, screen: tuple[int, int]) -> Viewpoint:
+        """The view that was asked for, before any mouse has moved it."""
+        shot = self._look.shot
+        sides = ROUND if self.turning else np.zeros(1)
+        azimuths = self._stage.front(self._clip) + shot.azimuth + sides
+        view = framing(self._stage.bounds, screen, azimuths=azimuths, elevation=shot.elevation).nearer(shot.zoom)
+        return view if self._stage.focus is None else replace(view, target=np.zeros(3))
 
     def _note(self, milliseconds: Mapping[str, float]) -> None:
         """Smooth the times; a kernel that did not run this time keeps what it took."""

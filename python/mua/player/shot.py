@@ -1,46 +1,86 @@
-"""How a clip is filmed: from where, how large, still, orbiting or following, with one eye or two."""
+"""How a figure is filmed: from where, how near, still, orbiting or following, with one eye or two."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.bounds import frame_boxes, root_positions, union
-from mua.camera import Camera, orbit, stereo
+from mua.camera import Camera, stereo
+from mua.errors import InputError
 from mua.motion.clip import Clip
+from mua.motion.facing import front_of
+from mua.player.focus import find_focus
+from mua.player.toggles import Toggles
+from mua.player.viewpoint import Viewpoint, framing
 from mua.rig.rig import Rig
 
 GROUND = np.array([1.0, 0, 1])  # a camera that follows keeps its height
+TURN_SPEED, TURN_RATE = 60.0, 30.0  # degrees and pictures per second of a turntable
+SLOWEST, FASTEST = 1.0, 360.0  # degrees per second: six minutes for a turn, and a second
+Color = tuple[float, float, float]  # sRGB, 0..1
 
 
 @dataclass(frozen=True)
 class Shot:
-    """What a camera does; the figure is in the picture at every frame."""
+    """What a camera does; unless it comes nearer than that, the figure is in the picture at every frame."""
 
     screen: tuple[int, int]  # width, height of one eye, pixels
-    azimuth: float = 0.0  # radians, as mua.camera.orbit
+    azimuth: float = 0.0  # radians from the figure's front in the first frame, towards its left
     elevation: float = 0.0
     turning: float = 0.0  # radians per second round the figure, towards its left
     follow: bool = False  # go along with the figure; else stand where all of the clip is in the picture
     eyes: float | None = None  # metres between two eyes; one eye if None
+    zoom: float = 1.0  # times nearer than all of the figure asks for
+    look_at: str | None = None  # joint or part of the body in the middle of the picture, wherever it goes
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a picture, a video or a window shows of an avatar, and from where."""
+
+    shot: Shot
+    toggles: Toggles
+    background: Color | None  # None: transparent
 
 
 def film(shot: Shot, rig: Rig, clip: Clip) -> list[tuple[Camera, ...]]:
-    """The camera of one eye or two for every frame of a clip."""
-    boxes = frame_boxes(rig, clip)
-    moved = np.zeros((len(clip), 3))
-    if shot.follow:
-        roots = root_positions(rig, clip)
-        moved = (roots - roots[0]) * GROUND
-    framed = union(boxes - moved[:, None])
-    return [_eyes(shot, framed + moved[i], i / clip.rate) for i in range(len(clip))]
+    """The camera of one eye or two for every frame of a clip.
+
+    Errors: InputError where the rig has no such joint to look at.
+    """
+    framed, moved = _framed(shot, rig, clip)
+    turned = shot.turning / clip.rate * np.arange(len(clip))
+    azimuths = front_of(rig.skeleton, clip.rotations[0], clip.translations[0]) + shot.azimuth + turned
+    view = framing(framed, shot.screen, azimuths=azimuths, elevation=shot.elevation).nearer(shot.zoom)
+    target = np.zeros(3) if shot.look_at else view.target
+    views = [replace(view, target=target + at, azimuth=a) for at, a in zip(moved, azimuths, strict=True)]
+    return [eyes_of(view, shot.screen, shot.eyes) for view in views]
 
 
-def _eyes(
-    shot: Shot,
-    box: Array,  # [2, 3]
-    seconds: float,
-) -> tuple[Camera, ...]:
-    azimuth = shot.azimuth + shot.turning * seconds
-    camera = orbit(box, screen=shot.screen, azimuth=azimuth, elevation=shot.elevation)
-    return (camera,) if shot.eyes is None else stereo(camera, shot.eyes)
+def eyes_of(view: Viewpoint, screen: tuple[int, int], eyes: float | None) -> tuple[Camera, ...]:
+    """One eye at a viewpoint, or two so many metres apart."""
+    camera = view.camera(screen)
+    return (camera,) if eyes is None else stereo(camera, eyes)
+
+
+def _framed(shot: Shot, rig: Rig, clip: Clip) -> tuple[Array, Array]:
+    """The box [2, 3] that is to be in the picture, and where the camera's target goes [F, 3], metres."""
+    boxes, roots = frame_boxes(rig, clip), root_positions(rig, clip)
+    if shot.look_at is not None:
+        places = find_focus(rig, shot.look_at).places(rig.skeleton, clip.rotations, clip.translations)
+        return union(boxes - roots[:, None]), places
+    moved = (roots - roots[0]) * GROUND * shot.follow
+    return union(boxes - moved[:, None]), moved
+
+
+def full_turn(shot: Shot) -> tuple[Shot, int, float]:
+    """A shot that goes round once at its speed, how many pictures that takes and how many there are a second.
+
+    The picture after the last would be the first again. Errors: InputError where it turns too slowly or too fast.
+    """
+    speed = np.degrees(shot.turning) or TURN_SPEED
+    if not SLOWEST <= abs(speed) <= FASTEST:
+        raise InputError(f"--orbit is {speed:g}; a turntable turns by {SLOWEST:g} to {FASTEST:g} degrees per second")
+    count = round(360 / abs(speed) * TURN_RATE)
+    return replace(shot, turning=float(np.copysign(2 * np.pi, speed)) * TURN_RATE / count), count, TURN_RATE

@@ -9,7 +9,9 @@ from wgpu.utils.imgui import ImguiRenderer
 
 from mua.gpu import Device
 from mua.player.panel import KEYS, draw_panel
-from mua.player.session import Session, Source
+from mua.player.session import Session
+from mua.player.shot import Look
+from mua.player.source import Source
 
 EVENTS = ("pointer_down", "pointer_up", "pointer_move", "wheel", "key_down", "key_up", "char", "resize")
 SETTLING = 3  # pictures after an event: the panel answers a click in the one after it
@@ -22,14 +24,14 @@ NOTCH = 100.0  # of a wheel event
 class Viewer:
     """Draws a session on a canvas and hands the canvas's events to it."""
 
-    def __init__(self, canvas: BaseRenderCanvas, device: Device, source: Source, *, clip: str | None = None) -> None:
+    def __init__(self, canvas: BaseRenderCanvas, device: Device, source: Source, look: Look) -> None:
         """Errors: InputError as of Session."""
         self._canvas = canvas
         self._context = canvas.get_wgpu_context()
         # Colours are display-referred: the canvas must not encode them once more.
         color_format = self._context.get_preferred_format(device.wgpu.adapter).removesuffix("-srgb")
         self._context.configure(device=device.wgpu, format=color_format)
-        self.session = Session(device, source, clip=clip, color_format=color_format)
+        self.session = Session(device, source, look, color_format=color_format)
         self._rate, self._before = 0.0, time.perf_counter()
         self._settling, self._mouse = SETTLING, (0.0, 0.0)
         self._gui = ImguiRenderer(device.wgpu, canvas)

@@ -33,6 +33,16 @@ class Viewpoint:
         distance = np.clip(self.distance * ZOOM_STEP**-notches, NEAREST * self.framed, FARTHEST * self.framed)
         return replace(self, distance=float(distance))
 
+    def nearer(self, times: float) -> "Viewpoint":
+        """At a fraction of the distance, so that what is in the middle appears so many times larger."""
+        return self.zoomed(float(np.log(times) / np.log(ZOOM_STEP)))
+
+    def gone_round(self, angle: float) -> "Viewpoint":
+        """Turned by so many radians about the vertical, camera and target, as a figure that turns takes its front."""
+        c, s = np.cos(angle), np.sin(angle)
+        target = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ self.target
+        return replace(self, target=target, azimuth=self.azimuth + angle)
+
     def panned(self, right: float, down: float, *, height: int) -> "Viewpoint":
         """After a drag of so many pixels in a picture of `height`: what is at the target stays under the mouse."""
         metres = 2 * np.tan(FOV / 2) * self.distance / height
@@ -51,8 +61,12 @@ class Viewpoint:
 def framing(
     bounds: Array,  # [2, 3] metres
     screen: tuple[int, int],
+    *,
+    azimuths: Array,  # [N] radians, as mua.camera.orbit: all from which the box is going to be seen
+    elevation: float = 0.0,
 ) -> Viewpoint:
-    """From the front, at the distance from which all of a box is in the picture."""
+    """At the first azimuth, at the distance from which all of a box is in the picture from each of them."""
     target = np.mean(bounds, axis=0)
-    distance = float(np.linalg.norm(orbit(bounds, screen=screen).position - target))
-    return Viewpoint(target, distance, framed=distance)
+    places = [orbit(bounds, screen=screen, azimuth=a, elevation=elevation).position for a in np.unique(azimuths)]
+    distance = float(np.linalg.norm(np.array(places) - target, axis=-1).max())
+    return Viewpoint(target, distance, float(azimuths[0]), elevation, framed=distance)

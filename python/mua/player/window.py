@@ -3,47 +3,46 @@
 import os
 import sys
 import warnings
-from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mua.errors import InputError
-from mua.gpu import Device
 
 if TYPE_CHECKING:
     from rendercanvas import BaseRenderCanvas
 
-SIZE = (1280, 860)  # logical pixels
+    from mua.player.shot import Look
+    from mua.player.source import Source
+
+MISSING = "a window needs a display and there is none; -o writes a picture or a video instead"
 
 
-def show(
-    files: Sequence[Path],
-    device: Device,
-    *,
-    clip: str | None = None,
-    motion: Path | None = None,
-    mapping: Mapping[str, str] | None = None,
-) -> None:
-    """Show avatars in a window until it is closed; clips are the files' own, or those of `motion`.
+def show(source: "Source", look: "Look", *, device: str | None = None) -> None:
+    """Show avatars in a window until it is closed, on the graphics device of that name or number.
 
     Errors: InputError where there is no display, where the first avatar cannot be shown, or where it has no such clip.
     """
-    canvas, loop = _open_canvas()
-    from mua.player.session import Source
+    require_display()
+    from mua.gpu import open_device
     from mua.player.viewer import Viewer
 
+    opened = open_device(device)
+    width, height = look.shot.screen
+    canvas, loop = _open_canvas((width if look.shot.eyes is None else 2 * width, height))
     try:
-        Viewer(canvas, device, Source(tuple(files), motion, mapping), clip=clip)
+        Viewer(canvas, opened, source, look)
         loop.run()
     finally:
         canvas.close()
 
 
-def _open_canvas() -> tuple["BaseRenderCanvas", Any]:
-    """A window and the loop that runs it; InputError where there is no display."""
-    missing = "a window needs a display and there is none; -o writes a picture or a video instead"
+def require_display() -> None:
+    """Raises InputError where there is none, as far as that can be told without loading anything."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise InputError(missing)
+        raise InputError(MISSING)
+
+
+def _open_canvas(size: tuple[int, int]) -> tuple["BaseRenderCanvas", Any]:
+    """A window of so many logical pixels and the loop that runs it; InputError where there is no display."""
     import glfw  # here: with rendercanvas below it starts GLFW
 
     with warnings.catch_warnings():
@@ -52,6 +51,6 @@ def _open_canvas() -> tuple["BaseRenderCanvas", Any]:
             glfw.init()
             from rendercanvas.glfw import RenderCanvas, loop
 
-            return RenderCanvas(title="mua-view", size=SIZE, update_mode="ondemand", max_fps=120), loop
+            return RenderCanvas(title="mua-view", size=size, update_mode="ondemand", max_fps=120), loop
         except glfw.GLFWError as error:
-            raise InputError(f"{missing} ({error})") from error
+            raise InputError(f"{MISSING} ({error})") from error

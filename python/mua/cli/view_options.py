@@ -1,0 +1,125 @@
+"""What the options of mua-view ask for, in the window and in files alike; told before anything is loaded."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from mua.camera import EYE_DISTANCE
+from mua.cli.choices import (
+    EVEN,
+    VIDEOS,
+    is_video,
+    listed,
+    parse_angle,
+    parse_color,
+    parse_screen,
+    parse_zoom,
+    require_format,
+)
+from mua.cli.inputs import require_file, require_motion
+from mua.errors import InputError
+from mua.player.shot import Look, Shot
+from mua.player.toggles import parse_toggles
+
+Kind = Literal["window", "picture", "video", "turntable"]
+MEANT = {"window": "the window", "picture": "a picture", "video": "a video", "turntable": "a turntable"}
+FITTING: dict[str, tuple[Kind, ...]] = {  # options that do not go with everything
+    "--frame": ("window", "picture", "turntable"),
+    "--frames": ("video",),
+    "--orbit": ("window", "video", "turntable"),
+    "--reference": ("picture", "video", "turntable"),
+}
+BESIDE = (("--mapping", "--motion"), ("--ipd", "--stereo"))  # options that need another one
+CLOSE_UP = 4.0  # times nearer, where a joint is looked at
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """What options mean that are left out."""
+
+    size: str
+    background: str
+    show: str
+    follow: bool
+
+
+IN_FILES = Defaults(size="640x960", background="white", show="splats", follow=False)
+IN_WINDOW = Defaults(size="1280x860", background="#edf0f2", show="splats,shadow", follow=True)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How the figure is to be seen, as the options say it; None where one is left out."""
+
+    size: str | None = None
+    azimuth: float = 0.0
+    elevation: float = 0.0
+    zoom: float | None = None
+    look_at: str | None = None
+    orbit: float | None = None
+    follow: bool | None = None
+    stereo: bool = False
+    ipd: float | None = None
+    background: str | None = None
+    show: str | None = None
+
+
+def kind_of(output: Path | None, *, turntable: bool) -> Kind:
+    """What is asked for; raises InputError for a name that no such file has."""
+    if turntable and (output is None or not is_video(output)):
+        found = "no -o is given" if output is None else f"-o is {output}"
+        raise InputError(f"--turntable: {found}; expected -o with a name that ends in {listed(VIDEOS)}")
+    if output is None:
+        return "window"
+    require_format(output)
+    if turntable:
+        return "turntable"
+    return "video" if is_video(output) else "picture"
+
+
+def check_fitting(kind: Kind, output: Path | None, given: Mapping[str, object]) -> None:
+    """Raises InputError for an option that would change nothing; `given` has the value of each, None or False if none.
+
+    Those that are not in FITTING act in the window and in files.
+    """
+    named = {option for option, value in given.items() if value is not None and value is not False}
+    for option, kinds in FITTING.items():
+        if option in named and kind not in kinds:
+            fitting = listed([MEANT[kind] for kind in kinds])
+            found = "no -o is given" if output is None else f"-o is {output}, {MEANT[kind]}"
+            raise InputError(f"{option}: goes with {fitting}; {found}")
+    for option, other in BESIDE:
+        if option in named and other not in named:
+            raise InputError(f"{option}: goes with {other}, which is not given")
+    if {"--reference", "--device"} <= named:
+        raise InputError("--device: --reference computes on no graphics device; expected one of the two")
+
+
+def check_inputs(files: list[Path], output: Path | None, motion: Path | None) -> None:
+    """Raises InputError for a file that is not there, or more of them than a picture shows."""
+    if output is not None and len(files) > 1:
+        raise InputError(f"-o is {output}; expected one FILE to picture, found {len(files)}")
+    for file in files:
+        require_file(file)
+    if motion is not None:
+        require_motion(motion)
+
+
+def look_of(asked: Asked, output: Path | None) -> Look:
+    """What the window (no output) or the file shows, and from where; raises InputError for what no option can be."""
+    left_out = IN_WINDOW if output is None else IN_FILES
+    even = output is not None and output.suffix.lower() in EVEN
+    close = 1.0 if asked.look_at is None else CLOSE_UP
+    shot = Shot(
+        screen=parse_screen(asked.size or left_out.size, even=even),
+        azimuth=parse_angle("--azimuth", asked.azimuth),
+        elevation=parse_angle("--elevation", asked.elevation),
+        turning=parse_angle("--orbit", asked.orbit or 0.0),
+        follow=left_out.follow if asked.follow is None else asked.follow,
+        eyes=(EYE_DISTANCE if asked.ipd is None else asked.ipd) if asked.stereo else None,
+        zoom=parse_zoom(close if asked.zoom is None else asked.zoom),
+        look_at=asked.look_at,
+    )
+    color = parse_color(asked.background or left_out.background, output)
+    return Look(shot, parse_toggles(asked.show or left_out.show), color)

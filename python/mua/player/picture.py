@@ -1,0 +1,37 @@
+"""Pictures by the CPU reference, and what both ways of drawing share; needs no graphics device."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.camera import Camera
+from mua.decode import decode_clip_frame
+from mua.motion.clip import Clip
+from mua.rendering import render_premultiplied, to_bytes
+
+
+class Reference:
+    """The splats of the same pictures by the CPU reference; each eye sees its own colours."""
+
+    def __init__(self, avatar: Avatar, clip: Clip) -> None:
+        """`clip` is at the rate of the avatar's encoding."""
+        self._decode = lru_cache(maxsize=1)(lambda index: decode_clip_frame(avatar, clip, frame=index))
+
+    def picture(self, index: int, cameras: Sequence[Camera]) -> Array:
+        """As Offscreen.picture."""
+        return np.hstack([render_premultiplied(self._decode(index), camera) for camera in cameras])
+
+
+def over(
+    image: Array,  # [H, W, 4] premultiplied sRGB and alpha
+    background: tuple[float, float, float] | None,  # sRGB, 0..1; None: transparent
+) -> Array:
+    """The image over a plain background, [H, W, 3] uint8, or transparent with straight alpha, [H, W, 4]."""
+    if background is not None:
+        return to_bytes(image[..., :3] + (1 - image[..., 3:]) * np.array(background))
+    alpha = np.clip(image[..., 3:], 0, 1)
+    color = image[..., :3] / np.where(alpha > 0, alpha, 1)
+    return to_bytes(np.concatenate([color, alpha], axis=-1))

@@ -1,0 +1,67 @@
+"""Videos and animations from pictures, all of a file or none of it."""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import chain
+from pathlib import Path
+from subprocess import DEVNULL, PIPE, Popen
+from tempfile import TemporaryFile
+
+import imageio_ffmpeg
+
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.files import replacing
+
+BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
+MARKED = ("-colorspace", BT709, "-color_primaries", BT709, "-color_trc", BT709)
+SCALED = f"scale=out_color_matrix={BT709}:out_range=tv"
+MP4 = (
+    *("-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"),  # visually lossless
+    *("-vf", SCALED, *MARKED),
+    *("-movflags", "+faststart"),  # a browser may start before it has the whole
+)
+WEBM = (
+    *("-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0"),  # of constant quality
+    *("-row-mt", "1", "-deadline", "good", "-cpu-used", "4"),
+    *("-vf", SCALED, *MARKED),
+)
+OPAQUE_WEBM = (*WEBM, "-pix_fmt", "yuv420p")
+CLEAR_WEBM = (*WEBM, "-pix_fmt", "yuva420p", "-auto-alt-ref", "0")  # which VP9 refuses beside transparency
+GIF_RATE = 50  # pictures a second beyond which viewers slow an animation down
+# A palette for every picture: one for all of them would keep the whole video in memory until the last is there.
+PALETTES = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=sierra2_4a"
+GIF = ("-vf", f"fps=min(source_fps\\,{GIF_RATE}),{PALETTES}", "-loop", "0")
+ENCODINGS = {  # by suffix: of opaque pictures, and of those with transparency
+    ".mp4": (MP4, None),
+    ".webm": (OPAQUE_WEBM, CLEAR_WEBM),
+    ".gif": (GIF, GIF),
+}
+
+
+def write_video(
+    path: Path,  # its suffix, one of ENCODINGS, says which kind
+    pictures: Iterator[Array],  # [H, W, 3 or 4] uint8, at least one; H and W even but for a GIF; straight alpha
+    *,
+    rate: float,  # pictures per second
+) -> None:
+    """Write a video or an animation that repeats.
+
+    Errors: InputError where the encoder stops, with what it said.
+    """
+    first = next(pictures)
+    height, width, channels = first.shape
+    encoding = ENCODINGS[path.suffix.lower()][channels - 3]
+    assert encoding is not None, "options were checked"
+    layout = "rgba" if channels == 4 else "rgb24"
+    source = ("-f", "rawvideo", "-pix_fmt", layout, "-s", f"{width}x{height}", "-r", str(rate), "-i", "-")
+    with replacing(path) as temporary, TemporaryFile() as said:
+        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-v", "error", *source, *encoding, str(temporary)]
+        encoder = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said)
+        with suppress(BrokenPipeError), encoder:  # it may stop, and has then said why
+            assert encoder.stdin is not None  # as asked for
+            for picture in chain([first], pictures):
+                encoder.stdin.write(picture.tobytes())
+        if encoder.returncode:
+            said.seek(0)
+            raise InputError(f"{path}: the encoder stopped: {' '.join(said.read().decode().split())}")

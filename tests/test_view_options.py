@@ -1,0 +1,81 @@
+"""Every option of mua-view acts in the window as in files, or is refused in a sentence before anything is loaded."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+
+from mua.cli.view import view
+from mua.cli.view_options import Asked, look_of
+from mua.errors import InputError
+
+NOWHERE = Path("nowhere.muaavatar")  # an option is refused although there is no such file
+VALUES = {  # one of every option that says what is seen, and where it ends up in the Look of window and file
+    "size": "300x200",
+    "azimuth": 90.0,
+    "elevation": 10.0,
+    "zoom": 2.0,
+    "look_at": "head",
+    "orbit": 45.0,
+    "follow": True,
+    "stereo": True,
+    "background": "#204060",
+    "show": "skeleton",
+}
+
+
+@pytest.mark.parametrize("output", [None, Path("v.mp4")])
+@pytest.mark.parametrize("option", VALUES)
+def test_an_option_changes_what_window_and_file_show(option: str, output: Path | None) -> None:
+    value = False if (option, output) == ("follow", None) else VALUES[option]
+    assert look_of(Asked(**{option: value}), output) != look_of(Asked(), output)
+
+
+def test_no_option_is_forgotten() -> None:
+    asked = {*VALUES, "ipd"}
+    others = {"files", "clip", "frame", "frames", "motion", "mapping", "output", "turntable", "device", "list_devices"}
+    assert set(inspect.signature(view).parameters) == asked | others | {"reference"}
+    assert set(inspect.signature(Asked).parameters) == asked
+
+
+@pytest.mark.parametrize(
+    ("output", "choice", "sentence"),
+    [
+        (None, {"frames": "0:3"}, "--frames: goes with a video; no -o is given"),
+        (None, {"reference": True}, "--reference: goes with a picture, a video or a turntable; no -o is given"),
+        (None, {"turntable": True}, "--turntable: no -o is given; expected -o with a name that ends in .mp4"),
+        (None, {"background": "transparent"}, "--background is transparent, which the window cannot be"),
+        (None, {"show": "hat"}, "--show is 'hat'"),
+        (None, {"size": "0"}, "--size is '0'"),
+        (None, {"zoom": 0.0}, "--zoom is 0; expected 0.03 to 100"),
+        (None, {"zoom": float("nan")}, "--zoom is nan"),
+        (None, {"azimuth": float("inf")}, "--azimuth is inf; expected degrees"),
+        (None, {"ipd": 0.06}, "--ipd: goes with --stereo, which is not given"),
+        (None, {"mapping": Path("m.json")}, "--mapping: goes with --motion, which is not given"),
+        ("v.png", {"frames": "0:3"}, "--frames: goes with a video; -o is v.png, a picture"),
+        ("v.png", {"orbit": 45.0}, "--orbit: goes with the window, a video or a turntable; -o is v.png, a picture"),
+        ("v.png", {"turntable": True}, "--turntable: -o is v.png; expected -o with a name that ends in .mp4"),
+        ("v.mp4", {"frame": 3}, "--frame: goes with the window, a picture or a turntable; -o is v.mp4, a video"),
+        ("v.mp4", {"frames": "0:3", "turntable": True}, "--frames: goes with a video; -o is v.mp4, a turntable"),
+        ("v.mp4", {"background": "transparent"}, "--background is transparent, which v.mp4 cannot be"),
+        ("v.jpg", {"background": "transparent"}, "which v.jpg cannot be; expected -o with .webm, .gif, .png"),
+        ("v.webm", {"size": "33x32"}, "--size is '33x32'; a video needs an even width and height"),
+        ("v.png", {"reference": True, "device": "0"}, "--device: --reference computes on no graphics device"),
+        ("v.docx", {}, "-o is v.docx; expected a suffix of a picture, such as .png, or .mp4, .webm or .gif"),
+        ("v.psd", {}, "-o is v.psd; expected a suffix of a picture"),  # which can be read alone
+        ("v.png", {"motion": Path("nowhere.bvh")}, "nowhere.muaavatar: there is no such file"),
+    ],
+)
+def test_refuses_before_anything_is_loaded(output: str | None, choice: dict[str, object], sentence: str) -> None:
+    with pytest.raises(InputError) as refused:
+        view([NOWHERE], output=None if output is None else Path(output), **choice)
+    assert sentence in str(refused.value)
+
+
+def test_an_animation_may_have_any_size() -> None:
+    assert look_of(Asked(size="33x31"), Path("v.gif")).shot.screen == (33, 31)
+
+
+def test_a_close_up_is_near_unless_said_otherwise() -> None:
+    assert look_of(Asked(look_at="head"), None).shot.zoom > 1
+    assert look_of(Asked(look_at="head", zoom=1.0), None).shot.zoom == 1
