@@ -1,6 +1,7 @@
 """mua-eval: pictures are the player's, tables say what was measured, one system's failure is its own."""
 
 import csv
+import io
 import json
 import math
 from dataclasses import replace
@@ -12,6 +13,7 @@ import pytest
 import torch
 from PIL import Image
 from recordings import clip
+from rich.console import Console
 from synthetic_avatar import synthetic_avatar, synthetic_rig
 from torch import Tensor
 
@@ -363,3 +365,44 @@ def test_sheets_show_the_worst_and_the_median_frame(frames: list[WholeFrame]) ->
     ]
     picked = plots.sheet_frames(frames, [Result(Entry("x", truth), samples)], held_out=True)
     assert [(f.clip.name, f.index) for f in picked] == [("turn", 3), ("turn", 5)]
+
+
+def told(rows: list[Result], setting: report.Setting) -> str:
+    console = Console(file=io.StringIO(), width=80)
+    console.print(report.tables(rows, setting))
+    return console.file.getvalue()  # type: ignore[attr-defined]
+
+
+def row(entry: Entry, failure: str = "") -> Result:
+    scores = Scores(48.12, 0.9934, 0.9991, 0.0123, math.nan)
+    samples = [] if failure else [Sample("walk", 0, held, 0, 0.08, scores) for held in (False, True)]
+    return Result(entry, samples, failure)
+
+
+SETTING = report.Setting("rec", "a device", {"training": 1, "held out": 1}, 1, 512, 60.0, None, "tiny", None, 0.08)
+MEAN = row(Entry(entries.MEAN, truth, Cost(parameters=10, flops=0, bytes=40)))
+FILE = row(Entry("a_file_with_a_name_of_more_than_forty_letters", truth, Cost(10, 10, 10, 31.2, "f16")))
+
+
+def test_no_figure_is_cut_on_eighty_columns() -> None:
+    shown = told([MEAN, FILE], replace(SETTING, lpips="alex"))
+    assert "…" not in shown
+    assert shown.count("48.12") == 4
+    assert max(map(len, shown.splitlines())) <= 80
+
+
+def test_nothing_is_said_of_what_did_not_happen() -> None:
+    of_files = told([MEAN, FILE], replace(SETTING, frames={"training": 1, "held out": 0}))
+    for word in ("trained for", "own mesh", "held out", "│ LPIPS", "failed"):
+        assert word not in of_files
+    assert "FPS" in of_files
+    systems = told([MEAN, row(Entry("ours", truth, Cost(10, 10, 40)))], SETTING)
+    assert "trained for 60 s" in systems
+    assert "FPS" not in systems
+
+
+def test_what_holds_for_all_rows_is_said_once() -> None:
+    failing = row(Entry("linear", None, failure="no [place] left"), failure="no [place] left")
+    shown = told([MEAN, FILE, failing], SETTING)
+    assert shown.count("no weights given") == 1
+    assert shown.count("no [place] left") == 1

@@ -7,10 +7,13 @@ import pytest
 from people import person
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
+from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
+from mua.decode import decode_clip_frame
 from mua.motion.facing import front_of
 from mua.motion.load import load_motion
+from mua.portrait import THREE_QUARTER, portrait
 from mua.rig.skeleton import Skeleton
 
 ROUNDING = 1e-6  # radians
@@ -86,3 +89,16 @@ def test_toes_of_captured_motion_point_to_the_front(shared_data: SharedData, nam
     _, at = skeleton.world(clip.rotations[0], clip.translations[0])
     toes = [at[skeleton.names.index(f"{side}ToeBase")] - at[skeleton.names.index(f"{side}Foot")] for side in SIDES]
     assert np.sum(toes, axis=0) @ [np.sin(front), 0, np.cos(front)] > 0
+
+
+@pytest.mark.parametrize("degrees", [0.0, 120, -90])
+def test_portraits_show_three_quarters_of_the_front(degrees: float) -> None:
+    avatar = synthetic_avatar()
+    skeleton, (clip,) = avatar.rig.skeleton, avatar.clips
+    rotations = np.tile(skeleton.bind_rotations, (len(clip), 1, 1))
+    rotations[:], _ = turned(skeleton, Rotation.from_euler("y", degrees, degrees=True))
+    still = replace(clip, rotations=rotations, translations=np.tile(skeleton.bind_translations, (len(clip), 1, 1)))
+    frame = decode_clip_frame(avatar, still, frame=0)
+    camera = portrait(frame, skeleton, pose=still.pose(0), screen=(64, 64))
+    x, _, z = camera.view[2, :3]  # from the figure to the camera
+    assert np.exp(1j * np.arctan2(x, z)) == pytest.approx(np.exp(1j * (np.radians(degrees) + THREE_QUARTER)))

@@ -48,7 +48,9 @@ def test_looks_at_the_middle_of_what_the_joint_moves_wherever_it_goes() -> None:
     place = rig.mesh.vertices[0]
     np.testing.assert_allclose(focus.places(rig.skeleton, bind.rotations, bind.translations), place, atol=1e-9)
     moved = bind.translations + np.eye(len(bind.translations))[0][:, None] * [3.0, 0, -1]  # of the first joint
-    np.testing.assert_allclose(focus.places(rig.skeleton, bind.rotations, moved), place + np.array([3, 0, -1]), atol=1e-9)
+    np.testing.assert_allclose(
+        focus.places(rig.skeleton, bind.rotations, moved), place + np.array([3, 0, -1]), atol=1e-9
+    )
 
 
 def test_looks_at_a_joint_itself_that_moves_nothing() -> None:

@@ -1,8 +1,10 @@
 """mua-inspect prints what a file holds and refuses a broken one in a sentence."""
 
+import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,9 +13,9 @@ from synthetic_avatar import synthetic_avatar
 from mua.asset import write
 
 
-def inspect(*arguments: str) -> subprocess.CompletedProcess[str]:
+def inspect(*arguments: str, columns: str | None = "160") -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-c", "from mua.cli.inspect import run; run()", *arguments]
-    environment = {"COLUMNS": "160", "PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = {"PYTHONPATH": os.pathsep.join(sys.path)} | ({"COLUMNS": columns} if columns else {})
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
 
 
@@ -44,3 +46,43 @@ def test_verify_refuses_a_damaged_file_in_one_sentence(avatar_file: Path) -> Non
     assert refused.returncode == 1
     assert refused.stderr.startswith(f"error: {avatar_file}: ")
     assert refused.stderr.count("\n") == 1
+
+
+def test_is_printed_whole_into_a_pipe(tmp_path: Path) -> None:
+    path = tmp_path / ("long_" * 20 + ".muaavatar")
+    notes = "a sentence of a teacher [simulated] " * 12
+    write(path, replace(synthetic_avatar(), notes=notes.strip()))
+    shown = inspect(str(path), columns=None).stdout
+    assert notes.strip() in shown
+    assert str(path) in shown
+    assert "…" not in shown
+
+
+def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(avatar_file: Path) -> None:
+    held = json.loads(inspect("--json", str(avatar_file)).stdout)
+    guide = (Path(__file__).parents[1] / "docs" / "inspect.md").read_text()
+    table = "".join(line for line in guide.splitlines() if line.startswith("| `"))
+    for name, value in held.items():
+        assert f"`{name}`" in table or f"`{name}." in table, name
+        for inner in value if isinstance(value, dict) else value[0] if isinstance(value, list) else ():
+            assert f"{inner}`" in table, inner
+    assert held["skeleton"] == {"joints": ["root", "middle", "tip"], "root": "root"}
+    assert held["clips"] == [{"name": "wave", "frames": 7, "rate": 24.0, "seconds": 7 / 24}]
+    assert (held["bytes"], held["file"]) == (avatar_file.stat().st_size, str(avatar_file))
+    assert held["ranks"] == {"geometry": [4, 3, 2], "appearance": [4, 3, 2]}
+    shown = inspect(str(avatar_file)).stdout
+    for number in (*held["bytes_by_part"].values(), *held["parameters"].values()):
+        assert f"{number:,}" in shown
+
+
+def test_json_and_verify_are_one_or_the_other(avatar_file: Path) -> None:
+    refused = inspect("--json", "--verify", str(avatar_file))
+    assert (refused.returncode, refused.stdout) == (1, "")
+    assert refused.stderr.startswith("error: --json: --verify prints one sentence")
+
+
+def test_a_file_without_clips_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "still.muaavatar"
+    write(path, replace(synthetic_avatar(), clips=()))
+    assert "It holds no clips." in inspect(str(path)).stdout
+    assert json.loads(inspect("--json", str(path)).stdout)["clips"] == []

@@ -295,7 +295,7 @@ def test_opens_with_the_camera_asked_for(device: Device, files: tuple[Path, ...]
     )
     assert chosen.azimuth - plain.azimuth == pytest.approx(np.radians(30))
     assert chosen.elevation == pytest.approx(np.radians(20))
-    assert plain.distance / chosen.distance == pytest.approx(2.5, rel=0.1)  # the box is another from above
+    assert chosen.framed / chosen.distance == pytest.approx(2.5)
     assert session(device, Source(files), stereo=True, follow=False).stereo
     assert not session(device, Source(files), stereo=True, follow=False).follow
 

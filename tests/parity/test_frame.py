@@ -19,7 +19,8 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
-from mua.player.offscreen import Offscreen, reference_picture
+from mua.player.offscreen import Offscreen
+from mua.player.picture import Reference
 from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
 from mua.rendering import frame_bounds, render_premultiplied
@@ -266,7 +267,7 @@ def test_a_camera_inside_the_body_sees_what_the_reference_sees(device: Device, t
     inside = replace(camera, view=view)
     image = picture(device, frame, (inside,))
     assert np.isfinite(image).all()
-    assert psnr(image, reference_picture(avatar, avatar.clips[0], 0, (inside,))) > LEAST_PSNR
+    assert psnr(image, Reference(avatar, avatar.clips[0]).picture(0, (inside,))) > LEAST_PSNR
 
 
 @pytest.mark.parametrize("screen", [(1, 1), (1, 7), (37, 1)])
@@ -276,7 +277,7 @@ def test_the_smallest_pictures_agree(device: Device, tmp_path: Path, screen: tup
     camera = orbit(avatar.bounds, screen=screen)
     image = picture(device, frame, (camera,))
     assert image.shape == (screen[1], screen[0], 4)
-    assert psnr(image, reference_picture(avatar, avatar.clips[0], 0, (camera,))) > LEAST_PSNR
+    assert psnr(image, Reference(avatar, avatar.clips[0]).picture(0, (camera,))) > LEAST_PSNR
 
 
 def test_refuses_eyes_of_different_screens_and_more_than_two(device: Device, tmp_path: Path) -> None:

@@ -4,14 +4,16 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
-from rich.console import Console
 
 from mua.cli.bake_options import check_inputs, check_jobs, check_output, check_settings
+from mua.cli.console import printer
 from mua.cli.failure import refusing
+from mua.cli.offered import offered
 from mua.errors import InputError
 from mua.motion.mapping import read_mapping
 from mua.rig.detail import read_detail
 from mua.rig.figure_size import FigureSize
+from mua.student.settings import PRESETS, RECIPES
 
 
 def main(
@@ -23,7 +25,9 @@ def main(
         list[Path], typer.Option(help="Motion file or directory, may be repeated; none: the character's own clips.")
     ] = [],  # noqa: B006 typer copies it
     output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
-    preset_name: Annotated[str, typer.Option("--preset", help="tiny, preview or paper.")] = "preview",
+    preset_name: Annotated[
+        str, offered(tuple(PRESETS), "--preset", help="How large the student is; paper wants a GPU.")
+    ] = "preview",
     frames: Annotated[
         int | None,
         typer.Option(help="Training frames to record, and a quarter as many held-out ones; the preset's if left out."),
@@ -57,7 +61,12 @@ def main(
     scale: Annotated[float | None, typer.Option(help="Multiplies the units of the character's file.")] = None,
     height: Annotated[float | None, typer.Option(help="Metres that the character is made high.")] = None,
     recipe: Annotated[
-        str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
+        str,
+        offered(
+            RECIPES,
+            "--recipe",
+            help="How the student is trained; paper: a random start and a million steps, for comparison.",
+        ),
     ] = "closed-form",
     storage: Annotated[
         Literal["f32", "f16", "i8"], typer.Option(help="Element type of bases, static offset and weights.")
@@ -120,7 +129,7 @@ def main(
         jobs=jobs,
         device=choose_device(device),
     )
-    console = Console()
+    console = printer()
     with Display(console) as display:
         for directory in made:
             display.note(f"There is no directory {directory}: it is made.")

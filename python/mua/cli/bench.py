@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from mua import files
@@ -16,8 +15,10 @@ from mua.asset.write import write
 from mua.bench.work import Work
 from mua.camera import EYE_DISTANCE
 from mua.cli.choices import parse_screen
+from mua.cli.console import printer
 from mua.cli.failure import refusing
 from mua.cli.inputs import require_file
+from mua.cli.offered import offered
 from mua.errors import InputError
 from mua.student.settings import PRESETS, preset
 
@@ -30,7 +31,8 @@ COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 def bench(
     file: Annotated[Path | None, typer.Argument(help="A .muaavatar file.")] = None,
     setting: Annotated[
-        str | None, typer.Option(help=f"In place of FILE, random numbers in the shapes of {', '.join(PRESETS)}.")
+        str | None,
+        offered(tuple(PRESETS), "--setting", help="In place of FILE, random numbers in the shapes of a preset."),
     ] = None,
     device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
     frames: Annotated[int, typer.Option(min=1, help="Frames to measure.")] = 20,
@@ -57,7 +59,10 @@ def bench(
         measured = measure(opened, path, frames=frames, screen=screen, eyes=eyes)
     if output is not None:
         files.write_bytes(output, json.dumps(as_json(measured), indent=2).encode() + b"\n")
-    Console().print(_table(measured))
+    console = printer()
+    console.print(_table(measured))
+    if output is not None:
+        console.print(output, highlight=False, soft_wrap=True)
 
 
 def run() -> None:

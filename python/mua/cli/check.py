@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mua.baking.check import Check, CheckOrder, check, write_json
+from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.files import require_writable
 from mua.likeness.compare import Likeness
@@ -16,12 +17,14 @@ def check_and_show(order: CheckOrder, json: Path | None) -> None:
     """Check a character and its motion and print what was found."""
     if json is not None:
         require_writable(json)
-    console = Console()
+    console = printer()
     with Display(console) as display:
         found = check(order, display)
     if json is not None:
         write_json(json, order, found)
     show(console, found)
+    if json is not None:
+        _say(console, str(json))
 
 
 def show(console: Console, found: Check) -> None:

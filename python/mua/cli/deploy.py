@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mua import files
+from mua.cli.console import printer
 from mua.cli.failure import refusing
 from mua.cli.inputs import require_file
 from mua.deploy.steady import RATES
@@ -43,7 +44,7 @@ def deploy(
 ) -> None:
     """Install the player on a headset, push AVATARs to it and start it."""
     given = avatars or []
-    console = Console(highlight=False)
+    console = printer(highlight=False)
     if doctor:
         _examine(console, given, serial=serial, unity=unity, project=project)
         return
@@ -157,6 +158,7 @@ def _bench(
     if output is not None:
         content = {"benched": [as_json(each) for each in benched]}
         files.write_bytes(output, json.dumps(content, indent=2).encode() + b"\n")
+        console.print(output, soft_wrap=True)
 
 
 def _heading(benched: "Benched") -> str:

@@ -7,20 +7,23 @@ import typer
 
 from mua.cli.failure import refusing
 from mua.cli.inputs import require_file, require_recording
-from mua.student.settings import preset
+from mua.cli.offered import offered
+from mua.compare.names import ALL, SYSTEM_NAMES
+from mua.student.settings import PRESETS, preset
 
 
 def evaluate(
     recording_path: Annotated[Path, typer.Argument(metavar="RECORDING", help="Directory of a recording.")],
     avatars: Annotated[list[Path] | None, typer.Argument(help="Avatar files distilled from it.")] = None,
     system: Annotated[
-        list[str] | None, typer.Option(help="A system of the paper's tables to train, may be repeated; or all.")
+        list[str] | None,
+        offered((ALL, *SYSTEM_NAMES), "--system", help="A system to train, may be repeated", several=True),
     ] = None,
     seconds: Annotated[float, typer.Option(min=0.0, help="Training of each system.")] = 60.0,
     steps: Annotated[
         int | None, typer.Option(min=1, help="Of Adam for each system, instead of seconds: the same bytes each time.")
     ] = None,
-    preset_name: Annotated[str, typer.Option("--preset", help="Whose sizes the systems have.")] = "preview",
+    preset_name: Annotated[str, offered(tuple(PRESETS), "--preset", help="Whose sizes the systems have.")] = "preview",
     frames: Annotated[int | None, typer.Option(min=1, help="Of each kind, evenly; all kept whole if left out.")] = None,
     views: Annotated[int, typer.Option(help="Cameras about the figure.")] = 2,
     size: Annotated[int, typer.Option(help="Pixels along a side of a picture.")] = 512,

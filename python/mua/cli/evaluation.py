@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import torch
-from rich.console import Console
 
+from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.compare import entries, judge, plots, report
 from mua.compare.images import Studio
 from mua.compare.metrics import Lpips
+from mua.compare.names import ALL
 from mua.compare.system import Budget
 from mua.errors import InputError
 from mua.files import replacing, write_bytes
@@ -48,12 +49,12 @@ def compare(order: EvaluationOrder) -> None:
     chosen = judge.choose_frames(recording, order.frames)
     if not chosen:
         raise InputError(f"recording {order.recording}: no frame is kept whole, expected at least one to compare with")
-    names = list(entries.SYSTEMS) if order.systems == ["all"] else list(dict.fromkeys(order.systems))
+    names = list(entries.SYSTEMS) if ALL in order.systems else list(dict.fromkeys(order.systems))
     entries.check_systems(names)
     settings = replace(preset(order.preset), texels=recording.rig.texels.size, seed=order.seed)
     budget = Budget(seconds=order.seconds) if order.steps is None else Budget(steps=order.steps)
     lpips = Lpips(order.lpips_weights) if order.lpips_weights is not None else None
-    console = Console()
+    console = printer()
     output, size = order.output, order.size
     with closing(open_device(order.device)) as opened, Display(console) as display:
         studio = Studio(opened, recording.rig, chosen, views=order.views, size=size)
@@ -76,15 +77,16 @@ def compare(order: EvaluationOrder) -> None:
             lpips=None if lpips is None else lpips.network,
             covered=sum(s.covered for s in results[0].samples) / max(len(results[0].samples), 1),
         )
-        _write(output, results, setting)
+        written = _write(output, results, setting)
         display.stage("contact sheets")
         for kind, held_out in judge.KINDS.items():
             picked = plots.sheet_frames(chosen, results, held_out=held_out)
             if picked:
-                with replacing(output / f"{kind.replace(' ', '_')}.png") as temporary:
+                written.append(f"{kind.replace(' ', '_')}.png")
+                with replacing(output / written[-1]) as temporary:
                     plots.contact_sheet(studio, picked, results).save(temporary)
-    console.print(report.table(results, setting))
-    console.print(output, highlight=False)
+    console.print(report.tables(results, setting))
+    console.print(f"{output}: {', '.join(written)}", highlight=False, soft_wrap=True, markup=False)
 
 
 def _avatars(
@@ -121,8 +123,8 @@ def _systems(
     return rows
 
 
-def _write(output: Path, results: list[judge.Result], setting: report.Setting) -> None:
-    """All figures, each file whole or as it was."""
+def _write(output: Path, results: list[judge.Result], setting: report.Setting) -> list[str]:
+    """All figures, each file whole or as it was; the names of the files."""
     contents = {
         "results.md": report.markdown(results, setting).encode(),
         "results.csv": report.as_csv(results).encode(),
@@ -132,3 +134,4 @@ def _write(output: Path, results: list[judge.Result], setting: report.Setting) -
     }
     for name, content in contents.items():
         write_bytes(output / name, content)
+    return list(contents)

@@ -12,9 +12,14 @@ from mua.errors import InputError
 
 
 def refusing(command: Callable[..., None]) -> None:
-    """Run a typer command; an InputError, or a package that is not installed, becomes its sentence."""
+    """Run a command with what its command line says.
+
+    An InputError, or a package that is not installed, becomes its sentence.
+    """
     try:
-        typer.run(with_common_options(command))
+        app = typer.Typer()  # which brings --install-completion and --show-completion
+        app.command()(with_common_options(command))
+        app(prog_name=command_name())
     except InputError as error:
         _end(str(error))
     except ModuleNotFoundError as error:

@@ -1,35 +1,41 @@
 """mua-inspect: what a `.muaavatar` file holds, and whether it is sound."""
 
+import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
-from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
-from mua.asset.avatar import Avatar
-from mua.asset.count import flops, parameters, stored_bytes
-from mua.asset.flatbuffer import Tree
 from mua.asset.read import decode_tree, load
+from mua.asset.summary import summary
+from mua.cli.console import printer
 from mua.cli.failure import refusing
 from mua.cli.inputs import require_file
-
-PARTS = ("skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail")
+from mua.errors import InputError
 
 
 def inspect(
     file: Annotated[Path, typer.Argument(help="A .muaavatar file.")],
-    verify: Annotated[bool, typer.Option(help="Only check the file: exit 0, or 1 with a sentence.")] = False,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Only check the file: exit 0, or 1 with a sentence.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON in place of tables, joint names too.")] = False,
 ) -> None:
     """Print what FILE holds: skeleton, texels, ranks, bytes by part, parameters, GFLOPs and clips."""
+    if verify and as_json:
+        raise InputError("--json: --verify prints one sentence; expected one of the two")
     require_file(file)
     tree = load(file)
-    avatar = decode_tree(tree)
-    console = Console()
+    held = summary(file, tree, decode_tree(tree))
+    console = printer()
     if verify:
-        console.print(f"{file}: sound, format {tree['version_major']}.{tree['version_minor']}", highlight=False)
-        return
-    console.print(_summary(file, tree, avatar), _bytes(file, tree), _costs(avatar), _clips(avatar))
+        console.print(f"{file}: sound, format {held['format']}", highlight=False, soft_wrap=True)
+    elif as_json:
+        typer.echo(json.dumps(held, indent=1))
+    else:
+        console.print(_whole(held), _bytes(held), _costs(held), _clips(held))
 
 
 def run() -> None:
@@ -37,52 +43,59 @@ def run() -> None:
     refusing(inspect)
 
 
-def _summary(file: Path, tree: Tree, avatar: Avatar) -> Table:
-    table = Table("", avatar.name, title=str(file))
-    texels, encoding, skeleton = avatar.rig.texels, avatar.encoding, avatar.rig.skeleton
-    kind = tree["geometry"]["ll_basis"]["type"].lower()
+def _whole(held: dict[str, Any]) -> Table:
+    table = Table("", escape(held["name"]), title=escape(held["file"]))
+    skeleton, descriptor, texels = held["skeleton"], held["descriptor"], held["texels"]
+    template, wavelet = held["template"], held["wavelet"]
+    moved = f", {len(descriptor['translated'])} of them translated" if descriptor["translated"] else ""
     rows = {
-        "format": f"{tree['version_major']}.{tree['version_minor']}, {kind}, metres, Y up, right-handed",
-        "producer": avatar.producer,
-        "notes": avatar.notes,
-        "skeleton": f"{len(skeleton.names)} joints, root {skeleton.names[skeleton.root]}",
-        "descriptor": f"{encoding.width} numbers: {encoding.window} frames at {encoding.rate:g} a second, "
-        f"root and {len(encoding.joints)} joints, {len(encoding.translated)} translated, "
-        f"{'heading removed' if encoding.heading else 'world heading'}",
-        "template": f"{len(avatar.rig.mesh.vertices)} vertices, {len(avatar.rig.mesh.faces)} triangles, "
-        f"{len(avatar.coarse.basis)} PCA components",
-        "texels": f"{len(texels.texels)} of {texels.size} x {texels.size}",
-        "wavelet": f"{avatar.wavelet.name}, {avatar.wavelet.levels} levels",
-        "geometry ranks": " ".join(map(str, avatar.geometry.ranks)),
-        "appearance ranks": " ".join(map(str, avatar.appearance.ranks)),
+        "format": f"{held['format']}, {held['storage']}, metres, Y up, right-handed",
+        "producer": held["producer"],
+        "notes": held["notes"],
+        "skeleton": f"{len(skeleton['joints'])} joints, root {skeleton['root']}",
+        "descriptor": f"{descriptor['numbers']} numbers: {descriptor['frames']} frames at {descriptor['rate']:g} a "
+        f"second, root and {len(descriptor['joints'])} joints{moved}, "
+        f"{'heading removed' if descriptor['heading_removed'] else 'world heading'}",
+        "template": f"{template['vertices']} vertices, {template['triangles']} triangles, "
+        f"{template['pca_components']} PCA components",
+        "texels": f"{texels['used']} of {texels['side']} x {texels['side']}",
+        "wavelet": f"{wavelet['name']}, {wavelet['levels']} levels",
+        "geometry ranks": " ".join(map(str, held["ranks"]["geometry"])),
+        "appearance ranks": " ".join(map(str, held["ranks"]["appearance"])),
     }
     for name, value in rows.items():
-        table.add_row(name, value)
+        table.add_row(name, escape(value))
     return table
 
 
-def _bytes(file: Path, tree: Tree) -> Table:
-    table = Table("part", "bytes", title=f"{file.stat().st_size / 1e6:.2f} MB")
+def _bytes(held: dict[str, Any]) -> Table:
+    table = Table("part", "bytes", title=f"{held['bytes'] / 1e6:.2f} MB")
     table.columns[1].justify = "right"
-    for part in PARTS:
-        table.add_row(part, f"{stored_bytes(tree[part]):,}")
+    for part, size in held["bytes_by_part"].items():
+        table.add_row(part, f"{size:,}")
     return table
 
 
-def _costs(avatar: Avatar) -> Table:
-    held, spent = parameters(avatar), flops(avatar)
-    total, cost = sum(held.values()), sum(spent.values())
+def _costs(held: dict[str, Any]) -> Table:
+    kept, spent = held["parameters"], held["flops_per_frame"]
+    total, cost = sum(kept.values()), sum(spent.values())
     table = Table(
         "part", "parameters", "MFLOPs a frame", title=f"{total / 1e6:.2f} M parameters, {cost / 1e9:.3f} GFLOPs"
     )
-    for name in dict.fromkeys([*held, *spent]):
-        shown = f"{held[name]:,}" if name in held else ""
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name in dict.fromkeys([*kept, *spent]):
+        shown = f"{kept[name]:,}" if name in kept else ""
         table.add_row(name, shown, f"{spent[name] / 1e6:.1f}" if name in spent else "")
     return table
 
 
-def _clips(avatar: Avatar) -> Table:
+def _clips(held: dict[str, Any]) -> Table | str:
+    if not held["clips"]:
+        return "It holds no clips."
     table = Table("clip", "frames", "a second", "seconds")
-    for clip in avatar.clips:
-        table.add_row(clip.name, str(len(clip)), f"{clip.rate:g}", f"{len(clip) / clip.rate:.1f}")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for clip in held["clips"]:
+        table.add_row(escape(clip["name"]), str(clip["frames"]), f"{clip['rate']:g}", f"{clip['seconds']:.1f}")
     return table

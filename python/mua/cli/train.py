@@ -6,15 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
-from rich.console import Console
 
 from mua.asset.tensors import Storage
+from mua.cli.console import printer
 from mua.cli.display import Display, choose_device, show
 from mua.cli.failure import refusing
 from mua.cli.inputs import require_recording
+from mua.cli.offered import offered
 from mua.files import require_writable
 from mua.locks import DirectoryLock
-from mua.student.settings import StageName, preset, with_recipe
+from mua.student.settings import PRESETS, RECIPES, StageName, preset, with_recipe
 
 if TYPE_CHECKING:  # torch takes seconds to load
     from mua.baking.distillation import Distillation
@@ -25,9 +26,16 @@ if TYPE_CHECKING:  # torch takes seconds to load
 def main(
     recording: Annotated[Path, typer.Argument(help="Directory that a TeacherWriter has written.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
-    preset_name: Annotated[str, typer.Option("--preset", help="tiny, preview or paper.")] = "preview",
+    preset_name: Annotated[
+        str, offered(tuple(PRESETS), "--preset", help="How large the student is; paper wants a GPU.")
+    ] = "preview",
     recipe: Annotated[
-        str, typer.Option(help="closed-form, or paper: a random start and a million steps, for comparison.")
+        str,
+        offered(
+            RECIPES,
+            "--recipe",
+            help="How the student is trained; paper: a random start and a million steps, for comparison.",
+        ),
     ] = "closed-form",
     stage: Annotated[
         StageName | None, typer.Option(help="Run this stage alone, up to its checkpoint; all if left out.")
@@ -89,7 +97,7 @@ def _alone(order: "Distillation") -> AbstractContextManager[object]:
 def _carry_out(order: "Distillation", recording: "Recording", stage: StageName | None, processes: "Processes") -> None:
     from mua.baking.distillation import finish, teach, teach_stage
 
-    console = Console(quiet=not processes.first)
+    console = printer(quiet=not processes.first)
     with Display(console) as display:
         if stage is not None:
             teach_stage(order, stage, recording, display)

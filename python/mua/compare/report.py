@@ -7,16 +7,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
+from mua.compare.entries import MEAN
 from mua.compare.judge import KINDS, Result
 from mua.compare.metrics import METRICS, Scores
 
 HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "ms_ssim": "MS-SSIM", "flip": "FLIP", "lpips": "LPIPS"}
 DIGITS = {"psnr": 2, "ssim": 4, "ms_ssim": 4, "flip": 4, "lpips": 2}
 COSTS = ("GFLOPs", "Param (M)", "MB", "FPS")
-NO_WEIGHTS = "no weights given"
 NOTHING = "-"
 STORAGES = ("f32", "f16", "i8")
 
@@ -37,44 +39,76 @@ class Setting:
     covered: float  # share of a picture that the figure covers, mean
 
 
-def legend(setting: Setting) -> str:
-    """What the figures mean, in sentences."""
-    counted = ", ".join(f"{count} {kind}" for kind, count in setting.frames.items())
-    perceived = (
+def legend(results: Sequence[Result], setting: Setting) -> list[str]:
+    """What the figures mean, in sentences: of what is in the table alone."""
+    entries = [result.entry for result in results]
+    costs = [entry.cost for entry in entries]
+    files = [cost for cost in costs if cost.storage]
+    counted = " and ".join(f"{count} {kind}" for kind, count in setting.frames.items() if count)
+    budget = f"{setting.seconds:g} s" if setting.steps is None else f"{setting.steps} steps"
+    views = "1 view" if setting.views == 1 else f"{setting.views} views"
+    said = [
+        f"Means over {counted} frames of {setting.recording}, from {views} of {setting.size} x {setting.size} pixels, "
+        f"beside the teacher. The figure covers {setting.covered:.0%} of a picture, the rest is black.",
+        "Drawn on the teacher's mesh of the frame"
+        + (", but for rows that say own mesh." if any(_meshed(result) for result in results) else "."),
+    ]
+    if any(entry.picture and not entry.cost.storage and entry.name != MEAN for entry in entries):
+        said.append(f"Systems were trained for {budget} each, at the sizes of preset {setting.preset}.")
+    said.append("PSNR (dB), SSIM and MS-SSIM: more is nearer; FLIP and LPIPS: less is nearer.")
+    said.append("GFLOPs: of what turns a pose into a texture and a mesh; posing and drawing are left out.")
+    said.append(f"MB: {'of a file; else ' if files else ''}4 bytes a parameter.")
+    if any(cost.fps is not None for cost in costs):
+        said.append(f"FPS: of files, with posing and drawing, on {setting.device}.")
+    said.append(
         f"LPIPS: {setting.lpips}, times 1000." if setting.lpips else "LPIPS: no weights given (--lpips-weights FILE)."
     )
-    budget = f"{setting.seconds:g} s" if setting.steps is None else f"{setting.steps} steps"
-    return (
-        f"Means over {counted} frames of {setting.recording} from {setting.views} views of {setting.size} x "
-        f"{setting.size} pixels, against the teacher drawn alike; whole picture on black, {setting.covered:.0%} of it "
-        "figure. No view is left out of training, because teachers and students are textures and learn from no view. "
-        "All lie on the teacher's mesh of the frame, but for rows named own mesh. Systems were trained for "
-        f"{budget} each at the sizes of preset {setting.preset}. GFLOPs leave out posing and drawing; FPS "
-        f"have decoding, posing and drawing, of files alone, on {setting.device}. MB: the file, or 4 bytes a "
-        f"parameter. {perceived} "
-        "The teacher may be a simulated stand-in: see its recording."
-    )
+    return [*said, "The recording does not say whether its teacher is a capture or a simulation."]
 
 
-def table(results: Sequence[Result], setting: Setting) -> Table:
-    """For the terminal: two lines for each entry."""
-    shown = Table("system", "poses", *HEADINGS.values(), *COSTS, title="against the teacher", caption=legend(setting))
-    for column in shown.columns[2:]:
-        column.justify = "right"
+def tables(results: Sequence[Result], setting: Setting) -> Group:
+    """For the terminal: how near pictures come, what it costs, what failed, and what the figures mean."""
+    failed = [f"{result.entry.name} failed: {result.failure}" for result in results if result.failure]
+    said = [Text(sentence) for sentence in (*failed, *legend(results, setting))]
+    return Group(_scores_table(results, setting), _costs_table(results), *said)
+
+
+def _scores_table(results: Sequence[Result], setting: Setting) -> Table:
+    shown = _table("system", "poses", *_metrics(setting).values(), title="Pictures beside the teacher's")
+    kinds = [(kind, held_out) for kind, held_out in KINDS.items() if setting.frames.get(kind)]
     for result in results:
-        for i, (kind, held_out) in enumerate(KINDS.items()):
-            last = i == len(KINDS) - 1
-            costs = costs_of(result) if i == 0 else [""] * len(COSTS)
+        if result.failure and not result.samples:
+            continue
+        for i, (kind, held_out) in enumerate(kinds):
             name = escape(result.entry.name) if i == 0 else ""
-            shown.add_row(name, kind, *_figures(result, held_out, setting), *costs, end_section=last)
-        if result.failure:
-            shown.add_row("", f"[red]{escape(result.failure)}[/red]", end_section=True)
+            shown.add_row(name, kind, *_figures(result, held_out, setting), end_section=i == len(kinds) - 1)
+    return shown
+
+
+def _costs_table(results: Sequence[Result]) -> Table:
+    timed = any(result.entry.cost.fps is not None for result in results)
+    heads = COSTS if timed else COSTS[:-1]
+    shown = _table("system", *heads, title="What a frame and a file cost")
+    for result in results:
+        if not result.failure:
+            shown.add_row(escape(result.entry.name), *costs_of(result)[: len(heads)])
+    return shown
+
+
+def _table(*heads: str, title: str) -> Table:
+    """Names may take several lines, figures are never cut."""
+    shown = Table(*heads, title=title)
+    for column in shown.columns:
+        if column.header not in ("system", "poses"):
+            column.justify, column.no_wrap = "right", True
+        else:
+            column.overflow = "fold"
     return shown
 
 
 def markdown(results: Sequence[Result], setting: Setting) -> str:
     """The paper's table, what failed, and what storage costs."""
-    kinds = [f"{name}, {kind}" for kind in KINDS for name in HEADINGS.values()]
+    kinds = [f"{name}, {kind}" for kind in KINDS for name in _metrics(setting).values()]
     heads = ["system", *kinds, *COSTS]
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
     for result in results:
@@ -88,7 +122,7 @@ def markdown(results: Sequence[Result], setting: Setting) -> str:
         heads = ["file", "storage", "MB", *(f"{kind}, dB" for kind in KINDS)]
         lines += ["", "What storage costs:", "", "| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
         lines += ["| " + " | ".join(row) + " |" for row in stored]
-    return "\n".join([*lines, "", legend(setting), ""])
+    return "\n".join([*lines, "", *legend(results, setting), ""])
 
 
 def storage_costs(results: Sequence[Result]) -> list[tuple[str, ...]]:
@@ -146,12 +180,14 @@ def costs_of(result: Result) -> list[str]:
     ]
 
 
+def _metrics(setting: Setting) -> dict[str, str]:
+    """Headings by metric, of those that were measured."""
+    return {name: heading for name, heading in HEADINGS.items() if name != "lpips" or setting.lpips}
+
+
 def _figures(result: Result, held_out: bool, setting: Setting) -> list[str]:
     scores: Scores = result.of(held_out)
-    cells = [_cell(getattr(scores, metric), DIGITS[metric]) for metric in METRICS]
-    if setting.lpips is None:
-        cells[METRICS.index("lpips")] = NO_WEIGHTS
-    return cells
+    return [_cell(getattr(scores, metric), DIGITS[metric]) for metric in _metrics(setting)]
 
 
 def _meshed(result: Result) -> bool:

@@ -1,0 +1,19 @@
+"""Choices that help shows and shells complete; what is none of them is refused by a sentence of its own stage."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+
+
+def offered(names: Sequence[str], *flags: str, help: str, several: bool = False) -> Any:
+    """An option whose value is one of `names`; where it may come several times, its help lists them."""
+    listing = f"{help}: {', '.join(names)}." if several else help
+    metavar = "NAME" if several else f"<{'|'.join(names)}>"
+    return typer.Option(
+        *flags, metavar=metavar, help=listing, autocompletion=lambda incomplete: _begun(names, incomplete)
+    )
+
+
+def _begun(names: Sequence[str], incomplete: str) -> list[str]:
+    return [name for name in names if name.startswith(incomplete)]
