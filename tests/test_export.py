@@ -7,7 +7,8 @@ from synthetic_student import INPUTS, bands_of_frames, random_student
 
 from mua import model
 from mua.arrays import Array
-from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
+from mua.student.export import LARGEST_ROW, export_branches, export_coarse, export_normalization, export_wavelet
+from mua.student.model import linear_layers
 
 RELATIVE = 1e-5  # the project's bound for a float32 asset against the torch student
 
@@ -43,6 +44,34 @@ def test_subbands_of_the_avatar_are_the_students() -> None:
         expected = branch(student.normalize(descriptors))
         for found, band in zip(numpy_bands(exported, x), expected, strict=True):
             assert_close(found, band)
+
+
+def test_rows_that_half_precision_cannot_hold_are_exchanged_for_larger_blendshapes() -> None:
+    """What they say together stays, to the last bit: the factors are powers of two."""
+    student = random_student()
+    branch = student.appearance
+    grown = torch.tensor([1.0, 3e4, 7e6, 0.2])[torch.arange(branch.channels * branch.ranks.total) % 4]
+    last = linear_layers(branch.mlp)[-1]
+    before = numpy_bands(export_branches(student)[1], np.eye(INPUTS))
+    last.weight.mul_(grown[:, None])
+    last.bias.mul_(grown)
+    ll, d3, d2 = (part[0] for part in branch.split(grown[None]))
+    branch.ll_basis.div_(ll[:, :, None, None])
+    branch.d3.h.div_(d3[:, :, None])
+    branch.d2.w.div_(d2[:, :, None])
+    exported = export_branches(student)[1]
+    layer = exported.mlp[-1]
+    assert max(np.abs(layer.weight).max(), np.abs(layer.bias).max()) <= LARGEST_ROW
+    assert layer.weight.dtype == np.float32
+    assert exported.ll_basis.dtype == exported.details[0].h.dtype == np.float32
+    for found, expected in zip(numpy_bands(exported, np.eye(INPUTS)), before, strict=True):
+        assert_close(found, torch.from_numpy(expected))
+
+
+def test_a_last_layer_within_range_stays_as_it_is() -> None:
+    student = random_student()
+    exported, _ = export_branches(student)
+    assert np.array_equal(exported.mlp[-1].weight, linear_layers(student.geometry.mlp)[-1].weight.numpy())
 
 
 def test_mesh_of_the_avatar_is_the_students() -> None:

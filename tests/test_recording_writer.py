@@ -34,6 +34,23 @@ def test_full_images_are_taken_at_the_valid_texels(tmp_path: Path) -> None:
     np.testing.assert_array_equal(Recording(tmp_path).mean_texture(), first.texture)
 
 
+def test_a_buffer_that_the_caller_fills_anew_holds_each_frame(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    walk = clip(rig, "walk", 2)
+    frames = [FormulaTeacher(rig).frame(walk, index) for index in range(2)]
+    mesh, texture = np.zeros_like(frames[0].mesh), np.zeros_like(frames[0].texture)
+    with TeacherWriter(tmp_path / "reused", rig, rate=RATE) as writer:
+        writer.start_clip("walk")
+        for frame in frames:
+            mesh[:], texture[:] = frame.mesh, frame.texture
+            writer.add(frame.pose, mesh, texture)
+    with TeacherWriter(tmp_path / "own", rig, rate=RATE) as writer:
+        writer.start_clip("walk")
+        for frame in frames:
+            writer.add(frame.pose, frame.mesh, frame.texture)
+    assert content(tmp_path / "reused") == content(tmp_path / "own")
+
+
 class Killed(BaseException):
     """Stands for the death of the process."""
 

@@ -222,6 +222,16 @@ def test_joint_targets_measure_the_weighted_texture() -> None:
     assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-2)
 
 
+def test_directions_below_the_rounding_of_a_recording_are_not_taught() -> None:
+    branch = random_student().geometry
+    generator = torch.Generator().manual_seed(1)
+    modes = torch.randn(3, branch.channels * branch.ranks.total, generator=generator)
+    flat = torch.randn(9, 3, generator=generator) * torch.tensor([1.0, 0.01, 1e-5]) @ modes
+    targets = joint_targets(branch, flat, torch.ones(branch.channels), rank=9, generator=generator)
+    assert targets.coordinates.shape == (9, 2)
+    assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-3)
+
+
 def test_attributes_count_alike_and_one_that_never_varies_is_not_raised() -> None:
     variance = torch.tensor([1e-4] * 3 + [0.04] * 4 + [0.09] * 3 + [0.0])
     weights = channel_weights(variance, GEOMETRY)

@@ -160,10 +160,28 @@ def test_refused_avatar_leaves_the_earlier_file(tmp_path: Path) -> None:
     before = path.read_bytes()
     avatar = synthetic_avatar()
     broken = dataclasses.replace(avatar.geometry, ll_mean=np.full_like(avatar.geometry.ll_mean, np.nan))
-    with pytest.raises(InputError, match="cannot be stored"):
+    with pytest.raises(InputError, match=r"geometry\.ll_mean: the value nan cannot be stored"):
         write(path, dataclasses.replace(avatar, geometry=broken))
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
+def test_a_number_that_no_player_could_read_is_named_with_file_field_and_remedy(
+    tmp_path: Path, storage: Storage
+) -> None:
+    avatar = synthetic_avatar()
+    *hidden, last = avatar.appearance.mlp
+    weight = last.weight.copy()
+    weight[1, 2] = -71426.0625
+    grown = dataclasses.replace(avatar.appearance, mlp=(*hidden, dataclasses.replace(last, weight=weight)))
+    with pytest.raises(InputError) as refused:
+        write(tmp_path / "a.muaavatar", dataclasses.replace(avatar, appearance=grown), storage=storage)
+    told = str(refused.value)
+    assert told.startswith(f"{tmp_path / 'a.muaavatar'}: appearance.mlp[{len(hidden)}].weight: the value -71426.1 ")
+    assert "up to 65504" in told
+    assert "mua-train --check" in told
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_flatc_reads_the_same_values(tmp_path: Path) -> None:

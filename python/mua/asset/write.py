@@ -11,6 +11,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import VERSION, Tree, build, parse
 from mua.asset.read import decode_tree, parse_checked
+from mua.asset.storable import require_storable
 from mua.asset.tensors import Storage, pack, pack_indices
 from mua.errors import InputError
 from mua.files import write_bytes
@@ -28,7 +29,7 @@ def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
     biases stay f32. In an i8 file bases and last layers are i8; what costs quality as i8 (docs/accuracy.md, Storage) is
     f16.
 
-    Errors: InputError naming the field that a file cannot hold.
+    Errors: InputError naming the file, and the field that it cannot hold.
 
     Example:
 
@@ -39,11 +40,19 @@ def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
         raise InputError(f"avatar is {told(avatar)}; expected a mua.Avatar")
     if storage not in get_args(Storage):
         raise InputError(f"storage is {told(storage)}; expected f32, f16 or i8")
-    write_bytes(path, encode(avatar, storage=storage))
+    try:
+        content = encode(avatar, storage=storage)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    write_bytes(path, content)
 
 
 def encode(avatar: Avatar, *, storage: Storage = "f16") -> bytes:
-    """The bytes of a file; the same avatar gives the same bytes."""
+    """The bytes of a file; the same avatar gives the same bytes.
+
+    Errors: InputError naming the field that a file cannot hold.
+    """
+    require_storable(avatar)
     content = seal(build(_avatar(avatar, storage)))
     decode_tree(parse_checked(content))
     return content

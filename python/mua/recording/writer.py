@@ -293,6 +293,7 @@ class TeacherWriter:
 
     def _keep_reference(self, texture: Array) -> Reference:
         check_range(texture, self._texels.texels, self._texels.size)
+        texture = texture.copy()  # the caller may fill the same buffer with the next frame
         reference = Reference(texture, dynamic_subbands(texture, self._fill, wavelet=self._header.wavelet))
         save_reference(self.directory / REFERENCE, reference)
         return reference

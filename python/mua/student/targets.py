@@ -17,6 +17,7 @@ from mua.texture.channels import ATTRIBUTES
 # No one sees an attribute vary by less, in its own unit (metres on a person, quaternion, log scale, logit, SH).
 LEAST_SPREAD = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3, "SH": 1e-4}
 GRAM_RIDGE = 1e-6
+ROUNDING = 2.0**-12  # of a recording, which keeps half-precision differences: directions of less than it are noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +39,9 @@ def channel_weights(
     The channels of an attribute share a unit, hence a weight; attributes come to count alike. The paper's loss over raw
     channels would all but ignore offsets, which are metres beside logits.
     """
-    weights = torch.empty_like(variance)
-    for name, own in _attributes(channels):
-        weights[own] = 1 / variance[own].mean().sqrt().clamp(min=_least(name, size))
+    weights, least = torch.empty_like(variance), least_spread(channels, size=size).to(variance)
+    for _, own in _attributes(channels):
+        weights[own] = 1 / variance[own].mean().sqrt().maximum(least[own])
     return weights
 
 
@@ -51,14 +52,19 @@ def still_channels(
     size: float = 1.0,  # of the figure over that of a person
 ) -> Tensor:
     """Which channels [C] hardly vary: what their blendshapes would hold is rounding."""
-    still = torch.zeros_like(variance, dtype=torch.bool)
+    return variance.sqrt() < least_spread(channels, size=size).to(variance)
+
+
+def least_spread(
+    channels: slice,  # which of the 23 these are
+    *,
+    size: float = 1.0,  # of the figure over that of a person
+) -> Tensor:
+    """By how much each channel [C] has to vary to be seen, in its own unit."""
+    least = torch.empty(channels.stop - channels.start)
     for name, own in _attributes(channels):
-        still[own] = variance[own].sqrt() < _least(name, size)
-    return still
-
-
-def _least(attribute: str, size: float) -> float:
-    return LEAST_SPREAD[attribute] * (size if attribute == "offset" else 1.0)
+        least[own] = LEAST_SPREAD[name] * (size if name == "offset" else 1.0)
+    return least
 
 
 def _attributes(channels: slice) -> Iterator[tuple[str, slice]]:
@@ -77,7 +83,10 @@ def joint_targets(
     rank: int,
     generator: torch.Generator,
 ) -> Targets:
-    """The leading `rank` joint directions of a branch's coefficients, by their worth in the weighted texture."""
+    """The leading `rank` joint directions of a branch's coefficients, by their worth in the weighted texture.
+
+    Fewer where the rest is below the rounding of what was recorded.
+    """
     bases = (
         branch.ll_basis.flatten(2),
         outer_products(branch.d3.h, branch.d3.w),
@@ -87,6 +96,8 @@ def joint_targets(
     roots = [_root(basis, weights) for basis in bases]
     worth = [torch.einsum("fcr,crk->fck", alpha, root.to(alpha)) for alpha, root in zip(alphas, roots, strict=True)]
     u, s, v = truncated_svd(torch.cat([level.flatten(1) for level in worth], dim=1), rank, generator=generator)
+    kept = max(int((s > ROUNDING * s[0]).sum()), 1)
+    u, s, v = u[:, :kept], s[:kept], v[:kept]
     parts = branch.split(v)
     expand = [
         torch.linalg.solve_triangular(root, part.transpose(0, 1).double(), upper=False, left=False).transpose(0, 1)

@@ -24,7 +24,8 @@ from mua.student.regress import regress, squared_error
 from mua.student.selection import validation_rows
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
-from mua.student.targets import Targets, channel_weights, joint_targets, still_channels
+from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
+from mua.student.unseen import hold_still, leave_unseen
 from mua.teachers.bones import figure_scale
 from mua.texture.channels import APPEARANCE, GEOMETRY
 
@@ -237,6 +238,7 @@ def start_branch(
     if until == "bases":
         return weights
     hold_still(branch, flat, still_channels(variance, channels, size=run.size))
+    leave_unseen(branch, flat, least_spread(channels, size=run.size).to(flat))
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
     stage = f"{name} coefficients"
     own = run.alone(stage)
@@ -336,18 +338,6 @@ def factorize_channel(
         coefficients.append(factors.coefficients)
         energy = energy + band.square().sum()
     return Alphas(*coefficients), energy
-
-
-@torch.no_grad()
-def hold_still(
-    branch: Branch,
-    flat: Tensor,  # [F, M] coefficients, changed in place
-    still: Tensor,  # [C] bool
-) -> None:
-    """Take blendshapes and coefficients from channels; no gradient reaches either then, and they stay at their mean."""
-    branch.silence(still)
-    for level in branch.split(flat):
-        level[:, still] = 0
 
 
 class BestCoefficients:

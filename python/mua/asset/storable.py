@@ -1,0 +1,44 @@
+"""Whether a file can hold an avatar's numbers: the sentence that comes before anything is written."""
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.asset.tensors import LARGEST
+from mua.errors import InputError
+
+
+def require_storable(avatar: Avatar) -> None:
+    """Raises InputError that names the field of the first number that is not finite, or that no player could read."""
+    for field, values in _reals(avatar, ""):
+        held = np.abs(values) <= LARGEST  # false for nan as well
+        if not held.all():
+            raise InputError(f"{field}: the value {_worst(values[~held]):.6g} cannot be stored, {_remedy()}")
+
+
+def _remedy() -> str:
+    return (
+        f"expected finite numbers up to {LARGEST:.0f}; mua-train --check RECORDING says which channels of a recording "
+        "are far from what a splat holds, another --seed trains it anew"
+    )
+
+
+def _worst(values: Array) -> float:
+    """The one that says most: what is no number, else the largest."""
+    lost = values[~np.isfinite(values)]
+    return float(lost[0] if len(lost) else values[np.abs(values).argmax()])
+
+
+def _reals(value: object, name: str) -> Iterator[tuple[str, Array]]:
+    """The names and contents of all arrays of reals within a dataclass."""
+    if isinstance(value, np.ndarray) and np.issubdtype(value.dtype, np.floating):
+        yield name, value
+    elif isinstance(value, tuple):
+        for number, one in enumerate(value):
+            yield from _reals(one, f"{name}[{number}]")
+    elif is_dataclass(value):
+        for part in fields(value):
+            yield from _reals(getattr(value, part.name), f"{name}.{part.name}".lstrip("."))

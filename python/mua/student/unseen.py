@@ -1,0 +1,49 @@
+"""What no one sees vary is taken from a branch: whole channels, and single blendshapes of the others.
+
+A blendshape below what is visible is rounding of the recording. Its coefficient would be taught like any other, with
+weights that grow without bound as its texels shrink.
+"""
+
+import torch
+from torch import Tensor
+
+from mua.student.model import Branch
+
+LEVEL_GAINS = (16.0, 16.0, 8.0)  # of LL, D3, D2 over the texels that they stand for: a level doubles a constant
+
+
+@torch.no_grad()
+def hold_still(
+    branch: Branch,
+    flat: Tensor,  # [F, M] coefficients, changed in place
+    still: Tensor,  # [C] bool
+) -> None:
+    """Take blendshapes and coefficients from channels; no gradient reaches either then, and they stay at their mean."""
+    branch.silence(still)
+    for level in branch.split(flat):
+        level[:, still] = 0
+
+
+@torch.no_grad()
+def leave_unseen(
+    branch: Branch,
+    flat: Tensor,  # [F, M] coefficients, changed in place
+    least: Tensor,  # [C] that a channel has to vary by to be seen
+) -> None:
+    """Take the blendshapes that change no texel of any frame visibly, and their coefficients."""
+    for level, peak, gain, basis in zip(branch.split(flat), _peaks(branch), LEVEL_GAINS, _bases(branch), strict=True):
+        unseen = level.abs().amax(0) * peak < gain * least[:, None]  # [C, R]
+        level[:, unseen] = 0
+        for own in basis:
+            own[unseen] = 0
+
+
+def _peaks(branch: Branch) -> tuple[Tensor, ...]:
+    """The largest sample of every blendshape [C, R] of LL, D3, D2."""
+    details = ((detail.h.abs().amax(-1) * detail.w.abs().amax(-1)).amax(0) for detail in (branch.d3, branch.d2))
+    return branch.ll_basis.abs().amax((2, 3)), *details
+
+
+def _bases(branch: Branch) -> tuple[tuple[Tensor, ...], ...]:
+    """Views of the blendshapes [C, R, ...] of LL, D3, D2; a detail level has those of three bands, as factors."""
+    return (branch.ll_basis,), *((*detail.h, *detail.w) for detail in (branch.d3, branch.d2))
