@@ -36,6 +36,11 @@ def test_held_out_ends_are_joined_to_their_clips() -> None:
     assert type(short) is Clip
 
 
+def test_a_held_out_piece_is_not_what_a_player_begins_with() -> None:
+    clips = [recorded("piece", 18, held=True), recorded("walk", 8), recorded("turn", 2, held=True), recorded("dance", 5)]
+    assert [c.name for c in whole_clips(clips)] == ["walk", "dance", "piece", "turn"]
+
+
 @pytest.mark.parametrize(
     "clips",
     [

@@ -14,8 +14,11 @@ LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is p
 
 
 def whole_clips(recorded: Iterable[RecordedClip]) -> list[Clip]:
-    """The clips of a recording, each with its held-out end joined to it again."""
-    clips = {clip.name: clip for clip in recorded if len(clip)}
+    """The clips of a recording, each with its held-out end joined to it again; those held out come last.
+
+    A player begins with the first one, and what a teacher's program holds out is often a piece of a second.
+    """
+    clips = {clip.name: clip for clip in sorted(recorded, key=lambda clip: clip.held_out) if len(clip)}
     ends = {name: beginning for name, clip in clips.items() if (beginning := _beginning(clip, clips)) is not None}
     joined = {beginning.name: clips[name] for name, beginning in ends.items()}
     return [
