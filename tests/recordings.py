@@ -27,6 +27,7 @@ class FormulaTeacher:
         rng = np.random.default_rng(5)
         valid, vertices = len(rig.texels.texels), len(rig.mesh.vertices)
         self._base = rng.standard_normal((valid, 23)).astype(np.float32)
+        self._base[:, ATTRIBUTES["offset"]] *= 0.02  # metres
         self._base[:, ATTRIBUTES["scale"]] -= 6
         self._change = 0.1 * rng.standard_normal((valid, 23)).astype(np.float32)
         self._sway = 0.1 * rng.standard_normal((vertices, 3)).astype(np.float32)

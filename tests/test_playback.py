@@ -37,7 +37,12 @@ def test_held_out_ends_are_joined_to_their_clips() -> None:
 
 
 def test_a_held_out_piece_is_not_what_a_player_begins_with() -> None:
-    clips = [recorded("piece", 18, held=True), recorded("walk", 8), recorded("turn", 2, held=True), recorded("dance", 5)]
+    clips = [
+        recorded("piece", 18, held=True),
+        recorded("walk", 8),
+        recorded("turn", 2, held=True),
+        recorded("dance", 5),
+    ]
     assert [c.name for c in whole_clips(clips)] == ["walk", "dance", "piece", "turn"]
 
 

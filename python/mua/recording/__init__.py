@@ -19,8 +19,18 @@ are leftovers of a killed writer; readers pass over them and the next writer rem
 subbands per frame: the transform is linear, so they are those of the mean texture.
 """
 
+from mua.recording.plausible import LikelyMistake
 from mua.recording.reader import RecordedClip, Recording, Subbands, WholeFrame
 from mua.recording.record import PlannedClip, record
 from mua.recording.writer import TeacherWriter
 
-__all__ = ["PlannedClip", "RecordedClip", "Recording", "Subbands", "TeacherWriter", "WholeFrame", "record"]
+__all__ = [
+    "LikelyMistake",
+    "PlannedClip",
+    "RecordedClip",
+    "Recording",
+    "Subbands",
+    "TeacherWriter",
+    "WholeFrame",
+    "record",
+]

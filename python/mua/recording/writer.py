@@ -1,6 +1,8 @@
 """Writing a recording, frame by frame, from any program that has a teacher."""
 
 import shutil
+import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -37,6 +39,7 @@ from mua.recording.layout import (
     shard_name,
     write_header,
 )
+from mua.recording.plausible import Finding, LikelyMistake, Plausible, rig_findings
 from mua.recording.rig_file import save_rig
 from mua.recording.shard import Shard
 from mua.rig.rig import Rig
@@ -84,7 +87,7 @@ class TeacherWriter:
         """Open `directory` to go on with its recording, or to begin one.
 
         Raises InputError where it holds a recording of another rig, rate or wavelet, where it is damaged, where another
-        writer is at work in it, or where the texture size cannot be halved four times.
+        writer is at work in it, where the texture size cannot be halved four times, or where the rig cannot be meant.
         """
         filters(wavelet)
         if rig.texels.size % STEP:
@@ -93,6 +96,12 @@ class TeacherWriter:
             expected = f"{LEAST_RATE:g} to {LARGEST_RATE:g} frames per second"
             raise InputError(f"recording {directory}: rate is {rate:g}, expected {expected}")
         self.directory = Path(directory)
+        self._told: set[str] = set()  # what was warned of
+        try:
+            self._judge(rig_findings(rig), "rig")
+        except InputError as error:
+            raise InputError(f"recording {directory}: rig: {error}") from None
+        self._plausible = Plausible(rig)
         self.rate = float(rate)
         self._header = Header.of(rig, rate=rate, wavelet=wavelet)
         self._texels = rig.texels
@@ -148,27 +157,32 @@ class TeacherWriter:
         mesh: Array | None = None,  # [V, 3] canonical template vertices, metres
         texture: Array | None = None,  # [N, 23] at the valid texels, or [H, W, 23]; raw channels (mua.texture.channels)
         *,
+        frame: int | None = None,  # which frame of the clip this is, from 0; then frames out of order are refused
         whole: bool | None = None,  # keep the texture itself too, for evaluation; None: every `whole_every`-th time
     ) -> None:
         """Append the clip's next frame; without mesh and texture its pose alone, as history of later frames.
 
         Rotations are brought to the hemisphere of the first texture ever added, texel by texel.
-        Raises InputError that names clip, frame and field for a wrong shape or a value that is not finite.
+        Raises InputError that names clip, frame and field for a wrong shape, a value that is not finite, or numbers
+        that a mistake in units or conventions explains; warns with LikelyMistake of those that may be one.
         """
         if not self._clip:
             raise InputError(f"recording {self.directory}: start_clip comes before the first frame")
         state = self._clips[self._clip]
+        where = f"clip {self._clip!r}, frame {state.frames}"
         try:
+            if frame is not None:
+                _check_order(frame, state.frames)
             rotations, translations = self._check_pose(pose)
-            frame = self._encode(mesh, texture)
+            self._judge(self._plausible.pose(Pose(rotations, translations)), where)
+            encoded = self._encode(Pose(rotations, translations), mesh, texture, where)
         except InputError as error:
-            where = f"recording {self.directory}: clip {self._clip!r}, frame {state.frames}"
-            raise InputError(f"{where}: {error}") from None
+            raise InputError(f"recording {self.directory}: {where}: {error}") from None
         self._shard.add_pose(
             self._clip, state.frames, held_out=state.held_out, rotations=rotations, translations=translations
         )
-        if frame is not None:
-            self._keep(state, frame, whole=len(state.recorded) % self._whole_every == 0 if whole is None else whole)
+        if encoded is not None:
+            self._keep(state, encoded, whole=len(state.recorded) % self._whole_every == 0 if whole is None else whole)
         state.frames += 1
         if self._shard.frames >= self._shard_frames or self._shard.poses >= POSES_PER_SHARD:
             self._flush()
@@ -265,7 +279,17 @@ class TeacherWriter:
             raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
         return rotations, translations
 
-    def _encode(self, mesh: Array | None, texture: Array | None) -> _Encoded | None:
+    def _judge(self, findings: Iterable[Finding], where: str) -> None:
+        """Refuse what is certainly a mistake; warn once of each that may be one."""
+        for finding in findings:
+            if finding.certain:
+                raise InputError(finding.sentence)
+            cause = finding.sentence.rpartition(": ")[2]
+            if cause not in self._told:
+                self._told.add(cause)
+                warnings.warn(f"recording {self.directory}: {where}: {finding.sentence}", LikelyMistake, stacklevel=4)
+
+    def _encode(self, pose: Pose, mesh: Array | None, texture: Array | None, where: str) -> _Encoded | None:
         """Check and transform what was added, relative to the reference frame, which the first texture becomes."""
         if mesh is None and texture is None:
             return None
@@ -273,6 +297,9 @@ class TeacherWriter:
             raise InputError(f"{'mesh' if mesh is None else 'texture'} is missing, expected both or neither")
         vertices = _checked("mesh", mesh, (self._header.vertices, 3), np.float32)
         values = valid_texture(texture, self._header, self._texels.texels)
+        check_range(values, self._texels.texels, self._texels.size)
+        image = np.asarray(texture) if np.ndim(texture) > 2 else None
+        self._judge(self._plausible.frame(pose, vertices, values, image), where)
         if self._reference is None:
             self._reference = self._keep_reference(values)
         difference = align_rotations(values, self._reference.texture)
@@ -295,6 +322,8 @@ class TeacherWriter:
         check_range(texture, self._texels.texels, self._texels.size)
         texture = texture.copy()  # the caller may fill the same buffer with the next frame
         reference = Reference(texture, dynamic_subbands(texture, self._fill, wavelet=self._header.wavelet))
+        if reference.subbands.peak > HALF_MAX:
+            raise InputError(f"texture: a subband is {reference.subbands.peak:.3g}, expected at most {HALF_MAX:.0f}")
         save_reference(self.directory / REFERENCE, reference)
         return reference
 
@@ -310,6 +339,14 @@ class TeacherWriter:
         self._shard = Shard(self.directory / SHARDS, number, self._header)
         if number > 1:  # only the last shard's running sum is of use; a kill may have left the one before it
             (self.directory / SHARDS / shard_name(number - 2) / SUM).unlink(missing_ok=True)
+
+
+def _check_order(frame: int, expected: int) -> None:
+    if frame < expected:
+        raise InputError(f"frame={frame} was added already, expected frame={expected}: frames come in order, each once")
+    if frame > expected:
+        remedy = "a frame that the teacher does not evaluate is added with its pose alone"
+        raise InputError(f"frame={frame} comes after frame {expected - 1}, expected frame={expected}: {remedy}")
 
 
 def _checked(name: str, value: Array, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:

@@ -1,0 +1,104 @@
+"""Poses: the order of quaternions, whose rotations they are, the unit of translations, and where the root stands."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.recording.plausible.finding import Finding
+from mua.recording.plausible.fit import explain, rms, unit_of
+from mua.rig.skeleton import Pose, Skeleton
+
+TURNED, CALM = np.radians(100), np.radians(50)  # a joint's median turn away from the bind pose, wrong and undone
+OTHER_LENGTH = 10.0  # times a bone's: no animation stretches all by as much
+MOVED = 0.1  # of the bones' lengths: what animation may do to the translations of all joints together
+FAR, HIGH = 100.0, 20.0  # heights of the figure, or of a person, from the origin
+PERSON = 1.75  # metres
+FEW = 4  # joints; fewer say nothing together
+
+
+class Poses:
+    """What the poses of one skeleton look like."""
+
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        size: float,  # of the figure, metres
+    ) -> None:
+        self._skeleton, self._reach = skeleton, max(size, PERSON)
+        self._path = [*reversed(skeleton.ancestors(skeleton.root)), skeleton.root]
+        lengths = np.linalg.norm(skeleton.bind_translations, axis=1)
+        self._bones = np.array([j for j in range(len(lengths)) if j not in self._path and lengths[j] > 0], dtype=int)
+        self._place = self._root(skeleton.bind_pose)
+
+    def __call__(self, pose: Pose) -> Iterator[Finding]:
+        """What looks like a mistake in a pose whose shapes are right."""
+        yield from self._rotations(pose.rotations)
+        yield from self._bone_lengths(pose.translations)
+        yield from self._standing(pose)
+
+    def _rotations(self, given: Array) -> Iterator[Finding]:
+        """Joints turn little from the bind pose: if half of them turn far as given and little otherwise, it is that."""
+        turned = self._turn(given)
+        if turned < TURNED or len(given) < FEW:
+            return
+        told = f"pose rotations turn half of all joints by {np.degrees(turned):.0f} degrees or more from the bind pose"
+        if self._turn(np.roll(given, 1, axis=1)) < CALM:
+            yield Finding(f"{told}, and by little if they are xyzw: are they? wxyz is expected", certain=True)
+        elif self._turn(self._as_local(given)) < CALM:
+            sentence = "are these rotations in the world? local ones, relative to the parent, are expected"
+            yield Finding(f"{told}: {sentence}", certain=True)
+
+    def _turn(self, rotations: Array) -> float:
+        """The median angle of all joints away from the bind pose."""
+        dot = np.abs(np.sum(rotations * self._skeleton.bind_rotations, axis=1))
+        return float(np.median(2 * np.arccos(np.clip(dot, 0, 1))))
+
+    def _as_local(self, world: Array) -> Array:
+        parents = self._skeleton.parents
+        above = np.where((parents >= 0)[:, None], world[parents], [1.0, 0, 0, 0])
+        return rotation.multiply(rotation.conjugate(above), world)
+
+    def _bone_lengths(self, given: Array) -> Iterator[Finding]:
+        bones, bind = self._bones, self._skeleton.bind_translations
+        if not len(bones):
+            return
+        own, expected = given[bones], bind[bones]
+        if not own.any():
+            sentence = "expected those of the bind pose for joints that only rotate (rig.skeleton.bind_translations)"
+            yield Finding(f"pose translations are zero for all joints but the root, {sentence}", certain=True)
+            return
+        ratio = float(np.median(np.linalg.norm(own, axis=1) / np.linalg.norm(expected, axis=1)))
+        moved = len(bones) >= FEW and rms(own - expected) > MOVED * rms(expected)
+        mistake = explain(own, expected) if moved else None
+        if mistake is not None or not 1 / OTHER_LENGTH < ratio < OTHER_LENGTH:
+            told = f"pose translations make bones {ratio:.4g} times as long as in the bind pose and move them"
+            yield Finding(f"{told}: {mistake.question if mistake else _question(ratio)}", certain=True)
+
+    def _standing(self, pose: Pose) -> Iterator[Finding]:
+        place = self._root(pose)
+        away = np.abs(place - self._place)
+        far, high = max(away[0], away[2]) > FAR * self._reach, away[1] > HIGH * self._reach
+        if far or high:
+            unit = "millimetres" if away.max() > FAR * self._reach else "centimetres"
+            told = f"pose puts the root joint at {_metres(place)}, where the bind pose has it at {_metres(self._place)}"
+            remedy = "metres are expected, and what happened far from the origin moved there"
+            yield Finding(f"{told}: are these {unit}? {remedy}", certain=True)
+
+    def _root(self, pose: Pose) -> Array:
+        """Where the root joint is in the world [3]."""
+        turned, place = np.array([1.0, 0, 0, 0]), np.zeros(3)
+        for joint in self._path:
+            place = place + rotation.rotate(turned, pose.translations[joint])
+            turned = rotation.multiply(turned, pose.rotations[joint])
+        return place
+
+
+def _question(ratio: float) -> str:
+    unit = unit_of(ratio)
+    return f"are these {unit}? metres are expected" if unit else "metres are expected, from joint to joint"
+
+
+def _metres(place: Array) -> str:
+    return f"({', '.join(f'{value:.4g}' for value in place)}) m"

@@ -1,0 +1,105 @@
+"""Rigs that programs put together themselves: shapes, sizes, and whether template and skeleton belong together."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.recording.plausible.finding import Finding
+from mua.recording.plausible.fit import explain, rms, unit_of
+from mua.rig.rig import Rig
+from mua.rig.skeleton import Skeleton
+
+SMALLEST, LARGEST = 0.01, 100.0  # metres: the sizes of figures that bake, bounds and player are made for
+PERSON = 1.75  # metres
+WEIGHT_ERROR = 1e-3  # of the sum of a vertex's skin weights
+APART = 0.3  # of the figure's size: how far joints may be from the skin that they move, on average
+
+
+def rig_findings(rig: Rig) -> Iterator[Finding]:
+    """What looks like a mistake in a rig; with a wrong shape or index, that alone."""
+    wrong = list(_shapes(rig))
+    yield from wrong or [*_size(rig), *_weights(rig), *_joints(rig)]
+
+
+def _shapes(rig: Rig) -> Iterator[Finding]:
+    mesh, skeleton, texels = rig.mesh, rig.skeleton, rig.texels
+    joints, vertices, valid = len(skeleton.names), len(mesh.vertices), len(texels.texels)
+    expected: dict[str, tuple[Array, tuple[int, ...]]] = {
+        "skeleton.parents": (skeleton.parents, (joints,)),
+        "skeleton.bind_rotations": (skeleton.bind_rotations, (joints, 4)),
+        "skeleton.bind_translations": (skeleton.bind_translations, (joints, 3)),
+        "mesh.vertices": (mesh.vertices, (vertices, 3)),
+        "mesh.uv_faces": (mesh.uv_faces, mesh.faces.shape),
+        "skin_indices": (rig.skin_indices, (vertices, 8)),
+        "skin_weights": (rig.skin_weights, (vertices, 8)),
+        "texels.triangles": (texels.triangles, (valid,)),
+        "texels.barycentrics": (texels.barycentrics, (valid, 3)),
+    }
+    for name, (array, shape) in expected.items():
+        if array.shape != shape:
+            yield Finding(f"{name} has shape {list(array.shape)}, expected {list(shape)}", certain=True)
+        elif not np.isfinite(array).all():
+            yield Finding(f"{name} holds a value that is no number, expected finite ones", certain=True)
+    limits = {
+        "mesh.faces": (mesh.faces, vertices),
+        "mesh.uv_faces": (mesh.uv_faces, len(mesh.uv)),
+        "skin_indices": (rig.skin_indices, joints),
+        "texels.triangles": (texels.triangles, len(mesh.faces)),
+        "texels.texels": (texels.texels, texels.size**2),
+    }
+    for name, (indices, limit) in limits.items():
+        if len(indices) and not 0 <= indices.min() <= indices.max() < limit:
+            yield Finding(f"{name} holds {indices.min()} to {indices.max()}, expected 0 to {limit - 1}", certain=True)
+    if (skeleton.parents >= np.arange(joints)).any():
+        yield Finding("skeleton.parents: a parent comes after its child, expected parents first", certain=True)
+    if not valid:
+        yield Finding("texels: no texel is valid, expected those under the UV charts", certain=True)
+
+
+def _size(rig: Rig) -> Iterator[Finding]:
+    size = float(np.ptp(rig.mesh.vertices, axis=0).max())
+    if not SMALLEST <= size <= LARGEST:
+        unit = unit_of(size / PERSON)
+        question = f"is it in {unit}? metres are expected" if unit else f"expected {SMALLEST} to {LARGEST:.0f} m"
+        yield Finding(f"the longest side of the template is {size:.4g} m: {question}", certain=True)
+
+
+def _weights(rig: Rig) -> Iterator[Finding]:
+    total = rig.skin_weights.sum(axis=1)
+    worst = int(np.argmax(np.abs(total - 1)))
+    if rig.skin_weights.min(initial=0) < 0 or abs(total[worst] - 1) > WEIGHT_ERROR:
+        told = f"skin_weights of vertex {worst} sum to {total[worst]:.4g}, the least is {rig.skin_weights.min():.4g}"
+        yield Finding(f"{told}: expected weights from 0 to 1 that sum to 1", certain=True)
+
+
+def _joints(rig: Rig) -> Iterator[Finding]:
+    """Every joint is near the skin that it moves, whatever the character."""
+    skeleton, vertices = rig.skeleton, rig.mesh.vertices
+    size = float(np.ptp(vertices, axis=0).max())
+    lengths = np.linalg.norm(skeleton.bind_rotations, axis=1)
+    if np.abs(lengths - 1).max() > WEIGHT_ERROR:
+        yield Finding(
+            "skeleton.bind_rotations: a quaternion is not of length 1, expected wxyz of length 1", certain=True
+        )
+        return
+    main = rig.skin_indices[np.arange(len(vertices)), np.argmax(rig.skin_weights, axis=1)]
+    used, owner = np.unique(main, return_inverse=True)
+    count = np.bincount(owner)[:, None]
+    skin = np.stack([np.bincount(owner, weights=axis) for axis in vertices.T], axis=1) / count
+    apart = rms(_places(skeleton, skeleton.bind_rotations)[used] - skin)
+    if apart <= APART * size:
+        return
+    told = f"joints are {apart:.3g} m from the skin that they move, on average, of a figure of {size:.3g} m"
+    mistake = explain(_places(skeleton, skeleton.bind_rotations)[used], skin) if len(used) > 2 else None
+    if mistake is not None:
+        yield Finding(f"{told}: {mistake.question} (of the skeleton, beside the template)", certain=True)
+    elif rms(_places(skeleton, np.roll(skeleton.bind_rotations, 1, axis=1))[used] - skin) < apart / 2:
+        yield Finding(f"{told}, less if bind_rotations are xyzw: are they? wxyz is expected", certain=True)
+    else:
+        question = "are bind_rotations and bind_translations local, relative to the parent?"
+        yield Finding(f"{told}: {question}", certain=False)
+
+
+def _places(skeleton: Skeleton, rotations: Array) -> Array:
+    return skeleton.world(rotations, skeleton.bind_translations)[1]

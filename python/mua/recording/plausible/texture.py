@@ -1,0 +1,156 @@
+"""Gaussian textures: empty texels, logarithms, logits, spherical harmonics, and the order of channels and texels."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.recording.plausible.finding import Finding
+from mua.rig.rig import Rig
+from mua.texture.channels import APPEARANCE, ATTRIBUTES
+
+SAMPLES = 4096  # texels that are looked at
+LARGE, SMALL = 8.0, 0.01  # half of all splats are so many steps between texels long: far more, or less, than any need
+USUAL = 5.0  # times a step, or a fifth of it: what splats are about as long as
+OFFSET, OFFSETS = 0.3, ATTRIBUTES["offset"]  # of the figure's size, for half of all splats
+BRIGHT = 5.0  # of an SH constant: 1.4 times white above grey
+SCALES_FIRST = "do the channels begin with the scales? offset 3, quaternion 4, log scale 3, opacity 1 are expected"
+LOGARITHMS = {"millimetres": 1000.0, "centimetres": 100.0}
+
+
+class Textures:
+    """What the textures of one rig look like."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        size: float,  # of the figure, metres
+    ) -> None:
+        texels = rig.texels
+        count = len(texels.texels)
+        self._rows = np.unique(np.linspace(0, count - 1, min(count, SAMPLES)).astype(int))
+        self._size, self._step = size, _step(rig)
+        self._faces = rig.mesh.faces[texels.triangles[self._rows]]
+        self._barycentrics = texels.barycentrics[self._rows]
+
+    def __call__(
+        self,
+        texture: Array,  # [N, 23] at the valid texels
+        mesh: Array,  # [V, 3] canonical
+    ) -> Iterator[Finding]:
+        """What looks like a mistake in a texture whose shape is right."""
+        some = np.asarray(texture[self._rows], dtype=np.float64)
+        empty: Array = np.linalg.norm(texture[:, ATTRIBUTES["rotation"]], axis=1) == 0
+        if empty.any():
+            yield _empty(empty)
+            some = some[some[:, ATTRIBUTES["rotation"]].any(axis=1)]
+        if len(some) and not empty.all():
+            yield from self._scales(some)
+            yield from self._offsets(some, mesh)
+            yield from _opacities(some[:, ATTRIBUTES["opacity"]])
+            yield from _colours(some[:, APPEARANCE].reshape(-1, 4, 3))
+
+    def _scales(self, some: Array) -> Iterator[Finding]:
+        """Half of all splats are about as long as the way from a texel to the next."""
+        longest = some[:, ATTRIBUTES["scale"]].max(axis=1)
+        steps = self._steps(longest)
+        if SMALL < steps < LARGE:
+            return
+        told = f"texture: half of all splats are longer than {self._length(longest)}, of {_long(self._size)} in all"
+        cause = self._scale_cause(some)
+        if cause is not None:
+            yield Finding(f"{told}: {cause}", certain=True)
+        else:
+            question = "to base 10" if self._fits(longest * np.log(10)) else "right"
+            expected = f"natural logarithms of about {_long(self._step)} are expected"
+            yield Finding(f"{told}: are these logarithms {question}? {expected}", certain=False)
+
+    def _scale_cause(self, some: Array) -> str | None:
+        scales = some[:, ATTRIBUTES["scale"]]
+        longest = scales.max(axis=1)
+        if self._fits(some[:, OFFSETS].max(axis=1)):
+            return SCALES_FIRST
+        if (scales > 0).all() and self._fits(np.log(longest)):
+            return "are these the scales themselves? their natural logarithms are expected"
+        for unit, times in LOGARITHMS.items():
+            if self._fits(longest - np.log(times)):
+                return f"are these logarithms of {unit}? of metres is expected"
+        return None
+
+    def _offsets(self, some: Array, mesh: Array) -> Iterator[Finding]:
+        """Half of all splats are near the mesh."""
+        offsets = some[:, OFFSETS]
+        away = float(np.median(np.linalg.norm(offsets, axis=1)))
+        if away <= OFFSET * self._size:
+            return
+        told = f"texture: half of all offsets are longer than {_long(away)}, of {_long(self._size)} in all"
+        surface = np.einsum("nvx,nv->nx", mesh[self._faces], self._barycentrics)
+        if len(surface) == len(offsets) and np.median(np.linalg.norm(offsets - surface, axis=1)) < away / 4:
+            question = "are these positions? offsets from the mesh are expected"
+        elif self._fits(offsets.max(axis=1)):
+            question = SCALES_FIRST
+        else:
+            question = "are these millimetres? metres are expected"
+        yield Finding(f"{told}: {question}", certain=True)
+
+    def _fits(self, logarithms: Array) -> bool:
+        """Whether half of all splats would be of a size that is expected."""
+        return 1 / USUAL < self._steps(logarithms) < USUAL
+
+    def _steps(self, logarithms: Array) -> float:
+        return float(np.exp(min(np.median(logarithms), 50.0))) / self._step
+
+    def _length(self, logarithms: Array) -> str:
+        return _long(float(np.exp(min(np.median(logarithms), 50.0))))
+
+
+def _empty(
+    empty: Array,  # [N] bool
+) -> Finding:
+    count, of = int(empty.sum()), len(empty)
+    if count == of:
+        return Finding(
+            "texture: all quaternions are zero, expected a rotation of any length: is it empty?", certain=True
+        )
+    question = (
+        "does the teacher's texture leave texels empty that the rig's map holds, is it transposed or upside down?"
+    )
+    return Finding(f"texture: the quaternion is zero at {count} of {of} valid texels: {question}", certain=True)
+
+
+def _opacities(logits: Array) -> Iterator[Finding]:
+    if logits.min() >= 0 and logits.max() <= 1 and np.median(logits) > 0.5:
+        told = f"texture: all opacities lie between {logits.min():.3g} and {logits.max():.3g}"
+        yield Finding(f"{told}: are these opacities? logits, before the sigmoid, are expected", certain=False)
+
+
+def _colours(
+    sh: Array,  # [n, 4, 3] coefficient-major
+) -> Iterator[Finding]:
+    constant = sh[:, 0]
+    other_order = sh.reshape(-1, 3, 4)[:, :, 0]  # as if all coefficients of red came first
+    brightness = np.median(np.abs(constant))
+    if brightness > BRIGHT:
+        told = f"texture: half of the constant SH coefficients are beyond {brightness:.3g}"
+        byte = constant.min() >= 0 and constant.max() <= 255
+        question = "are these colours from 0 to 255?" if byte else "are these coefficients?"
+        yield Finding(f"{told}: {question} (colour - 0.5) / 0.2821 is expected, colours in 0..1", certain=byte)
+    elif np.abs(other_order[:, 1:]).mean() > max(3 * np.abs(constant[:, 1:]).mean(), 0.2):
+        told = "texture: SH coefficients of degree 1 are larger than the constant ones of green and blue"
+        question = "do all four of red come first? the constants of red, green and blue are expected first"
+        yield Finding(f"{told}: {question}", certain=False)
+    elif constant.min() >= 0 and constant.max() <= 1 and np.ptp(constant) > 0.5:
+        told = f"texture: the constant SH coefficients lie between {constant.min():.3g} and {constant.max():.3g}"
+        yield Finding(f"{told}: are these colours? (colour - 0.5) / 0.2821 is expected", certain=False)
+
+
+def _step(rig: Rig) -> float:
+    """The mean way from a texel to the next on the surface, metres."""
+    used = np.unique(rig.texels.triangles)
+    corners = rig.mesh.vertices[rig.mesh.faces[used]]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    return float(np.sqrt(areas.sum() / max(len(rig.texels.texels), 1))) or 1.0
+
+
+def _long(metres: float) -> str:
+    return f"{1000 * metres:.3g} mm" if metres < 0.1 else f"{metres:.3g} m"
