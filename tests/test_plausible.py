@@ -12,7 +12,7 @@ from shared_data import SharedData
 
 from mua import rotation
 from mua.arrays import Array
-from mua.bake.sources import load_character
+from mua.baking.sources import load_character
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.recording import LikelyMistake, Recording, TeacherWriter

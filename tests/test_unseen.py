@@ -11,7 +11,7 @@ from tube import swing, tube
 
 from mua.arrays import Array
 from mua.recording import Recording, TeacherWriter
-from mua.rig.rig import build_rig
+from mua.rig.build import build_rig
 from mua.student.distil import distil
 from mua.student.export import export_branches
 from mua.student.model import Student
