@@ -19,6 +19,7 @@ from mua.rig.skeleton import Pose
 from mua.student.optimise import Progress, Run
 from mua.student.settings import Ranks, Schedule, Settings
 from mua.teachers.teacher import TeacherFrame
+from mua.texture.channels import ATTRIBUTES
 
 SETTINGS = Settings(
     texels=32,
@@ -55,7 +56,9 @@ class SmoothTeacher:
         base, *moving = self._shapes
         bends = clip.rotations[index, 1:3, 1:].sum(axis=-1).astype(np.float32)
         texture = base + sum(0.2 * bend * shape for bend, shape in zip(bends, moving, strict=True))
+        texture[:, ATTRIBUTES["offset"]] *= 0.1  # metres
         texture[:, 3] += 8  # all rotations in one hemisphere
+        texture[:, ATTRIBUTES["scale"]] -= 6
         mesh = self.rig.mesh.vertices.astype(np.float32) * (1 + 0.05 * bends[0])
         return TeacherFrame(clip.pose(index), mesh, texture)
 

@@ -20,7 +20,7 @@ from mua.rig.skeleton import Pose
 from mua.student.distil import distil, moving_joints
 from mua.student.model import Student
 from mua.student.settings import Settings
-from mua.texture.channels import CHANNELS
+from mua.texture.channels import ATTRIBUTES, CHANNELS
 
 CPU = torch.device("cpu")
 RELATIVE = 1e-5  # of the largest value: a float32 file against the torch student
@@ -51,8 +51,12 @@ def recording(directory: Path, *, training: int = 2) -> Recording:
             for frame in range(len(clip)):
                 pose = Pose(clip.rotations[frame], clip.translations[frame])
                 mesh = (rig.mesh.vertices + 0.01 * rng.normal(size=3)).astype(np.float32)
-                texture = rng.normal(50 if held_out else 0, 0.1, (len(rig.texels.texels), CHANNELS))
+                texture = rng.normal(0, 0.1, (len(rig.texels.texels), CHANNELS))
                 texture[:, 3] += 1
+                texture[:, ATTRIBUTES["scale"]] -= 4
+                if held_out:
+                    texture[:, ATTRIBUTES["opacity"]] += 50
+                    texture[:, ATTRIBUTES["SH"]] += 4
                 writer.add(pose, *((mesh, texture.astype(np.float32)) if frame % 2 else ()))
     return Recording(directory)
 
