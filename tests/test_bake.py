@@ -19,7 +19,9 @@ from silent import Silent
 from mua.asset import read, write
 from mua.asset.tensors import Storage
 from mua.baking.assemble import assemble
-from mua.baking.pipeline import Baked, Order, bake, recording_key
+from mua.baking.distillation import Baked
+from mua.baking.order import Order
+from mua.baking.pipeline import bake, recording_key
 from mua.baking.plan import plan, split
 from mua.baking.sources import RATE, load_character
 from mua.decode import decode_clip_frame
@@ -50,7 +52,7 @@ SMALL = dataclasses.replace(
 @pytest.fixture(scope="module")
 def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
     directory = tmp_path_factory.mktemp("bake")
-    order = Order(directory / "a.muaavatar", directory / "work", SMALL, torch.device("cpu"))
+    order = Order(directory / "a.muaavatar", directory / "work", SMALL, "cpu")
     return bake(order, Silent())
 
 
@@ -112,14 +114,14 @@ def test_decoded_file_equals_the_torch_student(baked: Baked, tmp_path: Path, sto
 
 
 def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
-    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, torch.device("cpu"), jobs=2), Silent())
+    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2), Silent())
     (mine,), (theirs,) = (list(path.glob("recording-*")) for path in (tmp_path / "work", baked.output.parent / "work"))
     assert content(mine) == content(theirs)
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
 
 
 def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path) -> None:
-    order = Order(tmp_path / "a.muaavatar", tmp_path, SMALL, torch.device("cpu"))
+    order = Order(tmp_path / "a.muaavatar", tmp_path, SMALL, "cpu")
     character = load_character(None, uv="auto", seed=0)
     mesh, skeleton = character.mesh, character.skeleton
     others = [
@@ -234,8 +236,8 @@ def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Pa
 def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
     """kill -9 while it records, then while it trains; the third run ends as an undisturbed one."""
     code = (
-        "import sys, torch; from pathlib import Path; sys.path.insert(0, sys.argv[1]); from test_bake import *;"
-        "d = Path(sys.argv[2]); bake(Order(d / 'a.muaavatar', d / 'work', SMALL, torch.device('cpu')), Silent())"
+        "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1]); from test_bake import *;"
+        "d = Path(sys.argv[2]); bake(Order(d / 'a.muaavatar', d / 'work', SMALL, 'cpu'), Silent())"
     )
     run = [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)]
     for sign in ("recording-*/reference.npz", "student/*"):

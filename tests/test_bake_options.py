@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mua.cli.bake_options import check_inputs, check_jobs, check_output, check_settings
+from mua.baking.options import check_inputs, check_jobs, check_output, check_settings
 from mua.errors import InputError
 
 HEAVY = {"torch", "warp", "pxr"}

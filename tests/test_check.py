@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import torch
 import typer
 from bvh_files import BVH
 from PIL import Image
@@ -16,7 +15,8 @@ from test_bake import SMALL
 from test_likeness import column_file
 from typer.testing import CliRunner
 
-from mua.baking.pipeline import Order, bake
+from mua.baking.order import Order
+from mua.baking.pipeline import bake
 from mua.cli.bake import main
 from mua.contact_sheet import CAPTION, CELL
 from mua.errors import InputError
@@ -88,8 +88,7 @@ def test_a_bake_tells_the_likeness_and_its_contact_sheet_begins_with_it(tmp_path
         def note(self, sentence: str) -> None:
             told.append(sentence)
 
-    cpu = torch.device("cpu")
-    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, cpu, character=column_file(tmp_path))
+    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
     baked = bake(order, Hearing())
     assert any(sentence.startswith("Splats beside the source: silhouettes overlap by") for sentence in told)
     with Image.open(baked.sheet) as sheet:

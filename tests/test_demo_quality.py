@@ -7,10 +7,10 @@ from functools import reduce
 from operator import add
 
 import pytest
-import torch
 from silent import Silent
 
-from mua.baking.pipeline import Order, bake
+from mua.baking.order import Order
+from mua.baking.pipeline import bake
 from mua.evaluate import TRAINING, Errors
 from mua.student.settings import preset
 
@@ -29,7 +29,7 @@ LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on 
 def errors(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Errors]:
     """Of `make demo`, by group of frames."""
     directory = tmp_path_factory.mktemp("demo")
-    order = Order(directory / "a.muaavatar", directory / "work", preset("tiny"), torch.device("cpu"), jobs=2)
+    order = Order(directory / "a.muaavatar", directory / "work", preset("tiny"), "cpu", jobs=2)
     return dict(bake(order, Silent()).errors)
 
 

@@ -13,7 +13,7 @@ from synthetic_avatar import synthetic_avatar
 
 import mua
 from mua.asset import write
-from mua.cli.extras import EXTRAS, OF_COMMAND, missing_package
+from mua.extras import EXTRAS, OF_COMMAND, missing_package
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = Path(mua.__file__).parent
@@ -130,6 +130,23 @@ def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, writ
     assert (ended.returncode, ended.stdout) == (1, "")
     assert (told[1], told[3]) == (name, OF_COMMAND.get(f"mua-{name}", name))
     assert told[2] in EXTRAS[told[3]]
+
+
+@pytest.mark.parametrize(
+    ("call", "extra"),
+    [
+        ("mua.bake()", "bake"),
+        ("mua.train(sys.argv[1])", "train"),
+        ("mua.Recording(sys.argv[1])", "train"),
+        ("mua.TeacherWriter", "train"),
+    ],
+)
+def test_a_function_that_lacks_an_extra_names_it(call: str, extra: str, written: Path) -> None:
+    ended = run_bare(f"import mua\ntry:\n    {call}\nexcept ModuleNotFoundError as error:\n    print(error)", written)
+    assert re.fullmatch(
+        rf'{call.partition("(")[0]} needs the Python package \w+, which is not here: pip install "mua\[{extra}\]"\n',
+        ended.stdout,
+    ), ended
 
 
 def test_a_command_that_few_ask_more_of_names_both_extras() -> None:

@@ -14,11 +14,11 @@ from trainings import process
 PAIRS = 10
 BUSY = "is at work there; wait until it has ended, or name another directory"
 BAKE = """
-import sys, torch
+import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from test_bake import SMALL, InputError, Order, Silent, bake
-order = Order(Path(sys.argv[2]), Path(sys.argv[3]), SMALL, torch.device("cpu"), jobs=2)
+order = Order(Path(sys.argv[2]), Path(sys.argv[3]), SMALL, "cpu", jobs=2)
 try:
     bake(order, Silent())
 except InputError as error:

@@ -3,11 +3,11 @@
 from pathlib import Path
 
 import pytest
-import torch
 from shared_data import SharedData
 from silent import Silent
 
-from mua.baking.pipeline import Order, bake
+from mua.baking.order import Order
+from mua.baking.pipeline import bake
 from mua.evaluate import TRAINING
 from mua.student.settings import preset
 
@@ -20,7 +20,7 @@ def order(shared_data: SharedData, directory: Path) -> Order:
         directory / "white.muaavatar",
         directory / "work",
         preset("preview"),
-        torch.device("cpu"),
+        "cpu",
         character=shared_data.path("characters/White_F_3_Casual.glb"),
         motions=(shared_data.path("motion/cmu"),),
         hold_out=("02_02", "01_05", "02_08", "02_09"),

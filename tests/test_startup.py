@@ -9,8 +9,8 @@ import pytest
 from synthetic_avatar import synthetic_avatar
 
 import mua
+from mua import inputs
 from mua.asset import write
-from mua.cli import inputs
 from mua.recording import layout
 
 COMMANDS = ("bake", "bench", "deploy", "eval", "inspect", "train", "view")

@@ -9,18 +9,22 @@ Reading an avatar, decoding and drawing it on the CPU:
     mua.render(splats).save("hero.png")
 
 Names are loaded when they are first used: `import mua` is quick, and the lines above need numpy, flatbuffers and pillow
-alone. Bad input raises `InputError` with a sentence.
+alone. Bad input raises `InputError` with a sentence; a missing package raises `ModuleNotFoundError`
+with what to install.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from mua.errors import InputError
+from mua.extras import naming_extras
 
 if TYPE_CHECKING:
     from mua.asset.avatar import Avatar
     from mua.asset.read import read as load
     from mua.asset.write import write as save
+    from mua.baking.bake import bake
+    from mua.baking.train import train
     from mua.camera import Camera
     from mua.decode import Splats
     from mua.motion.clip import Clip
@@ -38,9 +42,11 @@ __all__ = [
     "Recording",
     "Splats",
     "TeacherWriter",
+    "bake",
     "load",
     "render",
     "save",
+    "train",
 ]
 
 _PLACES = {
@@ -51,9 +57,11 @@ _PLACES = {
     "Recording": "mua.recording:Recording",
     "Splats": "mua.decode:Splats",
     "TeacherWriter": "mua.recording:TeacherWriter",
+    "bake": "mua.baking.bake:bake",
     "load": "mua.asset.read:read",
     "render": "mua.rendering:render",
     "save": "mua.asset.write:write",
+    "train": "mua.baking.train:train",
 }
 
 
@@ -62,7 +70,8 @@ def __getattr__(name: str) -> Any:
     if name not in _PLACES:
         raise AttributeError(f"module 'mua' has no attribute {name!r}")
     module, _, attribute = _PLACES[name].partition(":")
-    globals()[name] = value = getattr(import_module(module), attribute)
+    with naming_extras(f"mua.{name}"):
+        globals()[name] = value = getattr(import_module(module), attribute)
     return value
 
 

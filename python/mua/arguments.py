@@ -2,8 +2,9 @@
 
 import operator
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 
 UNIT_BOUND = 2e-3  # a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
+T = TypeVar("T")
 PathLike: TypeAlias = str | os.PathLike[str]
 
 
@@ -20,6 +22,28 @@ def as_path(path: PathLike, name: str) -> Path:
     if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str):
         return Path(text)
     raise InputError(f"{name} is {told(path)}; expected a path, as a str or an os.PathLike")
+
+
+def as_paths(paths: PathLike | Sequence[PathLike], name: str) -> tuple[Path, ...]:
+    """One path or several."""
+    one = isinstance(paths, str | os.PathLike) or not isinstance(paths, Sequence)
+    return tuple(as_path(path, name) for path in ([paths] if one else paths))  # type: ignore[arg-type, union-attr]
+
+
+def as_names(names: str | Sequence[str], name: str) -> tuple[str, ...]:
+    """One name or several; raises InputError for anything but texts."""
+    given = (names,) if isinstance(names, str) else names
+    if not isinstance(given, Sequence) or not all(isinstance(one, str) for one in given):
+        raise InputError(f"{name} is {told(names)}; expected a name or several")
+    return tuple(given)
+
+
+def one_of(value: T, name: str, choices: Iterable[T]) -> T:
+    """One of the choices; raises InputError that lists them for anything else."""
+    listed = tuple(choices)
+    if value not in listed:
+        raise InputError(f"{name} is {told(value)}; expected {' or '.join(map(str, listed))}")
+    return value
 
 
 def whole_number(value: Any, name: str) -> int:

@@ -8,7 +8,6 @@ from pathlib import Path
 import decoder
 import numpy as np
 import pytest
-import torch
 from shared_data import SharedData
 from silent import Silent
 from synthetic_avatar import synthetic_avatar, synthetic_clip
@@ -19,7 +18,8 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
-from mua.baking.pipeline import Order, bake
+from mua.baking.order import Order
+from mua.baking.pipeline import bake
 from mua.bounds import playback_bounds
 from mua.camera import orbit
 from mua.decode import decode_clip_frame
@@ -153,7 +153,7 @@ def test_a_baked_character_decodes_alike(shared_data: SharedData, tmp_path: Path
         tmp_path / "a.muaavatar",
         tmp_path / "work",
         replace(small, regression=replace(tiny.regression, steps=200)),
-        torch.device("cpu"),
+        "cpu",
         character=shared_data.path(f"characters/{name}.glb"),
         motions=tuple(shared_data.path(motion) for motion in CHARACTERS[name]),
         storage="f32",

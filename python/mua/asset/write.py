@@ -6,7 +6,7 @@ from typing import get_args
 
 import numpy as np
 
-from mua.arguments import PathLike, as_path, told
+from mua.arguments import PathLike, as_path, one_of, told
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import VERSION, Tree, build, parse
@@ -38,8 +38,7 @@ def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
     path = as_path(path, "path")
     if not isinstance(avatar, Avatar):
         raise InputError(f"avatar is {told(avatar)}; expected a mua.Avatar")
-    if storage not in get_args(Storage):
-        raise InputError(f"storage is {told(storage)}; expected f32, f16 or i8")
+    one_of(storage, "storage", get_args(Storage))
     try:
         content = encode(avatar, storage=storage)
     except InputError as error:

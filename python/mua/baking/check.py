@@ -1,13 +1,15 @@
 """A look at a character and its motion before a bake: what the splats keep of the one and the clips of the other."""
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 import numpy as np
 
+from mua.baking.listener import Listener
+from mua.baking.order import Order
 from mua.baking.sources import RATE, load_character
 from mua.errors import InputError
 from mua.files import replacing, require_writable, write_bytes
@@ -18,37 +20,11 @@ from mua.motion.clip import Clip
 from mua.motion.load import LoadedMotion, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
-from mua.motion.planted_feet import Feet
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
 from mua.rig.character import Character
-from mua.rig.detail import Detail
-from mua.rig.figure_size import AS_FOUND, FigureSize
-
-if TYPE_CHECKING:
-    from mua.baking.distillation import Listener  # with torch, which takes seconds to load
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"
-
-
-@dataclass(frozen=True)
-class CheckOrder:
-    """What a user asks to have looked at."""
-
-    output: Path  # the picture and the mapping lie beside it and are named after it
-    texels: int
-    seed: int
-    character: Path | None = None  # None: the procedural character
-    motions: tuple[Path, ...] = ()  # none: the character's own clips
-    mapping: Mapping[str, str] | None = None  # target joint to source joint
-    uv: Literal["keep", "unwrap", "auto"] = "auto"
-    detail: Detail = field(default_factory=dict)  # beyond what is finer by default
-    size: FigureSize = AS_FOUND
-    leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
-    feet: Feet = "auto"  # whether feet are held where the motion's feet stand
-
-    def beside(self, ending: str) -> Path:
-        return self.output.with_name(self.output.stem + ending)
 
 
 @dataclass(frozen=True)
@@ -64,7 +40,7 @@ class Check:
     written: tuple[Path, ...]
 
 
-def check(order: CheckOrder, listener: "Listener") -> Check:
+def check(order: Order, listener: Listener) -> Check:
     """Measure likeness and motion, and leave a picture and a mapping file to start from beside the output.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
@@ -74,7 +50,7 @@ def check(order: CheckOrder, listener: "Listener") -> Check:
     character = load_character(
         order.character,
         uv=order.uv,
-        seed=order.seed,
+        seed=order.settings.seed,
         detail=order.detail,
         size=order.size,
         leave_out=order.leave_out,
@@ -84,7 +60,7 @@ def check(order: CheckOrder, listener: "Listener") -> Check:
     qualities = tuple(_quality(order, character, motion) for motion in loaded)
     listener.stage("likeness")
     clips = [m.clip for m in loaded]
-    likeness, warnings = likeness_of(character, clips, texels=order.texels)
+    likeness, warnings = likeness_of(character, clips, texels=order.settings.texels)
     pairs, unmatched = _matched(character, loaded) if order.motions else ((), ())
     written = []
     if likeness is not None:
@@ -125,11 +101,11 @@ def write_sheet(path: Path, likeness: Likeness) -> None:
         likeness_sheet(likeness).save(temporary)
 
 
-def as_json(order: CheckOrder, found: Check) -> str:
+def as_json(order: Order, found: Check) -> str:
     """Every figure, unrounded."""
     content: dict[str, Any] = {
         "character": None if order.character is None else str(order.character),
-        "texels": order.texels,
+        "texels": order.settings.texels,
         "likeness": None if found.likeness is None else told.as_dict(found.likeness),
         "motion": [_without_flaws(quality) for quality in found.motions],
         "matched": [asdict(pair) for pair in found.matched],
@@ -140,7 +116,7 @@ def as_json(order: CheckOrder, found: Check) -> str:
     return json.dumps(content, indent=1)
 
 
-def write_json(path: Path, order: CheckOrder, found: Check) -> None:
+def write_json(path: Path, order: Order, found: Check) -> None:
     write_bytes(path, (as_json(order, found) + "\n").encode())
 
 
@@ -148,7 +124,7 @@ def _without_flaws(quality: MotionQuality) -> dict[str, Any]:
     return {name: value for name, value in asdict(quality).items() if name != "flaws"}
 
 
-def _loaded(order: CheckOrder, character: Character) -> list[LoadedMotion]:
+def _loaded(order: Order, character: Character) -> list[LoadedMotion]:
     """The clips of the motions put on the character, else its own."""
     skeleton = character.skeleton
     if not order.motions:
@@ -163,14 +139,14 @@ def _loaded(order: CheckOrder, character: Character) -> list[LoadedMotion]:
     ]
 
 
-def _quality(order: CheckOrder, character: Character, motion: LoadedMotion) -> MotionQuality:
+def _quality(order: Order, character: Character, motion: LoadedMotion) -> MotionQuality:
     """What a clip keeps of its source; a character's own clip is its source."""
     if order.motions:
         return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
     return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, ())
 
 
-def _refusals(order: CheckOrder, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
+def _refusals(order: Order, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
     """Why a bake would refuse the motions, each reason once."""
     found = []
     for motion in loaded if order.motions and not order.mapping else ():

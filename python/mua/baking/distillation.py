@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import torch
 
@@ -16,6 +15,8 @@ from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.baking import playback, report
 from mua.baking.assemble import assemble
+from mua.baking.listener import Listener
+from mua.baking.order import ALL, DeviceName
 from mua.contact_sheet import contact_sheet
 from mua.errors import InputError
 from mua.evaluate import Errors, evaluate
@@ -32,16 +33,6 @@ from mua.student.settings import Settings, StageName
 SHEET_FRAMES = 6
 
 
-class Listener(Protocol):
-    """Hears what a bake or a training does; the command line shows it."""
-
-    def stage(self, name: str) -> None: ...
-
-    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
-
-    def note(self, sentence: str) -> None: ...
-
-
 @dataclass(frozen=True)
 class Distillation:
     """What is to become of a recording."""
@@ -53,7 +44,7 @@ class Distillation:
     name: str  # of the avatar
     teacher: str  # what the teacher is; stands in the avatar and beside every figure
     clips: tuple[Clip, ...] | None = None  # of the character, whole; None: those of the recording, their ends joined
-    playback: tuple[str, ...] = (playback.ALL,)  # which of them the file holds, as `choose` reads it
+    playback: tuple[str, ...] = (ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
     likeness: Likeness | None = None  # of the character, for the contact sheet
     processes: Processes = ALONE  # that train together; the first of them writes
@@ -74,8 +65,17 @@ class Baked:
     errors: Mapping[str, Errors]  # by group of frames; none where the recording keeps no frame whole
     output: Path
     stored: report.Stored
-    sheet: Path | None
-    figures: Path | None
+    teacher: str  # what it is, for whoever reads the errors
+    sheet: Path | None = None
+    figures: Path | None = None
+
+
+def choose_device(name: DeviceName) -> torch.device:
+    """The device of that name; raises InputError where it is a GPU and there is none."""
+    found = torch.cuda.is_available()
+    if name == "cuda" and not found:
+        raise InputError("--device cuda: torch finds no GPU here")
+    return torch.device("cuda" if found and name != "cpu" else "cpu")
 
 
 def teach(order: Distillation, recording: Recording, listener: Listener) -> Student:
@@ -137,14 +137,14 @@ def finish(order: Distillation, student: Student, recording: Recording, listener
     listener.stage("evaluation")
     if not recording.whole_count:
         listener.note("the recording keeps no frame whole, so there are neither errors nor a contact sheet")
-        return Baked({}, order.output, stored, None, None)
+        return Baked({}, order.output, stored, order.teacher)
     errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
-    baked = Baked(errors, order.output, stored, order.beside("_contact_sheet.png"), order.beside("_errors.md"))
-    _picture(order.beside("_contact_sheet.png"), avatar, recording, order.likeness)
-    write_bytes(order.beside("_errors.md"), report.markdown(errors, teacher=order.teacher).encode())
+    sheet, figures = order.beside("_contact_sheet.png"), order.beside("_errors.md")
+    _picture(sheet, avatar, recording, order.likeness)
+    write_bytes(figures, report.markdown(errors, teacher=order.teacher).encode())
     told = report.as_json(errors, teacher=order.teacher, held_out=starts)
     write_bytes(order.beside("_errors.json"), told.encode())
-    return baked
+    return Baked(errors, order.output, stored, order.teacher, sheet, figures)
 
 
 def _stored(avatar: Avatar, clip_bytes: int, path: Path) -> report.Stored:

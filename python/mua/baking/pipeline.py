@@ -1,19 +1,19 @@
 """The stages of a bake in order; each leaves its result in the work directory and is resumed from there."""
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import torch
 
 from mua import __version__
-from mua.asset.tensors import Storage
 from mua.baking.check import likeness_of
-from mua.baking.distillation import Baked, Distillation, Listener, finish, teach
+from mua.baking.distillation import Baked, Distillation, choose_device, finish, teach
+from mua.baking.listener import Listener
+from mua.baking.options import check_output
+from mua.baking.order import Order
 from mua.baking.plan import plan, split
-from mua.baking.playback import ALL, choose
+from mua.baking.playback import choose
 from mua.baking.report import STAND_IN
 from mua.baking.sources import RATE, load_character, load_clips
 from mua.files import require_writable
@@ -22,40 +22,13 @@ from mua.likeness.compare import Likeness
 from mua.locks import DirectoryLock
 from mua.memory import give_back
 from mua.motion.clip import Clip
-from mua.motion.planted_feet import Feet
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
 from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
-from mua.rig.detail import Detail
-from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.template import make_template
 from mua.rig.texel_density import describe_texels
-from mua.rig.uv import UvMode
-from mua.student.settings import Settings
 from mua.teachers.simulated import SimulatedTeacher
-
-
-@dataclass(frozen=True)
-class Order:
-    """What a user asks for."""
-
-    output: Path
-    work: Path
-    settings: Settings
-    device: torch.device
-    character: Path | None = None  # None: the procedural character
-    motions: tuple[Path, ...] = ()  # none: the character's own clips
-    hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
-    mapping: Mapping[str, str] | None = None  # target joint to source joint
-    feet: Feet = "auto"  # whether feet are held where the motion's feet stand
-    leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
-    uv: UvMode = "auto"
-    detail: Detail = field(default_factory=dict)  # beyond what is finer by default
-    size: FigureSize = AS_FOUND
-    storage: Storage = "f16"
-    jobs: int = 1  # processes that record side by side
-    clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
 
 def bake(order: Order, listener: Listener) -> Baked:
@@ -63,11 +36,14 @@ def bake(order: Order, listener: Listener) -> Baked:
 
     Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
     """
+    device = choose_device(order.device)
+    for directory in check_output(order.output, order.work):
+        listener.note(f"There is no directory {directory}: it is made.")
     with DirectoryLock(order.work, name=f"--work {order.work}"):
-        return _bake(order, listener)
+        return _bake(order, device, listener)
 
 
-def _bake(order: Order, listener: Listener) -> Baked:
+def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
     listener.stage("character")
     character = load_character(
         order.character,
@@ -94,7 +70,7 @@ def _bake(order: Order, listener: Listener) -> Baked:
         output=order.output,
         work=order.work,
         settings=order.settings,
-        device=order.device,
+        device=device,
         name=character.name,
         teacher=STAND_IN,
         clips=tuple(clips),

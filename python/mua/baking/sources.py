@@ -10,10 +10,9 @@ from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
 from mua.motion.resample import resample
 from mua.rig.character import Character
-from mua.rig.detail import Detail
+from mua.rig.detail import Detail, UvMode
 from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.read import read_character
-from mua.rig.uv import UvMode
 
 RATE = 30.0  # frames per second of every clip, and of the window that the student sees
 ATLAS = 1024  # texels of the base-colour atlas along a side

@@ -1,18 +1,19 @@
 """mua-bake: a rigged character and its motion become a verified `.muaavatar`."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
-from mua.cli.bake_options import check_inputs, check_jobs, check_output, check_settings
+from mua.asset.tensors import Storage
+from mua.baking.options import read_order
+from mua.baking.order import DeviceName
 from mua.cli.console import printer
 from mua.cli.failure import refusing
 from mua.cli.offered import offered
 from mua.errors import InputError
-from mua.motion.mapping import read_mapping
-from mua.rig.detail import read_detail
-from mua.rig.figure_size import FigureSize
+from mua.motion.planted_feet import Feet
+from mua.rig.detail import UvMode
 from mua.student.settings import PRESETS, RECIPES
 
 
@@ -46,12 +47,10 @@ def main(
     ] = [],  # noqa: B006 typer copies it
     mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: target joint to source joint.")] = None,
     feet: Annotated[
-        Literal["auto", "keep", "plant"],
+        Feet,
         typer.Option(help="Hold feet where the motion's feet stand: where they would slide, never, or always."),
     ] = "auto",
-    uv: Annotated[
-        Literal["keep", "unwrap", "auto"], typer.Option(help="What becomes of the character's UVs.")
-    ] = "auto",
+    uv: Annotated[UvMode, typer.Option(help="What becomes of the character's UVs.")] = "auto",
     detail: Annotated[
         list[str],
         typer.Option(
@@ -68,11 +67,9 @@ def main(
             help="How the student is trained; paper: a random start and a million steps, for comparison.",
         ),
     ] = "closed-form",
-    storage: Annotated[
-        Literal["f32", "f16", "i8"], typer.Option(help="Element type of bases, static offset and weights.")
-    ] = "f16",
+    storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
-    device: Annotated[Literal["auto", "cpu", "cuda"], typer.Option(help="Where the student is trained.")] = "auto",
+    device: Annotated[DeviceName, typer.Option(help="Where the student is trained.")] = "auto",
     jobs: Annotated[
         int | None, typer.Option(help="Processes that record side by side; as many as there are cores if left out.")
     ] = None,
@@ -86,55 +83,44 @@ def main(
 
     A run that was interrupted goes on where it stopped when the same command is given again.
     """
-    settings = check_settings(preset_name, recipe, seed=seed, frames=frames, texels=texels)
-    work = output.with_suffix(".work") if work is None else work
-    finer = read_detail(detail, uv=uv)
-    check_inputs(character, motion)
-    jobs = check_jobs(jobs)
-    made = check_output(output, work)
     if json is not None and not check:
         raise InputError("--json: is written by --check alone")
-    joints = None if mapping is None else read_mapping(mapping)
-    size = FigureSize(scale=scale, height=height)
-
+    order = read_order(
+        character,
+        motion=motion,
+        output=output,
+        preset=preset_name,
+        frames=frames,
+        texels=texels,
+        hold_out=hold_out,
+        clips=clips,
+        leave_out=leave_out,
+        mapping=mapping,
+        feet=feet,
+        uv=uv,
+        detail=detail,
+        scale=scale,
+        height=height,
+        recipe=recipe,
+        storage=storage,
+        seed=seed,
+        device=device,
+        jobs=jobs,
+        work=work,
+    )
     if check:
-        from mua.baking.check import CheckOrder
         from mua.cli.check import check_and_show
 
-        looked_at = CheckOrder(
-            output, settings.texels, seed, character, tuple(motion), joints, uv, finer, size, tuple(leave_out), feet
-        )
-        check_and_show(looked_at, json)
+        check_and_show(order, json)
         return
 
-    from mua.baking.pipeline import Order, bake  # seconds of loading: only once the options are known to be good
-    from mua.baking.report import STAND_IN
-    from mua.cli.display import Display, choose_device, show
+    from mua.baking.pipeline import bake  # seconds of loading: only once the options are known to be good
+    from mua.cli.display import Display, show
 
-    order = Order(
-        output=output,
-        work=work,
-        settings=settings,
-        character=character,
-        motions=tuple(motion),
-        hold_out=tuple(hold_out),
-        clips=tuple(clips),
-        mapping=joints,
-        feet=feet,
-        leave_out=tuple(leave_out),
-        uv=uv,
-        detail=finer,
-        size=size,
-        storage=storage,
-        jobs=jobs,
-        device=choose_device(device),
-    )
     console = printer()
     with Display(console) as display:
-        for directory in made:
-            display.note(f"There is no directory {directory}: it is made.")
         baked = bake(order, display)
-    show(console, baked, teacher=STAND_IN)
+    show(console, baked)
 
 
 def run() -> None:

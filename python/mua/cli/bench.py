@@ -17,9 +17,9 @@ from mua.camera import EYE_DISTANCE
 from mua.cli.choices import parse_screen
 from mua.cli.console import printer
 from mua.cli.failure import refusing
-from mua.cli.inputs import require_file
 from mua.cli.offered import offered
 from mua.errors import InputError
+from mua.inputs import require_file
 from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu

@@ -5,7 +5,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from mua.baking.check import Check, CheckOrder, check, write_json
+from mua.baking.check import Check, check, write_json
+from mua.baking.order import Order
 from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.files import require_writable
@@ -13,7 +14,7 @@ from mua.likeness.compare import Likeness
 from mua.motion.quality import MotionQuality
 
 
-def check_and_show(order: CheckOrder, json: Path | None) -> None:
+def check_and_show(order: Order, json: Path | None) -> None:
     """Check a character and its motion and print what was found."""
     if json is not None:
         require_writable(json)

@@ -12,10 +12,10 @@ from rich.table import Table
 from mua import files
 from mua.cli.console import printer
 from mua.cli.failure import refusing
-from mua.cli.inputs import require_file
 from mua.deploy.steady import RATES
 from mua.deploy.unity import find, project_version
 from mua.errors import InputError
+from mua.inputs import require_file
 
 if TYPE_CHECKING:  # load adbutils, an optional package
     from mua.deploy.avatars import Checked

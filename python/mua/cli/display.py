@@ -6,11 +6,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from mua.errors import InputError
-
 if TYPE_CHECKING:  # torch takes seconds to load, and a check needs none of it
-    import torch
-
     from mua.baking.distillation import Baked
 
 LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
@@ -99,24 +95,14 @@ class Display:
         self.console.file.flush()  # who reads a log reads it now
 
 
-def show(console: Console, baked: "Baked", *, teacher: str) -> None:
+def show(console: Console, baked: "Baked") -> None:
     """Print what a bake or a training ends with: the table of errors, and what was written where."""
     from mua.baking.report import closing, table
 
     if baked.errors:
-        console.print(table(baked.errors, teacher=teacher))
+        console.print(table(baked.errors, teacher=baked.teacher))
     console.print(closing(baked.stored, baked.output), highlight=False, soft_wrap=True, markup=False)
     written = (baked.sheet, baked.figures, None if baked.figures is None else baked.figures.with_suffix(".json"))
     for path in written:
         if path is not None:
             console.print(path, highlight=False, soft_wrap=True)
-
-
-def choose_device(name: str) -> "torch.device":
-    """What --device means; raises InputError where it names a GPU and there is none."""
-    import torch
-
-    found = torch.cuda.is_available()
-    if name == "cuda" and not found:
-        raise InputError("--device cuda: torch finds no GPU here")
-    return torch.device("cuda" if found and name != "cpu" else "cpu")

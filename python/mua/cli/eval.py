@@ -6,9 +6,9 @@ from typing import Annotated
 import typer
 
 from mua.cli.failure import refusing
-from mua.cli.inputs import require_file, require_recording
 from mua.cli.offered import offered
 from mua.compare.names import ALL, SYSTEM_NAMES
+from mua.inputs import require_file, require_recording
 from mua.student.settings import PRESETS, preset
 
 

@@ -6,9 +6,9 @@ from typing import NoReturn
 
 import typer
 
-from mua.cli.extras import missing_package
 from mua.cli.options import command_name, with_common_options
 from mua.errors import InputError
+from mua.extras import missing_package
 
 
 def refusing(command: Callable[..., None]) -> None:

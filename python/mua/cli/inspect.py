@@ -12,8 +12,8 @@ from mua.asset.read import decode_tree, load
 from mua.asset.summary import summary
 from mua.cli.console import printer
 from mua.cli.failure import refusing
-from mua.cli.inputs import require_file
 from mua.errors import InputError
+from mua.inputs import require_file
 
 
 def inspect(

@@ -17,8 +17,8 @@ from mua.cli.choices import (
     parse_zoom,
     require_format,
 )
-from mua.cli.inputs import require_file, require_motion
 from mua.errors import InputError
+from mua.inputs import require_file, require_motion
 from mua.player.shot import Look, Shot
 from mua.player.toggles import parse_toggles
 

@@ -1,6 +1,7 @@
 """How much finer than elsewhere the texels of a part of the body are."""
 
 from collections.abc import Mapping, Sequence
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.rig.body_parts import BODY_PARTS, BodyPart
 
+UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]  # what becomes of the UVs of a file
 Detail = Mapping[BodyPart, float]  # texels along a metre, over those of a part that is not named
 
 BY_DEFAULT: Detail = {"head": 2.0, "hands": 1.5}

@@ -7,11 +7,11 @@ from mua.errors import InputError
 from mua.rig.animation import Animation
 from mua.rig.assemble import Surfaces
 from mua.rig.character import Character
-from mua.rig.detail import Detail
+from mua.rig.detail import Detail, UvMode
 from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.rig.gltf import read_gltf, read_gltf_animation
 from mua.rig.resize import resized
-from mua.rig.uv import UvMode, build_atlas
+from mua.rig.uv import build_atlas
 from mua.signature import refuse_foreign, require_kind
 
 GLTF = (".glb", ".gltf", ".vrm")

@@ -1,7 +1,6 @@
 """One texture space for all materials of a character: artists' charts kept, brought to one density or cut anew."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -11,12 +10,10 @@ from mua.rig.bake_texture import bake_texture
 from mua.rig.body_parts import body_parts
 from mua.rig.character import Character, Mesh
 from mua.rig.charts import areas, distorted, even, find_charts, overlapping, starved, unwrap
-from mua.rig.detail import Detail, factors, split_by_factor
+from mua.rig.detail import Detail, UvMode, factors, split_by_factor
 from mua.rig.opacity import without_unseen
 from mua.rig.packing import pack
 from mua.rig.texel_map import build_texel_map, cover
-
-UvMode: TypeAlias = Literal["keep", "unwrap", "auto"]
 
 JUDGED_SIZE = 512  # texels along the map in which overlap is counted
 LOSS_ALLOWED = 0.02  # share of texels claimed twice, or of surface with next to no texels

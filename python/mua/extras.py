@@ -1,4 +1,7 @@
-"""Which optional packages of the installation each command needs."""
+"""Which optional packages of the installation each command, or function of the same name, needs."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 # The extras of python/pyproject.toml, by the names under which their packages are imported.
 READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
@@ -20,8 +23,20 @@ def missing_package(command: str, module: str) -> str | None:
     bringing = [extra for extra, packages in EXTRAS.items() if package in packages]
     if not bringing:
         return None
-    own = OF_COMMAND.get(command, command.removeprefix("mua-"))
+    own = OF_COMMAND.get(command, command[len("mua-") :])
     wanted = [own] if own in EXTRAS else []
     if own not in bringing:
         wanted.append(bringing[0])
     return f'{command} needs the Python package {package}, which is not here: pip install "mua[{",".join(wanted)}]"'
+
+
+@contextmanager
+def naming_extras(function: str) -> Iterator[None]:
+    """Say what to install where a module is missing that an extra brings; `function` is a public name, as mua.bake."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        sentence = missing_package(function, error.name or "")
+        if sentence is None:
+            raise
+        raise ModuleNotFoundError(sentence, name=error.name) from error

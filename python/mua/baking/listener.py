@@ -1,0 +1,40 @@
+"""Who hears what a bake or a training does."""
+
+import logging
+from typing import Protocol
+
+
+class Listener(Protocol):
+    """Hears what a bake or a training does; the command line shows it."""
+
+    def stage(self, name: str) -> None: ...
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
+
+    def note(self, sentence: str) -> None: ...
+
+
+class Log:
+    """Writes stages and notes to Python's log, under the name mua."""
+
+    def __init__(self) -> None:
+        self._log = logging.getLogger("mua")
+
+    def stage(self, name: str) -> None:
+        self._log.info("%s", name)
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        self._log.debug("%d of %d%s%s", done, total, ", " if detail else "", detail)
+
+    def note(self, sentence: str) -> None:
+        self._log.info("%s", sentence)
+
+
+class Nobody:
+    """Hears nothing."""
+
+    def stage(self, name: str) -> None: ...
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None: ...
+
+    def note(self, sentence: str) -> None: ...

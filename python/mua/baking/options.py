@@ -1,0 +1,147 @@
+"""What the options of a bake may be; asked before anything is loaded, so that a wrong one costs no time."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import get_args
+
+from mua.arguments import PathLike, as_names, as_path, as_paths, finite_array, one_of, whole_number
+from mua.asset.tensors import Storage
+from mua.baking.order import DeviceName, Order
+from mua.errors import InputError
+from mua.files import missing_directory
+from mua.inputs import require_file, require_motion
+from mua.motion.mapping import read_mapping
+from mua.motion.planted_feet import Feet
+from mua.rig.detail import UvMode, read_detail
+from mua.rig.figure_size import FigureSize
+from mua.student.settings import Settings, preset, with_recipe
+
+SUFFIX = ".muaavatar"
+STEP, LEAST_TEXELS = 16, 32  # a texture is halved four times, and something must be left
+
+
+def read_order(
+    character: PathLike | None,
+    *,
+    motion: PathLike | Sequence[PathLike],
+    output: PathLike,
+    preset: str,
+    frames: int | None,
+    texels: int | None,
+    hold_out: str | Sequence[str],
+    clips: str | int | Sequence[str],
+    leave_out: str | Sequence[str],
+    mapping: PathLike | Mapping[str, str] | None,
+    feet: Feet,
+    uv: UvMode,
+    detail: Mapping[str, float] | Sequence[str],
+    scale: float | None,
+    height: float | None,
+    recipe: str,
+    storage: Storage,
+    seed: int,
+    device: DeviceName,
+    jobs: int | None,
+    work: PathLike | None,
+) -> Order:
+    """The order that these options make; raises InputError for one that no bake can have."""
+    written = as_path(output, "output")
+    order = Order(
+        output=written,
+        work=work_directory(written, work),
+        settings=check_settings(preset, recipe, seed=seed, frames=frames, texels=texels),
+        device=one_of(device, "device", get_args(DeviceName)),
+        character=None if character is None else as_path(character, "character"),
+        motions=as_paths(motion, "motion"),
+        hold_out=as_names(hold_out, "hold_out"),
+        mapping=_joints(mapping),
+        feet=one_of(feet, "feet", get_args(Feet)),
+        leave_out=as_names(leave_out, "leave_out"),
+        uv=one_of(uv, "uv", get_args(UvMode)),
+        detail=read_detail(_written(detail), uv=uv),
+        size=FigureSize(scale=_number(scale, "scale"), height=_number(height, "height")),
+        storage=one_of(storage, "storage", get_args(Storage)),
+        jobs=check_jobs(jobs),
+        clips=clip_names(clips),
+    )
+    check_inputs(order.character, order.motions)
+    check_output(order.output, order.work)
+    return order
+
+
+def work_directory(output: Path, work: PathLike | None) -> Path:
+    """Where what is not finished yet is kept: beside the output where nothing else is said."""
+    return output.with_suffix(".work") if work is None else as_path(work, "work")
+
+
+def clip_names(clips: str | int | Sequence[str]) -> tuple[str, ...]:
+    """The clips to store, as `mua.baking.playback.choose` reads them: names, or "all", "none" or a number."""
+    return (str(clips),) if isinstance(clips, int) and not isinstance(clips, bool) else as_names(clips, "clips")  # type: ignore[arg-type]
+
+
+def _joints(mapping: PathLike | Mapping[str, str] | None) -> Mapping[str, str] | None:
+    """Target joint to source joint, from a mapping or the file that holds one."""
+    if mapping is None or isinstance(mapping, Mapping):
+        return mapping
+    return read_mapping(as_path(mapping, "mapping"))
+
+
+def _written(detail: Mapping[str, float] | Sequence[str]) -> tuple[str, ...]:
+    """Factors by part as the command line has them: head=2."""
+    if isinstance(detail, Mapping):
+        return tuple(f"{part}={factor}" for part, factor in detail.items())
+    return as_names(detail, "detail")
+
+
+def _number(value: float | None, name: str) -> float | None:
+    return None if value is None else float(finite_array(value, name, ()))
+
+
+def check_settings(name: str, recipe: str, *, seed: int, frames: int | None, texels: int | None) -> Settings:
+    """The preset of that name with what overrides it; raises InputError for a value that no bake can have."""
+    settings = with_recipe(replace(preset(name), seed=seed), recipe)
+    if frames is not None and whole_number(frames, "frames") < 1:
+        raise InputError(f"--frames {frames}: expected at least 1")
+    if texels is not None and (whole_number(texels, "texels") < LEAST_TEXELS or texels % STEP):
+        raise InputError(f"--texels {texels}: expected a multiple of {STEP} from {LEAST_TEXELS} on")
+    if whole_number(seed, "seed") < 0:
+        raise InputError(f"--seed {seed}: expected 0 or more")
+    settings = replace(settings, frames=settings.frames if frames is None else frames)
+    return replace(settings, texels=settings.texels if texels is None else texels)
+
+
+def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
+    """Raises InputError for a file that is not there."""
+    if character is not None:
+        require_file(character)
+    for motion in motions:
+        require_motion(motion)
+
+
+def check_jobs(jobs: int | None) -> int:
+    """How many processes; raises InputError where it is none."""
+    if jobs is not None and whole_number(jobs, "jobs") < 1:
+        raise InputError(f"--jobs {jobs}: expected at least 1")
+    return cores() if jobs is None else jobs
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def check_output(output: Path, work: Path) -> list[Path]:
+    """The directories that are going to be made; raises InputError where output or work cannot be written."""
+    if output.suffix != SUFFIX:
+        raise InputError(f"-o {output}: expected a name that ends in {SUFFIX}")
+    if output.is_dir():
+        raise InputError(f"{output}: is a directory, expected a file to write")
+    if work.exists() and not work.is_dir():
+        raise InputError(f"--work {work}: is a file, expected a directory")
+    named = (("-o", output.parent), ("--work", work if work.exists() else work.parent))
+    missing = [missing_directory(directory, option=option) for option, directory in named]
+    return list(dict.fromkeys(directory for directory in missing if directory is not None))

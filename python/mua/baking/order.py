@@ -1,0 +1,41 @@
+"""What a user asks of a bake or of a check; known before anything that takes seconds is loaded."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from mua.asset.tensors import Storage
+from mua.motion.planted_feet import Feet
+from mua.rig.detail import Detail, UvMode
+from mua.rig.figure_size import AS_FOUND, FigureSize
+from mua.student.settings import Settings
+
+ALL, NONE = "all", "none"  # of the clips
+DeviceName = Literal["auto", "cpu", "cuda"]
+
+
+@dataclass(frozen=True)
+class Order:
+    """One character, its motion, and what is to become of them; the fields are the options of mua-bake."""
+
+    output: Path
+    work: Path
+    settings: Settings
+    device: DeviceName = "auto"  # that the student is trained on
+    character: Path | None = None  # None: the procedural character
+    motions: tuple[Path, ...] = ()  # none: the character's own clips
+    hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
+    mapping: Mapping[str, str] | None = None  # target joint to source joint
+    feet: Feet = "auto"  # whether feet are held where the motion's feet stand
+    leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
+    uv: UvMode = "auto"
+    detail: Detail = field(default_factory=dict)  # beyond what is finer by default
+    size: FigureSize = AS_FOUND
+    storage: Storage = "f16"
+    jobs: int = 1  # processes that record side by side
+    clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
+
+    def beside(self, ending: str) -> Path:
+        """A file that lies beside the output and is named after it."""
+        return self.output.with_name(self.output.stem + ending)
