@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from synthetic_avatar import synthetic_avatar
 
 import mua
@@ -20,7 +21,7 @@ PACKAGE = Path(mua.__file__).parent
 PROJECT = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]
 COMMANDS = [name.removeprefix("mua-") for name in PROJECT["scripts"]]
 CALLED = {"PIL": "pillow", "pxr": "usd-core", "pywt": "pywavelets", "warp": "warp-lang"}  # distributions of packages
-FEW_USE = {"view": {"pxr"}}  # motion in USD files
+FEW_USE = {"view": {"pxr"}}  # by extra: motion in USD files
 
 
 def normal(requirement: str) -> str:
@@ -93,7 +94,7 @@ def test_the_sentences_know_what_each_extra_brings(extra: str) -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_commands_extra_brings_all_that_it_may_import(name: str) -> None:
     extra = OF_COMMAND.get(f"mua-{name}", name)
-    few = {distribution(package) for package in FEW_USE.get(name, set())}
+    few = {distribution(package) for package in FEW_USE.get(extra, set())}
     assert reached(f"mua.cli.{name}") - BASE <= (brought(extra) if extra in EXTRAS else set()) | few
 
 
@@ -115,6 +116,15 @@ def avatar_file(tmp_path: Path) -> Path:
     path = tmp_path / "a.muaavatar"
     write(path, synthetic_avatar())
     return path
+
+
+def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "a.png"
+    code = "sys.argv[0] = 'mua-view'\nfrom mua.cli.view import run\nrun()"
+    ended = run_bare(code, avatar_file, "--reference", "--size", "32", "-o", picture)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    with Image.open(picture) as image:
+        assert image.size == (32, 32)
 
 
 @pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect"}))
