@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from compared import SETTINGS, few, trained
+from compared import SETTINGS, explained, few, trained
 from torch import Tensor
 
 from mua.compare import full
@@ -54,6 +54,13 @@ def test_components_are_those_of_a_full_svd(smooth_frames: TrainingFrames) -> No
     expected = np.linalg.svd(truth, compute_uv=False)[SETTINGS.components :]
     bound = np.finfo(np.float32).eps * np.square(truth).sum()  # the Gram matrix is of single precision
     np.testing.assert_allclose(np.square(left).sum(), np.square(expected).sum(), rtol=0, atol=bound)
+
+
+@pytest.mark.parametrize("name", ["pca-only", "full-blendshapes", "single-level"])
+def test_what_the_regression_teaches_is_most_of_the_frames_before_any_step(
+    name: str, smooth_frames: TrainingFrames
+) -> None:
+    assert explained(trained(name, smooth_frames, Budget(steps=0)), smooth_frames) > 0.95
 
 
 @pytest.mark.parametrize("wavelet", ["bior1.1", "bior4.4"])

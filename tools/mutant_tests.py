@@ -176,9 +176,11 @@ def seeing(mutant: Mutant, seen: dict[str, Seen], caught: Mapping[tuple[str, str
         chosen = chosen or [name for name, functions in entered.items() if any(f[0] != "<" for f in functions)]
         chosen = chosen or [name for name, functions in entered.items() if functions]
     stem, folder = Path(mutant.path).stem, folder_of(mutant)
+    family = stem.split("_")[0]
 
-    def rank(name: str) -> tuple[bool, int, float]:
-        return stem not in Path(name).stem, -caught.get((folder, name), 0), sound[name].seconds
+    def rank(name: str) -> tuple[bool, bool, int, float]:
+        own = Path(name).stem
+        return stem not in own, family not in own, -caught.get((folder, name), 0), sound[name].seconds
 
     return sorted(chosen, key=rank)
 

@@ -76,7 +76,8 @@ def reason(mutant: Mutant, text: str, known: list[dict[str, str]]) -> str:
     _, before, after = mutant.lines(text)
     for entry in known:
         same = fnmatch.fnmatchcase(mutant.path, entry["file"]) and mutant.operator == entry["operator"]
-        if same and entry.get("line", before) == before and entry.get("becomes", after) == after:
+        same = same and before.startswith(entry.get("starts", "")) and entry.get("line", before) == before
+        if same and entry.get("becomes", after) == after:
             return entry["reason"]
     return ""
 

@@ -8,6 +8,7 @@ import pytest
 import shader_rules
 from check_shaders import messages
 from shader_programs import SAMPLES, SHADERS, VARIANTS, Program, programs
+from shader_source import closing
 
 from mua.gpu import compilers
 
@@ -50,6 +51,21 @@ def test_only_words_that_every_compiler_takes() -> None:
 def test_the_eye_the_rows_and_the_screen_come_from_one_place(program: Program) -> None:
     """target.hlsl; a shader that asked the engine itself could disagree with it."""
     assert ENGINE_WORDS.findall(program.text) == []
+
+
+@pytest.mark.parametrize("program", [program for program in PROGRAMS if program.name != "ShadowCaster"], ids=str)
+def test_every_stage_is_told_its_eye_first_and_tells_the_next(program: Program) -> None:
+    assert re.search(r"\{\s*UNITY_SETUP_INSTANCE_ID\(attributes\);\n", program.text)  # of the entry or what it calls
+    assert _body(program.text, program.fragment).startswith("UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(")
+    assert "UNITY_INITIALIZE_VERTEX_OUTPUT_STEREO(varyings);\n" in program.text
+
+
+def _body(text: str, entry: str) -> str:
+    """What stands in the braces of an entry point."""
+    start = re.search(rf"\b{entry}\(", text)
+    assert start is not None, entry
+    opened = text.index("{", start.end())
+    return text[opened + 1 : closing(text, opened)].strip()
 
 
 def test_letters_of_the_sample_stand_among_the_things_of_the_scene() -> None:
