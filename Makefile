@@ -1,12 +1,12 @@
 # `make demo` bakes the procedural character; `make test` checks everything, `make package` packs what
-# Unity installs, `make mutants` puts the tests to the test. All set up what they need.
+# Unity installs, `make docs` builds the site, `make mutants` puts the tests to the test. All set up what they need.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO := build/demo
 
-.PHONY: demo test test-long test-wheel gallery mutants check package wheel setup clean
+.PHONY: demo test test-long test-wheel gallery mutants docs check package wheel setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -32,6 +32,14 @@ gallery: setup
 mutants: setup
 	$(BIN)/python tools/run_mutants.py $(if $(SEED),--seed $(SEED)) $(if $(NUMBER),--number $(NUMBER)) \
 		$(if $(LANGUAGE),--language $(LANGUAGE)) $(if $(JOBS),--jobs $(JOBS))
+
+# Guides and the reference of the Python names: build/site/index.html. The variable spares Material's word on its successor.
+docs: $(VENV)/.docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+$(VENV)/.docs: $(VENV)/.installed
+	$(BIN)/python -m pip install -q -e "./python[docs]"
+	touch $@
 
 check: setup
 	$(BIN)/ruff check

@@ -26,7 +26,7 @@ def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
     """Write `avatar` to `path`, atomically; what the reader would refuse is never written.
 
     `storage` is the element type of bases, static offset and MLP weights: f32, f16 or i8. Positions, means of LL and
-    biases stay f32. In an i8 file bases and last layers are i8; what costs quality as i8 (docs/accuracy.md, Storage) is
+    biases stay f32. In an i8 file bases and last layers are i8; what costs quality as i8 (docs/research/storage.md) is
     f16.
 
     Errors: InputError naming the file, and the field that it cannot hold.

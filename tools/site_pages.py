@@ -1,0 +1,82 @@
+"""The pages of the site that `make docs` builds: every Markdown file where it lies, what these link to, the reference.
+
+A hook of MkDocs (mkdocs.yml). Files keep their places in the repository, so that their links hold in both.
+"""
+
+import ast
+import os
+import re
+from pathlib import Path
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+
+ROOT = Path(__file__).resolve().parents[1]
+NO_PAGES = ("build", "dist", "node_modules", "LICENSE", ".")  # files and folders that begin like this
+LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)")
+GUIDES, FORMAT, REFERENCE = "docs", "schemas/README.md", "docs/reference.md"
+OPENING = "# Reference\n\nThe names of `import mua`; [the guide](python.md) shows them at work.\n\n"
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Guides in the order of docs/README.md, then the reference and the format, then what builders read."""
+    pages = [page.relative_to(ROOT).as_posix() for page in _pages()]
+    index = ROOT / GUIDES / "README.md"
+    listed = [target.relative_to(ROOT).as_posix() for target in _targets(index) if target.parent == ROOT / GUIDES]
+    guides = ["docs/README.md", *(page for page in dict.fromkeys(listed) if page in pages)]
+    research = [page for page in pages if page.startswith("docs/research/")]
+    first = ["README.md", *guides, *research, FORMAT]
+    config.nav = [
+        "README.md",
+        {"Guides": guides},
+        REFERENCE,
+        FORMAT,
+        {"Measurements": research},
+        {"Inside": [page for page in pages if page not in first]},
+    ]
+    return config
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Pages and pictures by their paths in the repository, in place of the folder docs alone."""
+    theme = [file for file in files if not Path(file.abs_src_path or "").is_relative_to(config.docs_dir)]
+    pages = _pages()
+    linked = {target for page in pages for target in _targets(page) if target.is_file() and target.suffix != ".md"}
+    kept = [_file(config, path) for path in (*pages, *sorted(linked))]
+    return Files([*theme, *kept, File.generated(config, REFERENCE, content=OPENING + _entries())])
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Links to folders lead to what these say of themselves."""
+    folder = (ROOT / page.file.src_uri).parent
+
+    def leading(link: re.Match[str]) -> str:
+        target = link[2]
+        return f"{link[1]}{target.rstrip('/')}/README.md" if (folder / target / "README.md").is_file() else link[0]
+
+    return LINK.sub(leading, markdown)
+
+
+def _pages() -> list[Path]:
+    found: list[Path] = []
+    for folder, below, names in os.walk(ROOT):
+        below[:] = [name for name in below if not name.startswith(NO_PAGES)]
+        found += [Path(folder) / name for name in names if name.endswith(".md") and not name.startswith(NO_PAGES)]
+    return sorted(found)
+
+
+def _targets(page: Path) -> list[Path]:
+    return [(page.parent / target).resolve() for _, target in LINK.findall(page.read_text())]
+
+
+def _file(config: MkDocsConfig, path: Path) -> File:
+    return File.generated(config, path.relative_to(ROOT).as_posix(), abs_src_path=str(path))
+
+
+def _entries() -> str:
+    """One entry for each public name, as mkdocstrings reads it."""
+    for node in ast.parse((ROOT / "python" / "mua" / "__init__.py").read_text()).body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            return "\n\n".join(f"::: mua.{name}" for name in ast.literal_eval(node.value))
+    raise RuntimeError("mua names nothing in __all__")
