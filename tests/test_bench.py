@@ -12,7 +12,7 @@ import pytest
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
-from mua.asset.count import flops
+from mua.asset.count import flops, synthesis
 from mua.asset.flatbuffer import Tree
 from mua.asset.read import load
 from mua.bench import work
@@ -26,7 +26,6 @@ NETWORK = {
     "MlpMatmulTransposed": "PCA mesh",
     "BlendLl": "LL blend",
     "BlendDetail": "detail blend",
-    "AddStatic": "static offset",
 }
 
 
@@ -74,7 +73,13 @@ def test_blends_read_bases_and_coefficients_and_write_bands() -> None:
 def test_synthesis_of_one_channel_from_two_by_two() -> None:
     # a sample meets half of the 4 taps in each of two inputs: 2 x 8 samples after one axis, 16 after both
     assert work.inverse_dwt(1, 2, 4) == Work(bytes=4 * (16 + 16 + 8), flops=2 * (2 * 8 * 4 + 16 * 4))
-    assert work.inverse_dwt_low_pass(1, 2, 4) == Work(bytes=4 * (4 + 16 + 4), flops=2 * (8 * 2 + 16 * 2))
+
+
+def test_upsampling_costs_what_its_valid_texels_need() -> None:
+    # a filter of 3 samples by 4 phases; one level with details has doubled the 2 x 2 of LL
+    branch = {"ll_mean": tensor(5, 2, 2), "static_offset": tensor(5, 7), "details": [{}]}
+    moved = 2 * 35 + 132 * 3 + 4 * (5 * 16 + 35 + 12)
+    assert work.upsample_texels(branch, (3, 4), tiles=3) == Work(bytes=moved, flops=35 * (2 * 3 + 2 * 3 // 4 + 1))
 
 
 def test_posing_and_projection_read_and_write_each_record_once() -> None:
@@ -110,7 +115,9 @@ def test_nothing_visible_is_nothing_to_sort() -> None:
 def test_network_part_costs_what_the_asset_counts(synthetic_tree: Tree) -> None:
     spent, counted = frame_work(synthetic_tree, visible=0, eyes=1), flops(synthetic_avatar())
     assert {name: spent[name].flops for name in NETWORK} == {n: counted[p] for n, p in NETWORK.items()}
-    assert spent["InverseDwt"].flops + spent["InverseDwtLowPass"].flops == counted["inverse DWT"]
+    branches = (synthetic_avatar().geometry, synthetic_avatar().appearance)
+    detailed = [(b.channels, b.ll_mean.shape[-1], len(b.details), len(b.details)) for b in branches]
+    assert spent["InverseDwt"].flops == sum(synthesis(*levels, taps=10) for levels in detailed)
 
 
 def test_random_avatar_has_the_papers_shapes() -> None:

@@ -15,13 +15,13 @@ from test_dq_skinning import (
     random_joints,
     random_texels,
 )
-from test_inverse_dwt import taps
+from test_inverse_dwt import taps, upsampling_bound
 from test_mlp_matmul import layer, shader_bound
 
 from mua.asset.tensors import Storage
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import METRES2_TO_MM2, blend_texels, blend_vertices, covariances, skin_splats
-from mua.kernels.inverse_dwt import add_static, inverse_dwt
+from mua.kernels.inverse_dwt import inverse_dwt, texel_tiles, upsample_texels, upsampling_taps
 from mua.kernels.mlp_matmul import mlp_matmul
 
 
@@ -34,8 +34,8 @@ def blend_subbands_cases() -> list[Case]:
 
 
 def inverse_dwt_cases() -> list[Case]:
-    levels = [_level(name, full=full) for name in ("bior4.4", "bior2.2") for full in (True, False)]
-    return levels + [_static(s) for s in STORAGES]
+    levels = [_level(name) for name in ("bior4.4", "bior2.2")]
+    return levels + [_texels_of(storage, levels=n) for storage in STORAGES for n in (1, 2)]
 
 
 def dq_skinning_cases() -> list[Case]:
@@ -120,47 +120,55 @@ def _blend_detail(storage: Storage) -> Case:
     )
 
 
-def _level(wavelet: str, *, full: bool) -> Case:
+def _level(wavelet: str) -> Case:
     channels, size = 2, 19
     lo, hi = (t.astype(np.float32) for t in taps(wavelet))
     bands = np.random.default_rng(3).normal(size=(4, channels, size, size)).astype(np.float32)
     ll, details = bands[0], bands[1:]
-    doubles = details.astype(float) if full else None
-    fine = inverse_dwt(ll.astype(float), doubles, lo.astype(float), hi.astype(float))
+    fine = inverse_dwt(ll.astype(float), details.astype(float), lo.astype(float), hi.astype(float))
     gain = (np.abs(lo).sum(dtype=float) + np.abs(hi).sum(dtype=float)) ** 2
     sums_bound = 2 * (len(lo) + 1) * ULP * gain * float(np.abs(bands).max())
     return Case(
         wavelet,
-        "InverseDwt" if full else "InverseDwtLowPass",
+        "InverseDwt",
         groups((size, 16), (size, 16), (channels, 1)),
-        {"size": size, "taps": len(lo)} | ({"channels": channels} if full else {}),
-        {"ll": ll, "rec_lo": lo, "fine": np.full(fine.size, UNTOUCHED)}
-        | ({"details": details, "rec_hi": hi} if full else {}),
+        {"size": size, "taps": len(lo), "channels": channels},
+        {"ll": ll, "rec_lo": lo, "details": details, "rec_hi": hi, "fine": np.full(fine.size, UNTOUCHED)},
         (Expected("fine", "float", fine, sums_bound),),
     )
 
 
-def _static(storage: Storage) -> Case:
-    channels, size, count, first = 3, 13, 101, 2
+def _texels_of(storage: Storage, *, levels: int) -> Case:
+    channels, size, count, first = 5, 5, 101, 2
     rng = np.random.default_rng(4)
-    fine = rng.normal(size=(channels, size, size)).astype(np.float32)
-    texels = np.sort(rng.permutation(size * size)[:count]).astype(np.uint32)
+    lo = taps("bior4.4")[0]
+    ll = rng.normal(size=(channels, size, size)).astype(np.float32)
+    side = size << levels
+    texels = np.sort(rng.permutation(side * side)[: min(count, side * side)])
+    count = len(texels)
     offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
+    tiles, tile_rows = texel_tiles(texels, side)
+    filtered, delay = upsampling_taps(lo, levels)
+    reach, factor = filtered.shape
     found = np.full((first + channels + 1, count), float(UNTOUCHED))
-    found[first : first + channels] = add_static(fine.astype(float), texels, offset.values)
+    found[first : first + channels] = upsample_texels(
+        ll.astype(float), lo, levels, texels=texels, static_offset=offset.values
+    )
+    bound = upsampling_bound(lo, levels, float(np.abs(ll).max()), float(np.abs(offset.values).max()))
     return Case(
-        storage,
-        "AddStatic",
-        groups((count, 256)),
+        f"{storage}, {levels} levels",
+        "UpsampleTexels",
+        (len(tiles), 1, -(-channels // 4)),
         {
             **{"static_offset_layout": offset.layout, "channels": channels, "size": size},
+            **{"factor": factor, "reach": reach, "delay": delay},
             **{"texel_count": count, "first_channel": first},
         },
         {
-            **{"fine": fine, "texels": texels, "static_offset": offset.words},
-            "texel_channels": np.full(found.size, UNTOUCHED),
+            **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
+            **{"static_offset": offset.words, "texel_channels": np.full(found.size, UNTOUCHED)},
         },
-        (Expected("texel_channels", "float", found, relative=2 * ULP),),
+        (Expected("texel_channels", "float", found, bound),),
     )
 
 

@@ -88,8 +88,8 @@ FAULTS = {
     "inverse_dwt": [
         Fault(
             "columns held at the edge, not periodic",
-            "older = (older == 0 ? size : older) - 1;",
-            "older = max(older, 1) - 1;",
+            "return (sample == 0 ? size : sample) - 1;",
+            "return max(sample, 1) - 1;",
         ),
         Fault("rows off by one round the edge", "- (taps / 2 - 1)) % size;", "- (taps / 2 - 1)) % (size + 1);"),
         Fault("fine samples not wrapped", "(near + 1) % side", "near + 1"),
@@ -125,13 +125,25 @@ FAULTS = {
             "writeSquare(id, filterColumns(LOW, rec_lo, thread.xy) +",
         ),
         Fault(
-            "dropped barrier of the low-pass levels",
-            "GroupMemoryBarrierWithGroupSync();\n    writeSquare(id, filterColumns(LOW, rec_lo, thread.xy));",
-            "writeSquare(id, filterColumns(LOW, rec_lo, thread.xy));",
+            "dropped barrier before the texels",
+            "GroupMemoryBarrierWithGroupSync();\n\n    uint2 run",
+            "uint2 run",
         ),
-        Fault("appearance written over geometry", "(first_channel + channel) * texel_count", "channel * texel_count"),
-        Fault("static offset subtracted", "+ at] + offset", "+ at] - offset"),
-        Fault("write into the next channel", "if (texel >= texel_count)", "if (texel > texel_count)"),
+        Fault("tile's row for its column", "tiles[group.x] & 0xffff, tiles[group.x] >> 16", "tiles[group.x] >> 16, 0"),
+        Fault("rows of ll off by one", "reach * size - (reach - 1)) % size", "reach * size - reach) % size"),
+        Fault("wrong phase of a texel", "(position + delay) % factor", "position % factor"),
+        Fault("filter not delayed", "(position + delay) / factor", "position / factor"),
+        Fault("last sample left out", "tap += factor;", "tap += factor; j += j + 2 == reach ? 1 : 0;"),
+        Fault("written past the last channel", "if (first + i < channels)", "if (first + i <= channels)"),
+        Fault("texels without a splat written", "if ((run.y >> thread.x & 1) == 0)", "if (run.y == 0)"),
+        Fault("texels of a row counted with their own", "((1u << thread.x) - 1)", "((2u << thread.x) - 1)"),
+        Fault(
+            "appearance written over geometry", "(first_channel + first + i) * texel_count", "(first + i) * texel_count"
+        ),
+        Fault("static offset subtracted", "values[i] + offset", "values[i] - offset"),
+        Fault(
+            "static offset of another channel", "(first + i) * texel_count + texel);", "first * texel_count + texel);"
+        ),
     ],
     "dq_skinning": [
         Fault(

@@ -30,7 +30,7 @@ POSITION_BOUND = 5e-5  # metres; float32 leaves a fiftieth of it on a person two
 COLOR_BOUND = 1 / 512  # half a step of 8 bits
 OPACITY_BOUND = 2**-11  # a half float below 1, which a GPU may round towards zero
 LEAST_PSNR = 50.0  # dB of a picture against the CPU rasteriser's
-FEWER_THAN = 40  # dispatches in a frame
+FEWER_THAN = 36  # dispatches in a frame
 OPACITY = 10  # channel
 
 FRAME_ORDER = [
@@ -40,8 +40,7 @@ FRAME_ORDER = [
         *["MlpMatmul"] * 3,
         "BlendLl",
         *["BlendDetail", "InverseDwt"] * 2,
-        *["InverseDwtLowPass"] * 2,
-        "AddStatic",
+        "UpsampleTexels",
     ]
     * 2,
     "BlendVertices",

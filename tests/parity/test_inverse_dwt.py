@@ -8,13 +8,13 @@ from stored import STORAGES, groups, store
 from mua.arrays import Array
 from mua.asset.tensors import Storage
 from mua.gpu import Device, run
-from mua.kernels.inverse_dwt import add_static, inverse_dwt
+from mua.kernels.inverse_dwt import add_static, inverse_dwt, texel_tiles, upsample_texels, upsampling_taps
 
 WAVELETS = pywt.wavelist("bior")
 SIDES = [1, 2, 3, 5, 8, 13]
-PAPER_LEVELS = [(11, 48), (12, 96), (2, 192), (1, 384)]  # channels, side of the coarse level
+PAPER_LEVELS = [(11, 48), (12, 96)]  # channels, side of the coarse level
 LONGEST = 40  # taps that a file may hold
-TILE, TEXELS_PER_GROUP = 16, 256
+TILE, BATCH = 16, 4
 UNTOUCHED = np.float32(-7)
 
 
@@ -73,28 +73,74 @@ def test_static_offset_lands_on_its_texels() -> None:
     np.testing.assert_array_equal(found, [[100, 205, 308], [9, 14, 18]])
 
 
-def shader_level(device: Device, ll: Array, details: Array | None, lo: Array, hi: Array) -> Array:
+@pytest.mark.parametrize("levels", [0, 1, 2, 3])
+@pytest.mark.parametrize("name", ["bior1.1", "bior3.1", "bior4.4", "bior6.8"])
+def test_low_pass_levels_are_one_filter(name: str, levels: int) -> None:
+    lo = taps(name)[0]
+    filtered, delay = upsampling_taps(lo, levels)
+    factor = 1 << levels
+    assert filtered.shape[1] == factor
+    assert filtered[0].any()
+    assert filtered[-1].any()
+    for side in (1, 2, 5):
+        samples = np.random.default_rng(side).normal(size=side)
+        expected = samples
+        for _ in range(levels):
+            expected = pywt.idwt(expected, None, name, "periodization")
+        newest, phases = np.divmod(np.arange(factor * side) + delay, factor)
+        found = sum(filtered[j, phases] * samples[(newest - j) % side] for j in range(len(filtered)))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
+def test_a_filter_of_zeros_is_one_sample() -> None:
+    filtered, delay = upsampling_taps(np.zeros(4), 1)
+    np.testing.assert_array_equal(filtered, [[0, 0]])
+    assert delay == 1
+
+
+def test_zeros_before_the_centre_alone_are_left_out() -> None:
+    late = np.array([0, 0, 0, 1.0])  # its only tap comes after the centre of its four
+    filtered, delay = upsampling_taps(late, 1)
+    assert delay == 0
+    np.testing.assert_array_equal(filtered, [[0, 0], [1, 0]])
+
+
+def test_tiles_hold_each_valid_texel_once_and_no_tile_is_empty() -> None:
+    size = 37
+    texels = np.sort(np.random.default_rng(0).permutation(size * size)[:90])
+    tiles, rows = texel_tiles(texels, size)
+    assert rows[..., 1].any(axis=1).all()
+    found = {}
+    for tile, lines in zip(tiles, rows, strict=True):
+        for line, (first, mask) in enumerate(lines):
+            columns = [c for c in range(TILE) if mask >> c & 1]
+            row = TILE * (int(tile) >> 16) + line
+            found |= {row * size + TILE * (int(tile) & 0xFFFF) + c: first + i for i, c in enumerate(columns)}
+    assert found == {texel: place for place, texel in enumerate(texels)}
+
+
+def shader_level(device: Device, ll: Array, details: Array, lo: Array, hi: Array) -> Array:
     """One level by the shader, after checking that it wrote nothing else."""
     channels, side, _ = ll.shape
-    inputs = {"ll": ll, "rec_lo": lo.astype(np.float32)}
-    if details is not None:
-        inputs |= {"details": details, "rec_hi": hi.astype(np.float32)}
     fine = run(
         device,
         "inverse_dwt.compute",
-        "InverseDwtLowPass" if details is None else "InverseDwt",
+        "InverseDwt",
         groups((side, TILE), (side, TILE), (channels, 1)),
-        inputs | {"fine": np.full((channels + 1, 2 * side, 2 * side), UNTOUCHED)},
+        {
+            **{"ll": ll, "details": details, "rec_lo": lo.astype(np.float32), "rec_hi": hi.astype(np.float32)},
+            "fine": np.full((channels + 1, 2 * side, 2 * side), UNTOUCHED),
+        },
         size=side,
         taps=len(lo),
-        **({} if details is None else {"channels": channels}),
+        channels=channels,
     )["fine"]
     assert np.all(fine[channels] == UNTOUCHED)
     return np.asarray(fine[:channels])
 
 
 def check_level(device: Device, bands: Array, lo: Array, hi: Array) -> None:
-    """Both variants against the reference in double precision, on the taps that the shader has.
+    """The shader against the reference in double precision, on the taps that the shader has.
 
     Each of the two axes rounds a sum of L products, L + 1 times on the way of one term.
     """
@@ -102,10 +148,8 @@ def check_level(device: Device, bands: Array, lo: Array, hi: Array) -> None:
     gain = (np.abs(lo.astype(float)).sum() + np.abs(hi.astype(float)).sum()) ** 2
     sums_bound = 2 * (len(lo) + 1) * np.finfo(np.float32).eps * gain * np.abs(bands).max(initial=0)
     ll, details = bands[0], bands[1:]
-    for parts in (details, None):
-        doubles = None if parts is None else parts.astype(float)
-        expected = inverse_dwt(ll.astype(float), doubles, lo.astype(float), hi.astype(float))
-        np.testing.assert_allclose(shader_level(device, ll, parts, lo, hi), expected, rtol=0, atol=sums_bound)
+    expected = inverse_dwt(ll.astype(float), details.astype(float), lo.astype(float), hi.astype(float))
+    np.testing.assert_allclose(shader_level(device, ll, details, lo, hi), expected, rtol=0, atol=sums_bound)
 
 
 @pytest.mark.parametrize("name", WAVELETS)
@@ -135,35 +179,69 @@ def test_shader_equals_the_reference_at_the_papers_sizes(device: Device, channel
     check_level(device, bands, *taps("bior4.4"))
 
 
-@pytest.mark.parametrize("storage", STORAGES)
-@pytest.mark.parametrize(("channels", "side", "count"), [(1, 1, 1), (11, 5, 13), (12, 7, 0), (0, 3, 4), (3, 96, 5003)])
-def test_static_shader_equals_the_reference(
-    device: Device, channels: int, side: int, count: int, storage: Storage
+def upsampling_bound(lo: Array, levels: int, largest: float, offset: float) -> float:
+    """What the shader may lose: taps rounded once, and a sum of `reach` products rounded along each of two axes."""
+    filtered, _ = upsampling_taps(lo, levels)
+    gain = np.abs(filtered).sum(axis=0).max() ** 2
+    return float(np.finfo(np.float32).eps * (2 * (len(filtered) + 2) * gain * largest + offset))
+
+
+def check_texels(
+    device: Device, ll: Array, lo: Array, levels: int, *, count: int, storage: Storage = "f32", first_channel: int = 0
 ) -> None:
+    """The shader against the reference at `count` valid texels; nothing else is written."""
+    channels, side, _ = ll.shape
+    fine = side << levels
     rng = np.random.default_rng(count)
-    fine = rng.normal(size=(channels, side, side)).astype(np.float32)
-    texels = np.sort(rng.permutation(side * side)[:count]).astype(np.uint32)
+    texels = np.sort(rng.permutation(fine * fine)[:count])
     static_offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
-    first_channel = 2
+    tiles, tile_rows = texel_tiles(texels, fine)
+    filtered, delay = upsampling_taps(lo, levels)
+    reach, factor = filtered.shape
     found = run(
         device,
         "inverse_dwt.compute",
-        "AddStatic",
-        groups((count, TEXELS_PER_GROUP)),
+        "UpsampleTexels",
+        (len(tiles), 1, -(-channels // BATCH)),
         {
-            "fine": fine,
-            "texels": texels,
+            **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
             "static_offset": static_offset.words,
             "texel_channels": np.full((first_channel + channels + 1, count), UNTOUCHED),
         },
         static_offset_layout=static_offset.layout,
-        channels=channels,
-        size=side,
+        **{"channels": channels, "size": side, "factor": factor, "reach": reach, "delay": delay},
         texel_count=count,
         first_channel=first_channel,
     )["texel_channels"]
     written = slice(first_channel, first_channel + channels)
-    expected = add_static(fine.astype(float), texels, static_offset.values)
-    one_sum_bound = np.finfo(np.float32).eps * np.abs(expected)
-    assert np.all(np.abs(found[written] - expected) <= one_sum_bound)
+    expected = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=static_offset.values)
+    largest = np.abs(static_offset.values).max(initial=0)
+    bound = upsampling_bound(lo, levels, np.abs(ll).max(initial=0), largest)
+    np.testing.assert_allclose(found[written], expected, rtol=0, atol=bound)
     assert np.all(np.delete(found, written, axis=0) == UNTOUCHED)
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize(
+    ("channels", "side", "levels", "count"),
+    [(1, 1, 0, 1), (11, 5, 1, 13), (12, 7, 2, 0), (0, 3, 2, 4), (3, 24, 2, 5003), (5, 3, 3, 570)],
+)
+def test_texel_shader_equals_the_reference(
+    device: Device, channels: int, side: int, levels: int, count: int, storage: Storage
+) -> None:
+    ll = np.random.default_rng(side).normal(size=(channels, side, side)).astype(np.float32)
+    check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_channel=2)
+
+
+@pytest.mark.parametrize("levels", [0, 1, 2, 4])
+@pytest.mark.parametrize("length", [2, 4, 38, LONGEST])
+def test_texel_shader_takes_any_even_number_of_taps(device: Device, length: int, levels: int) -> None:
+    rng = np.random.default_rng(length)
+    for side in (1, 3):
+        ll = rng.normal(size=(2, side, side)).astype(np.float32)
+        check_texels(device, ll, rng.normal(size=length), levels, count=(side << levels) ** 2)
+
+
+def test_texel_shader_equals_the_reference_at_the_papers_size(device: Device) -> None:
+    ll = np.random.default_rng(0).normal(size=(12, 192, 192)).astype(np.float32)
+    check_texels(device, ll, taps("bior4.4")[0], 2, count=300_000, storage="f16", first_channel=11)

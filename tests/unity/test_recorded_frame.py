@@ -46,6 +46,7 @@ VISIBLE_WORD = 7  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
 FRAME = (  # what a frame is made of, without the components around it
     *("AvatarFrame", "SplatFrame", "AvatarBuffers", "LayerBuffers", "BranchBuffers", "BandBuffers", "StoredBuffer"),
+    *("TexelTiles", "Upsampling"),
     *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources", "AvatarDraw", "AvatarStages"),
 )
 PLACES = (  # Unity's position, then rotation (x, y, z, w)

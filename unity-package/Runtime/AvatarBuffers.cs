@@ -16,7 +16,8 @@ namespace Mua
 
         private readonly BufferSet buffers = new BufferSet();
         private readonly List<Upload> uploads = new List<Upload>();
-        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces, texels, triangles, barycentrics;
+        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces, tiles, tileRows, triangles;
+        private readonly Upload barycentrics;
         private int filled; // uploads
         private long sent, total; // bytes
 
@@ -32,7 +33,9 @@ namespace Mua
             skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
             skinWeights = Add(new Upload("template.skin_weights", Floats(avatar.Template.SkinWeights), sizeof(float)));
             faces = Add(Stored(avatar.Template.Faces, "template.faces"));
-            texels = Add(Stored(avatar.Texels.Indices, "texels.texels"));
+            var held = new TexelTiles(avatar.Texels.Indices.Integers.ToArray(), avatar.Texels.Size);
+            tiles = Add(new Upload("texels.texels", held.Tiles, sizeof(int)));
+            tileRows = Add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
             triangles = Add(Stored(avatar.Texels.Triangles, "texels.triangles"));
             barycentrics = Add(new Upload("texels.barycentrics", Pairs(avatar.Texels.Barycentrics), Pair));
             foreach (Upload upload in uploads)
@@ -68,7 +71,12 @@ namespace Mua
 
         public GraphicsBuffer Faces => faces.Buffer;
 
-        public GraphicsBuffer Texels => texels.Buffer;
+        /// <summary>How many tiles of the texture hold a valid texel.</summary>
+        public int TileCount => tiles.Count;
+
+        public GraphicsBuffer Tiles => tiles.Buffer;
+
+        public GraphicsBuffer TileRows => tileRows.Buffer;
 
         public GraphicsBuffer Triangles => triangles.Buffer;
 
@@ -127,6 +135,7 @@ namespace Mua
                 LlMean = StoredOf(branch.LlMean, name + ".ll_mean"),
                 LlBasis = StoredOf(branch.LlBasis, name + ".ll_basis"),
                 Details = details,
+                Upsampling = UpsamplingOf(branch.Details.Length),
                 StaticOffset = StoredOf(branch.StaticOffset, name + ".static_offset"),
                 Channels = branch.Channels,
                 Rank = branch.Rank,
@@ -143,6 +152,14 @@ namespace Mua
             StoredBuffer mean = StoredOf(band.Mean, path + ".mean");
             StoredBuffer h = StoredOf(band.H, path + ".h"), w = StoredOf(band.W, path + ".w");
             return new BandBuffers(mean, h, w, band.Rank, band.Size);
+        }
+
+        /// <summary>Of the levels beyond the `dynamic` ones that have details.</summary>
+        private Upsampling UpsamplingOf(int dynamic)
+        {
+            var upsampling = new Upsampling(Avatar.Wavelet.RecLo, Avatar.Wavelet.Levels - dynamic);
+            Add(upsampling.Taps);
+            return upsampling;
         }
 
         private StoredBuffer StoredOf(Tensor tensor, string field)

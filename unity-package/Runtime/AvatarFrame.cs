@@ -27,7 +27,7 @@ namespace Mua
         private readonly Vector4[] jointValues; // [2 J]
         private readonly BufferSet buffers = new BufferSet();
         private readonly GraphicsBuffer[] activations = new GraphicsBuffer[2];
-        private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest, and its ll
+        private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest detailed, its ll
         private GraphicsBuffer descriptor, details, texelChannels;
 
         /// <summary>InvalidOperationException where a kernel is missing or a buffer is more than the device holds.</summary>
@@ -136,9 +136,9 @@ namespace Mua
         private void CreateBuffers()
         {
             AvatarFile file = Avatar.Avatar;
-            int size = file.Texels.Size, layers = Math.Max(Widest(Avatar.CoarseMlp), 1);
+            int layers = Math.Max(Widest(Avatar.CoarseMlp), 1);
             layers = Math.Max(layers, Math.Max(Widest(Avatar.Geometry.Mlp), Widest(Avatar.Appearance.Mlp)));
-            long texture = (long)Math.Max(Avatar.Geometry.Channels, Avatar.Appearance.Channels) * size * size;
+            long texture = Math.Max(Detailed(Avatar.Geometry), Detailed(Avatar.Appearance));
             descriptor = buffers.Structured("descriptor", describe.Width, sizeof(float));
             Mesh = buffers.Structured("mesh", 3L * Avatar.VertexCount, sizeof(float));
             long bands = Math.Max(LargestBand(Avatar.Geometry), LargestBand(Avatar.Appearance));
@@ -207,31 +207,26 @@ namespace Mua
             commands.EndSample(AvatarStages.CoarseMesh);
         }
 
-        /// <summary>Coefficients, LL, then level by level to the whole texture; its valid texels go to `texelChannels`.</summary>
+        /// <summary>
+        /// Coefficients, LL, level by level as long as there are details; then the valid texels to `texelChannels`.
+        /// </summary>
         private void Branch(CommandBuffer commands, BranchBuffers branch, int firstChannel)
         {
             commands.BeginSample(AvatarStages.Texture);
             GraphicsBuffer alpha = Mlp(commands, branch.Mlp);
-            int levels = Avatar.Avatar.Wavelet.Levels, size = Avatar.Avatar.Texels.Size >> levels;
+            int levels = branch.Details.Length, size = Avatar.Avatar.Texels.Size >> Avatar.Avatar.Wavelet.Levels;
             blendSubbands.Low(commands, branch, alpha, size, textures[levels % 2]);
             int offset = branch.Channels * branch.Rank;
             for (int level = 0; level < levels; level++)
             {
                 GraphicsBuffer ll = textures[(levels - level) % 2], fine = textures[(levels - level - 1) % 2];
-                if (level < branch.Details.Length)
-                {
-                    BandBuffers band = branch.Details[level];
-                    blendSubbands.Detail(commands, band, branch.Channels, alpha, offset, details);
-                    offset += branch.Channels * band.Rank;
-                    inverseDwt.Full(commands, Avatar, branch.Channels, size, ll, details, fine);
-                }
-                else
-                {
-                    inverseDwt.LowPass(commands, Avatar, branch.Channels, size, ll, fine);
-                }
+                BandBuffers band = branch.Details[level];
+                blendSubbands.Detail(commands, band, branch.Channels, alpha, offset, details);
+                inverseDwt.Full(commands, Avatar, branch.Channels, size, ll, details, fine);
+                offset += branch.Channels * band.Rank;
                 size *= 2;
             }
-            inverseDwt.AddStatic(commands, Avatar, branch, size, textures[0], texelChannels, firstChannel);
+            inverseDwt.UpsampleTexels(commands, Avatar, branch, size, textures[0], texelChannels, firstChannel);
             commands.EndSample(AvatarStages.Texture);
         }
 
@@ -251,6 +246,13 @@ namespace Mua
                 widest = Math.Max(widest, layer.Outputs);
             }
             return widest;
+        }
+
+        /// <summary>Numbers of a branch's texture where its details end.</summary>
+        private long Detailed(BranchBuffers branch)
+        {
+            long size = Avatar.Avatar.Texels.Size / branch.Upsampling.Factor;
+            return branch.Channels * size * size;
         }
 
         private static long LargestBand(BranchBuffers branch)

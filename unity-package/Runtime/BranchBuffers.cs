@@ -7,6 +7,7 @@ namespace Mua
         public StoredBuffer LlMean;
         public StoredBuffer LlBasis;
         public BandBuffers[] Details; // coarse first
+        public Upsampling Upsampling; // of the levels without details
         public StoredBuffer StaticOffset;
         public int Channels;
         public int Rank; // of LL

@@ -32,7 +32,7 @@ def flops(avatar: Avatar) -> dict[str, int]:
         "PCA mesh": 2 * avatar.coarse.basis.size,
         "LL blend": 2 * sum(b.ll_basis.size for b in branches),
         "detail blend": 2 * sum(_outer_products(b) for b in branches),
-        "inverse DWT": 2 * sum(_inverse_dwt(b, avatar.wavelet.levels, taps) for b in branches),
+        "inverse DWT": sum(_inverse_dwt(b, avatar.wavelet.levels, taps) for b in branches),
         "static offset": sum(b.static.size for b in branches),
     }
 
@@ -56,11 +56,17 @@ def _outer_products(branch: Branch) -> int:
 
 
 def _inverse_dwt(branch: Branch, levels: int, taps: int) -> int:
-    """Multiply-adds of separable synthesis: half of the taps meet each output sample of each input branch.
+    dynamic = len(branch.details)
+    return synthesis(branch.channels, branch.ll_mean.shape[-1], dynamic, levels, taps=taps)
 
-    With an output side of n, four bands cost n^2 taps for the columns and as many for the rows; the low-pass branch
-    alone costs n (n / 2) (taps / 2) and then n^2 taps / 2.
+
+def synthesis(channels: int, side: int, dynamic: int, levels: int, *, taps: int) -> int:
+    """Operations of the wavelet synthesis from LL of a side on, the first `dynamic` of its levels with details.
+
+    Half of the taps meet each output sample of each input band. With an output side of n, four bands cost n^2 taps
+    multiply-adds for the columns and as many for the rows; the low-pass band alone costs n (n / 2) (taps / 2) and then
+    n^2 taps / 2.
     """
-    sides = branch.ll_mean.shape[-1] << np.arange(1, levels + 1)
-    full, low = sides[: len(branch.details)] ** 2, sides[len(branch.details) :] ** 2
-    return int(branch.channels * (2 * taps * full.sum() + taps * low.sum() * 3 // 4))
+    sides = side << np.arange(1, levels + 1)
+    full, low = sides[:dynamic] ** 2, sides[dynamic:] ** 2
+    return 2 * int(channels * (2 * taps * full.sum() + taps * low.sum() * 3 // 4))

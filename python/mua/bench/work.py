@@ -9,6 +9,7 @@ out, as in mua.asset.count, whose sums the network part equals.
 from dataclasses import dataclass
 
 from mua.asset.flatbuffer import Tree
+from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.texture.channels import CHANNELS
 
 FLOAT = UINT = 4  # bytes
@@ -17,6 +18,7 @@ INFLUENCES = 8
 PROJECT_GROUP = 256  # splats that share one count
 SORT_GROUP = 2048  # keys that share one histogram
 DIGITS = 256
+TILE = UINT + 16 * 2 * UINT  # bytes that say where a tile lies and which of its texels are valid
 PASSES = 2  # of the radix sort
 
 # Operations of the posing kernels, counted on their references.
@@ -96,17 +98,18 @@ def inverse_dwt(channels: int, size: int, taps: int) -> Work:
     return Work(moved, 2 * channels * 2 * taps * (2 * size) ** 2)
 
 
-def inverse_dwt_low_pass(channels: int, size: int, taps: int) -> Work:
-    """LL [C, n, n] and one filter read, [C, 2n, 2n] written; taps / 2 multiply-adds for 2n^2, then for 4n^2 samples."""
-    moved = FLOAT * (channels * (size**2 + (2 * size) ** 2) + taps)
-    return Work(moved, 2 * channels * (taps // 2) * (2 * size**2 + 4 * size**2))
+def upsample_texels(branch: Tree, upsampling: tuple[int, int], tiles: int) -> Work:
+    """LL [C, n, n], filter [reach, factor], 132 bytes for each of the tiles and static offset read, [C, N] written.
 
-
-def add_static(branch: Tree) -> Work:
-    """Texel indices, static offset and the valid texels [C, N] of the texture read, [C, N] written; C N additions."""
+    Levels without details are one filter of `reach` samples for each texel; along the rows the texels of a column share
+    what they need, `factor` of them to a sample.
+    """
     channels, texels = _shape(branch["static_offset"])
-    moved = _stored(branch["static_offset"]) + UINT * texels + 2 * FLOAT * channels * texels
-    return Work(moved, channels * texels)
+    size = _shape(branch["ll_mean"])[-1] << len(branch["details"])
+    reach, factor = upsampling
+    moved = _stored(branch["static_offset"]) + TILE * tiles
+    moved += FLOAT * (channels * (size**2 + texels) + reach * factor)
+    return Work(moved, channels * texels * (2 * reach + 2 * reach // factor + 1))
 
 
 def blend_vertices(joints: int, vertices: int) -> Work:
@@ -153,24 +156,29 @@ def splat_sort(visible: int) -> dict[str, Work]:
 def _decode(tree: Tree) -> dict[str, Work]:
     """Network, mesh, subbands and synthesis."""
     branches = (tree["geometry"], tree["appearance"])
-    taps, levels = len(tree["wavelet"]["rec_lo"]), int(tree["wavelet"]["levels"])
+    taps = len(tree["wavelet"]["rec_lo"])
     nothing = Work(0, 0)
     layers = [layer for part in (tree["coarse"], *branches) for layer in part["mlp"]]
-    full, low = nothing, nothing
+    tiles = len(texel_tiles(tree["texels"]["texels"]["data"].view("<u4"), int(tree["texels"]["size"]))[0])
+    full = nothing
     for branch in branches:
         channels, size, _ = _shape(branch["ll_mean"])
-        dynamic = len(branch["details"])
-        full = sum((inverse_dwt(channels, size << i, taps) for i in range(dynamic)), full)
-        low = sum((inverse_dwt_low_pass(channels, size << i, taps) for i in range(dynamic, levels)), low)
+        full = sum((inverse_dwt(channels, size << i, taps) for i in range(len(branch["details"]))), full)
     return {
         "MlpMatmul": sum(map(mlp_matmul, layers), nothing),
         "MlpMatmulTransposed": mlp_matmul_transposed(tree["coarse"]),
         "BlendLl": sum(map(blend_ll, branches), nothing),
         "BlendDetail": sum((blend_detail(band) for branch in branches for band in branch["details"]), nothing),
         "InverseDwt": full,
-        "InverseDwtLowPass": low,
-        "AddStatic": sum(map(add_static, branches), nothing),
+        "UpsampleTexels": sum((upsample_texels(b, _upsampling(tree, b), tiles) for b in branches), nothing),
     }
+
+
+def _upsampling(tree: Tree, branch: Tree) -> tuple[int, int]:
+    """Reach and factor of a branch's levels without details."""
+    wavelet = tree["wavelet"]
+    taps, _ = upsampling_taps(wavelet["rec_lo"], int(wavelet["levels"]) - len(branch["details"]))
+    return taps.shape[0], taps.shape[1]
 
 
 def _shape(tensor: Tree) -> tuple[int, ...]:

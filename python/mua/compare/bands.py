@@ -12,7 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
-from mua.bench.work import inverse_dwt, inverse_dwt_low_pass
+from mua.asset.count import synthesis
 from mua.compare.descend import Groups
 from mua.compare.maps import CHANNELS as MAP_CHANNELS
 from mua.compare.maps import SurfaceMaps
@@ -197,10 +197,9 @@ class BandNetwork(Network):
     def flops(self) -> int:
         """Networks, blendshapes, synthesis and the mean; making the maps is part of posing, as for every system."""
         side = self.maps[0].size
-        taps, low = filters(self.sizes.wavelet).rec_len, range(4 - STATIC_LEVELS, 4)
-        synthesis = sum(inverse_dwt(CHANNELS, side << level, taps).flops for level in range(4 - STATIC_LEVELS))
-        synthesis += sum(inverse_dwt_low_pass(CHANNELS, side << level, taps).flops for level in low)
-        total = synthesis + self.mean_texture.numel() + sum(branch_flops(branch) for branch in self.branches)
+        taps = filters(self.sizes.wavelet).rec_len
+        total = synthesis(CHANNELS, side, 4 - STATIC_LEVELS, 4, taps=taps) + self.mean_texture.numel()
+        total += sum(branch_flops(branch) for branch in self.branches)
         total += self.ll.flops(side) if self.ll is not None else 0
         return total + sum(n.flops(side << i) for i, level in enumerate(self.details) for n in level)
 

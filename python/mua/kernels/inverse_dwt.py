@@ -1,4 +1,4 @@
-"""One level of the periodised 2D wavelet synthesis, full or low-pass only, and the static offset at its end.
+"""The periodised 2D wavelet synthesis: level by level, and the static offset at its end.
 
 In one dimension x[m] = sum_k lo[m - 2k + L/2 - 1] a[k] + hi[m - 2k + L/2 - 1] d[k], indices of x modulo 2n: the phase
 of PyWavelets' mode "periodization", where a[k] is centred on sample 2k and d[k] on 2k + 1.
@@ -7,6 +7,8 @@ of PyWavelets' mode "periodization", where a[k] is centred on sample 2k and d[k]
 import numpy as np
 
 from mua.arrays import Array
+
+TILE = 16  # texels along a side of a group of UpsampleTexels
 
 
 def inverse_dwt(
@@ -32,6 +34,65 @@ def add_static(
     """The texture at the valid texels, [C, N], with the static offset of the finest levels."""
     rows, columns = np.divmod(texels, fine.shape[2])
     return np.asarray(fine[:, rows, columns] + static_offset)
+
+
+def upsample_texels(
+    ll: Array,  # [C, n, n]
+    rec_lo: Array,  # [L], L even
+    levels: int,  # without details
+    *,
+    texels: Array,  # [N] row * 2^levels n + column
+    static_offset: Array,  # [C, N]
+) -> Array:
+    """All levels without details and the static offset, at the valid texels, [C, N]."""
+    for _ in range(levels):
+        ll = inverse_dwt(ll, None, rec_lo, rec_lo)
+    return add_static(ll, texels, static_offset)
+
+
+def upsampling_taps(
+    rec_lo: Array,  # [L], L even
+    levels: int,  # without details
+) -> tuple[Array, int]:
+    """The filter g [S, F] that levels of low-pass synthesis are together, F = 2^levels, and its delay, in float64.
+
+    x[p] = sum_j g[j, s] a[k - j] with F k + s = p + delay, indices wrapped: one level and then another are the taps of
+    the first, spread by two, convolved with those of the second (the noble identity of multirate filters). Zeros at
+    both ends of g are left out, since a kernel would multiply by them.
+    """
+    taps = np.ones(1)
+    for _ in range(levels):
+        spread = np.zeros(2 * len(taps) - 1)
+        spread[::2] = taps
+        taps = np.convolve(spread, np.asarray(rec_lo, dtype=np.float64))
+    factor = 1 << levels
+    delay = (factor - 1) * (len(rec_lo) // 2 - 1)
+    used = np.flatnonzero(taps)
+    first, last = (min(int(used[0]), delay), int(used[-1])) if len(used) else (0, 0)
+    padded = np.zeros(-(-(last + 1 - first) // factor) * factor)
+    padded[: last + 1 - first] = taps[first : last + 1]
+    return padded.reshape(-1, factor), delay - first
+
+
+def texel_tiles(
+    texels: Array,  # [N] row * size + column, ascending
+    size: int,
+) -> tuple[Array, Array]:
+    """Tiles of 16 x 16 texels that hold a valid one, as the shader takes them.
+
+    [T] row << 16 | column of a tile, ascending; and [T, 16, 2] of each of its rows the place in `texels` of the first
+    that it holds, and its columns as bits.
+    """
+    rows, columns = np.divmod(texels, size)
+    numbers = (rows // TILE << 16) + columns // TILE
+    tiles, places = np.unique(numbers, return_inverse=True)
+    lines, firsts, line_of = np.unique(places * TILE + rows % TILE, return_index=True, return_inverse=True)
+    runs = np.zeros((len(tiles) * TILE, 2), np.uint32)
+    runs[lines, 0] = firsts
+    held = np.zeros(len(lines), np.uint32)
+    np.bitwise_or.at(held, line_of, np.uint32(1) << (columns % TILE).astype(np.uint32))
+    runs[lines, 1] = held
+    return tiles.astype(np.uint32), runs.reshape(-1, TILE, 2)
 
 
 def _upsample(

@@ -12,6 +12,7 @@ from mua.asset.read import decode_tree, load
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
+from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,16 @@ class BandBuffers:
 
 
 @dataclass(frozen=True)
+class UpsamplingBuffers:
+    """The filter that a branch's levels without details are together (mua.kernels.inverse_dwt.upsampling_taps)."""
+
+    taps: Buffer
+    factor: int  # texels along a side for each sample
+    reach: int  # samples along a side that a texel needs
+    delay: int  # of the filter, texels
+
+
+@dataclass(frozen=True)
 class BranchBuffers:
     """Geometry or appearance; sizes are those of mua.asset.avatar.Branch."""
 
@@ -51,6 +62,7 @@ class BranchBuffers:
     ll_mean: StoredBuffer
     ll_basis: StoredBuffer
     details: tuple[BandBuffers, ...]  # coarse first
+    upsampling: UpsamplingBuffers
     static_offset: StoredBuffer
     channels: int
     rank: int  # of LL
@@ -80,7 +92,10 @@ class AvatarBuffers:
         self.skin_indices = self._upload(rig.skin_indices.astype(np.uint32), "template.skin_indices")
         self.skin_weights = self._upload(rig.skin_weights.astype(np.float32), "template.skin_weights")
         self.faces = self._upload(rig.mesh.faces.astype(np.uint32), "template.faces")
-        self.texels = self._upload(texels.texels.astype(np.uint32), "texels.texels")
+        tiles, tile_rows = texel_tiles(texels.texels, texels.size)
+        self.tile_count = len(tiles)
+        self.tiles = self._upload(tiles, "texels.texels")
+        self.tile_rows = self._upload(tile_rows, "texels.texels")
         self.triangles = self._upload(texels.triangles.astype(np.uint32), "texels.triangles")
         self.barycentrics = self._upload(texels.barycentrics[:, :2].astype(np.float32), "texels.barycentrics")
 
@@ -106,6 +121,7 @@ class AvatarBuffers:
             ll_mean=self._stored(branch["ll_mean"], f"{name}.ll_mean"),
             ll_basis=self._stored(branch["ll_basis"], f"{name}.ll_basis"),
             details=tuple(self._band(band, f"{name}.details[{i}]") for i, band in enumerate(branch["details"])),
+            upsampling=self._upsampling(len(expanded.details)),
             static_offset=self._stored(branch["static_offset"], f"{name}.static_offset"),
             channels=expanded.channels,
             rank=expanded.ranks[0],
@@ -115,6 +131,12 @@ class AvatarBuffers:
         mean, h, w = (self._stored(band[key], f"{path}.{key}") for key in ("mean", "h", "w"))
         rank, size = (int(n) for n in band["h"]["shape"][2:])
         return BandBuffers(mean, h, w, rank, size)
+
+    def _upsampling(self, dynamic: int) -> UpsamplingBuffers:
+        """Of the levels beyond the `dynamic` ones that have details."""
+        taps, delay = upsampling_taps(self.avatar.wavelet.rec_lo, self.avatar.wavelet.levels - dynamic)
+        reach, factor = taps.shape
+        return UpsamplingBuffers(self._upload(taps.astype(np.float32), "wavelet.rec_lo"), factor, reach, delay)
 
     def _stored(self, tensor: Tree, field: str) -> StoredBuffer:
         words, layout = upload_words(tensor)

@@ -16,8 +16,8 @@ FLOAT = 4  # bytes
 LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
 LL_TEXELS = 64  # of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
-COARSE_TILE = 16  # samples along a side that a group of InverseDwt and InverseDwtLowPass doubles
-STATIC_TEXELS = 256  # of a group of AddStatic
+COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
+CHANNEL_BATCH = 4  # of a group of UpsampleTexels
 SKINNED = 64  # vertices or texels of a group of BlendVertices and SkinSplats
 IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # where the clip puts it
 
@@ -49,8 +49,7 @@ class AvatarFrame:
         self._blend_ll = device.kernel("blend_subbands.compute", "BlendLl")
         self._blend_detail = device.kernel("blend_subbands.compute", "BlendDetail")
         self._inverse_dwt = device.kernel("inverse_dwt.compute", "InverseDwt")
-        self._inverse_dwt_low_pass = device.kernel("inverse_dwt.compute", "InverseDwtLowPass")
-        self._add_static = device.kernel("inverse_dwt.compute", "AddStatic")
+        self._upsample_texels = device.kernel("inverse_dwt.compute", "UpsampleTexels")
         self._blend_vertices = device.kernel("dq_skinning.compute", "BlendVertices")
         self._skin_splats = device.kernel("dq_skinning.compute", "SkinSplats")
 
@@ -60,13 +59,15 @@ class AvatarFrame:
         branches = (self.avatar.geometry, self.avatar.appearance)
         layers = [*self.avatar.coarse_mlp, *(layer for branch in branches for layer in branch.mlp)]
         activations = FLOAT * max(layer.outputs for layer in layers)
-        texture = FLOAT * max(branch.channels for branch in branches) * avatar.rig.texels.size**2
+        texture = FLOAT * max(b.channels * (avatar.rig.texels.size // b.upsampling.factor) ** 2 for b in branches)
         details = [3 * b.channels * d.size**2 for b in branches for d in b.details]
         self.descriptor = buffer(FLOAT * avatar.encoding.width, name="descriptor")
         self.activations = tuple(buffer(activations, name=f"activations {i}") for i in range(2))
         self.mesh = buffer(FLOAT * 3 * vertices, name="mesh")  # [V, 3] canonical vertices
         self.details = buffer(FLOAT * max(details, default=0), name="details")
-        self.textures = tuple(buffer(texture >> 2 * i, name=f"texture {i}") for i in range(2))  # finest, and its ll
+        self.textures = tuple(
+            buffer(texture >> 2 * i, name=f"texture {i}") for i in range(2)
+        )  # finest with details, its ll
         self.texel_channels = buffer(FLOAT * CHANNELS * splats, name="texel_channels")  # [23, N]
         self.joints = buffer(FLOAT * 8 * joints, name="joints")  # [J, 8]
         self.vertex_dq = buffer(FLOAT * 8 * vertices, name="vertex_dq")  # [V, 8]
@@ -132,34 +133,19 @@ class AvatarFrame:
         )
 
     def _branch(self, commands: Commands, branch: BranchBuffers, *, first_channel: int) -> None:
-        """Coefficients, LL, then level by level to the whole texture; its valid texels go to `texel_channels`."""
+        """Coefficients, LL, level by level as long as there are details; then the valid texels to `texel_channels`."""
         alpha = self._mlp(commands, branch.mlp)
-        levels = self.avatar.avatar.wavelet.levels
-        size = self.avatar.avatar.rig.texels.size >> levels
+        levels = len(branch.details)
+        size = self.avatar.avatar.rig.texels.size >> self.avatar.avatar.wavelet.levels
         self._blend_low(commands, branch, alpha, size, self.textures[levels % 2])
         offset = branch.channels * branch.rank
-        for level in range(levels):
+        for level, band in enumerate(branch.details):
             ll, fine = self.textures[(levels - level) % 2], self.textures[(levels - level - 1) % 2]
-            if level < len(branch.details):
-                self._blend_band(commands, branch, branch.details[level], alpha, offset, size)
-                offset += branch.channels * branch.details[level].rank
-            self._synthesise(commands, branch, ll, fine, size, detailed=level < len(branch.details))
+            self._blend_band(commands, branch, band, alpha, offset, size)
+            self._synthesise(commands, branch, ll, fine, size)
+            offset += branch.channels * band.rank
             size *= 2
-        commands.dispatch(
-            self._add_static,
-            (groups(self.splat_count, STATIC_TEXELS), 1, 1),
-            {
-                "fine": self.textures[0],
-                "texels": self.avatar.texels,
-                "static_offset": branch.static_offset.words,
-                "texel_channels": self.texel_channels,
-            },
-            static_offset_layout=branch.static_offset.layout,
-            channels=branch.channels,
-            size=size,
-            texel_count=self.splat_count,
-            first_channel=first_channel,
-        )
+        self._upsample(commands, branch, size, first_channel)
 
     def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
         commands.dispatch(
@@ -191,18 +177,46 @@ class AvatarFrame:
             alpha_offset=alpha_offset,
         )
 
-    def _synthesise(
-        self, commands: Commands, branch: BranchBuffers, ll: Buffer, fine: Buffer, size: int, *, detailed: bool
-    ) -> None:
+    def _synthesise(self, commands: Commands, branch: BranchBuffers, ll: Buffer, fine: Buffer, size: int) -> None:
         """One level, from planes of `size` to twice that."""
         tiles = groups(size, COARSE_TILE)
-        taps = len(self.avatar.avatar.wavelet.rec_lo)
-        buffers = {"ll": ll, "rec_lo": self.avatar.rec_lo, "fine": fine}
-        if detailed:
-            buffers |= {"details": self.details, "rec_hi": self.avatar.rec_hi}
-        kernel = self._inverse_dwt if detailed else self._inverse_dwt_low_pass
         commands.dispatch(
-            kernel, (tiles, tiles, branch.channels), buffers, channels=branch.channels, size=size, taps=taps
+            self._inverse_dwt,
+            (tiles, tiles, branch.channels),
+            {
+                "ll": ll,
+                "details": self.details,
+                "rec_lo": self.avatar.rec_lo,
+                "rec_hi": self.avatar.rec_hi,
+                "fine": fine,
+            },
+            channels=branch.channels,
+            size=size,
+            taps=len(self.avatar.avatar.wavelet.rec_lo),
+        )
+
+    def _upsample(self, commands: Commands, branch: BranchBuffers, size: int, first_channel: int) -> None:
+        """All levels without details, from planes of `size`, and the static offset, at the valid texels."""
+        upsampling = branch.upsampling
+        commands.dispatch(
+            self._upsample_texels,
+            (self.avatar.tile_count, 1, groups(branch.channels, CHANNEL_BATCH)),
+            {
+                "ll": self.textures[0],
+                "upsampling": upsampling.taps,
+                "tiles": self.avatar.tiles,
+                "tile_rows": self.avatar.tile_rows,
+                "static_offset": branch.static_offset.words,
+                "texel_channels": self.texel_channels,
+            },
+            static_offset_layout=branch.static_offset.layout,
+            channels=branch.channels,
+            size=size,
+            factor=upsampling.factor,
+            reach=upsampling.reach,
+            delay=upsampling.delay,
+            texel_count=self.splat_count,
+            first_channel=first_channel,
         )
 
     def _pose(self, commands: Commands) -> None:

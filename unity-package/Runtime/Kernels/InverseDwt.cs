@@ -3,12 +3,12 @@ using UnityEngine.Rendering;
 
 namespace Mua
 {
-    /// <summary>Wavelet synthesis, level by level: ComputeShaders/inverse_dwt.compute.</summary>
+    /// <summary>Wavelet synthesis: ComputeShaders/inverse_dwt.compute.</summary>
     internal sealed class InverseDwt
     {
         private const string File = "inverse_dwt.compute";
         private const int CoarseTile = 16; // samples along a side that a group doubles
-        private const int StaticTexels = 256; // of a group of AddStatic
+        private const int ChannelBatch = 4; // of a group of UpsampleTexels
 
         private static readonly int Ll = Shader.PropertyToID("ll");
         private static readonly int Details = Shader.PropertyToID("details");
@@ -18,7 +18,12 @@ namespace Mua
         private static readonly int Channels = Shader.PropertyToID("channels");
         private static readonly int Size = Shader.PropertyToID("size");
         private static readonly int Taps = Shader.PropertyToID("taps");
-        private static readonly int Texels = Shader.PropertyToID("texels");
+        private static readonly int UpsamplingTaps = Shader.PropertyToID("upsampling");
+        private static readonly int Factor = Shader.PropertyToID("factor");
+        private static readonly int Reach = Shader.PropertyToID("reach");
+        private static readonly int Delay = Shader.PropertyToID("delay");
+        private static readonly int Tiles = Shader.PropertyToID("tiles");
+        private static readonly int TileRows = Shader.PropertyToID("tile_rows");
         private static readonly int StaticOffset = Shader.PropertyToID("static_offset");
         private static readonly int StaticOffsetLayout = Shader.PropertyToID("static_offset_layout");
         private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
@@ -26,14 +31,12 @@ namespace Mua
         private static readonly int FirstChannel = Shader.PropertyToID("first_channel");
 
         private readonly Kernel full;
-        private readonly Kernel lowPass;
-        private readonly Kernel addStatic;
+        private readonly Kernel upsampleTexels;
 
         public InverseDwt(ComputeShader shader)
         {
             full = new Kernel(shader, File, "InverseDwt");
-            lowPass = new Kernel(shader, File, "InverseDwtLowPass");
-            addStatic = new Kernel(shader, File, "AddStatic");
+            upsampleTexels = new Kernel(shader, File, "UpsampleTexels");
         }
 
         /// <summary>One level, from planes of `size` to twice that.</summary>
@@ -41,47 +44,40 @@ namespace Mua
             CommandBuffer commands, AvatarBuffers avatar, int channels, int size, GraphicsBuffer ll,
             GraphicsBuffer details, GraphicsBuffer fine)
         {
+            int tiles = Kernel.Groups(size, CoarseTile);
+            full.Set(commands, Ll, ll);
             full.Set(commands, Details, details);
+            full.Set(commands, RecLo, avatar.RecLo);
             full.Set(commands, RecHi, avatar.RecHi);
-            Synthesise(commands, full, avatar, channels, size, ll, fine);
+            full.Set(commands, Fine, fine);
+            full.Set(commands, Channels, channels);
+            full.Set(commands, Size, size);
+            full.Set(commands, Taps, avatar.Taps);
+            full.Dispatch(commands, tiles, tiles, channels);
         }
 
-        /// <summary>The same, all details zero.</summary>
-        public void LowPass(
-            CommandBuffer commands, AvatarBuffers avatar, int channels, int size, GraphicsBuffer ll,
-            GraphicsBuffer fine)
-        {
-            Synthesise(commands, lowPass, avatar, channels, size, ll, fine);
-        }
-
-        /// <summary>Valid texels of planes of `size`, plus the static offset, to rows from `firstChannel` on.</summary>
-        public void AddStatic(
-            CommandBuffer commands, AvatarBuffers avatar, BranchBuffers branch, int size, GraphicsBuffer fine,
+        /// <summary>
+        /// All levels without details, from planes of `size`, plus the static offset, at the valid texels, to rows from
+        /// `firstChannel` on.
+        /// </summary>
+        public void UpsampleTexels(
+            CommandBuffer commands, AvatarBuffers avatar, BranchBuffers branch, int size, GraphicsBuffer ll,
             GraphicsBuffer texelChannels, int firstChannel)
         {
-            addStatic.Set(commands, Fine, fine);
-            addStatic.Set(commands, Texels, avatar.Texels);
-            addStatic.Set(commands, StaticOffset, StaticOffsetLayout, branch.StaticOffset);
-            addStatic.Set(commands, TexelChannels, texelChannels);
-            addStatic.Set(commands, Channels, branch.Channels);
-            addStatic.Set(commands, Size, size);
-            addStatic.Set(commands, TexelCount, avatar.SplatCount);
-            addStatic.Set(commands, FirstChannel, firstChannel);
-            addStatic.Dispatch(commands, Kernel.Groups(avatar.SplatCount, StaticTexels), 1, 1);
-        }
-
-        private static void Synthesise(
-            CommandBuffer commands, Kernel kernel, AvatarBuffers avatar, int channels, int size, GraphicsBuffer ll,
-            GraphicsBuffer fine)
-        {
-            int tiles = Kernel.Groups(size, CoarseTile);
-            kernel.Set(commands, Ll, ll);
-            kernel.Set(commands, RecLo, avatar.RecLo);
-            kernel.Set(commands, Fine, fine);
-            kernel.Set(commands, Channels, channels);
-            kernel.Set(commands, Size, size);
-            kernel.Set(commands, Taps, avatar.Taps);
-            kernel.Dispatch(commands, tiles, tiles, channels);
+            upsampleTexels.Set(commands, Ll, ll);
+            upsampleTexels.Set(commands, UpsamplingTaps, branch.Upsampling.Taps.Buffer);
+            upsampleTexels.Set(commands, Tiles, avatar.Tiles);
+            upsampleTexels.Set(commands, TileRows, avatar.TileRows);
+            upsampleTexels.Set(commands, StaticOffset, StaticOffsetLayout, branch.StaticOffset);
+            upsampleTexels.Set(commands, TexelChannels, texelChannels);
+            upsampleTexels.Set(commands, Channels, branch.Channels);
+            upsampleTexels.Set(commands, Size, size);
+            upsampleTexels.Set(commands, Factor, branch.Upsampling.Factor);
+            upsampleTexels.Set(commands, Reach, branch.Upsampling.Reach);
+            upsampleTexels.Set(commands, Delay, branch.Upsampling.Delay);
+            upsampleTexels.Set(commands, TexelCount, avatar.SplatCount);
+            upsampleTexels.Set(commands, FirstChannel, firstChannel);
+            upsampleTexels.Dispatch(commands, avatar.TileCount, 1, Kernel.Groups(branch.Channels, ChannelBatch));
         }
     }
 }
