@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from mua.motion.clip import Clip
     from mua.recording import Recording, TeacherWriter
     from mua.rendering import render
+    from mua.rig.load import load_rig
     from mua.rig.skeleton import Pose
 
 __version__ = "0.1.0"
@@ -44,6 +45,7 @@ __all__ = [
     "TeacherWriter",
     "bake",
     "load",
+    "load_rig",
     "render",
     "save",
     "train",
@@ -59,6 +61,7 @@ _PLACES = {
     "TeacherWriter": "mua.recording:TeacherWriter",
     "bake": "mua.baking.bake:bake",
     "load": "mua.asset.read:read",
+    "load_rig": "mua.rig.load:load_rig",
     "render": "mua.rendering:render",
     "save": "mua.asset.write:write",
     "train": "mua.baking.train:train",

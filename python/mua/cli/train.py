@@ -13,6 +13,7 @@ from mua.cli.console import printer
 from mua.cli.display import Display, show
 from mua.cli.failure import refusing
 from mua.cli.offered import offered
+from mua.inputs import require_recording
 from mua.student.settings import PRESETS, RECIPES, StageName
 
 
@@ -41,12 +42,19 @@ def main(
     seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
     device: Annotated[DeviceName, typer.Option(help="Where the student is trained.")] = "auto",
     work: Annotated[Path | None, typer.Option(help="For checkpoints; beside the output if left out.")] = None,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Say what the recording holds, picture three of its frames, and train nothing."),
+    ] = False,
 ) -> None:
     """Distil RECORDING into a .muaavatar, with a table of errors and a contact sheet beside it.
 
     Texture size and frames are the recording's. A run that was interrupted goes on where it stopped when the same
     command is given again. Under torchrun several processes train together.
     """
+    if check:
+        _check(recording, output)
+        return
     console = printer(quiet=os.environ.get("RANK", "0") != "0")  # of several processes the first one reports
     with Display(console) as display:
         baked = train(
@@ -64,6 +72,14 @@ def main(
         )
     if baked is not None:
         show(console, baked)
+
+
+def _check(recording: Path, output: Path) -> None:
+    require_recording(recording)  # before seconds of loading
+    from mua.cli.check_recording import check_recording
+    from mua.recording import Recording
+
+    check_recording(Recording(recording), output.with_name(output.stem + "_check.png"))
 
 
 def run() -> None:

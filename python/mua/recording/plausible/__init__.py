@@ -33,6 +33,14 @@ class Plausible:
         """What looks like a mistake in a pose whose shapes are right."""
         return self._poses(pose)
 
+    def mesh(
+        self,
+        pose: Pose,
+        mesh: Array,  # [V, 3]
+    ) -> Iterator[Finding]:
+        """What looks like a mistake in a mesh whose shape is right."""
+        return self._meshes(mesh, pose)
+
     def frame(
         self,
         pose: Pose,
@@ -41,6 +49,6 @@ class Plausible:
         image: Array | None = None,  # [H, W, 23] that it was taken from
     ) -> Iterator[Finding]:
         """What looks like a mistake in mesh and texture whose shapes are right."""
-        yield from self._meshes(mesh, pose)
+        yield from self.mesh(pose, mesh)
         yield from self._textures(texture, mesh)
         yield from self._orientations(texture, mesh, pose, image)

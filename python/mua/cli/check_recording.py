@@ -1,0 +1,54 @@
+"""What `mua-train --check` prints of a recording."""
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from mua.baking.frames_picture import frames_picture
+from mua.baking.understood import Understood, understand
+from mua.cli.console import printer
+from mua.errors import InputError
+from mua.files import replacing, require_writable
+from mua.recording import RecordedClip, Recording
+
+
+def check_recording(recording: Recording, picture: Path) -> None:
+    """Say what a recording holds and what in it looks like a mistake, and picture three frames of it.
+
+    Raises InputError where something in it is certainly a mistake: nothing should be trained on it.
+    """
+    require_writable(picture)
+    console = printer()
+    found = understand(recording)
+    console.print(_clips(recording.clips))
+    _print(console, found)
+    if found.pictured:
+        with replacing(picture) as temporary:
+            frames_picture(recording.rig, found.pictured).save(temporary, "PNG")
+        _say(console, str(picture))
+    certain = [finding.sentence for finding in found.findings if finding.certain]
+    if certain:
+        raise InputError(f"recording {recording.directory}: {certain[0]}")
+
+
+def _clips(clips: tuple[RecordedClip, ...]) -> Table:
+    table = Table("clip", "frames", "seconds", "recorded", "held out", "complete")
+    for clip in clips:
+        seconds = f"{len(clip) / clip.rate:.1f}"
+        marks = ("yes" if clip.held_out else "", "yes" if clip.complete else "no")
+        table.add_row(clip.name, str(len(clip)), seconds, str(len(clip.recorded)), *marks)
+    return table
+
+
+def _print(console: Console, found: Understood) -> None:
+    for name, told in found.figures.items():
+        _say(console, f"{name:<8} {told}")
+    for finding in found.findings:
+        _say(console, f"{'mistake' if finding.certain else 'look at':<8} {finding.sentence}")
+    if not found.findings:
+        _say(console, "nothing looks like a mistake in units or conventions; look at the picture all the same")
+
+
+def _say(console: Console, sentence: str) -> None:
+    console.print(sentence, highlight=False, markup=False, soft_wrap=True)
