@@ -31,7 +31,7 @@ GROUPS = {"training": errors(0.1), "walk (end)": errors(0.2, frames=1), "dance":
 
 def printed(groups: dict[str, Errors]) -> list[list[str]]:
     console = Console(file=io.StringIO(), width=200)
-    console.print(table(groups, teacher="a formula"))
+    console.print(table(groups))
     return [line.replace("│", " ").split("  ") for line in console.file.getvalue().splitlines() if "│" in line]
 
 
@@ -62,9 +62,11 @@ def test_files_hold_all_held_out_clips_together_too() -> None:
 
 def test_the_last_lines_say_what_the_file_holds() -> None:
     stored = Stored(clips=21, seconds=508.0, clip_bytes=10_400_000, file_bytes=61_200_000)
-    assert closing(stored, Path("a.muaavatar")) == "a.muaavatar: 61.2 MB, 21 clips of 8 min 28 s in all, 10.4 MB of it"
+    assert closing(stored, Path("a.muaavatar")) == (
+        "a.muaavatar: 61.2 MB, of which 10.4 MB are 21 clips (8 min 28 s together)"
+    )
     one = Stored(clips=1, seconds=5.3, clip_bytes=42_400, file_bytes=1_800_000)
-    assert closing(one, Path("a.muaavatar")) == "a.muaavatar: 1.8 MB, 1 clip of 5.3 s in all, 42 kB of it"
+    assert closing(one, Path("a.muaavatar")) == "a.muaavatar: 1.8 MB, of which 42 kB are 1 clip (5.3 s)"
     none = Stored(clips=0, seconds=0.0, clip_bytes=0, file_bytes=5_000_000)
     assert closing(none, Path("a.muaavatar")) == "a.muaavatar: 5.0 MB, no clip stored for playback"
 
@@ -76,3 +78,29 @@ def test_a_sentence_that_comes_several_times_in_a_stage_is_said_once() -> None:
         for sentence in ("It is large.", "It slides.", "It slides."):
             shown.note(sentence)
     assert file.getvalue().splitlines()[1:3] == ["  It is large.", "  It slides. (2 times)"]
+
+
+@pytest.mark.parametrize("width", [80, 1000])
+def test_no_figure_of_the_table_is_cut(width: int) -> None:
+    console = Console(file=io.StringIO(), width=width)
+    named = {f"a clip with a long name, number {i} [end]": errors(0.1 * i) for i in range(1, 4)}
+    console.print(table({"training": errors(0.1), **named}))
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in shown
+    for figure in ("99.0 %", "96.0 %", "91.0 %"):
+        assert figure in shown
+    assert "[end]" in shown.replace("\n", "") or width == 80
+
+
+def test_an_end_that_follows_another_stages_line_is_named() -> None:
+    file = io.StringIO()
+    with Display(Console(file=file)) as shown:
+        shown.stage("geometry")
+        shown.step(0, 2)
+        shown.stage("appearance")
+        shown.step(2, 2)
+        shown.stage("geometry")
+        shown.step(2, 2)
+        shown.stage("avatar")
+    said = [line.strip().split(" ")[0] for line in file.getvalue().splitlines()]
+    assert said == ["geometry", "appearance", "appearance:", "geometry:", "avatar", "0.0"]

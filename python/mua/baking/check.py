@@ -17,7 +17,7 @@ from mua.likeness import told
 from mua.likeness.compare import Likeness, compare
 from mua.likeness.sheet import likeness_sheet
 from mua.motion.clip import Clip
-from mua.motion.load import LoadedMotion, load_motions
+from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
 from mua.motion.quality import MotionQuality, measure_motion
@@ -74,7 +74,7 @@ def check(order: Order, listener: Listener) -> Check:
         motions=qualities,
         matched=pairs,
         unmatched=unmatched,
-        notes=tuple(dict.fromkeys((*character.notes, *(note for m in loaded for note in m.notes)))),
+        notes=counted((*character.notes, *_notes(loaded)), clips),
         warnings=(
             *_refusals(order, character, loaded),
             *warnings,
@@ -144,6 +144,10 @@ def _quality(order: Order, character: Character, motion: LoadedMotion) -> Motion
     if order.motions:
         return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
     return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, ())
+
+
+def _notes(loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(note for motion in loaded for note in motion.notes))
 
 
 def _refusals(order: Order, character: Character, loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:

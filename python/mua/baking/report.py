@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from rich.markup import escape
 from rich.table import Table
 
 from mua.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
@@ -18,8 +19,11 @@ LEGEND = (
     "coefficients for the learnt bases. Explained: of the variance about the mean. Note: {teacher}."
 )
 BASELINES = ("mean", "best", "student")
-SHORT = ("", "frames", "colour", "offset", "colour /255", "offset mm", "mesh mm")
-SHORT_LEGEND = "Shares of the variance about the mean texture, then root mean square errors; _errors.md holds the rest."
+SHORT = (
+    *("", "frames", "colour\nexplained", "offset\nexplained"),
+    *("colour\nerror\n/255", "offset\nerror\nmm", "mesh\nerror\nmm"),
+)
+SHORT_LEGEND = "Explained: of the variance about the mean texture of the training frames. Errors are root mean squares."
 HELD_OUT = "all held out"
 HEADINGS = ("frames", "attribute", "unit", "mean", "best", "student", "explained")
 
@@ -49,13 +53,12 @@ def percent(share: float) -> str:
     return "nothing varies" if math.isnan(share) else f"{100 * share:.1f} %"
 
 
-def table(groups: Mapping[str, Errors], *, teacher: str) -> Table:
+def table(groups: Mapping[str, Errors]) -> Table:
     """For the terminal: one line for training, for all held-out clips together and for each of them."""
-    shown = Table(*SHORT, title="What the student explains, and its RMS errors")
-    shown.caption = f"{SHORT_LEGEND} Note: {teacher}."
-    shown.columns[0].no_wrap = True
+    shown = Table(*SHORT, title="How near the student comes to the teacher")
+    shown.columns[0].overflow = "fold"
     for column in shown.columns[1:]:
-        column.justify = "right"
+        column.justify, column.no_wrap = "right", True
     held = held_out_errors(groups)
     clips = [(name, errors) for name, errors in groups.items() if name != TRAINING]
     if TRAINING in groups:
@@ -63,13 +66,23 @@ def table(groups: Mapping[str, Errors], *, teacher: str) -> Table:
     if held is not None:
         shown.add_row(HELD_OUT, *_short(held), end_section=True)
     for name, errors in clips if len(clips) > 1 else ():
-        shown.add_row(f"  {name}", *_short(errors))
+        shown.add_row(f"  {escape(name)}", *_short(errors))
     return shown
 
 
 def _short(errors: Errors) -> list[str]:
     explained = [percent(errors.explained(attribute)) for attribute in ("SH", "offset")]
-    return [str(errors.frames), *explained, *(f"{errors.rms(name, 'student'):.3g}" for name in ("SH", "offset", MESH))]
+    return [str(errors.frames), *explained, *(_figure(errors.rms(name, "student")) for name in ("SH", "offset", MESH))]
+
+
+def _figure(value: float) -> str:
+    """Three digits, also where the last are nought, so that a column can be read down."""
+    return f"{value:#.3g}".rstrip(".")
+
+
+def said(*, teacher: str) -> tuple[str, ...]:
+    """What holds for all of the table, in sentences."""
+    return SHORT_LEGEND, f"{teacher[:1].upper()}{teacher[1:]}."
 
 
 def markdown(groups: Mapping[str, Errors], *, teacher: str) -> str:
@@ -117,7 +130,8 @@ def closing(stored: Stored, output: Path) -> str:
         return f"{size}, no clip stored for playback"
     clips = "1 clip" if stored.clips == 1 else f"{stored.clips} clips"
     held = f"{stored.clip_bytes / 1e6:.1f} MB" if stored.clip_bytes >= 1e6 else f"{stored.clip_bytes / 1e3:.0f} kB"
-    return f"{size}, {clips} of {duration(stored.seconds)} in all, {held} of it"
+    together = " together" if stored.clips > 1 else ""
+    return f"{size}, of which {held} are {clips} ({duration(stored.seconds)}{together})"
 
 
 def duration(seconds: float) -> str:

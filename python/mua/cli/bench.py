@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
+from rich.text import Text
 
 from mua import files
 from mua.asset.write import write
@@ -60,7 +61,8 @@ def bench(
     if output is not None:
         files.write_bytes(output, json.dumps(as_json(measured), indent=2).encode() + b"\n")
     console = printer()
-    console.print(_table(measured))
+    for part in (Text(_heading(measured)), _table(measured), *map(Text, _legend(measured))):
+        console.print(part)
     if output is not None:
         console.print(output, highlight=False, soft_wrap=True)
 
@@ -73,13 +75,7 @@ def run() -> None:
 def _table(measured: "Measured") -> Table:
     from mua.bench.report import total_milliseconds, total_work
 
-    width, height = measured.screen
-    title = f"{measured.avatar} on {measured.device}, median of {measured.frames} frames"
-    caption = (
-        f"{measured.visible:,} of {measured.splats:,} splats visible, {measured.eyes} x {width} x {height} pixels; "
-        f"a large copy reads and writes {measured.copy_bandwidth / 1e9:.1f} GB/s; spread: 10 to 90 % of the frames"
-    )
-    table = Table(*COLUMNS, title=title, caption=caption, box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    table = Table(*COLUMNS, box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for column in table.columns:
         column.justify, column.no_wrap = ("left" if column.header == "kernel" else "right"), True
     for name, timing in measured.kernels.items():
@@ -89,6 +85,23 @@ def _table(measured: "Measured") -> Table:
     table.add_row("frame, sorted", *whole)
     table.add_row("draw", f"{measured.draw.median:.3f}", _spread(measured.draw))
     return table
+
+
+def _heading(measured: "Measured") -> str:
+    width, height = measured.screen
+    eyes = "1 eye" if measured.eyes == 1 else f"{measured.eyes} eyes"
+    frames = "1 frame" if measured.frames == 1 else f"medians of {measured.frames} frames"
+    return (
+        f"{measured.avatar} on {measured.device}: {frames}, {eyes} of {width} x {height} pixels, "
+        f"{measured.visible:,} of {measured.splats:,} splats visible."
+    )
+
+
+def _legend(measured: "Measured") -> tuple[str, ...]:
+    return (
+        "spread: from the fastest tenth of the frames to the slowest.",
+        f"copy: GB/s as a share of a large copy's, which reads and writes {measured.copy_bandwidth / 1e9:.1f} GB/s.",
+    )
 
 
 def _figures(milliseconds: float, spread: str, work: Work, copy_bandwidth: float) -> tuple[str, ...]:

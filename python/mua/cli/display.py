@@ -24,6 +24,7 @@ class Display:
         self._open: dict[str, tuple[TaskID, float]] = {}  # stages that have not ended, and when each began
         self._stage = ""  # that steps belong to
         self._told = 0.0
+        self._spoken = ""  # the stage that the last line was about
         self._notes: dict[str, int] = {}  # of this stage, and how often each came
 
     def __enter__(self) -> "Display":
@@ -49,6 +50,7 @@ class Display:
         self._open[name] = self.progress.add_task(name, total=None, detail=""), time.monotonic()
         if self.progress.disable:
             self._say(name)
+            self._spoken = name
 
     def step(self, done: int, total: int, *, detail: str = "") -> None:
         """Say how far the stage is."""
@@ -83,8 +85,10 @@ class Display:
             self._say(f"  {among}{time.monotonic() - begun:.1f} s")
 
     def _among(self, name: str) -> str:
-        """Which stage a line is about, where several are open."""
-        return f"{name}: " if len(self._open) > 1 else ""
+        """Which stage a line is about, where several are open or the line before was about another."""
+        known = len(self._open) == 1 and self._spoken == name
+        self._spoken = name
+        return "" if known else f"{name}: "
 
     def _task(self, name: str) -> Task:
         return next(task for task in self.progress.tasks if task.id == self._open[name][0])
@@ -97,12 +101,15 @@ class Display:
 
 def show(console: Console, baked: "Baked") -> None:
     """Print what a bake or a training ends with: the table of errors, and what was written where."""
-    from mua.baking.report import closing, table
+    from mua.baking.report import closing, said, table
 
+    lines = [closing(baked.stored, baked.output)]
     if baked.errors:
-        console.print(table(baked.errors, teacher=baked.teacher))
-    console.print(closing(baked.stored, baked.output), highlight=False, soft_wrap=True, markup=False)
-    written = (baked.sheet, baked.figures, None if baked.figures is None else baked.figures.with_suffix(".json"))
-    for path in written:
-        if path is not None:
-            console.print(path, highlight=False, soft_wrap=True)
+        console.print(table(baked.errors))
+        lines = [*said(teacher=baked.teacher), *lines]
+    if baked.sheet is not None:
+        lines.append(f"{baked.sheet}: teacher, student and their difference side by side")
+    if baked.figures is not None:
+        lines.append(f"{baked.figures}, {baked.figures.with_suffix('.json')}: errors of every attribute")
+    for line in lines:
+        console.print(line, highlight=False, markup=False, soft_wrap=True)

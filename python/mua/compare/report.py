@@ -55,7 +55,8 @@ def legend(results: Sequence[Result], setting: Setting) -> list[str]:
     ]
     if any(entry.picture and not entry.cost.storage and entry.name != MEAN for entry in entries):
         said.append(f"Systems were trained for {budget} each, at the sizes of preset {setting.preset}.")
-    said.append("PSNR (dB), SSIM and MS-SSIM: more is nearer; FLIP and LPIPS: less is nearer.")
+    less = "FLIP and LPIPS" if setting.lpips else "FLIP"
+    said.append(f"PSNR (dB), SSIM and MS-SSIM: more is nearer; {less}: less is nearer.")
     said.append("GFLOPs: of what turns a pose into a texture and a mesh; posing and drawing are left out.")
     said.append(f"MB: {'of a file; else ' if files else ''}4 bytes a parameter.")
     if any(cost.fps is not None for cost in costs):
