@@ -76,6 +76,14 @@ def test_measures_a_limb_that_points_elsewhere_and_names_it() -> None:
     assert "left forearm" in found.flaws[0]
 
 
+def test_names_the_limb_that_is_farthest_off_first() -> None:
+    skeleton = person()
+    clip = walk(skeleton)
+    both = turned(skeleton, turned(skeleton, clip, "LeftForeArm", "y", 25), "RightForeArm", "y", 50)
+    flaw = measured(skeleton, clip, both).flaws[0]
+    assert 0 < flaw.index("right forearm") < flaw.index("left forearm")
+
+
 @pytest.mark.parametrize("joint", ["Spine", "Hips"])
 def test_measures_a_torso_that_is_turned_away_from_the_travel(joint: str) -> None:
     skeleton = person()

@@ -13,7 +13,6 @@ import argparse
 import fnmatch
 import os
 import random
-import shutil
 import subprocess
 import tomllib
 from collections import Counter
@@ -85,7 +84,8 @@ def reason(mutant: Mutant, text: str, known: list[dict[str, str]]) -> str:
 def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen], caught: Counter[tuple[str, str]]) -> Outcome:
     """Put a fault in, run the tests that see it, take it out."""
     path, tests = checkout.root / mutant.path, seeing(mutant, seen, caught)
-    mutated = mutant.apply(path.read_text(encoding="utf-8"))
+    text, times = path.read_text(encoding="utf-8"), path.stat()
+    mutated = mutant.apply(text)
     if path.suffix == ".py":
         try:
             compile(mutated, str(path), "exec")
@@ -98,7 +98,8 @@ def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen], caught: Cou
     try:
         return _judged(mutant, checkout, tests, 120 + 4 * sum(seen[name].seconds for name in tests))
     finally:
-        shutil.copy2(ROOT / mutant.path, path)
+        path.write_text(text, encoding="utf-8")
+        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
 def _judged(mutant: Mutant, checkout: Checkout, tests: list[str], seconds: float) -> Outcome:

@@ -122,6 +122,20 @@ def test_views_are_drawn_in_their_order(story: Story) -> None:
     assert told["log"] == []
 
 
+def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(1)
+    texels = avatar.rig.texels
+    few = replace(
+        texels, texels=texels.texels[:2], triangles=texels.triangles[:2], barycentrics=texels.barycentrics[:2]
+    )
+    geometry, appearance = (replace(b, static=b.static[:, :2]) for b in (avatar.geometry, avatar.appearance))
+    avatar = replace(avatar, rig=replace(avatar.rig, texels=few), geometry=geometry, appearance=appearance)
+    write(folder / "sparse.muaavatar", avatar, storage="f16")
+    told = story("ShowsSparse", "sparse")
+    assert told["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
+    assert told["log"] == []
+
+
 def test_splats_are_drawn_where_surfaces_cannot_be(story: Story) -> None:
     told = story("LacksSurface", "first")
     assert told["together"] == ["1 0"]
@@ -223,6 +237,13 @@ def test_an_avatar_whose_rig_rests_is_only_sorted(story: Story) -> None:
         assert reposes in (0, posed - sorting)  # the frame that moved, where it is none of the avatar's own rate
     assert told["carried"] == [str(posed)]
     assert told["left"] == [str(len(FRAME_ORDER))]
+
+
+def test_a_rig_that_is_picked_in_the_inspector_is_followed(story: Story) -> None:
+    told = story("RigIsPicked", "first")
+    sorting = len(FRAME_ORDER[FRAME_ORDER.index("SplatProject") :])
+    assert told["idle"] == [str(10 * sorting)]
+    assert int(told["woken"][0]) > 10 * sorting
 
 
 def test_a_rig_that_rested_is_remembered_resting(story: Story) -> None:

@@ -119,6 +119,21 @@ namespace Mua
             Say("nothing", Rendered());
         }
 
+        /// <summary>What is drawn of an avatar between whose texels there is no triangle.</summary>
+        private static void ShowsSparse()
+        {
+            Show(files[0]).Views = (AvatarViews)31;
+            for (int i = 0; i < 60; i++)
+            {
+                Frames(1);
+                Thread.Sleep(1);
+            }
+            foreach (AvatarDraw draw in AvatarWorld.Current.Draws)
+            {
+                Say("order", draw.Material.shader.name + " " + draw.Pass);
+            }
+        }
+
         /// <summary>Draws of cameras and of lights in a frame.</summary>
         private static string Rendered()
         {

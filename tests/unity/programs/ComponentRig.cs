@@ -2,6 +2,7 @@
 using System;
 using System.Collections.Generic;
 using System.IO;
+using System.Reflection;
 using Mua.Format;
 using Mua.Motion;
 using UnityEngine;
@@ -43,6 +44,20 @@ namespace Mua
             UnityEngine.Object.DestroyImmediate(rig[avatar.Skeleton.Root].gameObject);
             Frames(20);
             Say("state", shown.State);
+        }
+
+        private static void RigIsPicked()
+        {
+            Transform[] rig = MakeRig(AvatarFile.Read(File.ReadAllBytes(files[0])));
+            AvatarRenderer shown = Show(files[0]);
+            shown.IsPlaying = false;
+            FieldInfo field = typeof(AvatarRenderer).GetField("rig", BindingFlags.Instance | BindingFlags.NonPublic);
+            field.SetValue(shown, Scene[Scene.Count - 2].transform);
+            StandIns.Messages.Send(shown, "OnValidate");
+            Frames(72);
+            Say("idle", Dispatches(10));
+            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            Say("woken", Dispatches(10));
         }
 
         private static void RigRests()
