@@ -15,7 +15,7 @@ from mua.motion.bvh import read_bvh
 from mua.motion.clip import Clip
 from mua.motion.match import match_joints
 from mua.motion.quality import measure_motion
-from mua.motion.retarget import retarget
+from mua.motion.retarget import retarget, retarget_matched
 from mua.motion.source import SourceMotion
 from mua.rig.read import read_surfaces
 from mua.rig.skeleton import Skeleton
@@ -389,3 +389,20 @@ def test_parts_of_the_trunk_that_hang_on_the_root_go_with_the_body() -> None:
     turned, at = (np.stack(parts) for parts in zip(*map(world, (apart, whole), clips), strict=True))
     np.testing.assert_allclose(at[0], at[1], atol=POSITION_BOUND)
     np.testing.assert_allclose(np.abs(np.sum(turned[0] * turned[1], axis=-1)), 1, atol=ANGLE_BOUND)
+
+
+def test_tells_which_limbs_of_the_character_nothing_moves() -> None:
+    whole = person()
+    arm = ("Shoulder", "Arm", "ForeArm", "Hand", "HandMiddle1")
+    kept = [j for j, name in enumerate(whole.names) if name.removeprefix("Left").removeprefix("Right") not in arm]
+    armless = Skeleton(
+        tuple(whole.names[j] for j in kept),
+        np.array([kept.index(p) if (p := int(whole.parents[j])) >= 0 else -1 for j in kept], np.int32),
+        whole.bind_rotations[kept],
+        whole.bind_translations[kept],
+        root=kept.index(whole.root),
+    )
+    _, notes = retarget_matched(SourceMotion(armless, random_clip(armless)), whole, match_joints(armless, whole))
+    assert "Nothing of the motion moves left arm and right arm." in notes
+    _, notes = retarget_matched(SourceMotion(whole, random_clip(whole)), armless, match_joints(whole, armless))
+    assert not [note for note in notes if "moves" in note]

@@ -181,6 +181,11 @@ def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
     assert "404" in told["log"][0]
 
 
+def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) -> None:
+    told = story("HasJustEnoughBuffers", "first")
+    assert (told["state"], told["log"]) == (["Ready"], [])
+
+
 @pytest.mark.parametrize(
     ("name", "file", "words"),
     [
@@ -191,7 +196,8 @@ def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
         ("LacksKernel", "first", "splat_sort.compute"),
         ("LacksResources", "first", "MuaAvatarResources"),
         ("LacksCompute", "first", "compute shaders"),
-        ("LacksBuffers", "first", "4 buffers"),
+        ("LacksBuffers", "first", "4 buffers to a kernel"),
+        ("LacksVertexBuffers", "first", "4 buffers to a vertex shader"),
         ("LacksMemory", "first", "4096"),
     ],
 )

@@ -112,7 +112,7 @@ def answer(device: Device, recording: Path) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("name", ["Plays", "PlaysFromPackage", "WaitsForNothing", "WaitsInEditor"])
+@pytest.mark.parametrize("name", ["Plays", "PlaysOnLoad", "PlaysFromPackage", "WaitsForNothing", "WaitsInEditor"])
 def test_every_case_passes(device: Device, story: Story, tmp_path: Path, name: str) -> None:
     recording = tmp_path / "recorded"
     story(name, recording=recording)

@@ -231,6 +231,19 @@ namespace Mua
             Fails();
         }
 
+        private static void LacksVertexBuffers()
+        {
+            Machine.VertexBuffers(4);
+            Fails();
+        }
+
+        private static void HasJustEnoughBuffers()
+        {
+            Machine.ComputeBuffers(8);
+            Machine.VertexBuffers(5);
+            Say("state", Show(files[0]).State);
+        }
+
         private static void LacksMemory()
         {
             Machine.BufferSize(1 << 12);

@@ -55,7 +55,18 @@ namespace Mua
 
         private static void Plays()
         {
-            PlayerRun run = PlayerRun.Begin(words);
+            Plays(PlayerRun.Begin(words));
+        }
+
+        /// <summary>As the engine starts it, by the command line of this program.</summary>
+        private static void PlaysOnLoad()
+        {
+            typeof(PlayerRun).GetMethod("BeginOnLoad", BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
+            Plays(UnityEngine.Object.FindAnyObjectByType<PlayerRun>());
+        }
+
+        private static void Plays(PlayerRun run)
+        {
             int frames = 0;
             while (run != null && frames < Patience)
             {
