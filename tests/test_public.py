@@ -212,6 +212,49 @@ def test_a_training_refuses_a_wrong_option_in_a_sentence(options: dict[str, Any]
         mua.train(**({"recording": "nothing/here"} | options))
 
 
+RIG, STILL = AVATAR.rig, AVATAR.rig.skeleton.bind_pose
+WRONG_WRITING: dict[str, tuple[dict[str, Any], str]] = {
+    "directory": ({"directory": 3}, r"directory is 3 \(int\); expected a path"),
+    "rig": ({"rig": "hero"}, "rig is 'hero'; expected a mua"),
+    "rate": ({"rate": "fast"}, "rate is fast, expected 1 to 1000 frames per second"),
+    "shard": ({"shard_frames": 0}, "shard_frames is 0, expected at least 1"),
+    "clip": ({"clip": 3}, r"the clip's name is 3 \(int\); expected a text"),
+    "pose": ({"pose": (0, 1)}, r"pose is \(0, 1\) \(tuple\); expected a mua\.Pose"),
+    "mesh": ({"mesh": "tube"}, "mesh is no array of numbers, expected one of the shape"),
+    "texture": ({"texture": [[1.0], [1.0, 2.0]]}, "texture is no array that numpy reads"),
+    "text as texture": ({"texture": "red"}, "texture has elements of type .*, expected real numbers"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG_WRITING)
+def test_a_writer_refuses_what_is_no_frame(wrong: str, tmp_path: Path) -> None:
+    given: dict[str, Any] = {"directory": tmp_path, "rig": RIG, "rate": 24.0, "clip": "wave", "pose": STILL}
+    given |= {"mesh": RIG.mesh.vertices, "texture": np.zeros((len(RIG.texels.texels), 23)), "shard_frames": 32}
+    given |= WRONG_WRITING[wrong][0]
+
+    def write() -> None:
+        options = {name: given[name] for name in ("rate", "shard_frames")}
+        with mua.TeacherWriter(given["directory"], given["rig"], **options) as writer:
+            writer.start_clip(given["clip"])
+            writer.add(given["pose"], given["mesh"], given["texture"])
+
+    with pytest.raises(mua.InputError, match=WRONG_WRITING[wrong][1]):
+        write()
+
+
+def test_a_recording_refuses_frames_that_it_does_not_hold(written: Path) -> None:
+    recording = mua.Recording(Somewhere(written))
+    count = recording.count()
+    assert repr(recording).startswith(f"<mua.Recording '{written}': {count} training and ")
+    for rows in ([count], [-1]):
+        with pytest.raises(mua.InputError, match=rf"row {rows[0]}, but it holds {count} training frames"):
+            recording.meshes(rows)
+        with pytest.raises(mua.InputError, match=f"row {rows[0]}"):
+            recording.subbands(slice(0, 11), rows)
+    with pytest.raises(mua.InputError, match=r"frame is 10000; clip '\w+' has frames 0 to"):
+        recording.clips[0].pose(10000)
+
+
 @pytest.mark.parametrize("wrong", WRONG)
 def test_a_wrong_call_ends_in_a_sentence(wrong: str) -> None:
     call, sentence = WRONG[wrong]

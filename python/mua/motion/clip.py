@@ -3,7 +3,9 @@
 from dataclasses import dataclass, field, replace
 from typing import Self
 
+from mua.arguments import whole_number
 from mua.arrays import Array
+from mua.errors import InputError
 from mua.rig.skeleton import Pose
 
 LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second that a file may say
@@ -38,6 +40,9 @@ class Clip:
         return f"<mua.Clip {self.name!r}: {len(self)} frames at {self.rate:g} a second, {joints} joints>"
 
     def pose(self, index: int) -> Pose:
+        """The pose of a frame, counted from 0; raises InputError where there is none."""
+        if not 0 <= whole_number(index, "frame") < len(self):
+            raise InputError(f"frame is {index}; clip {self.name!r} has frames 0 to {len(self) - 1}")
         return Pose(self.rotations[index], self.translations[index])
 
     def cut(self, frames: slice | Array) -> Self:

@@ -15,7 +15,7 @@ from mua.rig.skeleton import Skeleton
 OFFERED = 8  # names in the sentence that refuses one
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Focus:
     """A point that goes along with a joint."""
 

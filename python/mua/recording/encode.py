@@ -91,7 +91,12 @@ def valid_texture(
     texels: Array,  # [N] row * size + col
 ) -> Array:
     """The values [N, 23] float32 at the valid texels; raises InputError for any other shape."""
-    texture = np.asarray(texture)
+    try:
+        texture = np.asarray(texture)
+    except (TypeError, ValueError):
+        raise InputError("texture is no array that numpy reads") from None
+    if texture.dtype.kind not in "iuf":
+        raise InputError(f"texture has elements of type {texture.dtype}, expected real numbers")
     if texture.shape == (header.valid_texels, CHANNELS):
         return np.asarray(texture, dtype=np.float32)
     if texture.shape == (header.texels, header.texels, CHANNELS):

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.processes import Processes
@@ -79,7 +80,7 @@ def share(parts: Sequence[Sequence[PlannedClip]], rank: int, count: int) -> list
 def record_together(
     teacher: Teacher,
     plan: Sequence[PlannedClip],  # the same in all processes
-    directory: Path,
+    directory: PathLike,
     *,
     processes: Processes,
     rate: float,
@@ -90,6 +91,7 @@ def record_together(
     `progress` hears how many wanted frames of its own share a process has recorded. Raises InputError as
     `TeacherWriter`, `record` and `join_parts` do.
     """
+    directory = as_path(directory, "directory")
     meet = processes.meeting()
     record_share(teacher, plan, directory, rank=processes.rank, count=processes.count, rate=rate, progress=progress)
     meet()
@@ -101,7 +103,7 @@ def record_together(
 def record_share(
     teacher: Teacher,
     plan: Sequence[PlannedClip],  # the whole of it, the same in all processes
-    directory: Path,  # of the joined recording
+    directory: PathLike,  # of the joined recording
     *,
     rank: int,  # which of the processes this is, from 0
     count: int,
@@ -110,6 +112,7 @@ def record_share(
     progress: Callable[[int], None] = lambda done: None,
 ) -> None:
     """Record one process's share of a plan; nothing where the parts are joined already."""
+    directory = as_path(directory, "directory")
     if is_joined(directory):
         return
     parts, reference = divide(plan), cache(lambda: first_texture(teacher, plan))
@@ -178,12 +181,13 @@ def remove_leftovers(directory: Path, parts: int) -> None:
             shutil.rmtree(left, ignore_errors=True)
 
 
-def join_parts(directory: Path, plan: Sequence[PlannedClip]) -> None:
+def join_parts(directory: PathLike, plan: Sequence[PlannedClip]) -> None:
     """Make one recording of all parts of a plan, its clips in the plan's order, and remove the parts.
 
     A kill leaves the parts or the whole. Raises InputError where a part is missing, unfinished or of another teacher;
     the parts stay as they are.
     """
+    directory = as_path(directory, "directory")
     parts = divide(plan)
     sources = [part_directory(directory, part, len(parts)) for part in range(len(parts))]
     if not is_joined(directory):

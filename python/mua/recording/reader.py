@@ -127,7 +127,7 @@ class Recording:
         held_out: bool = False,
     ) -> Subbands:
         """Absolute subbands of some channels and frames: the stored differences plus the reference's."""
-        at = self._places[held_out][np.asarray(rows, dtype=np.int64)]
+        at = self._at(rows, held_out=held_out)
         reference = self.reference.subbands
         bands = []
         for name, part in (("ll", (channels,)), ("d3", (slice(None), channels)), ("d2", (slice(None), channels))):
@@ -138,11 +138,12 @@ class Recording:
 
     def meshes(self, rows: Rows, *, held_out: bool = False) -> Array:
         """Canonical vertices [F, V, 3] float32, metres."""
-        return self._gather("meshes", self._places[held_out][np.asarray(rows, dtype=np.int64)], ())
+        return self._gather("meshes", self._at(rows, held_out=held_out), ())
 
     def mean_texture(self) -> Array:
         """The mean [N, 23] float64 over all training frames, at full precision and not only over those kept whole."""
-        mean = self._sum / self._training_frames
+        count = self._training_frames  # asked first: without frames there is no sum
+        mean = self._sum / count
         mean += self.reference.texture
         return mean
 
@@ -188,6 +189,15 @@ class Recording:
         if not self.count():
             raise InputError(f"recording {self.directory}: it holds no training frame")
         return self.count()
+
+    def _at(self, rows: Rows, *, held_out: bool) -> Array:
+        """Shard and row in it [F, 2] of recorded frames; raises InputError for a row that there is not."""
+        asked, count = np.asarray(rows, dtype=np.int64), self.count(held_out)
+        wrong = asked[(asked < 0) | (asked >= count)]
+        if wrong.size:
+            kind = "held-out" if held_out else "training"
+            raise InputError(f"recording {self.directory}: row {wrong[0]}, but it holds {count} {kind} frames")
+        return self._places[held_out][asked]
 
     def _gather(
         self,

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from mua.arguments import PathLike, as_path
 from mua.errors import InputError
 from mua.recording import damage
 from mua.recording.layout import HEADER, SHARDS
@@ -104,7 +105,7 @@ class _Crew:
 def record_by_workers(
     teacher: Callable[[], Teacher],  # makes one; pickles
     plan: Sequence[PlannedClip],
-    directory: Path,
+    directory: PathLike,
     *,
     jobs: int,  # processes at most
     rate: float,
@@ -117,6 +118,7 @@ def record_by_workers(
     hears how many of all wanted frames are recorded, and by how many processes. Raises InputError as `TeacherWriter`,
     `record` and `join_parts` do, and where a worker ends before its work does.
     """
+    directory = as_path(directory, "directory")
     parts = divide(plan)
     _remove_damaged(directory, plan, rate=rate, whole=True, note=note)
     for part, clips in enumerate(parts):

@@ -4,11 +4,11 @@ import shutil
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
+from mua.arguments import PathLike, as_path, told, whole_number
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.locks import DirectoryLock
@@ -76,7 +76,7 @@ class TeacherWriter:
 
     def __init__(
         self,
-        directory: Path | str,
+        directory: PathLike,
         rig: Rig,
         *,
         rate: float,  # frames per second of every clip
@@ -89,13 +89,18 @@ class TeacherWriter:
         Raises InputError where it holds a recording of another rig, rate or wavelet, where it is damaged, where another
         writer is at work in it, where the texture size cannot be halved four times, or where the rig cannot be meant.
         """
+        self.directory = directory = as_path(directory, "directory")
+        if not isinstance(rig, Rig):
+            raise InputError(f"rig is {told(rig)}; expected a mua.rig.rig.Rig")
+        for name, count in (("whole_every", whole_every), ("shard_frames", shard_frames)):
+            if whole_number(count, name) < 1:
+                raise InputError(f"recording {directory}: {name} is {count}, expected at least 1")
         filters(wavelet)
         if rig.texels.size % STEP:
             raise InputError(f"recording {directory}: texture size {rig.texels.size}, expected a multiple of {STEP}")
-        if not LEAST_RATE <= rate <= LARGEST_RATE:
+        if not isinstance(rate, int | float | np.number) or not LEAST_RATE <= rate <= LARGEST_RATE:
             expected = f"{LEAST_RATE:g} to {LARGEST_RATE:g} frames per second"
-            raise InputError(f"recording {directory}: rate is {rate:g}, expected {expected}")
-        self.directory = Path(directory)
+            raise InputError(f"recording {directory}: rate is {rate}, expected {expected}")
         self._told: set[str] = set()  # what was warned of
         try:
             self._judge(rig_findings(rig), "rig")
@@ -139,6 +144,8 @@ class TeacherWriter:
         A clip that an earlier run left half recorded goes on at `next_frame(name)`. `held_out` frames are kept for
         evaluation and stay out of the mean. Raises InputError for a complete clip or another `held_out` than before.
         """
+        if not isinstance(name, str) or not name:
+            raise InputError(f"recording {self.directory}: the clip's name is {told(name)}; expected a text")
         if name == self._clip:
             return
         state = self._clips.get(name, _ClipState(held_out))
@@ -271,6 +278,8 @@ class TeacherWriter:
         self._shard.complete.append(clip)
 
     def _check_pose(self, pose: Pose) -> tuple[Array, Array]:
+        if not isinstance(pose, Pose):
+            raise InputError(f"pose is {told(pose)}; expected a mua.Pose")
         rotations = _checked("pose rotations", pose.rotations, (self._header.joints, 4), np.float64)
         translations = _checked("pose translations", pose.translations, (self._header.joints, 3), np.float64)
         lengths = np.linalg.norm(rotations, axis=1)
@@ -351,7 +360,10 @@ def _check_order(frame: int, expected: int) -> None:
 
 def _checked(name: str, value: Array, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
     """A copy of the given type; raises InputError for another shape or a value that is not finite."""
-    array = np.array(value, dtype=dtype)
+    try:
+        array = np.array(value, dtype=dtype)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is no array of numbers, expected one of the shape {list(shape)}") from None
     if array.shape != shape:
         raise InputError(f"{name} has shape {list(array.shape)}, expected {list(shape)}")
     if not np.isfinite(array).all():
