@@ -8,7 +8,8 @@ from mua.rig.surface_points import spread_points
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.texture.coverage import coverage
 from mua.texture.footprints import TexelPoints
-from mua.texture.surfels import SPREAD, Surfels, rest_surfels
+from mua.texture.sharpness import SPREAD
+from mua.texture.surfels import Surfels, rest_surfels
 
 SIZE = 48
 OPAQUE = 0.8  # of what lies behind, a fifth shines through where two charts meet
@@ -17,7 +18,8 @@ OPAQUE = 0.8  # of what lies behind, a fifth shines through where two charts mee
 def laid(mesh: Mesh) -> tuple[TexelMap, Surfels, np.ndarray]:
     texels = build_texel_map(mesh, SIZE)
     at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
-    return texels, rest_surfels(mesh, size=SIZE, **at), TexelPoints(mesh, SIZE, **at).places
+    found = rest_surfels(mesh, size=SIZE, **at)
+    return texels, found, TexelPoints(mesh, SIZE, **at).places + found.aside
 
 
 def sheet(points: np.ndarray, uv: np.ndarray) -> Mesh:
@@ -53,19 +55,20 @@ def apart(*meshes: Mesh) -> Mesh:
     )
 
 
-def least_coverage(mesh: Mesh) -> float:
-    """Of points well inside the surface's outline."""
+def least_coverage(mesh: Mesh, *, border: float = 0.05) -> float:
+    """Of points farther inside the surface's outline than a share of its width: at the outline itself half is right."""
     _, found, places = laid(mesh)
     triangles, barycentrics = spread_points(mesh, 4000)
     points = np.einsum("nk,nkc->nc", barycentrics, mesh.vertices[mesh.faces[triangles]])
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    inner = np.all((points >= low + 0.05 * (high - low)) & (points <= high - 0.05 * (high - low)), axis=1)
+    inner = np.all((points >= low + border * (high - low)) & (points <= high - border * (high - low)), axis=1)
     return float(coverage(points[inner], places, found.rotations, np.exp(found.log_scales)).min())
 
 
 @pytest.mark.parametrize("size", [1.3e-3, 1.0, 40.0])
 def test_a_sheet_with_an_anisotropic_layout_is_closed_at_any_size(size: float) -> None:
-    assert least_coverage(graded(np.ones(4), 0.1, size=size)) > OPAQUE
+    height = 0.1
+    assert least_coverage(graded(np.ones(4), height, size=size), border=0.5 / (height * SIZE)) > OPAQUE
 
 
 def test_columns_with_few_texels_beside_columns_with_many_are_closed() -> None:
@@ -100,7 +103,8 @@ def test_a_sliver_in_the_texture_makes_no_fog() -> None:
 def test_neighbouring_surfels_overlap() -> None:
     mesh = graded(np.array([1, 0.3, 2, 1.0]), 0.5)
     texels, found, places = laid(mesh)
-    beside = np.flatnonzero(np.diff(texels.texels) == 1)
+    inner = ~found.aside.any(axis=1)  # those at the border are as wide as the surface that is left to them
+    beside = np.flatnonzero((np.diff(texels.texels) == 1) & inner[1:] & inner[:-1])
     gap = np.linalg.norm(places[beside + 1] - places[beside], axis=1)
     extent = np.exp(found.log_scales[:, :2]).max(axis=1)
     assert np.all(gap <= (extent[beside] + extent[beside + 1]) / (2 * SPREAD) * (1 + 1e-6))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mua.texture.sharpness import SPREAD
 from mua.texture.sheet import surfel_opacities
-from mua.texture.surfels import SPREAD
 
 BY_PLACE = 0.01  # a mean over a thousand places
 

@@ -20,6 +20,7 @@ from mua.teachers.simulated import SimulatedTeacher
 from mua.teachers.simulation import Simulation
 from mua.teachers.still import StillTeacher
 from mua.teachers.teacher import TeacherFrame
+from mua.texture import rims
 from mua.texture.channels import ATTRIBUTES, CHANNELS
 
 SIZE = 48
@@ -46,8 +47,9 @@ def teacher() -> SimulatedTeacher:
 
 @pytest.fixture
 def unsunk(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Splats lie on the surface and not a little below it."""
+    """Splats lie on the surface and not a little below it, at their texels' points along the borders of charts too."""
     monkeypatch.setattr(texels, "SINK", 0.0)
+    monkeypatch.setattr(rims, "FARTHEST", 0.0)
 
 
 def test_whole_frames_have_the_shapes_of_the_rig(teacher: SimulatedTeacher) -> None:

@@ -1,17 +1,23 @@
 """Splats of a still character, drawn: its silhouette is the surface's, and nothing shines through."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tube import HEIGHT, RADIUS, tube
 
+from mua.arrays import Array
 from mua.camera import orbit
 from mua.decode import pose_splats
 from mua.rendering import render_premultiplied
+from mua.rig.character import Character
 from mua.teachers import texels
 from mua.teachers.still import StillTeacher
+from mua.texture.sharpness import SPREAD, Sharpness
 
 SCREEN = (96, 256)  # pixels
 TEXELS = 64
+SINGLE = 16 * float(np.finfo(np.float32).eps)  # a few products of float32
 
 
 def alpha_of(sides: int, *, azimuth: float = 0.0) -> tuple[np.ndarray, float]:
@@ -55,3 +61,48 @@ def test_nothing_shines_through_at_sharp_edges(azimuth: float) -> None:
     for row in middle:
         inside = np.flatnonzero(row >= 0.5)
         assert row[inside[0] + 1 : inside[-1]].min() > 0.8
+
+
+def striped_tube() -> Character:
+    """A tube under slanting stripes of four texels."""
+    row, column = (np.indices((256, 256)) + 0.5) * TEXELS / 256
+    gray = 127 + 120 * np.sign(np.sin(2 * np.pi / 4 * (0.8 * column + 0.6 * row)))
+    picture = np.stack([gray, gray, gray, np.full_like(gray, 255)], axis=2).astype(np.uint8)
+    return replace(tube(rings=29, sides=40), base_color=picture)
+
+
+def drawn(character: Character, size: int) -> Array:
+    """The front of a character [H, W, 3] whose texture has so many texels a side."""
+    teacher = StillTeacher(character, texels=size)
+    frame = teacher.frame(character.skeleton.bind_pose)
+    splats = pose_splats(teacher.rig, frame.mesh, texture=frame.texture, pose=frame.pose)
+    low, high = character.mesh.vertices.min(axis=0), character.mesh.vertices.max(axis=0)
+    camera = orbit(np.stack([low, high]), screen=SCREEN, azimuth=0.0, elevation=0.0)
+    return np.asarray(render_premultiplied(splats, camera)[SCREEN[1] // 3 : -SCREEN[1] // 3, 40:56, :3])
+
+
+def even(picture: Array) -> Sharpness:
+    """What a picture asks for that is even."""
+    count = (len(picture) // 2) ** 2
+    return Sharpness(np.full(count, SPREAD), np.tile([1.0, 0], (count, 1)), np.zeros(count))
+
+
+def test_stripes_are_sharper_than_round_surfels_of_one_width_show_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    character = striped_tube()
+    finer = drawn(character, 3 * TEXELS)
+    sharp = float(np.mean((drawn(character, TEXELS) - finer) ** 2))
+    monkeypatch.setattr(texels, "sharpness", even)
+    assert sharp < 0.75 * float(np.mean((drawn(character, TEXELS) - finer) ** 2))
+
+
+def test_lines_of_a_picture_change_nothing_that_moves() -> None:
+    """The turn along a line is the same in all poses, so that what a student has to learn stays as smooth."""
+    plain = tube(rings=29, sides=40)
+    bent = plain.skeleton.bind_pose.rotations.copy()
+    bent[-1] = [np.cos(0.4), np.sin(0.4), 0, 0]
+    moves = []
+    for character in (plain, striped_tube()):
+        teacher, rest = StillTeacher(character, texels=TEXELS), character.skeleton.bind_pose
+        moves.append(teacher.frame(replace(rest, rotations=bent)).texture - teacher.frame(rest).texture)
+    assert np.abs(moves[0][:, 3:10]).max() > 0.01
+    np.testing.assert_allclose(moves[0][:, :10], moves[1][:, :10], atol=SINGLE)

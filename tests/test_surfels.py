@@ -10,6 +10,7 @@ from tube import HEIGHT, RADIUS, tube
 from mua import rotation
 from mua.rig.texel_map import build_texel_map
 from mua.texture import surfels
+from mua.texture.sharpness import SPREAD
 
 SIZE = 61
 ROUNDING = 1e3 * float(np.finfo(np.float64).eps)  # one-rings' 2 x 2 inverses lose two digits
@@ -61,8 +62,8 @@ def test_footprint_is_the_distance_of_texels() -> None:
     chord = np.sinc(1 / 60)  # a side of the 60-gon over its arc
     tilt = 1 - np.cos(2 * np.pi / 60)  # smooth normals lie between those of two sides
     inner = surrounded(texels)
-    np.testing.assert_allclose(scales[inner, 0], surfels.SPREAD * wide * chord, rtol=tilt)
-    np.testing.assert_allclose(scales[inner, 1], surfels.SPREAD * high, rtol=tilt)
+    np.testing.assert_allclose(scales[inner, 0], SPREAD * wide * chord, rtol=tilt)
+    np.testing.assert_allclose(scales[inner, 1], SPREAD * high, rtol=tilt)
     assert np.all(scales[:, 2] <= scales[:, :2].min(axis=1))
 
 

@@ -9,10 +9,11 @@ from mua.rig.rig import Rig
 from mua.rig.surface_points import points_on_surface
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teachers.light import Light
-from mua.texture.albedo import sample_albedo
+from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.channels import CHANNELS, SH_C0, SH_C1
 from mua.texture.deconvolution import deconvolved
 from mua.texture.sh import LINEAR
+from mua.texture.sharpness import Sharpness, sharpness
 from mua.texture.sheet import surfel_opacities
 from mua.texture.stretch import SurfelStretch
 from mua.texture.surfels import rest_surfels
@@ -33,17 +34,28 @@ class SurfaceTexels:
         self._dense = _weights(corners, barycentrics, len(mesh.vertices))
         self._coarse = _weights(rig.mesh.faces[texels.triangles], texels.barycentrics, len(rig.mesh.vertices))
         relief = self._dense @ mesh.vertices - self._coarse @ rig.mesh.vertices
+        picture = finer_picture(character.base_color, texels.size)
+        wanted = sharpness(picture)
         surfels = rest_surfels(
-            mesh, size=texels.size, texels=texels.texels, triangles=triangles, barycentrics=barycentrics
+            mesh,
+            size=texels.size,
+            texels=texels.texels,
+            triangles=triangles,
+            barycentrics=barycentrics,
+            wanted=wanted.at(texels.texels),
         )
+        relief += surfels.aside
         relief -= SINK * np.exp(surfels.log_scales[:, :2]).min(axis=1, keepdims=True) * surfels.normals
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
-        albedo = _albedo(character.base_color, uv, texels)
+        albedo = sample_albedo(character.base_color, uv, texels.size)
+        at_home = _at_home(uv, texels)
+        albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)
-            for rows in (relief, surfels.rotations, surfels.log_scales, albedo[:, :3])
+            for rows in (relief, surfels.smooth, surfels.log_scales, albedo[:, :3])
         )
-        self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.rotations)
+        self._stretch = SurfelStretch(mesh.vertices, mesh.faces, triangles=triangles, rotations=surfels.smooth)
+        self._turned_to_lines = np.ascontiguousarray((surfels.rotations - surfels.smooth).T, dtype=np.float32)
         alpha = np.clip(surfel_opacities(albedo[:, 3]), 1e-6, 1 - 1e-6)
         self._opacity = np.clip(np.log(alpha / (1 - alpha)), -MOST_CLEAR, MOST_OPAQUE)
 
@@ -61,6 +73,7 @@ class SurfaceTexels:
         planes = np.empty((CHANNELS, self._relief.shape[1]), dtype=np.float32)
         planes[0:3] = self._relief + self._at_texels(displacement) - _planes(self._coarse, coarse_displacement)
         planes[3:7] = _turned(self._at_texels(turn), self._rest)
+        planes[3:7] += self._turned_to_lines  # the same in all poses, so that what moves stays smooth
         planes[7:10] = self._log_scales
         planes[7:9] += self._stretch(moved, self._at_texels(strain))
         planes[10] = self._opacity
@@ -83,19 +96,21 @@ class SurfaceTexels:
         return _planes(self._dense, values)
 
 
-def _albedo(
-    base_color: Array,  # [S, S, 4] uint8 sRGB
+def _at_home(
     uv: Array,  # [N, 2] of each texel's point, v down
     texels: TexelMap,
 ) -> Array:
-    """Colours and opacities [N, 4]: as sharp as surfels can show them where a texel's point lies in its own square."""
-    albedo = sample_albedo(base_color, uv, texels.size)
-    colors = deconvolved(base_color, texels.size, 1 / (1 + np.exp(-MOST_OPAQUE))).reshape(-1, 3)[texels.texels]
+    """Which texels [N] have their point in their own square of the texture."""
     row, column = np.divmod(texels.texels, texels.size)
     apart = np.abs(uv * texels.size - 0.5 - np.stack([column, row], axis=1)).max(axis=1)
-    at_home = apart <= 0.5
-    albedo[at_home, :3] = colors[at_home]
-    return albedo
+    return np.asarray(apart <= 0.5)
+
+
+def _sharp(picture: Array, wanted: Sharpness) -> Array:
+    """Colours [S * S, 3] that are as near to the picture as the surfels can show them."""
+    size = len(picture) // FINER
+    opacity = 1 / (1 + np.exp(-MOST_OPAQUE))
+    return deconvolved(picture[..., :3], opacity, wanted.spreads.reshape(size, size)).reshape(-1, 3)
 
 
 def _planes(weights: sparse.csr_matrix, values: Array) -> Array:

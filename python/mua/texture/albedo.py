@@ -5,6 +5,8 @@ import numpy as np
 from mua.arrays import Array
 from mua.rig.filtering import bilinear, bled, reduced
 
+FINER = 2  # points along a texel, at which pictures are looked at that are finer than texels
+
 
 def sample_albedo(
     base_color: Array,  # [S, S, 4] uint8 sRGB, alpha is opacity
@@ -24,3 +26,13 @@ def sample_albedo(
     column, row = low.T
     rows, columns = (row, np.minimum(row + 1, height - 1)), (column, np.minimum(column + 1, width - 1))
     return (bilinear(atlas, rows, columns, place - low) / 255).astype(np.float32)
+
+
+def finer_picture(
+    base_color: Array,  # [S, S, 4] uint8 sRGB, alpha is opacity
+    size: int,
+) -> Array:
+    """Colours and opacities at FINER x FINER points of each of `size` x `size` texels: [FINER size, FINER size, 4]."""
+    points = (np.arange(size * FINER) + 0.5) / (size * FINER)
+    uv = np.stack(np.meshgrid(points, points), axis=-1).reshape(-1, 2)
+    return sample_albedo(base_color, uv, size * FINER).reshape(size * FINER, size * FINER, 4)

@@ -4,34 +4,45 @@ import numpy as np
 from scipy import fft
 
 from mua.arrays import Array
-from mua.texture.albedo import sample_albedo
-from mua.texture.surfels import SPREAD
+from mua.texture.albedo import FINER
 
-POINTS = 2  # along a texel, at which picture and surfels are compared
 DIRECTIONS = 8  # from which a surface is seen: the nearer of two surfels lies over the other
 AROUND = 2  # texels beyond which a surfel is not felt
 DAMPING = 0.1  # weight of the picture's own colour at the texel, so that what no surfel can show is not amplified
+LEVELS = 3  # of width, for which the colours of all surfels are sought: between them they are interpolated
 
 
 def deconvolved(
-    base_color: Array,  # [S, S, 4] uint8 sRGB, alpha is opacity
-    size: int,
+    picture: Array,  # [FINER S, FINER S, 3] in 0..1, sRGB
     opacity: float,  # of a surfel, at its centre
+    spreads: Array,  # [S, S] standard deviation over the distance of neighbouring texels
 ) -> Array:
-    """Colours [size, size, 3] in 0..1, sRGB, of the texels of an opaque texture.
+    """Colours [S, S, 3] in 0..1, sRGB, of the texels of an opaque texture.
 
     The least-squares solution of "what the surfels of a regular grid show is the picture", over points between the
-    texels and over directions of view. The grid is the same everywhere, so that a Fourier transform solves it.
+    texels and over directions of view. Grid and widths are the same everywhere, so that a Fourier transform solves it,
+    once for each of a few widths.
     """
-    points = (np.arange(size * POINTS) + 0.5) / (size * POINTS)
-    uv = np.stack(np.meshgrid(points, points), axis=-1).reshape(-1, 2)
-    picture = sample_albedo(base_color, uv, size * POINTS)[:, :3].reshape(size, POINTS, size, POINTS, 3)
-    own = fft.rfft2(picture.mean(axis=(1, 3)), axes=(0, 1))
-    rows = POINTS**2 * DIRECTIONS
+    narrowest, widest = float(spreads.min()), float(spreads.max())
+    if narrowest == widest:
+        return _solved(picture, opacity, narrowest)
+    widths = np.linspace(narrowest, widest, LEVELS)
+    place = (spreads - narrowest) * ((LEVELS - 1) / (widest - narrowest))
+    shares = (np.maximum(1 - np.abs(place - level), 0)[..., None] for level in range(LEVELS))
+    solved = (_solved(picture, opacity, width) for width in widths)
+    return np.asarray(sum(share * colors for share, colors in zip(shares, solved, strict=True)))
+
+
+def _solved(picture: Array, opacity: float, spread: float) -> Array:
+    """The colours where all surfels are equally wide."""
+    size = len(picture) // FINER
+    points = picture.reshape(size, FINER, size, FINER, 3)
+    own = fft.rfft2(points.mean(axis=(1, 3)), axes=(0, 1))
+    rows = FINER**2 * DIRECTIONS
     total, power = DAMPING**2 * rows * own, np.full((1, 1, 1), DAMPING**2 * rows)
-    for y, x in np.ndindex(POINTS, POINTS):
-        shown = fft.rfft2(picture[:, y, :, x], axes=(0, 1))
-        for weights in blending((np.array([x, y]) + 0.5) / POINTS - 0.5, opacity):
+    for y, x in np.ndindex(FINER, FINER):
+        shown = fft.rfft2(points[:, y, :, x], axes=(0, 1))
+        for weights in blending((np.array([x, y]) + 0.5) / FINER - 0.5, opacity, spread):
             response = _response(weights, size)[..., None]
             total, power = total + np.conj(response) * shown, power + np.abs(response) ** 2
     return np.clip(fft.irfft2(total / power, s=(size, size), axes=(0, 1)), 0, 1)
@@ -40,6 +51,7 @@ def deconvolved(
 def blending(
     place: Array,  # [2] along u and v from the centre of a texel, texels
     opacity: float,
+    spread: float,  # standard deviation of all surfels over the distance of neighbouring texels
 ) -> Array:
     """What each surfel of a regular grid adds to a place seen from each direction: [DIRECTIONS, n, n], sum 1.
 
@@ -47,7 +59,7 @@ def blending(
     """
     apart = np.arange(-AROUND, AROUND + 1)
     v, u = (grid.ravel() for grid in np.meshgrid(apart, apart, indexing="ij"))
-    hides = opacity * np.exp(-((u - place[0]) ** 2 + (v - place[1]) ** 2) / (2 * SPREAD**2))
+    hides = opacity * np.exp(-((u - place[0]) ** 2 + (v - place[1]) ** 2) / (2 * spread**2))
     weights = np.empty((DIRECTIONS, len(hides)))
     for row, angle in zip(weights, (np.arange(DIRECTIONS) + 0.5) * (2 * np.pi / DIRECTIONS), strict=True):
         nearest_first = np.argsort(-(u * np.cos(angle) + v * np.sin(angle)), kind="stable")

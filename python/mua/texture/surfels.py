@@ -18,8 +18,9 @@ from mua.texture.footprints import (
     sample_surface,
     spreads,
 )
+from mua.texture.rims import fit_rims
+from mua.texture.sharpness import SPREAD, Sharpness, along_lines
 
-SPREAD = 0.62  # standard deviation over the distance of neighbouring texels: between four, 95 % is covered
 FLATNESS = 0.03  # thickness over the smaller standard deviation
 THINNESS = 0.5  # of the thickness that rounded normals and near surfaces ask for: more, and silhouettes swell
 ROUNDING = 0.7  # weight of smooth normals beside those of the surface about a texel: flat where that is, round at rims
@@ -31,8 +32,10 @@ LEAST = 1e-6  # of the surface's size, of any standard deviation: a texel where 
 class Surfels:
     """The Gaussians of the texels on a surface at rest."""
 
-    rotations: Array  # [N, 4] x about along u, z along the normal; unit, wxyz, one sign over each chart
+    rotations: Array  # [N, 4] z along the normal, x along a line of the picture or about along u; unit, wxyz
     log_scales: Array  # [N, 3] along x, y, z; natural logarithms of metres
+    smooth: Array  # [N, 4] rotations with x about along u everywhere, one sign over each chart
+    aside: Array  # [N, 3] from the texels' points to the centres, metres
 
     @property
     def normals(self) -> Array:
@@ -47,6 +50,7 @@ def rest_surfels(
     texels: Array,  # [N] row * size + col
     triangles: Array,  # [N] into the mesh's faces
     barycentrics: Array,  # [N, 3]
+    wanted: Sharpness | None = None,  # by the picture, of these texels
 ) -> Surfels:
     """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart.
 
@@ -54,7 +58,8 @@ def rest_surfels(
     a sheared chart gets rounder surfels, not spikes across its texels. The extents along its axes are those of the
     steps to the neighbouring texels and those of the surface that lies nearest to it: across an edge that smooth
     normals round off, surfels are thick and leave no gap, and where two charts meet they reach the seam. In the middle
-    of a large triangle surfels lie nearly in it: askew, they would hide less of what is behind.
+    of a large triangle surfels lie nearly in it: askew, they would hide less of what is behind. The picture may ask for
+    others than those of SPREAD, and for longer ones along its lines.
     """
     weighted, area = _weighted_steps(mesh, size)
     at_corners = _sum_at_corners(mesh.uv_faces, np.concatenate([weighted, area], axis=1), len(mesh.uv))
@@ -69,13 +74,22 @@ def rest_surfels(
     along_u, along_v = steps[:, :3], steps[:, 3:]
     upright = np.sign(np.sum(np.cross(along_u, along_v) * normals, axis=1, keepdims=True))
     frames = _frames(along_u + np.cross(upright * along_v, normals), normals)
+    reach = np.linalg.norm(footprint @ frames, axis=1)
+    rims = fit_rims(points, samples, frames, steps=reach[:, :2])
     cells = spreads(points, samples, frames)
-    extents = np.maximum(SPREAD * np.linalg.norm(footprint @ frames, axis=1), CELL * cells)
+    reach[rims.texels, :2], cells[rims.texels, :2] = rims.steps, 0
+    aside = np.zeros((len(texels), 3))
+    aside[rims.texels] = rims.aside
+    extents = np.maximum((SPREAD if wanted is None else wanted.spreads[:, None]) * reach, CELL * cells)
+    smooth = align_neighbours(rotation.from_matrix(frames), texels, size)
+    turn, extents[:, :2] = along_lines(frames, extents[:, :2], steps=footprint, wanted=wanted)
     extents[:, 2] = np.maximum(THINNESS * extents[:, 2], FLATNESS * extents[:, :2].min(axis=1))
     least = max(LEAST * float(np.ptp(mesh.vertices, axis=0).max()), float(np.finfo(np.float32).tiny))
     return Surfels(
-        rotations=align_neighbours(rotation.from_matrix(frames), texels, size),
+        rotations=rotation.multiply(smooth, rotation.from_axis_angle(np.array([0.0, 0, 1]), turn)),
         log_scales=np.log(np.maximum(extents, least)),
+        smooth=smooth,
+        aside=aside,
     )
 
 

@@ -1,0 +1,64 @@
+"""Surfels along the borders of charts: each lies in the middle of the surface that is its own, and is as wide as that.
+
+A border cuts through the squares of texels. Surfels as wide as whole squares would reach beyond it: into the air, or
+over another colour. The surface of a texel is what lies nearer to it than to others of its chart.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.texture.footprints import Samples, TexelPoints, charts_of, neighbours
+
+SIDES = 4  # neighbours of a texel that does not lie at a border
+SHARE = 0.87  # of the width of a texel's surface, that counts as the step to a neighbour: an outline is sharp
+NARROWEST, WIDEST = 0.6, 1.3  # of a surfel that does not lie at a border
+FARTHEST = 0.5  # steps to a neighbouring texel, by which a surfel is moved
+FEW = 4  # samples: fewer say too little
+
+
+@dataclass(frozen=True)
+class Rims:
+    """The texels along the borders of charts, and what becomes of their surfels."""
+
+    texels: Array  # [n] rows of the texel map
+    aside: Array  # [n, 3] from a texel's point to the middle of its surface, metres
+    steps: Array  # [n, 2] along x and y that stand for those to neighbouring texels, metres
+
+
+def fit_rims(
+    points: TexelPoints,
+    samples: Samples,
+    frames: Array,  # [N, 3, 3] columns x, y, z
+    *,
+    steps: Array,  # [N, 2] to neighbouring texels along x and y, metres
+) -> Rims:
+    """Find the texels at borders, and fit their surfels to the samples that are theirs."""
+    at_border = _sides(points) < SIDES
+    seen = ~samples.bare & at_border[samples.texels]
+    texel = samples.texels[seen]
+    count = np.bincount(texel, minlength=len(frames))
+    rims = np.flatnonzero(count >= FEW)
+    away = np.einsum("sc,sck->sk", samples.places[seen] - points.places[texel], frames[texel][:, :, :2])
+    mean, square = (
+        np.stack([np.bincount(texel, column, len(frames))[rims] / count[rims] for column in values.T], axis=1)
+        for values in (away, away**2)
+    )
+    widths = np.sqrt(12 * np.maximum(square - mean**2, 0))  # of an even square: its sides
+    far = np.linalg.norm(mean, axis=1) / np.maximum(FARTHEST * steps[rims].max(axis=1), np.finfo(float).tiny)
+    return Rims(
+        texels=rims,
+        aside=np.einsum("nck,nk->nc", frames[rims][:, :, :2], mean / np.maximum(far, 1)[:, None]),
+        steps=np.clip(SHARE * widths, NARROWEST * steps[rims], WIDEST * steps[rims]),
+    )
+
+
+def _sides(points: TexelPoints) -> Array:
+    """How many of its four neighbours each texel [N] has in its own chart."""
+    chart = charts_of(points.mesh)[points.triangles]
+    found = np.zeros(len(chart), np.int64)
+    for a, b in neighbours(points.texels, points.size):
+        together = chart[a] == chart[b]
+        found += np.bincount(a[together], minlength=len(chart)) + np.bincount(b[together], minlength=len(chart))
+    return found

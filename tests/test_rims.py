@@ -1,0 +1,51 @@
+"""Surfels along the borders of charts: an outline is where half is covered, wherever it cuts through the texels."""
+
+import numpy as np
+import pytest
+
+from mua.rig.character import Mesh
+from mua.rig.texel_map import build_texel_map
+from mua.texture.coverage import coverage
+from mua.texture.footprints import TexelPoints
+from mua.texture.rims import FARTHEST, WIDEST
+from mua.texture.sharpness import SPREAD
+from mua.texture.surfels import rest_surfels
+
+SIZE = 40
+SIDE = 0.05  # of a texel's square, in units of the sheet
+BY_TEXEL = 0.3  # texels, by which an outline may be missed: surfels that also close a seam reach a little beyond theirs
+
+
+def square(texels: float) -> Mesh:
+    """A sheet of so many texels a side, from the corner of a texel on."""
+    flat = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * texels
+    faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    return Mesh(np.column_stack([flat * SIDE, np.zeros(4)]), faces, (flat + 2) / SIZE, faces)
+
+
+@pytest.mark.parametrize("beyond", [0.05, 0.3, 0.55, 0.8])
+def test_half_is_covered_at_an_outline_that_cuts_through_texels(beyond: float) -> None:
+    mesh = square(12 + beyond)
+    texels = build_texel_map(mesh, SIZE)
+    at = {"texels": texels.texels, "triangles": texels.triangles, "barycentrics": texels.barycentrics}
+    found = rest_surfels(mesh, size=SIZE, **at)
+    centres = TexelPoints(mesh, SIZE, **at).places + found.aside
+    along, out = np.meshgrid(np.linspace(5, 7, 9), np.linspace(11, 14, 121), indexing="ij")
+    places = np.stack([out.ravel(), along.ravel(), 0 * out.ravel()], axis=1) * SIDE
+    covered = coverage(places, centres, found.rotations, np.exp(found.log_scales)).reshape(out.shape).mean(axis=0)
+    outline = np.interp(-0.5, -covered, out[0])
+    assert outline == pytest.approx(12 + beyond, abs=BY_TEXEL)
+
+
+def test_surfels_inside_stay_where_their_texels_are() -> None:
+    mesh = square(12.3)
+    texels = build_texel_map(mesh, SIZE)
+    found = rest_surfels(
+        mesh, size=SIZE, texels=texels.texels, triangles=texels.triangles, barycentrics=texels.barycentrics
+    )
+    row, column = np.divmod(texels.texels, SIZE)
+    inside = (np.minimum(row, column) > row.min()) & (np.maximum(row, column) < row.max())
+    assert not found.aside[inside].any()
+    moved = np.linalg.norm(found.aside[~inside], axis=1)
+    assert 0 < moved.max() <= FARTHEST * SIDE
+    assert np.exp(found.log_scales[:, :2]).max() <= WIDEST * SPREAD * SIDE * (1 + 1e-6)
