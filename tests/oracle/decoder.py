@@ -245,5 +245,5 @@ def keys(avatar: Tree, splats: Splats, view: Array, near: float) -> Array:
     low, high = avatar["bounds"] + splats.root
     corners = np.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
     depths, box = (-(points @ view[2, :3] + view[2, 3]) for points in (splats.centres, corners))
-    nearest, farthest = max(box.min(), near), box.max()
-    return np.floor(65535 * np.clip((farthest - depths) / (farthest - nearest), 0, 1) + 0.5)
+    nearest, farthest = (end(box) + s * np.linalg.norm(high - low) / 2 for end, s in ((np.min, -1), (np.max, 1)))
+    return np.floor(65535 * np.clip((farthest - depths) / (farthest - max(nearest, near)), 0, 1) + 0.5)

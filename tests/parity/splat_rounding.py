@@ -73,14 +73,15 @@ def _extent_error(ellipses: Array, opacities: Array, variance: Array) -> Array:
 def exact_keys(centres: Array, views: Array, bounds: Array) -> tuple[Array, float]:
     """Keys [N] before they are rounded to whole ones, and the bound of their rounding.
 
-    Depths are those of the eyes' mean; the box's are found at its corners.
+    Depths are those of the eyes' mean; the box's are found at its corners, and half its diagonal further out.
     """
     mean = -views[:, 2].mean(axis=0)
     corners = np.stack(np.meshgrid(*bounds.T)).reshape(3, -1).T
     reach = corners @ mean[:3] + mean[3]
-    farthest, nearest = reach.max(), max(reach.min(), NEAR)
+    spare = np.linalg.norm(np.ptp(bounds, axis=0)) / 2
+    farthest, nearest = reach.max() + spare, max(reach.min() - spare, NEAR)
     depths = centres @ mean[:3] + mean[3]
     span = max(farthest - nearest, 1e-30)
     keys = np.clip((farthest - depths) / span, 0, 1) * LAST_KEY
     largest = max(np.abs(centres).max(initial=0), np.abs(bounds).max()) * np.abs(mean[:3]).sum() + abs(mean[3])
-    return keys, LAST_KEY * (3 * 4 * ULP * largest / span + 4 * ULP)
+    return keys, LAST_KEY * ((3 * 4 * largest + 4 * spare) * ULP / span + 4 * ULP)

@@ -103,11 +103,15 @@ def _keys(
     near: float,
     bounds: Array,  # [2, 3]
 ) -> Array:
-    """Keys [M] uint16: 0 at the bounds' farthest depth, LAST_KEY at the nearest or at the near plane."""
+    """Keys [M] uint16: 0 half the bounds' diagonal beyond their farthest depth, LAST_KEY as far before the nearest.
+
+    Motion that the bounds were not made for may reach so far out; nearer than the near plane nothing is drawn.
+    """
+    spare = np.linalg.norm(bounds[1] - bounds[0]) / 2
     forward, offset = -view[:, 2, :3].mean(axis=0), -view[:, 2, 3].mean()
     low, high = np.sort(bounds * forward, axis=0)
-    nearest = max(low.sum() + offset, near)
-    farthest = high.sum() + offset
+    nearest = max(low.sum() + offset - spare, near)
+    farthest = high.sum() + offset + spare
     span = max(farthest - nearest, np.finfo(centres.dtype).tiny)
     fraction = np.clip((farthest - (centres @ forward + offset)) / span, 0, 1)
     return np.floor(fraction * LAST_KEY + 0.5).astype(np.uint16)
