@@ -93,6 +93,12 @@ def test_measures_a_torso_that_is_turned_away_from_the_travel(joint: str) -> Non
     assert any("faces 90 degrees away" in flaw for flaw in found.flaws)
 
 
+def test_a_twist_that_the_motion_has_too_is_no_fault() -> None:
+    skeleton = person()
+    twisted = turned(skeleton, walk(skeleton), "Spine", "y", 60)
+    assert measured(skeleton, twisted, twisted).flaws == ()
+
+
 def test_has_no_facing_for_a_clip_that_goes_nowhere_or_backwards() -> None:
     skeleton = person()
     clip = walk(skeleton)

@@ -177,6 +177,13 @@ def test_a_stick_walks_by_its_way_beyond_the_dead_zone(story: Story) -> None:
         assert float(told[push][0]) == pytest.approx(share * whole, abs=1e-4)
 
 
+def test_a_second_turns_a_quarter_and_rises_a_metre_and_a_half_and_scrubs_two_seconds(story: Story) -> None:
+    told = story("Speeds")
+    assert told["turned"] == ["-1.00 0.00 0.00"]
+    assert told["risen"] == ["1.50"]
+    assert told["scrubbed"] == ["0.250"]  # in 9 of 72 frames
+
+
 def test_the_texts_stand_on_either_side_and_turn_to_the_user(story: Story) -> None:
     told = story("Furniture", files=())
     assert (told["eyes"], told["sees"]) == (["1.60"], ["0.05 to 100"])

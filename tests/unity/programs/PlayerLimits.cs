@@ -45,6 +45,22 @@ namespace Mua.Samples.VrPlayer
             }
         }
 
+        /// <summary>A second of turning, of scrubbing and of rising.</summary>
+        private static void Speeds()
+        {
+            Begin();
+            foreach (string key in new[] { "E", "R", "RightArrow" })
+            {
+                StandIns.Keys.Press(key);
+                Frames(key == "RightArrow" ? 9 : 72);
+                StandIns.Keys.Release(key);
+                Frames(1);
+            }
+            Say("turned", Format(shown.transform.forward));
+            Say("risen", user.position.y.ToString("0.00"));
+            Say("scrubbed", shown.Seconds.ToString("0.000"));
+        }
+
         private static void Furniture()
         {
             Make();
