@@ -345,6 +345,18 @@ BROKEN = {
 }
 
 
+@pytest.mark.parametrize("diagonal", [0.0, float("nan")])
+def test_a_bind_pose_that_cannot_be_inverted_is_named(character: Path, diagonal: float) -> None:
+    def flatten(stage: Usd.Stage) -> None:
+        attribute = UsdSkel.Skeleton.Get(stage, "/Man/Skeleton").GetBindTransformsAttr()
+        matrices = list(attribute.Get())
+        matrices[-1] = Gf.Matrix4d(diagonal)
+        attribute.Set(Vt.Matrix4dArray(matrices))
+
+    with pytest.raises(InputError, match=r"Skeleton\.bindTransforms holds a matrix that cannot be inverted"):
+        read_surfaces(edited(character, flatten))
+
+
 @pytest.mark.parametrize("field", BROKEN)
 def test_broken_stage_names_the_field(character: Path, field: str) -> None:
     with pytest.raises(InputError, match=field) as raised:
