@@ -55,6 +55,15 @@ def test_a_bind_pose_may_face_anywhere() -> None:
     assert abs(front_of(backwards, *turned(backwards, Rotation.identity()))) == pytest.approx(np.pi, abs=ROUNDING)
 
 
+def test_a_bind_pose_that_is_a_little_twisted_faces_along_an_axis_all_the_same() -> None:
+    skeleton = person()
+    rotations, _ = turned(skeleton, Rotation.from_euler("y", 20, degrees=True))
+    twisted = replace(skeleton, bind_rotations=rotations)
+    assert front_of(twisted, *turned(twisted, Rotation.identity())) == pytest.approx(0, abs=ROUNDING)
+    moved = front_of(twisted, *turned(twisted, Rotation.from_euler("y", 30, degrees=True)))
+    assert moved == pytest.approx(np.radians(30), abs=ROUNDING)
+
+
 def test_toes_tell_where_a_rig_exchanges_left_and_right() -> None:
     skeleton = named(person(), "Left", "Right")
     assert front_of(skeleton, *turned(skeleton, Rotation.identity())) == pytest.approx(0, abs=ROUNDING)

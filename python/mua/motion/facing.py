@@ -7,7 +7,7 @@ from mua.arrays import Array
 from mua.motion.descriptor import heading_of
 from mua.motion.joint_names import SIDES, Roles, roles
 from mua.motion.rest import frame
-from mua.motion.trunk import AROUND, trunk_of, unit
+from mua.motion.trunk import AROUND, nearest_axis, trunk_of, unit
 from mua.rig.skeleton import Skeleton
 
 AHEAD = np.array([0.0, 0, 1])  # where a bind pose faces that does not show a trunk
@@ -30,7 +30,7 @@ def front_of(
         ahead = AHEAD
         turn = rotation.multiply(turns[skeleton.root], rotation.conjugate(bound_turns[skeleton.root]))
     else:
-        ahead = bound[:, 2] * _forwards(found, bound_at, bound[:, 2])
+        ahead = nearest_axis(bound[:, 2] * [1, 0, 1]) * _forwards(found, bound_at, bound[:, 2])  # as figures are built
         turn = rotation.from_matrix(posed @ bound.T)
     x, _, z = rotation.rotate(heading_of(turn), ahead)
     return float(np.arctan2(x, z))
