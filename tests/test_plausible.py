@@ -12,13 +12,13 @@ from shared_data import SharedData
 
 from mua import rotation
 from mua.arrays import Array
-from mua.baking.sources import load_character
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.recording import LikelyMistake, Recording, TeacherWriter
 from mua.recording.plausible import Plausible, rig_findings
 from mua.recording.plausible.fit import explain, unit_of
 from mua.rig.character import Character
+from mua.rig.read import read_character
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
 from mua.teachers.procedural import procedural_character
@@ -305,6 +305,10 @@ RIG_MISTAKES: dict[str, tuple[Callable[[Rig], Rig], str]] = {
         lambda r: with_joints(r, parents=r.skeleton.parents[::-1]),
         "skeleton.parents: a parent comes after its child",
     ),
+    "joints in the world": (
+        lambda r: with_joints(r, bind_translations=r.skeleton.world(*bind_of(r))[1]),
+        "joints are .* bind_translations are places in the world: are they?",
+    ),
     "four weights": (
         lambda r: replace(r, skin_weights=r.skin_weights[:, :4]),
         r"skin_weights has shape \[\d+, 4\], expected \[\d+, 8\]",
@@ -332,6 +336,10 @@ def with_mesh(rig: Rig, vertices: Array) -> Rig:
     return replace(rig, mesh=replace(rig.mesh, vertices=vertices))
 
 
+def bind_of(rig: Rig) -> tuple[Array, Array]:
+    return rig.skeleton.bind_rotations, rig.skeleton.bind_translations
+
+
 def with_joints(rig: Rig, **change: Array) -> Rig:
     return replace(rig, skeleton=replace(rig.skeleton, **change))
 
@@ -342,6 +350,12 @@ def test_a_rig_that_cannot_be_meant_is_refused_before_anything_is_written(rig: R
     with pytest.raises(InputError, match=f"recording .*: rig: {pattern(expected)}"):
         TeacherWriter(tmp_path / "r", change(rig), rate=30)
     assert not (tmp_path / "r").exists()
+
+
+def test_triangles_that_face_inward_are_warned_of(rig: Rig, tmp_path: Path) -> None:
+    inward = replace(rig, mesh=replace(rig.mesh, faces=rig.mesh.faces[:, ::-1]))
+    with pytest.warns(LikelyMistake, match=r"rig: triangles of the template face inward: are they clockwise"):
+        TeacherWriter(tmp_path, inward, rate=30)
 
 
 def test_bind_rotations_in_another_order_are_found_by_where_the_joints_lie(character: Character, rig: Rig) -> None:
@@ -372,7 +386,7 @@ def test_what_is_right_passes_in_silence(rig: Rig, frames: list[TeacherFrame], t
 
 @pytest.mark.parametrize("name", ["Fox.glb", "lumberjack.glb", "White_F_3_Casual.glb"])
 def test_real_characters_and_their_clips_pass_in_silence(shared_data: SharedData, name: str) -> None:
-    character = load_character(shared_data.path(f"characters/{name}"), uv="auto", seed=0)
+    character = read_character(shared_data.path(f"characters/{name}"), uv="keep", atlas_size=128)
     teacher = SimulatedTeacher(replace(character, source=None), texels=TEXELS)
     plausible = Plausible(teacher.rig)
     found = list(rig_findings(teacher.rig))

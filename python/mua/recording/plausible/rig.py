@@ -13,13 +13,16 @@ from mua.rig.skeleton import Skeleton
 SMALLEST, LARGEST = 0.01, 100.0  # metres: the sizes of figures that bake, bounds and player are made for
 PERSON = 1.75  # metres
 WEIGHT_ERROR = 1e-3  # of the sum of a vertex's skin weights
+INSIDE_OUT = -0.3  # of the volumes of all triangles' tetrahedra, those that face inward counted as negative
+FEW = 3  # joints with skin; fewer say nothing together
+NEAR = 0.2  # of the figure's size: how far they are once a mistake is undone
 APART = 0.3  # of the figure's size: how far joints may be from the skin that they move, on average
 
 
 def rig_findings(rig: Rig) -> Iterator[Finding]:
     """What looks like a mistake in a rig; with a wrong shape or index, that alone."""
     wrong = list(_shapes(rig))
-    yield from wrong or [*_size(rig), *_weights(rig), *_joints(rig)]
+    yield from wrong or [*_size(rig), *_weights(rig), *_joints(rig), *_facing(rig)]
 
 
 def _shapes(rig: Rig) -> Iterator[Finding]:
@@ -87,18 +90,33 @@ def _joints(rig: Rig) -> Iterator[Finding]:
     used, owner = np.unique(main, return_inverse=True)
     count = np.bincount(owner)[:, None]
     skin = np.stack([np.bincount(owner, weights=axis) for axis in vertices.T], axis=1) / count
-    apart = rms(_places(skeleton, skeleton.bind_rotations)[used] - skin)
-    if apart <= APART * size:
+    places = _places(skeleton, skeleton.bind_rotations)[used]
+    apart = rms(places - skin)
+    if apart <= APART * size or len(used) < FEW:
         return
     told = f"joints are {apart:.3g} m from the skin that they move, on average, of a figure of {size:.3g} m"
-    mistake = explain(_places(skeleton, skeleton.bind_rotations)[used], skin) if len(used) > 2 else None
+    mistake = explain(places, skin)
     if mistake is not None:
         yield Finding(f"{told}: {mistake.question} (of the skeleton, beside the template)", certain=True)
-    elif rms(_places(skeleton, np.roll(skeleton.bind_rotations, 1, axis=1))[used] - skin) < apart / 2:
-        yield Finding(f"{told}, less if bind_rotations are xyzw: are they? wxyz is expected", certain=True)
-    else:
-        question = "are bind_rotations and bind_translations local, relative to the parent?"
-        yield Finding(f"{told}: {question}", certain=False)
+        return
+    others = {
+        "bind_rotations are xyzw: are they? wxyz is expected": _places(
+            skeleton, np.roll(skeleton.bind_rotations, 1, 1)
+        ),
+        "bind_translations are places in the world: are they?": skeleton.bind_translations,
+    }
+    left, question = min((rms(other[used] - skin), question) for question, other in others.items())
+    if left < min(NEAR * size, apart / 2):
+        yield Finding(f"{told}, and {left:.3g} m if {question}", certain=True)
+
+
+def _facing(rig: Rig) -> Iterator[Finding]:
+    """The volume that a surface encloses is positive where its triangles are counter-clockwise seen from outside."""
+    corners = (rig.mesh.vertices - rig.mesh.vertices.mean(axis=0))[rig.mesh.faces]
+    volumes = np.einsum("fi,fi->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    if volumes.sum() < INSIDE_OUT * np.abs(volumes).sum():
+        told = "triangles of the template face inward: are they clockwise, or is the mesh mirrored?"
+        yield Finding(f"{told} Counter-clockwise seen from outside is expected", certain=False)
 
 
 def _places(skeleton: Skeleton, rotations: Array) -> Array:
