@@ -88,7 +88,7 @@ STEPS = (
         ("{wheel}[eval]",),
         (
             Run(
-                ("mua-eval", "{recording}", AVATAR, "--frames", "1", "--views", "1", "--size", "128", "-o", "figures"),
+                ("mua-eval", "{recording}", AVATAR, "--frames", "1", "--views", "1", "--size", "192", "-o", "figures"),
                 writes="figures/results.json",
             ),
         ),
@@ -111,7 +111,13 @@ def lowest() -> list[str]:
     project = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]
     requirements = sum(project["optional-dependencies"].values(), project["dependencies"])
     floored = (re.match(r"([\w-]+)>=([^,]*)", requirement) for requirement in requirements)
-    return sorted({f"{found[1]}=={found[2]}" for found in floored if found and found[1] != "torch"})
+    return sorted({f"{found[1]}=={_series(found[2])}" for found in floored if found and found[1] != "torch"})
+
+
+def _series(version: str) -> str:
+    """A version as it stands, or any patch of it where it names none."""
+    parts = version.split(".")
+    return version if len(parts) > 2 else ".".join([*parts, "0"][:2]) + ".*"
 
 
 def megabytes(folder: Path) -> float:
