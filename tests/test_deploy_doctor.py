@@ -1,5 +1,6 @@
 """The doctor names what is missing and its fix, and never fails itself."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from test_deploy_build import fake_unity
 from mua.asset import write
 from mua.deploy.doctor import Check, examine, openxr_runtime
 
+PLAYER_SETTINGS = Path(__file__).parents[1] / "unity-package" / "Editor" / "ProjectPlayer.cs"
 # adbutils leaves a socket open where a device refuses.
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning")
 
@@ -39,6 +41,18 @@ def test_names_what_is_wrong(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) ->
     wrong = {"system", "battery", "Unity", "bad.muaavatar"}
     assert {name for name, state in found.items() if state == "wrong"} == wrong
     assert {name for name, state in found.items() if state == "missing"} == {"player", "absent.muaavatar"}
+
+
+@pytest.mark.parametrize(("older", "state"), [(0, "ok"), (1, "wrong")])
+def test_a_headset_needs_the_android_that_the_player_is_built_for(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, older: int, state: str
+) -> None:
+    set_up = re.search(r"Oldest = AndroidSdkVersions\.AndroidApiLevel(\d+);", PLAYER_SETTINGS.read_text())
+    assert set_up is not None
+    headset = FakeHeadset()
+    headset.properties["ro.build.version.sdk"] = str(int(set_up[1]) - older)
+    with serving(monkeypatch, headset):
+        assert states(examine([], unity=fake_unity(tmp_path, "exit 0")))["system"] == state
 
 
 @pytest.mark.parametrize(

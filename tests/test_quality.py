@@ -64,6 +64,9 @@ def test_another_heading_of_the_whole_is_no_fault() -> None:
     found = measure_motion(SourceMotion(source, walk(source)), target, clip, match_joints(source, target))
     assert found.limb_degrees < ANGLE_BOUND
     assert found.flaws == ()
+    ahead, _ = retarget(SourceMotion(source, walk(source)), target)
+    straight = measure_motion(SourceMotion(source, walk(source)), target, ahead, match_joints(source, target))
+    assert found.facing_degrees == pytest.approx(straight.facing_degrees, abs=ANGLE_BOUND)
 
 
 def test_measures_a_limb_that_points_elsewhere_and_names_it() -> None:

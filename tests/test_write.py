@@ -52,6 +52,12 @@ def test_f32_file_returns_every_array_as_float32() -> None:
         np.testing.assert_allclose(back[path], np.asarray(expected, back[path].dtype), rtol=0, atol=bound, err_msg=path)
 
 
+def test_an_unknown_storage_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="f64"):
+        write(tmp_path / "a.muaavatar", synthetic_avatar(), storage="f64")  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_influences_are_written_with_the_largest_weight_first() -> None:
     avatar = synthetic_avatar()
     turned = replace(

@@ -15,7 +15,7 @@ from mua.deploy.player import PACKAGE, installed
 from mua.deploy.unity import OLDEST, find, release
 from mua.errors import InputError
 
-OLDEST_API = 29  # Android's: the least that the player is built for
+OLDEST_API = 32  # of Android: what set-up of the Unity project builds the player for, ProjectPlayer.cs
 LOW_BATTERY = 20  # percent
 LINK_RUNTIME = "oculus_openxr_64.json"
 OPENXR_KEY = "SOFTWARE\\Khronos\\OpenXR\\1"
