@@ -149,6 +149,7 @@ def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, writ
         ("mua.train(sys.argv[1])", "train"),
         ("mua.Recording(sys.argv[1])", "train"),
         ("mua.TeacherWriter", "train"),
+        ("mua.load_rig('hero.glb')", "bake"),
     ],
 )
 def test_a_function_that_lacks_an_extra_names_it(call: str, extra: str, written: Path) -> None:

@@ -16,6 +16,13 @@ ROOT = Path(__file__).resolve().parents[1]
 NO_PAGES = ("build", "dist", "node_modules", "LICENSE", ".")  # files and folders that begin like this
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)")
 GUIDES, FORMAT, REFERENCE = "docs", "schemas/README.md", "docs/reference.md"
+GIVEN = (  # records that public functions take or give
+    "mua.rig.rig.Rig",
+    "mua.rig.skeleton.Skeleton",
+    "mua.motion.encoding.PoseEncoding",
+    "mua.baking.distillation.Baked",
+    "mua.baking.listener.Listener",
+)
 OPENING = "# Reference\n\nThe names of `import mua`; [the guide](python.md) shows them at work.\n\n"
 
 
@@ -75,8 +82,13 @@ def _file(config: MkDocsConfig, path: Path) -> File:
 
 
 def _entries() -> str:
-    """One entry for each public name, as mkdocstrings reads it."""
+    """One entry for each public name and for what these take or give, as mkdocstrings reads them."""
+    named = [*(f"mua.{name}" for name in _public()), *GIVEN]
+    return "\n\n".join(f"::: {name}" for name in named)
+
+
+def _public() -> list[str]:
     for node in ast.parse((ROOT / "python" / "mua" / "__init__.py").read_text()).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
-            return "\n\n".join(f"::: mua.{name}" for name in ast.literal_eval(node.value))
+            return list(ast.literal_eval(node.value))
     raise RuntimeError("mua names nothing in __all__")

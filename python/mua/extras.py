@@ -14,7 +14,12 @@ EXTRAS = {  # the smaller ones first: of several that bring a package the first 
     "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
     "deploy": frozenset(("adbutils",)),
 }
-OF_COMMAND = {"mua-bench": "view"}  # where the extra is not called as the command
+OF_COMMAND = {  # where the extra is not called as the command or the function
+    "mua-bench": "view",
+    "mua.Recording": "train",
+    "mua.TeacherWriter": "train",
+    "mua.load_rig": "bake",
+}
 
 
 def missing_package(command: str, module: str) -> str | None:

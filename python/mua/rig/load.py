@@ -5,6 +5,7 @@ from typing import get_args
 
 from mua.arguments import PathLike, as_path, told, whole_number
 from mua.errors import InputError
+from mua.extras import naming_extras
 from mua.rig.build import build_rig
 from mua.rig.figure_size import LEAST, MOST, FigureSize
 from mua.rig.read import read_character
@@ -49,5 +50,6 @@ def load_rig(
     if height is not None and not LEAST <= height <= MOST:
         raise InputError(f"height is {told(height)}; expected {LEAST:g} to {MOST:g} metres")
     figure = FigureSize(height=height)
-    read = read_character(path, uv=uv, atlas_size=PICTURE, size=figure, leave_out=leave_out)
-    return build_rig(read, texels=size, template_vertices=wanted or len(read.mesh.vertices))[0]
+    with naming_extras("mua.load_rig"):
+        read = read_character(path, uv=uv, atlas_size=PICTURE, size=figure, leave_out=leave_out)
+        return build_rig(read, texels=size, template_vertices=wanted or len(read.mesh.vertices))[0]
