@@ -52,6 +52,7 @@ def test_leaves_a_picture_a_mapping_and_figures_and_no_avatar(tmp_path: Path) ->
     assert told["unmatched"] == []
     assert told["warnings"] == [sentence for sentence in told["warnings"] if sentence in text]
     assert "bend, frame 15" in text
+    assert text.splitlines()[-1] == str(figures)
 
 
 def test_motion_that_a_bake_refuses_is_checked_and_leaves_a_mapping_to_fill(tmp_path: Path) -> None:
@@ -64,9 +65,17 @@ def test_motion_that_a_bake_refuses_is_checked_and_leaves_a_mapping_to_fill(tmp_
     (refused,) = (w for w in json.loads((tmp_path / "a.json").read_text())["warnings"] if "--mapping" in w)
     assert refused in text
     assert json.loads((tmp_path / "a_mapping.json").read_text()) == {"hips": "hips", "spine": "spine", "head": ""}
-    run(
-        character, "--motion", motion, "--mapping", tmp_path / "a_mapping.json", "--check", "--texels", 64, "-o", output
+    again = motion.with_stem("again")
+    for path in (motion, again):
+        path.write_text(BVH.replace("Frames: 3", "Frames: 2"))
+    mapping = tmp_path / "a_mapping.json"
+    text = run(
+        *(character, "--motion", motion, "--motion", again, "--mapping", mapping),
+        *("--check", "--texels", 64, "-o", output),
     )
+    assert "Clips of the motion, which moves no limb that is measured: wave, again" in text
+    assert "own clips" not in text
+    assert "2 clips: holds 3 frames, though it says 2; all are read." in text
 
 
 def test_a_character_with_neither_motion_nor_clips_is_checked_as_it_stands(tmp_path: Path) -> None:

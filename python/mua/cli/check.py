@@ -35,7 +35,9 @@ def show(console: Console, found: Check) -> None:
     if any(motion.limbs for motion in found.motions):
         console.print(_motion_table(found.motions))
     elif found.motions:
-        _say(console, f"The character's own clips: {', '.join(motion.name for motion in found.motions)}")
+        brought = found.matched or found.unmatched  # by a motion file
+        whose = "Clips of the motion, which moves no limb that is measured" if brought else "The character's own clips"
+        _say(console, f"{whose}: {', '.join(motion.name for motion in found.motions)}")
     if found.matched:
         pairs = ", ".join(f"{pair.target} < {pair.source}" for pair in found.matched)
         _say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")
