@@ -55,6 +55,19 @@ def test_each_fault_ends_as_caught_survived_or_equivalent(tree: Path, tmp_path: 
     assert (checkout.root / "python" / "code_.py").read_text() == CODE
 
 
+def test_the_command_prints_every_survivor_and_the_share(
+    tree: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(run_mutants, "WORK", tmp_path / "work")
+    monkeypatch.setattr("sys.argv", ["run_mutants.py", "--number", "9", "--seed", "4", "--jobs", "2"])
+    run_mutants.main()
+    printed = capsys.readouterr().out
+    summary = printed[printed.index("faults") :].splitlines()
+    caught, meant = (printed.count(f"\n{word} ") for word in (CAUGHT, SURVIVED))
+    assert summary[1].split()[:3] == ["python", str(caught + meant // 2), str(caught)]  # survivors come twice
+    assert "seed 4" in summary[-1]
+
+
 def test_the_seed_decides_which_faults_are_drawn(tree: Path) -> None:
     def lines(seed: int) -> list[str]:
         return [mutant.lines(CODE)[2] for mutant in drawn("python", seed)]

@@ -244,7 +244,10 @@ def test_a_frame_allocates_nothing_and_a_second_two_texts(story: Story) -> None:
 def test_avatars_come_in_the_order_of_folder_app_and_scene(story: Story) -> None:
     files = ("persistent/avatars/b", "persistent/avatars/a", "streaming/more/d", "streaming/c")
     order = ["a", "b", "c", "d", "asset"]
-    assert story("Order", files=files)["entry"] == [f"avatar {i}/5   {name}" for i, name in enumerate(order, 1)]
+    told = story("Order", files=files)
+    assert told["entry"] == [f"avatar {i}/5   {name}" for i, name in enumerate(order, 1)]
+    assert told["shown"][:4] == order[:4]
+    assert told["shown"][4] in ("a", "b")  # whose bytes the asset has
 
 
 def test_avatars_inside_an_android_package_are_found_by_their_index(story: Story) -> None:

@@ -279,6 +279,7 @@ namespace Mua.Samples.VrPlayer
             do
             {
                 Say("entry", at);
+                Say("shown", shown.AvatarName);
                 StandIns.Keys.Press("PageDown");
                 Frames(1);
                 StandIns.Keys.Release("PageDown");
