@@ -79,7 +79,7 @@ def wrapped(angle: float) -> float:
 
 
 def test_what_is_looked_at_stays_in_the_middle_at_its_size() -> None:
-    shot = Shot((64, 96), look_at="middle", zoom=3.0)
+    shot = Shot((64, 96), look_at="middle", zoom=3.0, follow=True)
     places = find_focus(RIG, "middle").places(RIG.skeleton, CLIP.rotations, CLIP.translations)
     depths = []
     for (camera,), place in zip(film(shot, RIG, CLIP), places, strict=True):
@@ -88,6 +88,13 @@ def test_what_is_looked_at_stays_in_the_middle_at_its_size() -> None:
     np.testing.assert_allclose(depths, depths[0])
     (far,) = film(replace(shot, zoom=1.0), RIG, CLIP)[0]
     assert np.linalg.norm(far.position - places[0]) == pytest.approx(3 * depths[0])
+
+
+def test_a_camera_that_does_not_follow_looks_where_the_joint_was_at_first() -> None:
+    cameras = [camera for (camera,) in film(Shot((64, 96), look_at="tip"), RIG, CLIP)]
+    first = find_focus(RIG, "tip").places(RIG.skeleton, CLIP.rotations, CLIP.translations)[0]
+    for camera in cameras:
+        np.testing.assert_allclose(ndc(camera, first[None]), 0, atol=ROUNDING)
 
 
 def test_refuses_to_look_at_what_is_not_there() -> None:

@@ -50,6 +50,7 @@ def test_no_option_is_forgotten() -> None:
         (None, {"zoom": 0.0}, "--zoom is 0; expected 0.03 to 100"),
         (None, {"zoom": float("nan")}, "--zoom is nan"),
         (None, {"azimuth": float("inf")}, "--azimuth is inf; expected degrees"),
+        (None, {"ipd": float("inf"), "stereo": True}, "--ipd is inf; expected metres"),
         (None, {"ipd": 0.06}, "--ipd: goes with --stereo, which is not given"),
         (None, {"mapping": Path("m.json")}, "--mapping: goes with --motion, which is not given"),
         ("v.png", {"frames": "0:3"}, "--frames: goes with a video; -o is v.png, a picture"),
@@ -79,3 +80,9 @@ def test_an_animation_may_have_any_size() -> None:
 def test_a_close_up_is_near_unless_said_otherwise() -> None:
     assert look_of(Asked(look_at="head"), None).shot.zoom > 1
     assert look_of(Asked(look_at="head", zoom=1.0), None).shot.zoom == 1
+
+
+@pytest.mark.parametrize("output", [None, Path("v.mp4")])
+def test_a_close_up_follows_unless_said_otherwise(output: Path | None) -> None:
+    assert look_of(Asked(look_at="head"), output).shot.follow
+    assert not look_of(Asked(look_at="head", follow=False), output).shot.follow

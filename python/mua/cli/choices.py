@@ -57,6 +57,13 @@ def parse_zoom(zoom: float) -> float:
     return zoom
 
 
+def parse_ipd(metres: float) -> float:
+    """The distance between two eyes; InputError for what is none."""
+    if not 0 <= metres < math.inf:
+        raise InputError(f"--ipd is {metres:g}; expected metres")
+    return metres
+
+
 def parse_frame(frame: int | None, clip: Clip) -> range:
     """The one frame of a picture, the first if none is given."""
     index = require_frame(clip, 0 if frame is None else frame)

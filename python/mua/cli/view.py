@@ -57,21 +57,21 @@ def view(
         str | None, typer.Option(help="What to look at and follow: a joint, or head, hips, 'left hand' ...")
     ] = None,
     orbit: Annotated[
-        float | None, typer.Option(help="Degrees per second by which the camera goes round; 0 if left out.")
+        float | None, typer.Option(help="Degrees per second by which the camera goes round; 0, or 60 with --turntable.")
     ] = None,
     turntable: Annotated[
         bool, typer.Option("--turntable", help="A video of one frame from all sides that repeats without a seam.")
     ] = False,
     follow: Annotated[
         bool | None,
-        typer.Option(help="Whether the camera goes along with the figure; if left out in the window alone."),
+        typer.Option(help="Whether the camera goes along with the figure; it does in the window and with --look-at."),
     ] = None,
     stereo: Annotated[bool, typer.Option("--stereo", help="Left and right eye side by side.")] = False,
     ipd: Annotated[
         float | None, typer.Option(min=0.0, help=f"Metres between the eyes; {EYE_DISTANCE:g} if left out.")
     ] = None,
     background: Annotated[
-        str | None, typer.Option(help=f"Colour name, #rrggbb or transparent; {IN_FILES.background} if left out.")
+        str | None, typer.Option(help=f"Colour name, #rrggbb or transparent; {IN_FILES.background} in files.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
     list_devices: Annotated[

@@ -13,6 +13,7 @@ from mua.cli.choices import (
     listed,
     parse_angle,
     parse_color,
+    parse_ipd,
     parse_screen,
     parse_zoom,
     require_format,
@@ -116,8 +117,8 @@ def look_of(asked: Asked, output: Path | None) -> Look:
         azimuth=parse_angle("--azimuth", asked.azimuth),
         elevation=parse_angle("--elevation", asked.elevation),
         turning=parse_angle("--orbit", asked.orbit or 0.0),
-        follow=left_out.follow if asked.follow is None else asked.follow,
-        eyes=(EYE_DISTANCE if asked.ipd is None else asked.ipd) if asked.stereo else None,
+        follow=left_out.follow or asked.look_at is not None if asked.follow is None else asked.follow,
+        eyes=parse_ipd(EYE_DISTANCE if asked.ipd is None else asked.ipd) if asked.stereo else None,
         zoom=parse_zoom(close if asked.zoom is None else asked.zoom),
         look_at=asked.look_at,
     )

@@ -29,10 +29,12 @@ class Shot:
     azimuth: float = 0.0  # radians from the figure's front in the first frame, towards its left
     elevation: float = 0.0
     turning: float = 0.0  # radians per second round the figure, towards its left
-    follow: bool = False  # go along with the figure; else stand where all of the clip is in the picture
+    follow: bool = (
+        False  # go along with the figure, or with what is looked at; else stand where all of the clip is seen
+    )
     eyes: float | None = None  # metres between two eyes; one eye if None
     zoom: float = 1.0  # times nearer than all of the figure asks for
-    look_at: str | None = None  # joint or part of the body in the middle of the picture, wherever it goes
+    look_at: str | None = None  # joint or part of the body in the middle of the picture
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def _framed(shot: Shot, rig: Rig, clip: Clip) -> tuple[Array, Array]:
     boxes, roots = frame_boxes(rig, clip), root_positions(rig, clip)
     if shot.look_at is not None:
         places = find_focus(rig, shot.look_at).places(rig.skeleton, clip.rotations, clip.translations)
-        return union(boxes - roots[:, None]), places
+        return union(boxes - roots[:, None]), places if shot.follow else np.broadcast_to(places[0], places.shape)
     moved = (roots - roots[0]) * GROUND * shot.follow
     return union(boxes - moved[:, None]), moved
 
