@@ -15,6 +15,7 @@ from mua.arrays import Array
 from mua.asset import write
 from mua.asset.avatar import Avatar
 from mua.asset.read import decode_tree, load
+from mua.asset.summary import summary
 from mua.cli import inspect
 from mua.kernels.inverse_dwt import inverse_dwt
 
@@ -66,10 +67,10 @@ def test_the_summary_is_that_of_mua_inspect(csharp: CSharp, program: Path, tmp_p
 def python_tables(path: Path) -> list[list[str]]:
     """The tables of mua-inspect: title, names of the columns, rows, with cells apart by tabs."""
     tree = load(path)
-    avatar = decode_tree(tree)
-    overview = flattened(inspect._summary(path, tree, avatar))[1:]  # without the path, which the editor shows itself
+    held = summary(path, tree, decode_tree(tree))
+    overview = flattened(inspect._whole(held))[1:]  # without the path, which the editor shows itself
     overview[0] = overview[0].removeprefix("\t")
-    rest = (inspect._bytes(path, tree), inspect._costs(avatar), inspect._clips(avatar))
+    rest = (inspect._bytes(held), inspect._costs(held), inspect._clips(held))
     return [overview, *map(flattened, rest)]
 
 

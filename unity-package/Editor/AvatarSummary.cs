@@ -37,6 +37,7 @@ namespace Mua.Editor
         {
             Skeleton skeleton = avatar.Skeleton;
             PoseEncoding encoding = avatar.Encoding;
+            int moved = encoding.Translated.Length;
             Row(text, avatar.Name);
             Row(
                 text, "format",
@@ -49,9 +50,9 @@ namespace Mua.Editor
             Row(
                 text, "descriptor",
                 Format(
-                    "{0} numbers: {1} frames at {2} a second, root and {3} joints, {4} translated, {5}",
+                    "{0} numbers: {1} frames at {2} a second, root and {3} joints{4}, {5}",
                     encoding.Width, encoding.Window, Short(encoding.Rate), encoding.Joints.Length,
-                    encoding.Translated.Length,
+                    moved == 0 ? "" : Format(", {0} of them translated", moved),
                     encoding.Heading ? "heading removed" : "world heading"));
             Row(
                 text, "template",
