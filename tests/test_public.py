@@ -38,6 +38,7 @@ class Somewhere:
 
 def test_every_public_name_is_there() -> None:
     assert set(mua.__all__) <= set(dir(mua))
+    assert {*mua._PLACES, "InputError"} == set(mua.__all__)
     for name in mua.__all__:
         assert getattr(mua, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'lod'"):
@@ -95,6 +96,7 @@ def _turned(scale: float = 1.0, **changes: Any) -> mua.Clip:
 WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "a number as path": (lambda: mua.load(3), r"path is 3 \(int\); expected a path, as a str or an os\.PathLike"),  # type: ignore[arg-type]
     "bytes as path": (lambda: mua.load(b"a"), "expected a path, as a str"),  # type: ignore[arg-type]
+    "no path of any system": (lambda: mua.load("a\0b"), "expected a path, as a str"),
     "no such file": (lambda: mua.load("none.muaavatar"), r"none\.muaavatar: No such file"),
     "storage": (lambda: mua.save("a", AVATAR, storage="f8"), "storage is 'f8'; expected f32 or f16 or i8"),  # type: ignore[arg-type]
     "no avatar to save": (lambda: mua.save("a", "b"), "avatar is 'b'; expected a mua.Avatar"),  # type: ignore[arg-type]

@@ -18,7 +18,7 @@ FARTHEST = 0.5  # steps to a neighbouring texel, by which a surfel is moved
 FEW = 4  # samples: fewer say too little
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rims:
     """The texels along the borders of charts, and what becomes of their surfels."""
 

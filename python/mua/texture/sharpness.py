@@ -21,7 +21,7 @@ SMOOTHING = 0.6, 0.7  # texels, standard deviations: of the picture, and of the 
 SOLID = 254 / 255  # opacity of a texel with nothing clear about it
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sharpness:
     """What a picture asks of the surfel of each texel."""
 
