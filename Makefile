@@ -5,6 +5,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO := build/demo
+# Tests run in random order, by so many processes; each takes up to 2 GB.
+WORKERS ?= 2
+PYTEST := $(BIN)/pytest --numprocesses $(WORKERS) --dist worksteal
 
 .PHONY: demo test test-long test-wheel gallery mutants docs check package wheel setup clean
 
@@ -13,10 +16,10 @@ demo: setup
 	$(BIN)/mua-inspect --verify $(DEMO)/avatar.muaavatar
 
 test: setup check
-	$(BIN)/pytest
+	$(PYTEST)
 
 test-long: setup
-	$(BIN)/pytest -m long
+	$(PYTEST) -m long
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
 test-wheel: demo

@@ -5,6 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+if workers := os.environ.get("PYTEST_XDIST_WORKER_COUNT"):  # before torch: each has its share of the cores
+    os.environ.setdefault("OMP_NUM_THREADS", str(max(1, (os.cpu_count() or 1) // int(workers))))
+
 import pytest
 from shared_data import SharedData
 
@@ -14,6 +17,13 @@ if TYPE_CHECKING:
     from mua.compare.system import TrainingFrames
     from mua.gpu import Device
     from mua.recording import Recording
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Say how to run the same order again."""
+    seed = config.getoption("randomly_seed", None)
+    if isinstance(seed, int):
+        terminalreporter.write_line(f"random order; the same again: pytest --randomly-seed={seed}")
 
 
 @pytest.fixture(scope="session")
