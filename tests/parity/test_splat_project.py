@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from packed_splats import assert_halves, unpacked
-from projected import GROUP, UNWRITTEN, Projected, Scene, compact_on, project_on, scan_on
+from projected import FILE, GROUP, UNWRITTEN, Projected, Scene, compact_on, project_on, scan_on
 from splat_rounding import ULP, Bounds, exact_keys, eye_bounds
 
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera, orbit
-from mua.gpu import Device
+from mua.gpu import Device, run
 from mua.kernels.dq_skinning import covariances, pack_splats
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, splat_project
@@ -129,6 +129,7 @@ def at_eye(x: float, y: float, z: float) -> Array:
     return (np.array([[x, y, z]]) - view[:3, 3]) @ view[:3, :3]
 
 
+SEEN = 0x10000 + 7  # a flag: VISIBLE, and the key below it
 SMALL = np.array([[1e-4, 0, 0, 1e-4, 0, 1e-4]])
 
 
@@ -340,3 +341,18 @@ def test_hlsl_compacts_in_order(device: Device, count: int, share: float) -> Non
     np.testing.assert_array_equal(keys[: len(expected)], flags[expected] & 0xFFFF)
     assert np.all(visible[len(expected) :] == UNWRITTEN)
     assert np.all(keys[len(expected) :] == UNWRITTEN)
+
+
+@pytest.mark.parametrize("count", [GROUP - 1, GROUP + 1])
+def test_a_flag_behind_the_last_splat_is_not_looked_at(device: Device, count: int) -> None:
+    groups = -(-count // GROUP)
+    unwritten = np.full(count + 1, UNWRITTEN, np.uint32)
+    buffers = {
+        "flags": np.full(count + 1, SEEN, np.uint32),
+        "group_counts": (GROUP * np.arange(groups)).astype(np.uint32),
+        "visible": unwritten,
+        "keys": unwritten,
+    }
+    found = run(device, FILE, "SplatCompact", (groups, 1, 1), buffers, splat_count=count)
+    np.testing.assert_array_equal(found["visible"], [*range(count), UNWRITTEN])
+    np.testing.assert_array_equal(found["keys"], [*[SEEN & 0xFFFF] * count, UNWRITTEN])
