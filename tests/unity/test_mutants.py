@@ -25,7 +25,7 @@ from mua.motion.resample import resample
 STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32")
 BATCH = 500  # files on the disk at once
 ROOM = 1 << 29  # bytes that reading and decoding one of them may take here: 5,000 times its size
-CSHARP_ROOM = 2  # times the file's size that the C# reader may take, and the words of one refusal
+CSHARP_ROOM = 3  # times the file's size that the C# reader may take: many small tables, beside the words of a refusal
 WORDS = 20_000
 CLIPS = 3  # of a file that are decoded; a mutant may hold one many times
 
