@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 from recordings import RATE, FormulaTeacher, clip, content, write
 from synthetic_avatar import synthetic_rig
 
@@ -218,6 +219,15 @@ def nan_at(array: Array, *where: int) -> Array:
         (lambda f: replace(f, pose=Pose(f.pose.rotations * 2, f.pose.translations)), "of joint 0 has length 2"),
         (lambda f: replace(f, pose=Pose(f.pose.rotations, nan_at(f.pose.translations, 0))), "pose translations is nan"),
         (lambda f: replace(f, mesh=None), "mesh is missing, expected both or neither"),
+        (lambda f: replace(f, mesh=torch.tensor(f.mesh, requires_grad=True)), r"mesh is .* tensor\.detach\(\)\.cpu"),
+        (
+            lambda f: replace(f, texture=torch.tensor(f.texture, requires_grad=True)),
+            r"texture is .* tensor\.detach\(\)",
+        ),
+        (
+            lambda f: replace(f, pose=Pose(f.pose.rotations[:, :3], f.pose.translations)),
+            r"rotations has shape \[3, 3\], expected \[3, 4\], unit quaternions wxyz; from_axis_angle",
+        ),
     ],
 )
 def test_refuses_a_bad_frame_and_goes_on(tmp_path: Path, change, message: str) -> None:  # type: ignore[no-untyped-def]

@@ -157,7 +157,7 @@ def step_between_texels(rig: Rig) -> np.ndarray:
 def record(folder: Path) -> Path:
     """Write the recording; run again after a kill, it goes on where it stopped."""
     rig = build_rig()
-    with mua.TeacherWriter(folder / "recording", rig, rate=RATE) as writer:
+    with mua.TeacherWriter(folder / "recording", rig, rate=RATE, whole_every=5) as writer:
         for clip in FRAMES:
             if writer.is_complete(clip):
                 continue

@@ -15,6 +15,7 @@ from mua.texture.channels import ATTRIBUTES, CHANNELS
 from mua.texture.fill import Fill
 from mua.wavelets import analyse_lowpass, wavedec2
 
+TENSOR = "; a tensor goes in as tensor.detach().cpu().numpy()"
 HALF_MAX = float(np.finfo(np.float16).max)
 
 
@@ -93,8 +94,8 @@ def valid_texture(
     """The values [N, 23] float32 at the valid texels; raises InputError for any other shape."""
     try:
         texture = np.asarray(texture)
-    except (TypeError, ValueError):
-        raise InputError("texture is no array that numpy reads") from None
+    except (TypeError, ValueError, RuntimeError):
+        raise InputError(f"texture is no array that numpy reads{TENSOR}") from None
     if texture.dtype.kind not in "iuf":
         raise InputError(f"texture has elements of type {texture.dtype}, expected real numbers")
     if texture.shape == (header.valid_texels, CHANNELS):

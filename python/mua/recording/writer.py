@@ -15,6 +15,7 @@ from mua.locks import DirectoryLock
 from mua.motion.clip import LARGEST_RATE, LEAST_RATE
 from mua.recording.encode import (
     HALF_MAX,
+    TENSOR,
     Dynamic,
     Reference,
     align_rotations,
@@ -49,6 +50,7 @@ from mua.texture.fill import Fill
 from mua.wavelets import filters
 
 POSES_PER_SHARD = 4096  # a shard ends here at the latest, however few of its frames are recorded
+ROTATIONS = ", unit quaternions wxyz; from_axis_angle and from_matrix of mua.rotation make them"
 UNIT_LENGTH_ERROR = 1e-3  # of a joint's quaternion: rounding of the source, not another convention
 
 
@@ -361,11 +363,15 @@ def _check_order(frame: int, expected: int) -> None:
 def _checked(name: str, value: Array, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
     """A copy of the given type; raises InputError for another shape or a value that is not finite."""
     try:
-        array = np.array(value, dtype=dtype)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} is no array of numbers, expected one of the shape {list(shape)}") from None
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError(array.dtype)
+        array = array.astype(dtype)
+    except (TypeError, ValueError, RuntimeError):
+        raise InputError(f"{name} is no array of numbers, expected one of the shape {list(shape)}{TENSOR}") from None
     if array.shape != shape:
-        raise InputError(f"{name} has shape {list(array.shape)}, expected {list(shape)}")
+        hint = ROTATIONS if shape[-1] == 4 else ""
+        raise InputError(f"{name} has shape {list(array.shape)}, expected {list(shape)}{hint}")
     if not np.isfinite(array).all():
         where = np.argwhere(~np.isfinite(array))[0].tolist()
         raise InputError(f"{name} is {array[tuple(where)]} at {where}, expected finite numbers")
