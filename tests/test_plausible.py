@@ -305,6 +305,10 @@ RIG_MISTAKES: dict[str, tuple[Callable[[Rig], Rig], str]] = {
         lambda r: with_joints(r, parents=r.skeleton.parents[::-1]),
         "skeleton.parents: a parent comes after its child",
     ),
+    "joints below themselves": (
+        lambda r: with_joints(r, parents=np.append(r.skeleton.parents[:-1], len(r.skeleton.parents) - 1)),
+        "skeleton.parents: a parent comes after its child",
+    ),
     "joints in the world": (
         lambda r: with_joints(r, bind_translations=r.skeleton.world(*bind_of(r))[1]),
         "joints are .* bind_translations are places in the world: are they?",

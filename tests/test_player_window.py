@@ -114,6 +114,13 @@ def test_draws_panel_and_figure_over_the_background(window: Driven) -> None:
     assert (image[:, WIDTH:] != COLOR).any(axis=2).sum() > 100
 
 
+def test_the_panel_says_of_how_many_splats_the_figure_is(window: Driven, monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+    monkeypatch.setattr("mua.player.panel.imgui.text_disabled", said.append)
+    window.picture()
+    assert f"{window.session.splats:,} splats" in said
+
+
 def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:
     middle = (470, 180)
     seen = [window.picture()]

@@ -184,6 +184,12 @@ def test_a_second_turns_a_quarter_and_rises_a_metre_and_a_half_and_scrubs_two_se
     assert told["scrubbed"] == ["0.250"]  # in 9 of 72 frames
 
 
+def test_numbers_are_written_digit_by_digit(csharp: CSharp, program: Path, folder: Path) -> None:
+    told = csharp.run(program, KERNELS, "Numbers", folder, folder / "persistent", folder / "streaming")
+    written = told.splitlines()[0].removeprefix("numbers\t").rstrip("; ")
+    assert written == "0 0.0; 9 9.0; 10 10.0; 100 100.0; 100 100.0; 101 101.0; 1000 1000.0; 7 7.3; - -; - -"
+
+
 def test_the_texts_stand_on_either_side_and_turn_to_the_user(story: Story) -> None:
     told = story("Furniture", files=())
     assert (told["eyes"], told["sees"]) == (["1.60"], ["0.05 to 100"])
