@@ -184,6 +184,8 @@ def test_a_bake_is_ordered_as_its_options_say(
     def carry_out(order: Order, listener: Listener) -> None:
         given.append(order)
         listener.note("A note.")
+        for stage in ("geometry", "appearance", "geometry"):  # take turns
+            listener.stage(stage)
 
     monkeypatch.setattr(pipeline, "bake", carry_out)
     monkeypatch.chdir(tmp_path)
@@ -195,7 +197,7 @@ def test_a_bake_is_ordered_as_its_options_say(
     assert (order.output, order.work, order.clips) == (Path("a.muaavatar"), Path("a.work"), ("2",))
     assert (order.hold_out, order.detail, order.mapping) == (("turn",), {"head": 3}, {"a": "b"})
     assert order.settings == replace(preset("preview"), texels=64)
-    assert caplog.messages == ["A note."]
+    assert caplog.messages == ["A note.", "geometry", "appearance"]
 
 
 @pytest.mark.parametrize(

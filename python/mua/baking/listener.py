@@ -19,9 +19,12 @@ class Log:
 
     def __init__(self) -> None:
         self._log = logging.getLogger("mua")
+        self._begun: set[str] = set()  # two stages may take turns: each is told once
 
     def stage(self, name: str) -> None:
-        self._log.info("%s", name)
+        if name not in self._begun:
+            self._begun.add(name)
+            self._log.info("%s", name)
 
     def step(self, done: int, total: int, *, detail: str = "") -> None:
         self._log.debug("%d of %d%s%s", done, total, ", " if detail else "", detail)
