@@ -11,8 +11,10 @@ from mua.camera import orbit
 from mua.decode import pose_splats
 from mua.rendering import render_premultiplied
 from mua.rig.character import Character
+from mua.rig.texel_map import build_texel_map
 from mua.teachers import texels
 from mua.teachers.still import StillTeacher
+from mua.texture.channels import SH_C0
 from mua.texture.sharpness import SPREAD, Sharpness
 
 SCREEN = (96, 256)  # pixels
@@ -106,3 +108,15 @@ def test_lines_of_a_picture_change_nothing_that_moves() -> None:
         moves.append(teacher.frame(replace(rest, rotations=bent)).texture - teacher.frame(rest).texture)
     assert np.abs(moves[0][:, 3:10]).max() > 0.01
     np.testing.assert_allclose(moves[0][:, :10], moves[1][:, :10], atol=SINGLE)
+
+
+def test_the_picture_beside_a_chart_gives_its_texels_no_colour() -> None:
+    """An even chart in a black atlas: sharpened against the black, its rim would be brighter."""
+    character = tube(rings=29, sides=40)
+    gray = np.zeros(TEXELS * TEXELS, np.uint8)
+    gray[build_texel_map(character.mesh, TEXELS).texels] = 128
+    gray = gray.reshape(TEXELS, TEXELS).repeat(4, axis=0).repeat(4, axis=1)
+    picture = np.stack([gray, gray, gray, np.full_like(gray, 255)], axis=2)
+    teacher = StillTeacher(replace(character, base_color=picture), texels=TEXELS)
+    colors = 0.5 + SH_C0 * teacher.frame(character.skeleton.bind_pose).texture[:, 11:14]
+    np.testing.assert_allclose(colors, 128 / 255, atol=2 / 255)

@@ -48,7 +48,7 @@ class SurfaceTexels:
         relief -= SINK * np.exp(surfels.log_scales[:, :2]).min(axis=1, keepdims=True) * surfels.normals
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
         albedo = sample_albedo(character.base_color, uv, texels.size)
-        at_home = _at_home(uv, texels)
+        at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the picture of another chart
         albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)

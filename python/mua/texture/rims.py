@@ -22,7 +22,8 @@ FEW = 4  # samples: fewer say too little
 class Rims:
     """The texels along the borders of charts, and what becomes of their surfels."""
 
-    texels: Array  # [n] rows of the texel map
+    at_border: Array  # [N] bool, of all texels
+    texels: Array  # [n] those of them with enough surface to be fitted to, as rows of the texel map
     aside: Array  # [n, 3] from a texel's point to the middle of its surface, metres
     steps: Array  # [n, 2] along x and y that stand for those to neighbouring texels, metres
 
@@ -48,6 +49,7 @@ def fit_rims(
     widths = np.sqrt(12 * np.maximum(square - mean**2, 0))  # of an even square: its sides
     far = np.linalg.norm(mean, axis=1) / np.maximum(FARTHEST * steps[rims].max(axis=1), np.finfo(float).tiny)
     return Rims(
+        at_border=at_border,
         texels=rims,
         aside=np.einsum("nck,nk->nc", frames[rims][:, :, :2], mean / np.maximum(far, 1)[:, None]),
         steps=np.clip(SHARE * widths, NARROWEST * steps[rims], WIDEST * steps[rims]),

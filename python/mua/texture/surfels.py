@@ -36,6 +36,7 @@ class Surfels:
     log_scales: Array  # [N, 3] along x, y, z; natural logarithms of metres
     smooth: Array  # [N, 4] rotations with x about along u everywhere, one sign over each chart
     aside: Array  # [N, 3] from the texels' points to the centres, metres
+    at_border: Array  # [N] bool, of a chart
 
     @property
     def normals(self) -> Array:
@@ -90,6 +91,7 @@ def rest_surfels(
         log_scales=np.log(np.maximum(extents, least)),
         smooth=smooth,
         aside=aside,
+        at_border=rims.at_border,
     )
 
 
