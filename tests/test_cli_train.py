@@ -158,7 +158,7 @@ def test_two_stages_that_take_turns_are_told_apart(monkeypatch: pytest.MonkeyPat
     assert lines == [
         *("coarse mesh", "  1 of 1", "  T"),
         *("geometry bases", "  1 of 2", "appearance bases", "  appearance bases: 1 of 2"),
-        *("  geometry bases: 2 of 2", "  geometry bases: T", "  2 of 2", "  T"),
+        *("  geometry bases: 2 of 2", "  geometry bases: T", "  appearance bases: 2 of 2", "  T"),
         *("avatar", "  T"),
     ]
 
