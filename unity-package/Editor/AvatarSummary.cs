@@ -15,7 +15,7 @@ namespace Mua.Editor
 
         private static readonly string[] Parts =
         {
-            "skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail",
+            "skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail", "surface",
         };
 
         /// <summary>The tables of `avatar`.</summary>

@@ -16,6 +16,7 @@ from mua.model import Model
 from mua.motion.clip import Clip
 from mua.motion.resample import frames_at
 from mua.rig.skeleton import Pose
+from mua.rig.surface import Surface
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -30,6 +31,7 @@ class Avatar(Model):
     clips: tuple[Clip, ...]
     thumbnail: bytes  # PNG, may be empty
     notes: str  # e.g. that the teacher is a simulated stand-in
+    surface: Surface | None = None  # triangles over the texels, which a file before version 2.1 does not hold
 
     def decode(
         self,

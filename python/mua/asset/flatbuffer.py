@@ -25,7 +25,7 @@ SCALARS = {
     "double": np.dtype("<f8"),
     **{name: np.dtype("u1") for name in ENUMS},
 }
-VERSION = (2, 0)  # major, minor of the format
+VERSION = (2, 1)  # major, minor of the format
 MAX_BYTES = 2**31 - 1  # FlatBuffers' offsets are 32 bits, and its builders stop at half of them
 
 

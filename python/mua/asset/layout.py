@@ -97,6 +97,10 @@ TABLES = {
         Field("translation", "Tensor", required=True),
         Field("translations", "Tensor"),
     ),
+    "Surface": (
+        Field("runs", "ubyte", vector=True, required=True),
+        Field("strips", "Tensor", required=True),
+    ),
     "Avatar": (
         Field("version_major", "ushort"),
         Field("version_minor", "ushort"),
@@ -116,5 +120,6 @@ TABLES = {
         Field("clips", "Clip", vector=True, required=True),
         Field("bounds", "Tensor", required=True),
         Field("thumbnail", "ubyte", vector=True, required=True),
+        Field("surface", "Surface"),
     ),
 }

@@ -17,6 +17,7 @@ from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Skeleton
+from mua.rig.surface import END, Surface, block_triangles, blocks, codes_of, count_codes
 from mua.rig.texel_map import TexelMap
 
 UNIT_BOUND = 2e-3  # a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
@@ -115,6 +116,7 @@ def decode_tree(tree: Tree) -> Avatar:
         bounds=_bounds(tree["bounds"]),
         thumbnail=_thumbnail(tree["thumbnail"]),
         notes=tree["notes"],
+        surface=_surface(tree["surface"], rig.texels) if "surface" in tree else None,
     )
 
 
@@ -327,6 +329,15 @@ def _bounds(tensor: Tree) -> Array:
     if np.any(bounds[0] > bounds[1]):
         _refuse("bounds", f"lowest corner {bounds[0].tolist()} above highest {bounds[1].tolist()}")
     return bounds
+
+
+def _surface(tree: Tree, texels: TexelMap) -> Surface:
+    corners, runs = blocks(texels), tree["runs"]
+    if count_codes(runs) != len(corners):
+        raise FormatError("shape", "surface.runs", f"{count_codes(runs)} codes, expected {len(corners)}")
+    if block_triangles(corners, codes_of(runs)).min(initial=0) < 0:
+        _refuse("surface.runs", "a triangle has a corner that is no valid texel")
+    return Surface(runs, indices(tree["strips"], "surface.strips", (None,), END, 2 * len(texels.texels)))
 
 
 def _thumbnail(content: Array) -> bytes:

@@ -7,7 +7,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters, stored_bytes
 from mua.asset.flatbuffer import Tree
 
-PARTS = ("skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail")
+PARTS = ("skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail", "surface")
 
 
 def summary(
@@ -34,7 +34,7 @@ def summary(
         "texels": {"used": len(avatar.rig.texels.texels), "side": avatar.rig.texels.size},
         "wavelet": {"name": avatar.wavelet.name, "levels": avatar.wavelet.levels},
         "ranks": {"geometry": list(avatar.geometry.ranks), "appearance": list(avatar.appearance.ranks)},
-        "bytes_by_part": {part: stored_bytes(tree[part]) for part in PARTS},
+        "bytes_by_part": {part: stored_bytes(tree.get(part)) for part in PARTS},
         "parameters": parameters(avatar),
         "flops_per_frame": flops(avatar),
         "clips": [

@@ -20,6 +20,7 @@ from mua.motion.clip import Clip
 from mua.motion.encoding import Normalization, PoseEncoding
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Skeleton
+from mua.rig.surface import Surface
 
 
 def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
@@ -68,7 +69,7 @@ def _avatar(avatar: Avatar, storage: Storage) -> Tree:
     translated = _translated(avatar)
     return {
         "version_major": VERSION[0],
-        "version_minor": VERSION[1],
+        "version_minor": VERSION[1] if avatar.surface else 0,  # a file without a surface is one of 2.0
         "crc32": 0,
         "axes": "MetresYUpRightHanded",
         "name": avatar.name,
@@ -95,7 +96,13 @@ def _avatar(avatar: Avatar, storage: Storage) -> Tree:
         "clips": [_clip(clip, avatar.rig.skeleton, translated, storage) for clip in avatar.clips],
         "bounds": pack(avatar.bounds),
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
+        **_surface(avatar.surface),
     }
+
+
+def _surface(surface: Surface | None) -> Tree:
+    """Absent where there is none."""
+    return {"surface": {"runs": surface.runs, "strips": pack_indices(surface.strips)}} if surface else {}
 
 
 def _translated(avatar: Avatar) -> Array:

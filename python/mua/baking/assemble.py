@@ -17,6 +17,7 @@ from mua.motion.encoding import PoseEncoding
 from mua.portrait import portrait
 from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.rig import Rig
+from mua.rig.triangulate import triangulate
 from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
 from mua.student.model import Student
 
@@ -49,6 +50,7 @@ def assemble(
         bounds=playback_bounds(rig, clips),
         thumbnail=b"",
         notes=notes,
+        surface=triangulate(rig.mesh, rig.texels),
     )
     return replace(avatar, thumbnail=thumbnail(avatar, clips))
 

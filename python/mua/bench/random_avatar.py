@@ -20,6 +20,7 @@ from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import build_texel_map
+from mua.rig.triangulate import triangulate
 from mua.student.settings import Ranks, Settings
 
 HEIGHT, RADIUS = 1.7, 0.18  # metres
@@ -59,6 +60,7 @@ def random_avatar(settings: Settings, *, seed: int = 0) -> Avatar:
         bounds=np.array([[-1, -0.3, -1], [1, HEIGHT + 0.3, 1]], dtype=np.float32),
         thumbnail=b"",
         notes="random numbers for mua-bench, not a trained avatar",
+        surface=triangulate(rig.mesh, rig.texels),
     )
 
 

@@ -17,7 +17,7 @@ from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
 from mua.motion.clip import Clip
 from mua.player.draw import view_projection
-from mua.player.surface import build_surface
+from mua.player.surface import surface_mesh
 from mua.rig.rig import Rig
 
 SHADERS = Path(__file__).parent / "shaders"
@@ -72,8 +72,8 @@ class Overlays:
 
     @cached_property
     def _surface(self) -> tuple[dict[str, Buffer], _Indices]:
-        """Made when it is first shown: a second of work."""
-        surface = build_surface(self._avatar.rig.mesh, self._avatar.rig.texels)
+        """Made when it is first shown."""
+        surface = surface_mesh(self._avatar)
         rings = {name: self._device.buffer(getattr(surface, name), name=name) for name in ("ring_starts", "ring")}
         return rings, _indices(self._device, surface.triangles)
 

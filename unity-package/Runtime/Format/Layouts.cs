@@ -84,6 +84,10 @@ namespace Mua.Format
             new Field("translation", Kind.Table, required: true, table: Tensor),
             new Field("translations", Kind.Table, table: Tensor));
 
+        public static readonly Layout Surface = new Layout(
+            new Field("runs", Kind.U8, vector: true, required: true),
+            new Field("strips", Kind.Table, required: true, table: Tensor));
+
         public static readonly Layout Avatar = new Layout(
             new Field("version_major", Kind.U16),
             new Field("version_minor", Kind.U16),
@@ -102,7 +106,8 @@ namespace Mua.Format
             new Field("appearance", Kind.Table, required: true, table: Branch),
             new Field("clips", Kind.Table, vector: true, required: true, table: Clip),
             new Field("bounds", Kind.Table, required: true, table: Tensor),
-            new Field("thumbnail", Kind.U8, vector: true, required: true));
+            new Field("thumbnail", Kind.U8, vector: true, required: true),
+            new Field("surface", Kind.Table, table: Surface));
 
         public static readonly Layout Root = Avatar;
     }
