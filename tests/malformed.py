@@ -213,6 +213,14 @@ MALFORMED = [
     *[("finite", "clips[0].translation", not_a_number(at)) for at in (17, 20)],  # the last is 2 bytes after whole words
     ("value", "encoding.mean", poke("encoding.mean", 71, -65536)),
     ("value", "bounds", poke("bounds", 0, 5)),
+    ("missing", "surface.strips", drop("surface.strips")),
+    ("shape", "surface.runs", put("surface.runs", np.zeros(0, np.uint8))),
+    ("shape", "surface.runs", put("surface.runs", np.full(1000, 0xF0, np.uint8))),
+    ("value", "surface.runs", poke("texels.texels", 0, 0)),  # a block has lost a corner
+    ("shape", "surface.strips.shape", put("surface.strips", pack_indices(np.zeros((4, 3))))),
+    ("type", "surface.strips", put("surface.strips", pack(np.zeros(4)))),
+    ("range", "surface.strips", poke("surface.strips", 0, -2)),
+    ("range", "surface.strips", poke("surface.strips", 0, 2 * 676)),
     ("value", "thumbnail", put("thumbnail", np.frombuffer(b"GIF89a", np.uint8))),
 ]
 

@@ -1,6 +1,7 @@
 """A small random avatar for tests: a three-joint tube of 12 vertices, 32 x 32 texels, four levels (LL 2 x 2)."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -48,6 +49,29 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4") -> Avatar:
         thumbnail=b"",
         notes="random numbers in the shape of an avatar",
     )
+
+
+def with_surface(avatar: Avatar) -> Avatar:
+    """The same avatar with triangles over its texels, as bakes store them."""
+    from mua.rig.triangulate import triangulate  # here, because it needs more packages than an avatar
+
+    return replace(avatar, surface=triangulate(avatar.rig.mesh, avatar.rig.texels))
+
+
+def sparse_avatar(seed: int) -> Avatar:
+    """A synthetic avatar of which a fifth of the texels is not valid, with the surface over the others."""
+    avatar = synthetic_avatar(seed)
+    texels = avatar.rig.texels
+    kept = np.random.default_rng(seed).random(len(texels.texels)) < 0.8
+    few = replace(
+        texels,
+        texels=texels.texels[kept],
+        triangles=texels.triangles[kept],
+        barycentrics=texels.barycentrics[kept],
+    )
+    branches = [replace(b, static=b.static[:, kept]) for b in (avatar.geometry, avatar.appearance)]
+    rig = replace(avatar.rig, texels=few)
+    return with_surface(replace(avatar, rig=rig, geometry=branches[0], appearance=branches[1]))
 
 
 def synthetic_rig() -> Rig:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import rasterised
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, compare
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua import rotation
 from mua.arrays import Array
@@ -39,7 +39,7 @@ from mua.player.overlays import (
 )
 from mua.player.scene import Scene, draw_picture
 from mua.player.splats import SplatFrame
-from mua.player.surface import build_surface
+from mua.player.surface import surface_mesh
 from mua.player.toggles import Toggles, parse_toggles
 from mua.rig.skeleton import Pose
 
@@ -54,7 +54,7 @@ class Stage:
 
     def __init__(self, device: Device, path: Path) -> None:
         self.device = device
-        write(path, synthetic_avatar(), storage="f32")
+        write(path, with_surface(synthetic_avatar()), storage="f32")
         self.avatar = read(path)
         self.gpu = SplatFrame(device, [AvatarBuffers(device, path)])
         self.scene = Scene(device, self.gpu)
@@ -99,7 +99,7 @@ def expected(stage: Stage, camera: Camera, show: str) -> Picture:
     """What numpy draws of the reference's posed splats, template or joints."""
     rig = stage.avatar.rig
     if show == "geometry":
-        triangles = build_surface(rig.mesh, rig.texels).triangles.astype(np.int64)
+        triangles = surface_mesh(stage.avatar).triangles.astype(np.int64)
         return rasterised.smooth(camera, stage.frame.centres, triangles, GEOMETRY_COLOR)
     if show == "template":
         return rasterised.flat(camera, stage.frame.mesh, rig.mesh.faces, TEMPLATE_COLOR)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from malformed import DAMAGED, MALFORMED, malformed
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.read import decode_tree, parse_checked, read
@@ -18,7 +18,7 @@ MUTATIONS = 1000
 
 @pytest.fixture(scope="module")
 def content() -> bytes:
-    return encode(synthetic_avatar(), storage="i8")
+    return encode(with_surface(synthetic_avatar()), storage="i8")
 
 
 def decode(content: bytes) -> None:

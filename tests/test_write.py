@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import parse
@@ -136,6 +136,19 @@ def test_an_avatar_whose_joints_only_turn_holds_no_more_than_version_1() -> None
     written = bytearray(encode(read(VERSION_1), storage="f32"))
     written[checksum : checksum + 4] = bytes(4)
     assert written == content
+
+
+def test_a_surface_comes_back_and_is_what_makes_a_file_one_of_2_1() -> None:
+    avatar = with_surface(synthetic_avatar())
+    content = encode(avatar)
+    found = decode_tree(parse_checked(content))
+    assert avatar.surface
+    assert found.surface
+    np.testing.assert_array_equal(found.surface.runs, avatar.surface.runs)
+    np.testing.assert_array_equal(found.surface.strips, avatar.surface.strips)
+    assert encode(found) == content
+    versions = [parse(encode(each))["version_minor"] for each in (avatar, replace(avatar, surface=None))]
+    assert versions == [1, 0]
 
 
 def test_translations_of_joints_come_back(tmp_path: Path) -> None:

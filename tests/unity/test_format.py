@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from csharp import PROGRAMS, RUNTIME, CSharp
 from malformed import DAMAGED, MALFORMED, malformed
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import FormatError, Tree
@@ -29,7 +29,7 @@ def program(csharp: CSharp) -> Path:
 
 @pytest.fixture(scope="module")
 def content() -> bytes:
-    return encode(synthetic_avatar(), storage="i8")
+    return encode(with_surface(synthetic_avatar()), storage="i8")
 
 
 def python_answer(content: bytes) -> tuple[str, ...]:
@@ -62,7 +62,7 @@ def test_values_are_those_of_the_python_reader(
     csharp: CSharp, program: Path, tmp_path: Path, storage: Storage | str
 ) -> None:
     kept = {"golden": GOLDEN, "version 1": GOLDEN.with_name("version_1.muaavatar")}
-    sound = kept[storage].read_bytes() if storage in kept else encode(synthetic_avatar(), storage=storage)  # type: ignore
+    sound = kept[storage].read_bytes() if storage in kept else encode(with_surface(synthetic_avatar()), storage=storage)  # type: ignore
     [path] = write_all(tmp_path, [sound])
     expected = values(parse_checked(sound))
     found = {}
@@ -71,6 +71,19 @@ def test_values_are_those_of_the_python_reader(
         found[name] = (kind, bytes.fromhex(digits))
     assert found.keys() == expected.keys()
     assert [name for name in expected if found[name] != expected[name]] == []
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_triangles_over_scattered_texels_are_those_of_the_python_reader(
+    csharp: CSharp, program: Path, tmp_path: Path, seed: int
+) -> None:
+    avatar = sparse_avatar(seed)
+    assert avatar.surface
+    [path] = write_all(tmp_path, [encode(avatar)])
+    lines = [line.split("\t") for line in csharp.run(program, "dump", path).splitlines()]
+    [found] = [bytes.fromhex(digits) for name, _, digits in lines if name == "surface.triangles"]
+    expected = avatar.surface.triangles(avatar.rig.texels)
+    np.testing.assert_array_equal(np.frombuffer(found, "<i4").reshape(-1, 3), expected)
 
 
 def test_every_half_is_expanded_exactly(csharp: CSharp, program: Path) -> None:
@@ -142,6 +155,8 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
         "encoding.window": (encoding.window, encoding.heading),
         "wavelet.levels": wavelet.levels,
     }
+    if avatar.surface:
+        integers["surface.triangles"] = avatar.surface.triangles(rig.texels)
     floats: dict[str, Any] = {
         "template.uv": rig.mesh.uv,
         "template.skin_weights": rig.skin_weights,

@@ -11,7 +11,7 @@ import pytest
 from csharp import PROGRAMS, ROOT, CSharp
 from malformed import DAMAGED, MALFORMED, malformed
 from PIL import Image
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
 from mua.asset.write import encode
@@ -87,7 +87,7 @@ def test_a_thumbnail_that_is_no_picture_gives_way_to_a_portrait(story: Story, tm
 
 def test_an_unsound_file_becomes_an_asset_that_says_why(story: Story, tmp_path: Path) -> None:
     """Every malformed file: one import error with file, field and value, no exception, and the reader's field."""
-    content = encode(synthetic_avatar(), storage="i8")
+    content = encode(with_surface(synthetic_avatar()), storage="i8")
     bad = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
     fields = [field for _, field, _ in [*MALFORMED, *DAMAGED]]
     files = [tmp_path / f"{i}.muaavatar" for i in range(len(bad))]

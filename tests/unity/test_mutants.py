@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from csharp import CSharp
 from mutants import mutants
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 from test_format import program, values, write_all  # noqa: F401 program is a fixture
 
 from mua.asset.flatbuffer import FormatError
@@ -39,7 +39,7 @@ def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
     count: int,
 ) -> None:
     """The C# reader also gives the values of each file that is accepted."""
-    contents = [encode(synthetic_avatar(), storage=storage) for storage in STORAGES]
+    contents = [encode(with_surface(synthetic_avatar()), storage=storage) for storage in STORAGES]
     made = mutants(contents, np.random.default_rng(count), count)
     codes = Counter[str]()
     while some := list(islice(made, BATCH)):

@@ -1,6 +1,6 @@
-"""The package's surfaces: the texel grid that mono builds, and every pass of surface.shader, recorded and replayed.
+"""The package's surfaces: the triangles that mono reads, and every pass of surface.shader, recorded and replayed.
 
-The grid is held against the desktop player's; pictures against those that numpy draws of the reference's posed avatar.
+Triangles are held against the desktop player's; pictures against those that numpy draws of the posed avatar.
 """
 
 from collections.abc import Iterator
@@ -11,17 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 import rasterised
-import synthetic_avatar as module
 import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
 from replay import Drawn, replay
 from shader_programs import VARIANTS, programs
-from synthetic_avatar import synthetic_avatar
-from test_player_surface import cube
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
 from test_recorded_frame import MIRROR, STAND_INS, place_of
-from tube import tube
 
 from mua import rotation
 from mua.arrays import Array
@@ -41,11 +38,7 @@ from mua.player.overlays import (
     OUTLINE_COLOR,
     TEMPLATE_COLOR,
 )
-from mua.player.surface import build_surface
-from mua.rig.character import Mesh
-from mua.rig.charts import find_charts
-from mua.rig.rig import Rig
-from mua.rig.texel_map import build_texel_map
+from mua.player.surface import surface_mesh
 
 SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
@@ -76,46 +69,20 @@ def arrays(path: Path) -> list[Array]:
     return found
 
 
-def check_grid(csharp: CSharp, program: Path, file: Path, target: Path) -> None:
-    rig = read(file).rig
-    surface = build_surface(rig.mesh, rig.texels)
-    csharp.run(program, "grid", file, target)
-    for found, exact in zip(arrays(target), (surface.triangles, surface.ring_starts, surface.ring), strict=True):
+def test_triangles_and_those_about_each_texel_are_the_desktop_players(
+    csharp: CSharp, surface_program: Path, tmp_path: Path
+) -> None:
+    write(tmp_path / "avatar.muaavatar", sparse_avatar(1))
+    surface = surface_mesh(read(tmp_path / "avatar.muaavatar"))
+    csharp.run(surface_program, "grid", tmp_path / "avatar.muaavatar", tmp_path / "grid")
+    expected = (surface.triangles, surface.ring_starts, surface.ring)
+    for found, exact in zip(arrays(tmp_path / "grid"), expected, strict=True):
         np.testing.assert_array_equal(found, exact.ravel().astype(np.int32))
 
 
-def test_the_grid_of_the_golden_file_is_the_desktop_players(
-    csharp: CSharp, surface_program: Path, tmp_path: Path
-) -> None:
-    check_grid(csharp, surface_program, ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
-
-
-@pytest.mark.parametrize(
-    "mesh", [cube(), cube(mirrored=3), tube().mesh], ids=["six charts", "three mirrored", "one seam and two openings"]
-)
-@pytest.mark.parametrize("speck", [1.0, 0.01], ids=["whole", "a chart without texels"])
-def test_the_grid_over_other_charts_is_the_desktop_players(
-    csharp: CSharp,
-    surface_program: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    mesh: Mesh,
-    speck: float,
-) -> None:
-    """Moved at random a little, so that no two texels are equally near to a seam."""
-    rng = np.random.default_rng(5)
-    uv = mesh.uv + rng.uniform(-1e-3, 1e-3, mesh.uv.shape)
-    first = mesh.uv_faces[find_charts(mesh.uv_faces, mesh.uv[mesh.uv_faces]) == 0]
-    uv[first.ravel()] = uv[first[0, 0]] + speck * (uv[first.ravel()] - uv[first[0, 0]])
-    vertices = mesh.vertices + rng.uniform(-1e-3, 1e-3, mesh.vertices.shape)
-    made = replace(mesh, vertices=vertices, uv=uv)
-    rig, count = module.synthetic_rig(), len(vertices)
-    weights = np.eye(1, 8, dtype=np.float32).repeat(count, axis=0)
-    texels = build_texel_map(made, module.SIZE)
-    other = Rig(rig.skeleton, made, np.zeros((count, 8), np.int32), weights, texels)
-    monkeypatch.setattr(module, "synthetic_rig", lambda: other)
-    write(tmp_path / "avatar.muaavatar", synthetic_avatar(), storage="f32")
-    check_grid(csharp, surface_program, tmp_path / "avatar.muaavatar", tmp_path / "grid")
+def test_a_file_without_a_surface_is_told_in_a_sentence(csharp: CSharp, surface_program: Path, tmp_path: Path) -> None:
+    said = csharp.run(surface_program, "grid", ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
+    assert said.strip() == "the file holds no surface; bake or train it again to see one"
 
 
 @dataclass(frozen=True)
@@ -133,7 +100,7 @@ def scene(csharp: CSharp, surface_program: Path, device: Device, tmp_path_factor
     folder = tmp_path_factory.mktemp("surface")
     files = [folder / f"{index}.muaavatar" for index in range(2)]
     for seed, file in enumerate(files):
-        write(file, synthetic_avatar(seed + 1), storage="f32")
+        write(file, with_surface(synthetic_avatar(seed + 1)), storage="f32")
     avatar = read(files[1])
     centres = placed(posed(avatar).centres)
     bounds = np.stack([centres.min(axis=0), centres.max(axis=0)])
@@ -192,7 +159,7 @@ class Painter:
         scene = self.scene
         rig, frame, camera = scene.avatar.rig, posed(scene.avatar), scene.cameras[eye]
         if name == "Geometry":
-            triangles = build_surface(rig.mesh, rig.texels).triangles.astype(np.int64)
+            triangles = surface_mesh(scene.avatar).triangles.astype(np.int64)
             return rasterised.smooth(camera, placed(frame.centres), triangles, GEOMETRY_COLOR, wall=wall)
         if name == "Mesh":
             return rasterised.flat(camera, placed(frame.mesh), rig.mesh.faces, TEMPLATE_COLOR, wall=wall)
@@ -339,7 +306,7 @@ def test_what_lies_before_a_lights_volume_still_casts_a_shadow(painter: Painter)
 
 def test_draws_of_indices(scene: Scene) -> None:
     faces = scene.avatar.rig.mesh.faces.ravel()
-    surface = build_surface(scene.avatar.rig.mesh, scene.avatar.rig.texels)
+    surface = surface_mesh(scene.avatar)
     for name in ("Mesh", "ShadowCaster"):
         np.testing.assert_array_equal(scene.drawn[name].indices, faces)
         assert scene.drawn[name].arguments == (faces.size, 1)

@@ -15,7 +15,8 @@ namespace Mua.Editor
 
         private static readonly string[] Parts =
         {
-            "skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail", "surface",
+            "skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail",
+            "surface",
         };
 
         /// <summary>The tables of `avatar`.</summary>

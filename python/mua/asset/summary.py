@@ -7,7 +7,18 @@ from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters, stored_bytes
 from mua.asset.flatbuffer import Tree
 
-PARTS = ("skeleton", "encoding", "template", "texels", "coarse", "geometry", "appearance", "clips", "thumbnail", "surface")
+PARTS = (
+    "skeleton",
+    "encoding",
+    "template",
+    "texels",
+    "coarse",
+    "geometry",
+    "appearance",
+    "clips",
+    "thumbnail",
+    "surface",
+)
 
 
 def summary(

@@ -1,4 +1,4 @@
-"""The texels as one triangle mesh, as a `.muaavatar` file holds it: a code for each block of texels, strips for the rest.
+"""Triangles over the texels, as a `.muaavatar` file holds them: a code for each block of texels, strips for the rest.
 
 Section 8 of schemas/README.md is its description; `triangulate` makes it.
 """

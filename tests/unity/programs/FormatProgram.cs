@@ -200,6 +200,10 @@ internal static class FormatProgram
         Print("bounds", avatar.Bounds);
         ArraySegment<byte> thumbnail = avatar.Thumbnail;
         print("thumbnail", "u1", thumbnail.Array.Skip(thumbnail.Offset).Take(thumbnail.Count).ToArray());
+        if (avatar.Surface != null)
+        {
+            Print("surface.triangles", avatar.Surface.Triangles(avatar.Texels));
+        }
         for (int i = 0; i < avatar.Clips.Length; i++)
         {
             Print("clips." + i + ".name", avatar.Clips[i].Name);

@@ -1,5 +1,5 @@
 // What the package draws of avatars beside their splats. Arguments: `grid AVATAR TARGET` writes the three arrays of the texel
-// grid, each after its length; `draw KERNELS RECORDING SCENARIO AVATARS..` records the surfaces of the last avatar, which
+// grid, each after its length, or says why there is none; `draw KERNELS RECORDING SCENARIO AVATARS..` records the surfaces of the last avatar, which
 // shares its splats with those before it. The scenario: `screen WIDTH HEIGHT NEAR`, then up to two lines `eye VIEW[16]
 // PROJECTION[16]` of Unity's matrices, row by row, then `decode SECONDS PLACE[7]`: Unity's position and rotation (x, y, z, w).
 using System;
@@ -30,7 +30,7 @@ namespace Mua
             CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
             if (arguments[0] == "grid")
             {
-                WriteGrid(TexelGrid.Build(AvatarFile.Read(File.ReadAllBytes(arguments[1]))), arguments[2]);
+                WriteGrid(AvatarFile.Read(File.ReadAllBytes(arguments[1])), arguments[2]);
             }
             else
             {
@@ -39,8 +39,18 @@ namespace Mua
             return 0;
         }
 
-        private static void WriteGrid(TexelGrid grid, string path)
+        private static void WriteGrid(AvatarFile avatar, string path)
         {
+            TexelGrid grid;
+            try
+            {
+                grid = TexelGrid.Build(avatar);
+            }
+            catch (InvalidOperationException error)
+            {
+                System.Console.WriteLine(error.Message);
+                return;
+            }
             using (var writer = new BinaryWriter(File.Create(path)))
             {
                 foreach (int[] values in new[] { grid.Triangles, grid.RingStarts, grid.Ring })
