@@ -70,6 +70,13 @@ def test_the_file_holds_the_clips_of_the_character_whole_and_by_name(baked: Bake
     assert 0 < baked.stored.clip_bytes < baked.stored.file_bytes == baked.output.stat().st_size
 
 
+def test_the_file_holds_triangles_over_its_texels(baked: Baked) -> None:
+    avatar = read(baked.output)
+    assert avatar.surface
+    texels = avatar.rig.texels
+    assert len(np.unique(avatar.surface.triangles(texels))) > 0.9 * len(texels.texels)
+
+
 def test_the_file_says_what_was_held_out(baked: Baked) -> None:
     walk = read(baked.output).clips[0]
     assert f"held out of training: walk from frame {len(walk) - len(walk) // 5}, turn" in read(baked.output).notes

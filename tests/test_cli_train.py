@@ -32,6 +32,7 @@ def trained(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_leaves_an_avatar_of_the_recordings_texture_size(trained: Path) -> None:
     avatar = read(trained)
+    assert avatar.surface
     assert avatar.name == "a"
     assert avatar.rig.texels.size == 32
     assert [clip.name for clip in avatar.clips] == ["walk", "reach", "turn"]
