@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
 from mua.model import Layer
@@ -46,7 +46,7 @@ def program(csharp: CSharp) -> Path:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two avatars, one that takes several frames to upload, and one that is damaged."""
     made = tmp_path_factory.mktemp("avatars")
-    avatar = synthetic_avatar(1)
+    avatar = with_surface(synthetic_avatar(1))
     write(made / "first.muaavatar", avatar, storage="f16")
     write(made / "second.muaavatar", synthetic_avatar(2), storage="i8")
     first, *_, last = avatar.coarse.mlp
@@ -130,10 +130,18 @@ def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story
     )
     geometry, appearance = (replace(b, static=b.static[:, :2]) for b in (avatar.geometry, avatar.appearance))
     avatar = replace(avatar, rig=replace(avatar.rig, texels=few), geometry=geometry, appearance=appearance)
-    write(folder / "sparse.muaavatar", avatar, storage="f16")
+    write(folder / "sparse.muaavatar", with_surface(avatar), storage="f16")
     told = story("ShowsSparse", "sparse")
     assert told["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
     assert told["log"] == []
+
+
+def test_a_file_without_a_surface_is_told_once_and_shows_the_rest(story: Story, folder: Path) -> None:
+    write(folder / "bare.muaavatar", synthetic_avatar(1), storage="f16")
+    told = story("ShowsSparse", "bare")
+    assert told["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
+    sentence = "synthetic: Geometry: the file holds no surface; bake or train it again to see one"
+    assert [line.rpartition("MUA: ")[2] for line in told["log"]] == [sentence]
 
 
 def test_splats_are_drawn_where_surfaces_cannot_be(story: Story) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from replay import Drawn, replay
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 from test_recorded_frame import MIRROR, STAND_INS
 
 from mua.arrays import Array
@@ -167,7 +167,7 @@ def built(csharp: CSharp, *defines: str) -> Path:
 
 
 def run(csharp: CSharp, program: Path, mode: Mode, folder: Path) -> Recorded:
-    write(folder / "avatar.muaavatar", synthetic_avatar(1), storage="f16")
+    write(folder / "avatar.muaavatar", with_surface(synthetic_avatar(1)), storage="f16")
     lines = ["screen {} {} {}".format(*EYE, NEAR)]
     for camera in cameras():
         numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
