@@ -100,7 +100,7 @@ def look_at(entry: Entry, folder: Path, out: Path, *, bake: bool) -> dict[str, A
         row |= {"check": vars(done), "failed": done.said if done.status else ""}
         if not done.status:
             row |= checked(json.loads(figures.read_text()))
-    if bake and not row["failed"] and "bake" not in row:
+    if bake and row.get("clips") and not row["failed"] and "bake" not in row:  # without motion there is nothing to bake
         done = run([*given, "--frames", str(FRAMES)], out / f"{entry.name}_bake.log")
         row |= {"bake": vars(done), "failed": done.said if done.status else ""}
         if not done.status:
