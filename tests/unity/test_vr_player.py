@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import synthetic_avatar, with_surface
 from test_compiles import Compiler, assemblies
 
 from mua.asset import write
@@ -60,7 +60,7 @@ def story(csharp: CSharp, program: Path, folder: Path) -> Story:
 
 def put(path: Path, seed: int) -> None:
     """An avatar of two clips, called after its file."""
-    avatar = synthetic_avatar(seed)
+    avatar = with_surface(synthetic_avatar(seed))
     clip = avatar.clips[0]
     path.parent.mkdir(exist_ok=True)
     write(path, replace(avatar, name=path.stem, clips=(clip, replace(clip, name="another"))), storage="i8")

@@ -55,17 +55,17 @@ namespace Mua
 
         private static void Plays()
         {
-            Plays(PlayerRun.Begin(words));
+            WaitFor(PlayerRun.Begin(words));
         }
 
         /// <summary>As the engine starts it, by the command line of this program.</summary>
         private static void PlaysOnLoad()
         {
             typeof(PlayerRun).GetMethod("BeginOnLoad", BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
-            Plays(UnityEngine.Object.FindAnyObjectByType<PlayerRun>());
+            WaitFor(UnityEngine.Object.FindAnyObjectByType<PlayerRun>());
         }
 
-        private static void Plays(PlayerRun run)
+        private static void WaitFor(PlayerRun run)
         {
             int frames = 0;
             while (run != null && frames < Patience)
