@@ -10,7 +10,7 @@ import numpy as np
 
 from mua.baking.listener import Listener
 from mua.baking.order import Order
-from mua.baking.sources import RATE, load_character
+from mua.baking.sources import RATE, ordered_character
 from mua.errors import InputError
 from mua.files import replacing, require_writable, write_bytes
 from mua.likeness import told
@@ -47,14 +47,7 @@ def check(order: Order, listener: Listener) -> Check:
     """
     require_writable(order.output)
     listener.stage("character")
-    character = load_character(
-        order.character,
-        uv=order.uv,
-        seed=order.settings.seed,
-        detail=order.detail,
-        size=order.size,
-        leave_out=order.leave_out,
-    )
+    character = ordered_character(order)
     listener.stage("motion")
     loaded = _loaded(order, character)
     qualities = tuple(_quality(order, character, motion) for motion in loaded)

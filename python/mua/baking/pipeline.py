@@ -15,7 +15,7 @@ from mua.baking.order import Order
 from mua.baking.plan import plan, split
 from mua.baking.playback import choose
 from mua.baking.report import STAND_IN
-from mua.baking.sources import RATE, load_character, load_clips
+from mua.baking.sources import RATE, load_clips, ordered_character
 from mua.files import require_writable
 from mua.likeness import told
 from mua.likeness.compare import Likeness
@@ -45,14 +45,7 @@ def bake(order: Order, listener: Listener) -> Baked:
 
 def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
     listener.stage("character")
-    character = load_character(
-        order.character,
-        uv=order.uv,
-        seed=order.settings.seed,
-        detail=order.detail,
-        size=order.size,
-        leave_out=order.leave_out,
-    )
+    character = ordered_character(order)
     clips, notes = load_clips(character, order.motions, mapping=order.mapping, feet=order.feet)
     for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):
         listener.note(sentence)

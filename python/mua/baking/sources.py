@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mua.baking.order import Order
 from mua.errors import InputError
 from mua.motion.clip import Clip
 from mua.motion.load import counted, load_motions, unique_names
@@ -16,6 +17,18 @@ from mua.rig.read import read_character
 
 RATE = 30.0  # frames per second of every clip, and of the window that the student sees
 ATLAS = 1024  # texels of the base-colour atlas along a side
+
+
+def ordered_character(order: Order) -> Character:
+    """The character of a bake or a check, with what the order says of its layout and size."""
+    return load_character(
+        order.character,
+        uv=order.uv,
+        seed=order.settings.seed,
+        detail=order.detail,
+        size=order.size,
+        leave_out=order.leave_out,
+    )
 
 
 def load_character(
