@@ -1,7 +1,4 @@
-"""tools/check_engine_api.py: what the package uses of the engine, held against sources.
-
-The stand-ins, read as sources, must agree with what was compiled from them; with a fault planted they must not.
-"""
+"""tools/check_engine_api.py: what the package uses of the engine, held against stand-ins with planted faults."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,11 +23,6 @@ def used(csharp: CSharp) -> dict[str, Used]:
 def found(used: dict[str, Used], folder: Path) -> Iterator[Found]:
     types = csharp_source.read([folder], {"UNITY_EDITOR", *engine_symbols(OLDEST)})
     yield from (look_up(types, member) for member in used.values())
-
-
-def test_stand_ins_agree_with_themselves(used: dict[str, Used]) -> None:
-    assert len(used) > 600
-    assert {each.outcome for each in found(used, STAND_INS)} == {"same"}
 
 
 def test_a_type_that_no_source_has_is_named_as_unknown(used: dict[str, Used]) -> None:
@@ -61,19 +53,19 @@ FAULTS = {  # what a newer engine may do: file, its text, the other text, member
         "get UnityEngine.Camera.nearClipPlane", "different",
     ),
     "a parameter more": (
-        "Texture.cs", "void LoadRawTextureData(byte[] data)", "void LoadRawTextureData(byte[] data, int start)",
-        "UnityEngine.Texture2D.LoadRawTextureData(byte[])", "different",
+        "Object.cs", "void DontDestroyOnLoad(Object target)", "void DontDestroyOnLoad(Object target, int start)",
+        "UnityEngine.Object.DontDestroyOnLoad(Object)", "different",
     ),
     "a parameter more that may be left out": (
-        "Texture.cs", "void LoadRawTextureData(byte[] data)", "void LoadRawTextureData(byte[] data, int start = 0)",
-        "UnityEngine.Texture2D.LoadRawTextureData(byte[])", "same",
+        "Object.cs", "void DontDestroyOnLoad(Object target)", "void DontDestroyOnLoad(Object target, int start = 0)",
+        "UnityEngine.Object.DontDestroyOnLoad(Object)", "same",
     ),
     "another name in an enum": (
         "Camera.cs", "SolidColor", "PlainColor", "UnityEngine.CameraClearFlags.SolidColor", "absent",
     ),
     "a member that is deprecated": (
-        "Texture.cs", "public void LoadRawTextureData", '[System.Obsolete("soon")] public void LoadRawTextureData',
-        "UnityEngine.Texture2D.LoadRawTextureData(byte[])", "deprecated",
+        "Object.cs", "public static void DontDestroyOnLoad", '[Obsolete("soon")] public static void DontDestroyOnLoad',
+        "UnityEngine.Object.DontDestroyOnLoad(Object)", "deprecated",
     ),
 }  # fmt: skip
 

@@ -51,38 +51,30 @@ def story(csharp: CSharp, program: Path) -> Story:
 
 @pytest.fixture
 def sound(tmp_path: Path) -> Path:
+    """An avatar with a thumbnail of 30 x 40."""
+    stream = io.BytesIO()
+    Image.fromarray(np.zeros((40, 30, 3), np.uint8)).save(stream, "PNG")
     path = tmp_path / "Walking Woman.muaavatar"
-    write(path, synthetic_avatar(), storage="f16")
+    write(path, replace(synthetic_avatar(), thumbnail=stream.getvalue()), storage="f16")
     return path
 
 
 def test_a_sound_file_becomes_an_asset_of_its_bytes(story: Story, sound: Path) -> None:
     told = story("Imports", sound)
-    assert told["asset"] == [["Walking Woman", str(sound.stat().st_size), "", "thumbnail avatar", "128 x 128"]]
+    assert told["asset"] == [["Walking Woman", str(sound.stat().st_size), "", "thumbnail avatar", "30 x 40"]]
     assert told["error"] == [[""]]
     assert told["summary"] == [["synthetic"]]
     kept = story("Keeps", sound)
-    assert [kept[key] for key in ("content", "summary", "own", "portrait")] == [
-        [["True"]],
-        [["True"]],
-        [["False"]],
-        [["True"]],
-    ]
+    assert [kept[key] for key in ("content", "summary", "thumbnail")] == [[["True"]]] * 3
 
 
-def test_the_thumbnail_of_the_file_comes_before_a_portrait(story: Story, tmp_path: Path) -> None:
-    stream = io.BytesIO()
-    Image.fromarray(np.zeros((40, 30, 3), np.uint8)).save(stream, "PNG")
+@pytest.mark.parametrize("thumbnail", [b"", b"\x89PNG\r\n\x1a\n and nothing"], ids=["none", "no picture"])
+def test_a_file_without_a_thumbnail_has_the_editors_own_icon(story: Story, tmp_path: Path, thumbnail: bytes) -> None:
     path = tmp_path / "a.muaavatar"
-    write(path, replace(synthetic_avatar(), thumbnail=stream.getvalue()), storage="f32")
-    assert story("Keeps", path)["own"] == [["True"]]
-    assert story("Imports", path)["asset"][0][-1] == "30 x 40"
-
-
-def test_a_thumbnail_that_is_no_picture_gives_way_to_a_portrait(story: Story, tmp_path: Path) -> None:
-    path = tmp_path / "a.muaavatar"
-    write(path, replace(synthetic_avatar(), thumbnail=b"\x89PNG\r\n\x1a\n and nothing"), storage="f32")
-    assert story("Keeps", path)["portrait"] == [["True"]]
+    write(path, replace(synthetic_avatar(), thumbnail=thumbnail), storage="f32")
+    [asset] = story("Imports", path)["asset"]
+    assert asset == ["a", str(path.stat().st_size), "", "avatar", ""]
+    assert story("Inspects", path)["gui"][0] == ["title synthetic"]
 
 
 def test_an_unsound_file_becomes_an_asset_that_says_why(story: Story, tmp_path: Path) -> None:
@@ -117,7 +109,7 @@ def test_an_empty_file_and_one_that_vanishes_say_so(story: Story, tmp_path: Path
 
 def test_the_inspector_shows_tables_or_the_fault(story: Story, sound: Path, tmp_path: Path) -> None:
     lines = [line for [line] in story("Inspects", sound)["gui"]]
-    assert lines[:4] == ["texture 128 x 128", "title synthetic", "label format", lines[3]]
+    assert lines[:4] == ["texture 30 x 40", "title synthetic", "label format", lines[3]]
     assert [line for line in lines if line.startswith("title")][-1] == "title 1 clip"
     assert "label geometry ranks" in lines
     bad = tmp_path / "bad.muaavatar"

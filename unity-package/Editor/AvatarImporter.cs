@@ -16,7 +16,7 @@ namespace Mua.Editor
         /// <summary>Of file names, without a dot.</summary>
         public const string Extension = "muaavatar";
 
-        private const int Version = 1; // to be raised whenever what is made of a file changes
+        private const int Version = 2; // to be raised whenever what is made of a file changes
         private const string AvatarId = "avatar", ThumbnailId = "thumbnail"; // by which references find the parts
 
         public override void OnImportAsset(AssetImportContext ctx)
@@ -37,12 +37,26 @@ namespace Mua.Editor
 
         private static void Add(AssetImportContext ctx, AvatarFile avatar)
         {
-            Texture2D thumbnail = Thumbnail.Of(avatar);
-            thumbnail.name = ThumbnailId;
+            Texture2D thumbnail = Thumbnail(avatar);
             AvatarAsset asset = AvatarAsset.Create(avatar.Content, thumbnail, AvatarSummary.Of(avatar));
-            ctx.AddObjectToAsset(ThumbnailId, thumbnail);
-            ctx.AddObjectToAsset(AvatarId, asset, thumbnail);
+            if (thumbnail != null)
+            {
+                ctx.AddObjectToAsset(ThumbnailId, thumbnail);
+            }
+            ctx.AddObjectToAsset(AvatarId, asset, thumbnail); // without one, the editor shows its own icon
             ctx.SetMainObject(asset);
+        }
+
+        /// <summary>The PNG that the file brings; null where it brings none, or one that is damaged.</summary>
+        private static Texture2D Thumbnail(AvatarFile avatar)
+        {
+            var texture = new Texture2D(1, 1, TextureFormat.RGBA32, false) { name = ThumbnailId }; // loading gives its size
+            if (avatar.Thumbnail.Count > 0 && texture.LoadImage(avatar.Thumbnail.ToArray()))
+            {
+                return texture;
+            }
+            DestroyImmediate(texture);
+            return null;
         }
 
         private static void AddFaulty(AssetImportContext ctx, string fault)

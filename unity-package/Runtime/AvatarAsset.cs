@@ -13,7 +13,7 @@ namespace Mua
         /// <summary>The bytes of the file, which must not be changed.</summary>
         public byte[] Content => content;
 
-        /// <summary>A portrait, or null.</summary>
+        /// <summary>The picture that the file brings; null where it brings none.</summary>
         public Texture2D Thumbnail => thumbnail;
 
         /// <summary>What the file holds: a line for each row of a table, cells apart by tabs, tables by empty lines.</summary>

@@ -53,11 +53,9 @@ namespace Mua.Editor
             var asset = (AvatarAsset)import.Main;
             byte[] content = File.ReadAllBytes(files[0]);
             AvatarFile avatar = AvatarFile.Read(content);
-            byte[] drawn = Textures.Content(asset.Thumbnail);
             Say("content", asset.Content.SequenceEqual(content));
             Say("summary", asset.Summary == AvatarSummary.Of(avatar));
-            Say("own", drawn.SequenceEqual(avatar.Thumbnail.ToArray()));
-            Say("portrait", drawn.SequenceEqual(Portrait.Draw(avatar, asset.Thumbnail.width)));
+            Say("thumbnail", asset.Thumbnail != null && Textures.Content(asset.Thumbnail).SequenceEqual(avatar.Thumbnail));
         }
 
         private static void Inspects()

@@ -3,8 +3,6 @@ namespace UnityEngine
 {
     public enum TextureFormat { Alpha8 = 1, RGB24 = 3, RGBA32 = 4, ARGB32 = 5 }
 
-    public class UnityException : System.Exception { public UnityException(string message) : base(message) { } }
-
     public class Texture : Object
     {
         public virtual int width { get; protected set; }
@@ -24,14 +22,6 @@ namespace UnityEngine
         public TextureFormat format { get; private set; }
 
         internal byte[] Content; // as it was loaded
-
-        public void LoadRawTextureData(byte[] data)
-        {
-            if (data.Length < 4 * width * height)
-                throw new UnityException("LoadRawTextureData: not enough data provided (will result in overread).");
-            Content = (byte[])data.Clone();
-        }
-        public void Apply() { }
 
         internal void Become(int width, int height, byte[] content)
         {
