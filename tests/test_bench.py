@@ -158,7 +158,7 @@ def test_prints_every_kernel_and_writes_the_same_figures(avatar_file: Path, tmp_
 
 
 def test_measures_a_setting_without_a_file() -> None:
-    ran = bench("--setting", "tiny", "--frames", "1", "--size", "32")
+    ran = bench("--preset", "tiny", "--frames", "1", "--size", "32")
     assert ran.returncode == 0, ran.stderr
     assert "random numbers, 192 texels" in ran.stdout
 
@@ -167,11 +167,11 @@ def test_measures_a_setting_without_a_file() -> None:
     ("arguments", "said"),
     [
         ((), "expected one of the two"),
-        (("a.muaavatar", "--setting", "tiny"), "expected one of the two"),
-        (("--setting", "huge"), "expected one of tiny, preview, paper"),
+        (("a.muaavatar", "--preset", "tiny"), "expected one of the two"),
+        (("--preset", "huge"), "expected one of tiny, preview, paper"),
         (("absent.muaavatar",), "absent.muaavatar: there is no such file"),
-        (("--setting", "tiny", "--size", "0"), "--size is '0'"),
-        (("--setting", "tiny", "--device", "no such device"), "device no such device: "),
+        (("--preset", "tiny", "--size", "0"), "--size is '0'"),
+        (("--preset", "tiny", "--device", "no such device"), "device no such device: "),
     ],
 )
 def test_refuses_in_one_sentence(arguments: tuple[str, ...], said: str) -> None:

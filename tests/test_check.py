@@ -73,7 +73,7 @@ def test_motion_that_a_bake_refuses_is_checked_and_leaves_a_mapping_to_fill(tmp_
         *(character, "--motion", motion, "--motion", again, "--mapping", mapping),
         *("--check", "--texels", 64, "-o", output),
     )
-    assert "Clips of the motion, which moves no limb that is measured: wave, again" in text
+    assert "Clips of the motion (it moves no arm or leg, so nothing is measured): wave, again" in text
     assert "own clips" not in text
     assert "2 clips: holds 3 frames, though it says 2; all are read." in text
 
@@ -109,7 +109,7 @@ def test_a_bake_tells_the_likeness_and_its_contact_sheet_begins_with_it(tmp_path
 
 
 def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="--json: is written by --check alone"):
+    with pytest.raises(InputError, match="--json: only --check writes it"):
         run("--json", tmp_path / "a.json", "-o", tmp_path / "a.muaavatar")
 
 

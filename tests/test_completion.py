@@ -33,7 +33,7 @@ def test_a_shell_completes_options() -> None:
     [
         ("bake", "--preset", tuple(PRESETS)),
         ("train", "--recipe", RECIPES),
-        ("bench", "--setting", tuple(PRESETS)),
+        ("bench", "--preset", tuple(PRESETS)),
         ("eval", "--system", ("all", *SYSTEM_NAMES)),
     ],
 )

@@ -217,7 +217,7 @@ def test_motion_of_another_file_moves_the_avatar(avatar_file: Path, tmp_path: Pa
         ("v.mp4", {"frames": "0:8"}, "--frames is '0:8'; clip 'wave' has frames 0 to 6"),
         ("v.png", {"device": "no such device"}, "device no such device: no graphics device"),
         ("v.png", {"show": "splats,hat"}, "--show is 'splats,hat'"),
-        ("v.png", {"show": "skeleton", "reference": True}, "--reference draws splats alone"),
+        ("v.png", {"show": "skeleton", "reference": True}, "--reference draws only splats"),
     ],
 )
 def test_refuses_what_neither_a_picture_nor_a_video_takes(
@@ -229,7 +229,7 @@ def test_refuses_what_neither_a_picture_nor_a_video_takes(
 
 
 def test_refuses_several_files_for_one_picture(avatar_file: Path, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="expected one FILE to picture, found 2"):
+    with pytest.raises(InputError, match="expected one FILE, found 2"):
         view([avatar_file] * 2, output=tmp_path / "v.png")
 
 

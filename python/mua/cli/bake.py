@@ -20,71 +20,104 @@ from mua.student.settings import PRESETS, RECIPES
 def main(
     character: Annotated[
         Path | None,
-        typer.Argument(help="Rigged character: .glb, .gltf, .vrm, .usd* or .usdz; none: the procedural one."),
+        typer.Argument(
+            help="Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz.",
+            show_default="a built-in procedural character",
+        ),
     ] = None,
     motion: Annotated[
-        list[Path], typer.Option(help="Motion file or directory, may be repeated; none: the character's own clips.")
+        list[Path],
+        typer.Option(
+            help="Motion file, or directory of motion files; may be repeated.", show_default="the character's own clips"
+        ),
     ] = [],  # noqa: B006 typer copies it
-    output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")] = Path("avatar.muaavatar"),
     preset_name: Annotated[
-        str, offered(tuple(PRESETS), "--preset", help="How large the student is; paper wants a GPU.")
+        str, offered(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
     ] = "preview",
     frames: Annotated[
         int | None,
-        typer.Option(help="Training frames to record, and a quarter as many held-out ones; the preset's if left out."),
+        typer.Option(
+            help="Number of training frames to record; a quarter as many held-out frames are added.",
+            show_default="set by the preset",
+        ),
     ] = None,
-    texels: Annotated[int | None, typer.Option(help="Texels along a side; the preset's if left out.")] = None,
+    texels: Annotated[
+        int | None,
+        typer.Option(help="Width and height of the texture, in texels.", show_default="set by the preset"),
+    ] = None,
     hold_out: Annotated[
-        list[str], typer.Option(help="Clip to keep from training, may be repeated; none: the end of every clip.")
+        list[str],
+        typer.Option(
+            help="Clip to keep out of training, to measure errors on; may be repeated.",
+            show_default="the end of every clip",
+        ),
     ] = [],  # noqa: B006 typer copies it
     clips: Annotated[
         list[str],
-        typer.Option(help="Clip that the file holds for playback, may be repeated; or all, none, or how many."),
+        typer.Option(help="Clip to store for playback; may be repeated. Also: all, none, or a number of clips."),
     ] = ["all"],  # noqa: B006 typer copies it
     leave_out: Annotated[
         list[str],
-        typer.Option(help="Mesh, node or material of the file that is no part of the character, may be repeated."),
+        typer.Option(help="Mesh, node or material of the character file to leave out; may be repeated."),
     ] = [],  # noqa: B006 typer copies it
-    mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: target joint to source joint.")] = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            help="JSON or TOML file that gives, for joints of the character, the joint of the motion.",
+            show_default="matched by name",
+        ),
+    ] = None,
     feet: Annotated[
         Feet,
-        typer.Option(help="Hold feet where the motion's feet stand: where they would slide, never, or always."),
+        typer.Option(
+            help="Whether standing feet are held in place: auto (if they would slide), keep (never) or plant (always)."
+        ),
     ] = "auto",
-    uv: Annotated[UvMode, typer.Option(help="What becomes of the character's UVs.")] = "auto",
+    uv: Annotated[
+        UvMode, typer.Option(help="Keep the character's UVs, unwrap new ones, or choose automatically.")
+    ] = "auto",
     detail: Annotated[
         list[str],
         typer.Option(
-            help="How much finer to draw a part, as head=2; may be repeated: head, hands, arms, body, legs or feet."
+            help="Resolution of a body part relative to the others, such as head=2; may be repeated. "
+            "Parts: head, hands, arms, body, legs, feet."
         ),
     ] = [],  # noqa: B006 typer copies it
-    scale: Annotated[float | None, typer.Option(help="Multiplies the units of the character's file.")] = None,
-    height: Annotated[float | None, typer.Option(help="Metres that the character is made high.")] = None,
+    scale: Annotated[
+        float | None, typer.Option(help="Factor by which to multiply the size in the character file.")
+    ] = None,
+    height: Annotated[float | None, typer.Option(help="Height to scale the character to, in metres.")] = None,
     recipe: Annotated[
         str,
         offered(
             RECIPES,
             "--recipe",
-            help="How the student is trained; paper: a random start and a million steps, for comparison.",
+            help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
         ),
     ] = "closed-form",
-    storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
-    seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
-    device: Annotated[DeviceName, typer.Option(help="Where the student is trained.")] = "auto",
+    storage: Annotated[Storage, typer.Option(help="Number type of the stored bases and weights.")] = "f16",
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
+    device: Annotated[DeviceName, typer.Option(help="Where to train the student.")] = "auto",
     jobs: Annotated[
-        int | None, typer.Option(help="Processes that record side by side; as many as there are cores if left out.")
+        int | None, typer.Option(help="Number of processes that record.", show_default="one per CPU core")
     ] = None,
-    work: Annotated[Path | None, typer.Option(help="Work directory; beside the output if left out.")] = None,
+    work: Annotated[
+        Path | None,
+        typer.Option(help="Directory for the recording and checkpoints.", show_default="beside the output"),
+    ] = None,
     check: Annotated[
-        bool, typer.Option("--check", help="Only compare splats and motion with their sources, in seconds.")
+        bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")
     ] = False,
-    json: Annotated[Path | None, typer.Option(help="With --check: file for every figure.")] = None,
+    json: Annotated[Path | None, typer.Option(help="With --check: JSON file to write all figures to.")] = None,
 ) -> None:
-    """Record a teacher, distil it and write a .muaavatar, with a table of errors and a contact sheet beside it.
+    """Bake a rigged character and its motion into a .muaavatar file.
 
-    A run that was interrupted goes on where it stopped when the same command is given again.
+    A table of errors and a contact sheet are written beside it. To resume an interrupted run, give the same command
+    again.
     """
     if json is not None and not check:
-        raise InputError("--json: is written by --check alone")
+        raise InputError("--json: only --check writes it; expected --check too")
     order = read_order(
         character,
         motion=motion,
@@ -114,7 +147,7 @@ def main(
         check_and_show(order, json)
         return
 
-    from mua.baking.pipeline import bake  # seconds of loading: only once the options are known to be good
+    from mua.baking.pipeline import bake  # after the options are checked, because it takes seconds to load
     from mua.cli.display import Display, show
 
     console = printer()

@@ -1,4 +1,4 @@
-"""mua-bench: what a frame of an avatar costs on a graphics device, kernel by kernel."""
+"""mua-bench: the time that each kernel of a frame takes on a graphics device."""
 
 import json
 import tempfile
@@ -30,33 +30,33 @@ COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
 
 def bench(
-    file: Annotated[Path | None, typer.Argument(help="A .muaavatar file.")] = None,
-    setting: Annotated[
+    file: Annotated[Path | None, typer.Argument(help="Avatar file (.muaavatar).")] = None,
+    preset_name: Annotated[
         str | None,
-        offered(tuple(PRESETS), "--setting", help="In place of FILE, random numbers in the shapes of a preset."),
+        offered(tuple(PRESETS), "--preset", help="Measure an avatar of random numbers with this preset's sizes."),
     ] = None,
-    device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
-    frames: Annotated[int, typer.Option(min=1, help="Frames to measure.")] = 20,
-    size: Annotated[str, typer.Option(help="WIDTHxHEIGHT of an eye in pixels, or one number.")] = "1024",
-    stereo: Annotated[bool, typer.Option(help="Two eyes.")] = False,
-    output: Annotated[Path | None, typer.Option("--json", help="File to write the figures to.")] = None,
+    device: Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")] = None,
+    frames: Annotated[int, typer.Option(min=1, help="Number of frames to measure.")] = 20,
+    size: Annotated[str, typer.Option(help="Picture size per eye in pixels: WIDTHxHEIGHT or one number.")] = "1024",
+    stereo: Annotated[bool, typer.Option(help="Render two eyes.")] = False,
+    output: Annotated[Path | None, typer.Option("--json", help="JSON file to write the figures to.")] = None,
 ) -> None:
-    """Measure a frame of FILE on a device: time, bytes and operations by kernel, beside the speed of a copy."""
-    if (file is None) == (setting is None):
-        raise InputError("mua-bench measures a FILE or a --setting, expected one of the two")
+    """Measure time, memory traffic and operations of each kernel in a frame of FILE."""
+    if (file is None) == (preset_name is None):
+        raise InputError("mua-bench measures a FILE or a --preset; expected one of the two")
     screen, eyes = parse_screen(size), EYE_DISTANCE if stereo else None
     if file is not None:
         require_file(file)
 
-    from mua.bench.measure import measure  # here, so that a wrong name costs no time
+    from mua.bench.measure import measure  # here, so that a wrong name fails at once
     from mua.bench.random_avatar import random_avatar
     from mua.bench.report import as_json
     from mua.gpu import open_device
 
     with closing(open_device(device)) as opened, tempfile.TemporaryDirectory() as scratch:
         path = file or Path(scratch) / "random.muaavatar"
-        if setting is not None:
-            write(path, random_avatar(preset(setting)))
+        if preset_name is not None:
+            write(path, random_avatar(preset(preset_name)))
         measured = measure(opened, path, frames=frames, screen=screen, eyes=eyes)
     if output is not None:
         files.write_bytes(output, json.dumps(as_json(measured), indent=2).encode() + b"\n")
@@ -99,8 +99,8 @@ def _heading(measured: "Measured") -> str:
 
 def _legend(measured: "Measured") -> tuple[str, ...]:
     return (
-        "spread: from the fastest tenth of the frames to the slowest.",
-        f"copy: GB/s as a share of a large copy's, which reads and writes {measured.copy_bandwidth / 1e9:.1f} GB/s.",
+        "spread: time between the fastest tenth of the frames and the slowest tenth.",
+        f"copy: GB/s as a share of the {measured.copy_bandwidth / 1e9:.1f} GB/s that copying a large buffer reaches.",
     )
 
 

@@ -29,20 +29,27 @@ def check_and_show(order: Order, json: Path | None) -> None:
 
 
 def show(console: Console, found: Check) -> None:
-    """Tables of figures, then sentences, then where everything is."""
+    """Print the tables, then notes and warnings, then the files written."""
     if found.likeness is not None:
         console.print(_likeness_table(found.likeness))
     if any(motion.limbs for motion in found.motions):
         console.print(_motion_table(found.motions))
     elif found.motions:
         brought = found.matched or found.unmatched  # by a motion file
-        whose = "Clips of the motion, which moves no limb that is measured" if brought else "The character's own clips"
+        whose = (
+            "Clips of the motion (it moves no arm or leg, so nothing is measured)"
+            if brought
+            else "The character's own clips"
+        )
         _say(console, f"{whose}: {', '.join(motion.name for motion in found.motions)}")
     if found.matched:
         pairs = ", ".join(f"{pair.target} < {pair.source}" for pair in found.matched)
         _say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")
     if found.unmatched:
-        _say(console, f"Joints with skin that it does not move ({len(found.unmatched)}): {', '.join(found.unmatched)}")
+        _say(
+            console,
+            f"Skinned joints that the motion does not move ({len(found.unmatched)}): {', '.join(found.unmatched)}",
+        )
     for sentence in (*found.notes, *found.warnings):
         _say(console, sentence)
     for path in found.written:
@@ -50,7 +57,7 @@ def show(console: Console, found: Check) -> None:
 
 
 def _likeness_table(likeness: Likeness) -> Table:
-    table = Table("pose", "overlap", "inside", "worst at", "seen from", title="Splats beside the source, unlit")
+    table = Table("pose", "overlap", "inside", "worst at", "seen from", title="Splats compared with the source, unlit")
     for pose in likeness.poses:
         seen, worst = pose.agreement, pose.worst
         table.add_row(pose.pose, f"{100 * seen.iou:.1f} %", f"{seen.psnr:.1f} dB", worst.joint, worst.view)
@@ -58,7 +65,7 @@ def _likeness_table(likeness: Likeness) -> Table:
 
 
 def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
-    table = Table("clip", "limbs", "facing", "feet", "slide", title="Motion beside its source")
+    table = Table("clip", "limbs", "facing", "feet", "slide", title="Motion compared with its source")
     for motion in motions:
         cells = (
             f"{motion.limb_degrees:.1f}°",

@@ -14,7 +14,7 @@ from mua.recording import RecordedClip, Recording
 
 
 def check_recording(recording: Recording, picture: Path) -> None:
-    """Say what a recording holds and what in it looks like a mistake, and picture three frames of it.
+    """Print what a recording holds and what in it looks like a mistake, and draw three of its frames.
 
     Raises InputError where something in it is certainly a mistake: nothing should be trained on it.
     """
@@ -45,9 +45,9 @@ def _print(console: Console, found: Understood) -> None:
     for name, told in found.figures.items():
         _say(console, f"{name:<8} {told}")
     for finding in found.findings:
-        _say(console, f"{'mistake' if finding.certain else 'look at':<8} {finding.sentence}")
+        _say(console, f"{'mistake' if finding.certain else 'warning':<8} {finding.sentence}")
     if not found.findings:
-        _say(console, "nothing looks like a mistake in units or conventions; look at the picture all the same")
+        _say(console, "no mistake in units or conventions was found; look at the picture all the same")
 
 
 def _say(console: Console, sentence: str) -> None:

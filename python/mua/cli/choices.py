@@ -1,4 +1,4 @@
-"""What the texts of mua-view's options mean."""
+"""Parses the values of mua-view's options."""
 
 import math
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ def parse_color(text: str, output: Path | None) -> tuple[float, float, float] | 
     if text == TRANSPARENT:
         if output is None or output.suffix.lower() not in CLEAR:
             where = "the window" if output is None else str(output)
-            raise InputError(f"--background is transparent, which {where} cannot be; expected -o with {listed(CLEAR)}")
+            raise InputError(f"--background is transparent, but {where} cannot be; expected -o with {listed(CLEAR)}")
         return None
     from PIL import ImageColor
 
@@ -44,34 +44,34 @@ def parse_color(text: str, output: Path | None) -> tuple[float, float, float] | 
 
 
 def parse_angle(option: str, degrees: float) -> float:
-    """Radians; InputError for what is no angle."""
+    """Convert degrees to radians; raises InputError unless they are finite."""
     if not math.isfinite(degrees):
-        raise InputError(f"{option} is {degrees}; expected degrees")
+        raise InputError(f"{option} is {degrees}; expected a finite number of degrees")
     return math.radians(degrees)
 
 
 def parse_zoom(zoom: float) -> float:
-    """How many times nearer; InputError for what the mouse could not reach either."""
+    """Check a zoom factor; raises InputError outside of the range that the mouse reaches."""
     if not 1 / FARTHEST <= zoom <= 1 / NEAREST:
         raise InputError(f"--zoom is {zoom:g}; expected {1 / FARTHEST:.2f} to {1 / NEAREST:g}")
     return zoom
 
 
 def parse_ipd(metres: float) -> float:
-    """The distance between two eyes; InputError for what is none."""
+    """Check the distance between the eyes; raises InputError unless it is finite and not negative."""
     if not 0 <= metres < math.inf:
-        raise InputError(f"--ipd is {metres:g}; expected metres")
+        raise InputError(f"--ipd is {metres:g}; expected a distance in metres")
     return metres
 
 
 def parse_frame(frame: int | None, clip: Clip) -> range:
-    """The one frame of a picture, the first if none is given."""
+    """The frame of a picture; the first if none is given."""
     index = require_frame(clip, 0 if frame is None else frame)
     return range(index, index + 1)
 
 
 def parse_frames(text: str | None, clip: Clip) -> range:
-    """The frames of `FIRST:END`, FIRST and not END; either may be left out."""
+    """The frames of `FIRST:END`, without END; either may be left out."""
     if text is None:
         return range(len(clip))
     first, colon, end = text.partition(":")
@@ -95,9 +95,11 @@ def require_format(output: Path) -> None:
 
     kind = Image.registered_extensions().get(output.suffix.lower())
     if kind not in Image.SAVE:
-        raise InputError(f"-o is {output}; expected a suffix of a picture, such as .png, or {listed(VIDEOS)}")
+        raise InputError(
+            f"-o is {output}; expected a name that ends like a picture, such as .png, or in {listed(VIDEOS)}"
+        )
 
 
 def listed(words: Sequence[str]) -> str:
-    """As a sentence has them: a, b or c."""
+    """Join words as in a sentence: a, b or c."""
     return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

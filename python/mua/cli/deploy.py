@@ -1,4 +1,4 @@
-"""mua-deploy: the player and avatars on a headset; kernels tested and frames measured there."""
+"""mua-deploy: puts the player and avatars on a headset, and tests and measures there."""
 
 import json
 from pathlib import Path
@@ -25,24 +25,34 @@ if TYPE_CHECKING:  # load adbutils, an optional package
 
 
 def deploy(
-    avatars: Annotated[list[Path] | None, typer.Argument(metavar="AVATAR", help=".muaavatar files.")] = None,
-    apk: Annotated[Path | None, typer.Option(help="APK of the player to install.")] = None,
-    project: Annotated[Path | None, typer.Option(help="Unity project to build the player of.")] = None,
+    avatars: Annotated[
+        list[Path] | None, typer.Argument(metavar="AVATAR", help="Avatar files (.muaavatar) to copy to the headset.")
+    ] = None,
+    apk: Annotated[Path | None, typer.Option(help="Player APK to install.")] = None,
+    project: Annotated[Path | None, typer.Option(help="Unity project to build the player from.")] = None,
     unity: Annotated[
-        Path | None, typer.Option(help="Unity's program; if left out $UNITY_EDITOR, then what Unity Hub installed.")
+        Path | None,
+        typer.Option(
+            help="Unity editor program.", show_default="$UNITY_EDITOR, else the editor that Unity Hub installed"
+        ),
     ] = None,
     serial: Annotated[
-        str | None, typer.Option(envvar="ANDROID_SERIAL", help="Headset, as 'adb devices' has it.")
+        str | None,
+        typer.Option(envvar="ANDROID_SERIAL", help="Serial number of the headset, as 'adb devices' lists it."),
     ] = None,
-    test: Annotated[bool, typer.Option("--self-test", help="Run every kernel on golden buffers there.")] = False,
+    test: Annotated[
+        bool, typer.Option("--self-test", help="Run every kernel on the headset and compare with stored results.")
+    ] = False,
     seconds: Annotated[
-        int | None, typer.Option("--bench", min=1, metavar="SECONDS", help="Measure each AVATAR for that long.")
+        int | None, typer.Option("--bench", min=1, metavar="SECONDS", help="Measure each AVATAR for this many seconds.")
     ] = None,
-    rate: Annotated[int, typer.Option(help=f"Hz of the display for --bench: {', '.join(map(str, RATES))}.")] = 72,
-    output: Annotated[Path | None, typer.Option("--json", help="File to write the figures of --bench to.")] = None,
-    doctor: Annotated[bool, typer.Option("--doctor", help="Only say what is missing here, and how to fix it.")] = False,
+    rate: Annotated[
+        int, typer.Option(help=f"Display refresh rate for --bench in Hz: {', '.join(map(str, RATES))}.")
+    ] = 72,
+    output: Annotated[Path | None, typer.Option("--json", help="JSON file to write the figures of --bench to.")] = None,
+    doctor: Annotated[bool, typer.Option("--doctor", help="Only report what is missing, and how to fix it.")] = False,
 ) -> None:
-    """Install the player on a headset, push AVATARs to it and start it."""
+    """Install the player on a headset, copy AVATARs to it and start it."""
     given = avatars or []
     console = printer(highlight=False)
     if doctor:
@@ -52,7 +62,7 @@ def deploy(
     for avatar in given:
         require_file(avatar)
 
-    from mua.deploy.avatars import check, push  # here, so that a wrong name costs no time
+    from mua.deploy.avatars import check, push  # here, so that a wrong name fails at once
     from mua.deploy.headset import connect
     from mua.deploy.player import read_apk, start
 

@@ -1,4 +1,4 @@
-"""mua-eval: the paper's tables on a recording of yours, drawn by the project's player."""
+"""mua-eval: compares avatars and the systems of the paper's tables on a recording."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,36 +13,51 @@ from mua.student.settings import PRESETS, preset
 
 
 def evaluate(
-    recording_path: Annotated[Path, typer.Argument(metavar="RECORDING", help="Directory of a recording.")],
-    avatars: Annotated[list[Path] | None, typer.Argument(help="Avatar files distilled from it.")] = None,
+    recording_path: Annotated[Path, typer.Argument(metavar="RECORDING", help="Directory of the recording.")],
+    avatars: Annotated[list[Path] | None, typer.Argument(help="Avatar files trained on it.")] = None,
     system: Annotated[
         list[str] | None,
-        offered((ALL, *SYSTEM_NAMES), "--system", help="A system to train, may be repeated", several=True),
+        offered((ALL, *SYSTEM_NAMES), "--system", help="System to train and compare; may be repeated", several=True),
     ] = None,
-    seconds: Annotated[float, typer.Option(min=0.0, help="Training of each system.")] = 60.0,
+    seconds: Annotated[float, typer.Option(min=0.0, help="Training time of each system, in seconds.")] = 60.0,
     steps: Annotated[
-        int | None, typer.Option(min=1, help="Of Adam for each system, instead of seconds: the same bytes each time.")
+        int | None,
+        typer.Option(min=1, help="Training steps of each system, instead of --seconds; makes the result reproducible."),
     ] = None,
-    preset_name: Annotated[str, offered(tuple(PRESETS), "--preset", help="Whose sizes the systems have.")] = "preview",
-    frames: Annotated[int | None, typer.Option(min=1, help="Of each kind, evenly; all kept whole if left out.")] = None,
-    views: Annotated[int, typer.Option(help="Cameras about the figure.")] = 2,
-    size: Annotated[int, typer.Option(help="Pixels along a side of a picture.")] = 512,
-    own_mesh: Annotated[bool, typer.Option(help="Also draw avatars on their own mesh, as a user sees them.")] = False,
-    lpips_weights: Annotated[Path | None, typer.Option(help="torchvision's AlexNet or VGG16, for LPIPS.")] = None,
-    seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
-    device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
+    preset_name: Annotated[
+        str, offered(tuple(PRESETS), "--preset", help="Preset that sets the sizes of the systems.")
+    ] = "preview",
+    frames: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="Number of training frames, and of held-out frames, to compare.",
+            show_default="all whole frames",
+        ),
+    ] = None,
+    views: Annotated[int, typer.Option(help="Number of cameras around the figure.")] = 2,
+    size: Annotated[int, typer.Option(help="Width and height of the pictures in pixels.")] = 512,
+    own_mesh: Annotated[bool, typer.Option(help="Also draw each avatar file on its own predicted mesh.")] = False,
+    lpips_weights: Annotated[
+        Path | None, typer.Option(help="Weights of torchvision's AlexNet or VGG16, to measure LPIPS.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
+    device: Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")] = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="Directory to write to.")] = Path("evaluation"),
 ) -> None:
-    """Compare avatar files and systems with the teacher of RECORDING: table, plots and contact sheets.
+    """Compare avatar files and other systems with the teacher of RECORDING, in tables, plots and contact sheets.
 
-    What was trained is kept in the output's directory work: the same command, given again, does not train it again.
+    Trained systems are kept in the directory 'work' of the output; the same command does not train them again.
     """
     require_recording(recording_path)
     for file in (*(avatars or ()), *(() if lpips_weights is None else (lpips_weights,))):
         require_file(file)
     preset(preset_name)
 
-    from mua.cli.evaluation import EvaluationOrder, compare  # seconds of loading: only once the options are good
+    from mua.cli.evaluation import (
+        EvaluationOrder,
+        compare,
+    )  # after the options are checked, because it takes seconds to load
 
     order = EvaluationOrder(
         recording=recording_path,

@@ -1,4 +1,4 @@
-"""How every command ends on bad input: one sentence on standard error and exit status 1."""
+"""Ends a command on bad input: one sentence on standard error and exit status 1."""
 
 import sys
 from collections.abc import Callable
@@ -12,12 +12,12 @@ from mua.extras import missing_package
 
 
 def refusing(command: Callable[..., None]) -> None:
-    """Run a command with what its command line says.
+    """Run a command with the arguments of its command line.
 
-    An InputError, or a package that is not installed, becomes its sentence.
+    An InputError, or a package that is not installed, ends it with one sentence.
     """
     try:
-        app = typer.Typer()  # which brings --install-completion and --show-completion
+        app = typer.Typer()  # adds --install-completion and --show-completion
         app.command()(with_common_options(command))
         app(prog_name=command_name())
     except InputError as error:

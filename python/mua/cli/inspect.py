@@ -17,15 +17,17 @@ from mua.inputs import require_file
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(help="A .muaavatar file.")],
+    file: Annotated[Path, typer.Argument(help="Avatar file (.muaavatar).")],
     verify: Annotated[
-        bool, typer.Option("--verify", help="Only check the file: exit 0, or 1 with a sentence.")
+        bool, typer.Option("--verify", help="Only check the file: exit status 0 if it is sound, else 1 and the reason.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON in place of tables, joint names too.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON instead of tables, with all joint names.")
+    ] = False,
 ) -> None:
-    """Print what FILE holds: skeleton, texels, ranks, bytes by part, parameters, GFLOPs and clips."""
+    """Show what FILE holds: skeleton, texels, ranks, size of each part, parameters, GFLOPs and clips."""
     if verify and as_json:
-        raise InputError("--json: --verify prints one sentence; expected one of the two")
+        raise InputError("--json and --verify are both given; expected one of the two")
     require_file(file)
     tree = load(file)
     held = summary(file, tree, decode_tree(tree))

@@ -1,4 +1,4 @@
-"""Choices that help shows and shells complete; what is none of them is refused by a sentence of its own stage."""
+"""Options with a list of choices, which help shows and shells complete; the command itself refuses other values."""
 
 from collections.abc import Sequence
 from typing import Any

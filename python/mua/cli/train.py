@@ -18,44 +18,47 @@ from mua.student.settings import PRESETS, RECIPES, StageName
 
 
 def main(
-    recording: Annotated[Path, typer.Argument(help="Directory that a TeacherWriter has written.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="File to write.")] = Path("avatar.muaavatar"),
+    recording: Annotated[Path, typer.Argument(help="Directory of a recording, as a TeacherWriter writes it.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")] = Path("avatar.muaavatar"),
     preset_name: Annotated[
-        str, offered(tuple(PRESETS), "--preset", help="How large the student is; paper wants a GPU.")
+        str, offered(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
     ] = "preview",
     recipe: Annotated[
         str,
         offered(
             RECIPES,
             "--recipe",
-            help="How the student is trained; paper: a random start and a million steps, for comparison.",
+            help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
         ),
     ] = "closed-form",
     stage: Annotated[
-        StageName | None, typer.Option(help="Run this stage alone, up to its checkpoint; all if left out.")
+        StageName | None,
+        typer.Option(help="Run only this stage, up to its checkpoint.", show_default="all stages"),
     ] = None,
     clips: Annotated[
         list[str],
-        typer.Option(help="Clip that the file holds for playback, may be repeated; or all, none, or how many."),
+        typer.Option(help="Clip to store for playback; may be repeated. Also: all, none, or a number of clips."),
     ] = ["all"],  # noqa: B006 typer copies it
-    storage: Annotated[Storage, typer.Option(help="Element type of bases, static offset and weights.")] = "f16",
-    seed: Annotated[int, typer.Option(help="Of every random choice.")] = 0,
-    device: Annotated[DeviceName, typer.Option(help="Where the student is trained.")] = "auto",
-    work: Annotated[Path | None, typer.Option(help="For checkpoints; beside the output if left out.")] = None,
+    storage: Annotated[Storage, typer.Option(help="Number type of the stored bases and weights.")] = "f16",
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
+    device: Annotated[DeviceName, typer.Option(help="Where to train the student.")] = "auto",
+    work: Annotated[
+        Path | None, typer.Option(help="Directory for checkpoints.", show_default="beside the output")
+    ] = None,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Say what the recording holds, picture three of its frames, and train nothing."),
+        typer.Option("--check", help="Train nothing; report what the recording holds and draw three of its frames."),
     ] = False,
 ) -> None:
-    """Distil RECORDING into a .muaavatar, with a table of errors and a contact sheet beside it.
+    """Train an avatar on RECORDING and write it as a .muaavatar file.
 
-    Texture size and frames are the recording's. A run that was interrupted goes on where it stopped when the same
-    command is given again. Under torchrun several processes train together.
+    A table of errors and a contact sheet are written beside it. Texture size and frames are those of the recording.
+    To resume an interrupted run, give the same command again. Start it with torchrun to train in several processes.
     """
     if check:
         _check(recording, output)
         return
-    console = printer(quiet=os.environ.get("RANK", "0") != "0")  # of several processes the first one reports
+    console = printer(quiet=os.environ.get("RANK", "0") != "0")  # of several processes, only the first prints
     with Display(console) as display:
         baked = train(
             recording,
@@ -75,7 +78,7 @@ def main(
 
 
 def _check(recording: Path, output: Path) -> None:
-    require_recording(recording)  # before seconds of loading
+    require_recording(recording)  # first, because loading takes seconds
     from mua.cli.check_recording import check_recording
     from mua.recording import Recording
 

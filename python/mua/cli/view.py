@@ -14,13 +14,13 @@ from mua.motion.mapping import read_mapping
 from mua.player.source import Source
 from mua.player.toggles import Toggles
 
-DEFAULTS = f"{IN_FILES.size}, in the window {IN_WINDOW.size}"
+DEFAULTS = f"{IN_FILES.size}, window {IN_WINDOW.size}"
 
 
 def _list_devices(wanted: bool) -> None:
     """Print every graphics device and stop, before FILE is asked for."""
     if wanted:
-        from mua.gpu import adapters  # here, as all that needs a device: pictures by the CPU do without
+        from mua.gpu import adapters  # here, because --reference needs no device
 
         for index, adapter in enumerate(adapters()):
             print(f"{index}: {adapter}, {adapter.kind}")
@@ -28,67 +28,93 @@ def _list_devices(wanted: bool) -> None:
 
 
 def view(
-    files: Annotated[list[Path], typer.Argument(help="A .muaavatar file; several to switch between in the window.")],
-    clip: Annotated[str | None, typer.Option(help="Name of a clip in the file; the first if left out.")] = None,
+    files: Annotated[
+        list[Path], typer.Argument(help="Avatar file (.muaavatar); give several to switch between them in the window.")
+    ],
+    clip: Annotated[str | None, typer.Option(help="Clip to play.", show_default="the first one")] = None,
     frame: Annotated[
-        int | None, typer.Option(help="Frame at the avatar's rate, from 0: of a picture or turntable, or to stop at.")
+        int | None,
+        typer.Option(help="Frame to show, counted from 0 at the avatar's frame rate; the window pauses there."),
     ] = None,
-    frames: Annotated[str | None, typer.Option(help="Frames of a video, FIRST:END; all if left out.")] = None,
-    motion: Annotated[Path | None, typer.Option(help="Motion file in place of the avatar's own clips.")] = None,
-    mapping: Annotated[Path | None, typer.Option(help="JSON or TOML: avatar's joint to joint of the motion.")] = None,
+    frames: Annotated[str | None, typer.Option(help="Frames of a video, as FIRST:END.", show_default="all")] = None,
+    motion: Annotated[Path | None, typer.Option(help="Motion file to play instead of the avatar's own clips.")] = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            help="JSON or TOML file that gives, for joints of the avatar, the joint of the motion.",
+            show_default="matched by name",
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="Picture (.png ...), video (.mp4, .webm) or animation (.gif) to write; no window."
+            "--output",
+            "-o",
+            help="Picture (.png and others), video (.mp4, .webm) or animation (.gif) to write.",
+            show_default="opens a window",
         ),
     ] = None,
     size: Annotated[
-        str | None, typer.Option(help=f"WIDTHxHEIGHT of an eye in pixels, or one number; {DEFAULTS} if left out.")
+        str | None,
+        typer.Option(help="Picture size per eye in pixels: WIDTHxHEIGHT or one number.", show_default=DEFAULTS),
     ] = None,
     azimuth: Annotated[
-        float, typer.Option(help="Degrees round it to its left; 0 is its front in the first frame shown.")
+        float, typer.Option(help="Camera angle around the figure in degrees, towards its left; 0 is its front.")
     ] = 0,
-    elevation: Annotated[float, typer.Option(help="Degrees from which the camera looks down.")] = 0,
+    elevation: Annotated[float, typer.Option(help="Camera angle above the horizon in degrees.")] = 0,
     zoom: Annotated[
         float | None,
-        typer.Option(help=f"Times nearer than all of the figure asks for; 1, or {CLOSE_UP:g} with --look-at."),
+        typer.Option(help="Zoom factor; 1 shows the whole figure.", show_default=f"1; {CLOSE_UP:g} with --look-at"),
     ] = None,
     look_at: Annotated[
-        str | None, typer.Option(help="What to look at and follow: a joint, or head, hips, 'left hand' ...")
+        str | None, typer.Option(help="Joint or body part to look at and follow, such as head, hips or 'left hand'.")
     ] = None,
     orbit: Annotated[
-        float | None, typer.Option(help="Degrees per second by which the camera goes round; 0, or 60 with --turntable.")
+        float | None,
+        typer.Option(
+            help="Degrees per second by which the camera orbits the figure.", show_default="0; 60 with --turntable"
+        ),
     ] = None,
     turntable: Annotated[
-        bool, typer.Option("--turntable", help="A video of one frame from all sides that repeats without a seam.")
+        bool, typer.Option("--turntable", help="Write a looping video that shows one frame from all sides.")
     ] = False,
     follow: Annotated[
         bool | None,
-        typer.Option(help="Whether the camera goes along with the figure; it does in the window and with --look-at."),
+        typer.Option(
+            help="Whether the camera follows the figure.", show_default="follows in the window and with --look-at"
+        ),
     ] = None,
-    stereo: Annotated[bool, typer.Option("--stereo", help="Left and right eye side by side.")] = False,
+    stereo: Annotated[bool, typer.Option("--stereo", help="Show left and right eye side by side.")] = False,
     ipd: Annotated[
-        float | None, typer.Option(min=0.0, help=f"Metres between the eyes; {EYE_DISTANCE:g} if left out.")
+        float | None,
+        typer.Option(min=0.0, help="Distance between the eyes in metres.", show_default=f"{EYE_DISTANCE:g}"),
     ] = None,
     background: Annotated[
-        str | None, typer.Option(help=f"Colour name, #rrggbb or transparent; {IN_FILES.background} in files.")
+        str | None,
+        typer.Option(
+            help="Background: a colour name, #rrggbb or transparent.",
+            show_default=f"{IN_FILES.background}, window {IN_WINDOW.background}",
+        ),
     ] = None,
-    device: Annotated[str | None, typer.Option(help="Part of the name of a graphics device, or its number.")] = None,
+    device: Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")] = None,
     list_devices: Annotated[
-        bool, typer.Option("--list-devices", is_eager=True, callback=_list_devices, help="Number and name them.")
+        bool,
+        typer.Option(
+            "--list-devices", is_eager=True, callback=_list_devices, help="List the graphics devices and exit."
+        ),
     ] = False,
     show: Annotated[
         str | None,
         typer.Option(
-            help="Some of splats,geometry,template,skeleton,shadow, separated by commas; "
-            f"{IN_FILES.show}, in the window {IN_WINDOW.show} if left out."
+            help="What to draw, separated by commas: splats, geometry, template, skeleton, shadow.",
+            show_default=f"{IN_FILES.show}; window {IN_WINDOW.show}",
         ),
     ] = None,
     reference: Annotated[
-        bool, typer.Option("--reference", help="Compute on the CPU in numpy; needs no device.")
+        bool, typer.Option("--reference", help="Compute on the CPU with numpy; needs no graphics device.")
     ] = False,
 ) -> None:
-    """Show FILES in a window, or with -o write a picture, a video or an animation of one."""
+    """Show FILES in a window, or write a picture, a video or an animation of one with -o."""
     kind = kind_of(output, turntable=turntable)
     given: dict[str, object] = {
         "--frame": frame,
@@ -102,17 +128,17 @@ def view(
     asked = Asked(size, azimuth, elevation, zoom, look_at, orbit, follow, stereo, ipd, background, show)
     look = look_of(asked, output)
     if reference and look.toggles != Toggles():
-        raise InputError(f"--show is {show!r}; --reference draws splats alone")
+        raise InputError(f"--show is {show!r}; --reference draws only splats")
     check_inputs(files, output, motion)
     joints = None if mapping is None else read_mapping(mapping)
     source = Source(tuple(files), motion, joints, clip, frame)
     if output is None:
-        from mua.player.window import show as show_window  # here, because pictures need no window system
+        from mua.player.window import show as show_window  # here, because files need no window system
 
         show_window(source, look, device=device)
         return
     require_writable(output)
-    from mua.cli.view_files import write  # here, so that a wrong name costs no time
+    from mua.cli.view_files import write  # here, so that a wrong name fails at once
 
     write(output, kind, source, look, frames=frames, device=device, reference=reference)
 

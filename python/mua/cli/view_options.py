@@ -89,18 +89,20 @@ def check_fitting(kind: Kind, output: Path | None, given: Mapping[str, object]) 
         if option in named and kind not in kinds:
             fitting = listed([MEANT[kind] for kind in kinds])
             found = "no -o is given" if output is None else f"-o is {output}, {MEANT[kind]}"
-            raise InputError(f"{option}: goes with {fitting}; {found}")
+            raise InputError(f"{option}: works only with {fitting}; {found}")
     for option, other in BESIDE:
         if option in named and other not in named:
-            raise InputError(f"{option}: goes with {other}, which is not given")
+            raise InputError(f"{option}: works only with {other}, which is not given")
     if {"--reference", "--device"} <= named:
-        raise InputError("--device: --reference computes on no graphics device; expected one of the two")
+        raise InputError(
+            "--device and --reference are both given, but --reference uses no graphics device; expected one of the two"
+        )
 
 
 def check_inputs(files: list[Path], output: Path | None, motion: Path | None) -> None:
     """Raises InputError for a file that is not there, or more of them than a picture shows."""
     if output is not None and len(files) > 1:
-        raise InputError(f"-o is {output}; expected one FILE to picture, found {len(files)}")
+        raise InputError(f"-o is {output}; expected one FILE, found {len(files)}")
     for file in files:
         require_file(file)
     if motion is not None:
