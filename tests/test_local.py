@@ -187,7 +187,7 @@ def test_a_texel_belongs_to_the_part_of_its_sample() -> None:
     assert two_parts().texel_owners(texels).tolist() == [0, 0, 1, 1, 1]
 
 
-def test_a_recording_is_prepared_with_its_parts_and_clips(tmp_path: Path) -> None:
+def test_a_recording_is_prepared_with_its_parts(tmp_path: Path) -> None:
     recordings.write(tmp_path)
     recording = Recording(tmp_path)
     settings = replace(SETTINGS, texels=recording.rig.texels.size)
@@ -195,8 +195,6 @@ def test_a_recording_is_prepared_with_its_parts_and_clips(tmp_path: Path) -> Non
     assert samples.parts is not None
     assert samples.parts.steps.shape[1] == student.encoding.width
     assert samples.parts.fine.shape == student.geometry.d2.mean.shape[-2:]
-    assert samples.clips is not None
-    assert samples.clips.tolist() == [0] * 12 + [1] * 11
     alike = replace(settings, generalisation=replace(settings.generalisation, fade=1.0))
     assert prepare(recording, alike)[1].parts is None
 

@@ -12,7 +12,7 @@ from torch import Tensor, nn
 
 from mua.processes import ALONE, Processes, Share
 from mua.student.coarse import set_pca
-from mua.student.finetune import Frames, draw_frames, finetune, weighted
+from mua.student.finetune import draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
 from mua.student.optimise import Run, optimise
 from mua.student.settings import Settings
@@ -54,7 +54,6 @@ def descend_branch(
     settings: Settings,
     name: str,
     run: Run,
-    judges: Frames | None = None,  # that choose the best step
 ) -> None:
     """Train bases and MLP from noise on the paper's loss; the means are those of the training frames."""
     weights = start_from_noise(branch, inputs, source, channels=channels, run=run)
@@ -68,7 +67,6 @@ def descend_branch(
         run=run,
         basis_rate=1.0,
         weight_decay=0.0,
-        judges=judges,
     )
 
 

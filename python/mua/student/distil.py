@@ -145,12 +145,6 @@ def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: b
     return np.concatenate([np.zeros((0, encoding.width)), *described])
 
 
-def clip_numbers(recording: Recording) -> Tensor:
-    """Which clip each training frame [F] is of, int64."""
-    lengths = [len(clip.recorded) for clip in recording.clips if not clip.held_out]
-    return torch.arange(len(lengths)).repeat_interleave(torch.tensor(lengths))
-
-
 def moving_joints(rig: Rig) -> Array:
     """Which joints [J] move the mesh themselves or through a descendant."""
     moving = np.zeros(len(rig.skeleton.names), dtype=bool)
@@ -170,7 +164,6 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
         meshes=torch.from_numpy(recording.meshes(np.arange(recording.count()))),
         subbands=subbands,
         mean_texture=torch.from_numpy(recording.mean_texture()).float(),
-        clips=clip_numbers(recording),
     )
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
@@ -10,11 +9,9 @@ from torch import Tensor, nn
 from mua.processes import Share
 from mua.student.model import Bands, Branch
 from mua.student.optimise import Run, optimise
-from mua.student.selection import Selection
 from mua.student.settings import Generalisation, Schedule
 
 LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1
-FRAMES_AT_ONCE = 64  # whose loss is measured
 BASIS_RATE = 3.0  # learning rate of the bases relative to that of the MLP
 
 
@@ -22,24 +19,6 @@ def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
     """5 |LL| + |D3| + |D2|, L1 (paper, Eq. L_rec), each as a mean over its numbers (docs/research/paper.md)."""
     ll, d3, d2 = ((a - b).abs().mean() for a, b in zip(predicted, truth, strict=True))
     return LL_WEIGHT * ll + d3 + d2
-
-
-@dataclass(frozen=True, eq=False)
-class Frames:
-    """Frames as a branch sees them."""
-
-    inputs: Tensor  # [F, k D] normalised descriptors
-    bands: Callable[[Tensor], Bands]  # the subbands of some of them
-
-
-@torch.no_grad()
-def mean_loss(branch: Branch, frames: Frames, weights: Tensor) -> float:
-    """The loss over all of `frames`; the branch is in the scale that it is trained in."""
-    scale, total = weights[:, None, None], 0.0
-    for rows in torch.arange(len(frames.inputs)).split(FRAMES_AT_ONCE):
-        truth = Bands(*(band.to(weights.device) * scale for band in frames.bands(rows)))
-        total += len(rows) * float(subband_loss(branch(frames.inputs[rows.to(frames.inputs.device)]), truth))
-    return total / len(frames.inputs)
 
 
 @contextmanager
@@ -71,16 +50,9 @@ def finetune(
     run: Run,
     basis_rate: float = BASIS_RATE,
     weight_decay: float = Generalisation.weight_decay,
-    judges: Frames | None = None,
 ) -> None:
-    """Train bases and MLP together on the paper's loss over weighted subbands.
-
-    With `judges` they end as they were at the step whose loss over those frames was the least.
-    """
+    """Train bases and MLP together on the paper's loss over weighted subbands."""
     schedule = schedule.over(len(inputs))
-    selection = None
-    if judges is not None:
-        selection = Selection(lambda: run.processes.told(mean_loss(branch, judges, weights)))
 
     def loss(model: nn.Module) -> Tensor:
         def part(share: Share) -> Tensor:
@@ -98,7 +70,7 @@ def finetune(
         {"params": bases, "weight_decay": 0.0, "lr": basis_rate},
     ]
     with weighted(branch, weights):
-        optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run, selection=selection)
+        optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
 
 
 def draw_frames(count: int, schedule: Schedule, run: Run) -> Tensor:

@@ -10,7 +10,6 @@ from torch import Tensor, nn
 
 from mua.processes import ALONE, Processes
 from mua.student.checkpoint import Checkpoints
-from mua.student.selection import Selection
 from mua.student.settings import Schedule
 
 CHECKPOINT_STEPS = 200
@@ -70,19 +69,15 @@ def optimise(
     parameters: list[dict[str, object]],
     stage: str,
     run: Run,
-    selection: Selection | None = None,
 ) -> None:
     """Run AdamW over `schedule` from the stage's last checkpoint; a group's `lr` is relative to the schedule's.
 
     After a kill, a resumed run ends in the same bytes: model, optimiser and generator continue from the same state.
-    With `selection` the module ends with the weights that it chose.
     """
     relative = [float(group.pop("lr", 1.0)) for group in parameters]  # type: ignore[arg-type]
     optimizer = torch.optim.AdamW(parameters, lr=schedule.rate, fused=True)  # one pass over the weights
-    first = _restore(module, optimizer, selection, stage=stage, run=run)
+    first = _restore(module, optimizer, stage=stage, run=run)
     model = run.processes.wrap(module)
-    if selection is not None and first == 0:
-        selection.look(module, 0, schedule.steps)
     started = time.monotonic()
     for step in range(first, schedule.steps):
         for group, factor in zip(optimizer.param_groups, relative, strict=True):
@@ -92,34 +87,25 @@ def optimise(
         value.backward()
         optimizer.step()
         done = step + 1
-        if selection is not None:
-            selection.look(module, done, schedule.steps)
         if done % CHECKPOINT_STEPS == 0 or done == schedule.steps:
-            _keep(module, optimizer, selection, done, finished=done == schedule.steps, stage=stage, run=run)
+            _keep(module, optimizer, done, finished=done == schedule.steps, stage=stage, run=run)
         pace = (done - first) / max(time.monotonic() - started, 1e-9)
         run.report(Progress(stage, done, schedule.steps, run.processes.mean(value), pace))
-    if selection is not None:
-        selection.put_back(module)
 
 
-def _restore(
-    module: nn.Module, optimizer: torch.optim.Optimizer, selection: Selection | None, *, stage: str, run: Run
-) -> int:
+def _restore(module: nn.Module, optimizer: torch.optim.Optimizer, *, stage: str, run: Run) -> int:
     kept = run.checkpoints.load(stage)
     if kept is None:
         return 0
     module.load_state_dict(kept["module"])
     optimizer.load_state_dict(kept["optimizer"])
     run.generator.set_state(kept["generator"])
-    if selection is not None:
-        selection.resume(kept["selection"])
     return int(kept["step"])
 
 
 def _keep(
     module: nn.Module,
     optimizer: torch.optim.Optimizer,
-    selection: Selection | None,
     step: int,
     *,
     finished: bool,
@@ -132,6 +118,5 @@ def _keep(
         "generator": run.generator.get_state(),
         "step": step,
         "finished": finished,
-        "selection": None if selection is None else selection.state(),
     }
     run.checkpoints.save(stage, state)

@@ -54,7 +54,7 @@ def fall(done: float) -> float:
 
 @dataclass(frozen=True)
 class Generalisation:
-    """What carries over to unseen motion; `tools/compare_options.py` measures it (docs/research/unseen_motion.md)."""
+    """What carries over to unseen motion, as docs/research/unseen_motion.md measures."""
 
     fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
     noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction
@@ -62,7 +62,6 @@ class Generalisation:
     exchanged_noise: float = 1.0  # of these
     weight_decay: float = 1e-3  # of the MLPs
     heading: bool = True  # whether the descriptor is turned back by the heading
-    validation: float = 0.0  # share of the training frames, whole clips, that only choose the best fine-tuning step
 
 
 @dataclass(frozen=True)

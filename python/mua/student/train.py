@@ -16,12 +16,11 @@ from mua.student.coarse import fit_coarse
 from mua.student.conditioned import fold
 from mua.student.descend import descend_branch, descend_coarse
 from mua.student.factorize import blendshapes, draw_probe, separable_blendshapes
-from mua.student.finetune import Frames, finetune
+from mua.student.finetune import finetune
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
 from mua.student.optimise import Progress, Report, Run
 from mua.student.regress import regress, squared_error
-from mua.student.selection import validation_rows
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
@@ -41,17 +40,6 @@ class Samples:
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
-    clips: Tensor | None = None  # [F] int64, the clip of each frame; without them, all are of one
-
-    def of(self, rows: Tensor) -> "Samples":
-        """Some of the frames; the mean texture stays that of all."""
-        return replace(
-            self,
-            descriptors=self.descriptors[rows],
-            meshes=self.meshes[rows],
-            subbands=lambda channels, some: self.subbands(channels, rows[some]),
-            clips=None if self.clips is None else self.clips[rows],
-        )
 
     def __len__(self) -> int:
         return len(self.descriptors)
@@ -82,7 +70,6 @@ def train(
     size = figure_scale(samples.meshes[0].numpy())
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes, size)
     student.to(device)
-    samples, unseen = set_apart(samples, settings.generalisation.validation, run=run.alone("selection"))
     inputs = student.normalize(samples.descriptors.to(device))
     random = settings.start == "random"
     start = descend_coarse if random else partial(fit_coarse, parts=samples.parts)
@@ -103,20 +90,7 @@ def train(
             processes=processes,
             together=len(BRANCHES) if side_by_side(run) else 1,
         )
-        judges = None
-        if unseen is not None:
-            shown = hold(unseen.subbands, channels, frames=len(unseen), size=student.size, device=device)
-            judges = Frames(student.normalize(unseen.descriptors.to(device)), partial(shown, slice(0, branch.channels)))
-        fit(
-            branch,
-            inputs,
-            source,
-            channels=channels,
-            settings=settings,
-            name=name,
-            run=run.alone(name),
-            judges=judges,
-        )
+        fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
 
     branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
     each_branch([partial(teach, *branch) for branch in branches], run)
@@ -124,22 +98,6 @@ def train(
         return
     student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
     student.requires_grad_(False).eval()
-
-
-def set_apart(samples: Samples, share: float, *, run: Run) -> tuple[Samples, Samples | None]:
-    """The frames to train on, and those of whole clips, about a `share` of all, that choose the best step.
-
-    Raises InputError where either would be none.
-    """
-    if not share:
-        return samples, None
-    clips = torch.zeros(len(samples), dtype=torch.int64) if samples.clips is None else samples.clips
-    chosen = validation_rows(clips, share, generator=run.generator)
-    count = int(chosen.sum())
-    if not 0 < count < len(samples):
-        left = len(samples) - count
-        raise InputError(f"validation {share:g}: {count} frames to choose, {left} to train on, expected some of both")
-    return samples.of((~chosen).nonzero()[:, 0]), samples.of(chosen.nonzero()[:, 0])
 
 
 def _silent(_: Progress) -> None:
@@ -185,7 +143,6 @@ def fit_branch(
     name: str,
     run: Run,
     parts: Parts | None = None,
-    judges: Frames | None = None,  # that choose the step of the fine-tuning
     until: StageName | None = None,
 ) -> None:
     """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
@@ -208,7 +165,6 @@ def fit_branch(
         stage=stage,
         run=run.alone(stage),
         weight_decay=settings.generalisation.weight_decay,
-        judges=judges,
     )
     fold(branch)
 
