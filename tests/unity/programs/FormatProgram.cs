@@ -1,4 +1,4 @@
-// Runs the reader of unity-package/Runtime/Format for tests/unity/test_format.py and tools/bench_reader.py.
+// Runs the reader of unity-package/Runtime/Format for tests/unity/test_format.py and tools/research/bench_reader.py.
 
 using System;
 using System.Collections.Generic;

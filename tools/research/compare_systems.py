@@ -1,6 +1,6 @@
 """Train the systems of the paper's tables for as long on one recording, and set what they explain side by side.
 
-    python tools/compare_systems.py RECORDING --preset tiny --seconds 40 -o build/systems.md
+    python tools/research/compare_systems.py RECORDING --preset tiny --seconds 40 -o build/systems.md
 
 Share of the variance about the mean texture, by attribute, over the frames that the recording keeps whole. `mua-eval`
 draws pictures and takes the paper's metrics; this needs no GPU.

@@ -1,6 +1,6 @@
 """Print how fast the simulated teacher is recorded, stage by stage, and the memory it takes.
 
-python tools/bench_recording.py --texels 768 --frames 40 [CHARACTER]
+python tools/research/bench_recording.py --texels 768 --frames 40 [CHARACTER]
 """
 
 import argparse

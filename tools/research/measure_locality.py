@@ -1,6 +1,6 @@
 """How well texels are predicted by the joints near them, on clips left out: the kernel alone, before any MLP.
 
-    python tools/measure_locality.py RECORDING --leave 01_06 --leave 01_12 --leave 02_06
+    python tools/research/measure_locality.py RECORDING --leave 01_06 --leave 01_12 --leave 02_06
 
 Training clips are left out, so that the recording's own held-out clips stay unseen. *fade f* multiplies a descriptor's
 entries by f for each joint between them and the body part; *only n joints* cuts off what lies more than n joints away.
@@ -14,6 +14,7 @@ from typing import Annotated
 
 import torch
 import typer
+from left_out import left_out
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
@@ -43,9 +44,7 @@ def main(
     settings = replace(settings, generalisation=replace(settings.generalisation, heading=heading))
     student, samples = prepare(opened, settings)
     assert samples.parts is not None  # the default is local
-    assert samples.clips is not None
-    names = [clip.name for clip in opened.clips if not clip.held_out]
-    left = torch.isin(samples.clips, torch.tensor([names.index(name) for name in leave]))
+    left = left_out(opened, leave)
     values, owners, channels = weighted_samples(
         samples.subbands(slice(0, CHANNELS), torch.arange(len(samples))), samples.parts
     )

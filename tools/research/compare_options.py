@@ -1,14 +1,14 @@
 """Train one student by each option for unseen motion on one recording and set their losses side by side.
 
-    python tools/compare_options.py RECORDING --preset tiny -o build/options
-    python tools/compare_options.py RECORDING --leave 01_06 --leave 01_12 --leave 02_06 -o build/options_left
+    python tools/research/compare_options.py RECORDING --preset tiny -o build/options
+    python tools/research/compare_options.py RECORDING --leave 01_06 --leave 01_12 --leave 02_06 -o build/options_left
 
 The second form leaves training clips out and judges by them, so that the held-out clips need not choose what they are
 to measure. Each option changes the default in one place. The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus
 appearance, in units of each attribute's spread) over all recorded frames; the shares are of the unseen frames' variance
-about the training mean that the student explains. All options share the bases, which are not timed, but for those that
-train on fewer frames. Rows that OUTPUT/options.csv holds are kept, so that a comparison can be cut short and extended.
-Writes options.csv and options.md.
+about the training mean that the student explains. All options share the bases, which are not timed. Rows that
+OUTPUT/options.csv holds are kept, so that a comparison can be cut short and extended. Writes options.csv and
+options.md.
 """
 
 import csv
@@ -22,6 +22,7 @@ from typing import Annotated
 import numpy as np
 import torch
 import typer
+from left_out import left_out, some
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
@@ -56,10 +57,8 @@ OPTIONS: dict[str, dict[str, float]] = {
     "no weight decay": {"weight_decay": 0.0},
     "weight decay 0.01": {"weight_decay": 1e-2},
     "heading kept": {"heading": False},
-    "a tenth chooses the step": {"validation": 0.1},
     "fine-tuned at 3e-4": {"rate": 3e-4},
     f"{LONGER}x fine-tuning": {"longer": LONGER},
-    f"{LONGER}x, a tenth chooses": {"longer": LONGER, "validation": 0.1},
 }
 SHARES = (*(f"{name}, %" for name in ATTRIBUTES), "mesh, %")
 
@@ -125,13 +124,11 @@ def measure(
     """Train and judge one option: the figures of a row, without its name."""
     student, samples = prepare(recording, settings)
     samples, unseen = part(recording, student, samples, leave=leave)
-    shares = not settings.generalisation.validation
     with tempfile.TemporaryDirectory() as directory:
         checkpoints = Checkpoints(Path(directory), "compare")
-        if shares:
-            if not bases.finished(f"{BRANCHES[-1]} bases"):
-                train(student, samples, settings=settings, checkpoints=bases, device=CPU, report=_silent, only="bases")
-            lend_bases(bases, checkpoints)
+        if not bases.finished(f"{BRANCHES[-1]} bases"):
+            train(student, samples, settings=settings, checkpoints=bases, device=CPU, report=_silent, only="bases")
+        lend_bases(bases, checkpoints)
         started = time.perf_counter()
         train(student, samples, settings=settings, checkpoints=checkpoints, device=CPU, report=_silent)
         seconds = time.perf_counter() - started
@@ -147,16 +144,10 @@ def part(recording: Recording, student: Student, samples: Samples, *, leave: lis
             descriptors=descriptors,
             meshes=torch.from_numpy(recording.meshes(np.arange(len(descriptors)), held_out=True)),
             subbands=lambda channels, rows: Bands(*recording.subbands(channels, rows, held_out=True)),
-            clips=None,
         )
         return samples, held
-    names = [clip.name for clip in recording.clips if not clip.held_out]
-    missing = [name for name in leave if name not in names]
-    if missing:
-        raise typer.BadParameter(f"--leave: {missing[0]!r} is no training clip, expected some of {', '.join(names)}")
-    assert samples.clips is not None  # a recording's samples have them
-    left = torch.isin(samples.clips, torch.tensor([names.index(name) for name in leave]))
-    return samples.of((~left).nonzero()[:, 0]), samples.of(left.nonzero()[:, 0])
+    left = left_out(recording, leave)
+    return some(samples, (~left).nonzero()[:, 0]), some(samples, left.nonzero()[:, 0])
 
 
 def _silent(_: Progress) -> None:

@@ -1,6 +1,6 @@
 """Print what f16 and i8 storage cost: bytes, and the error of each attribute beside the same avatar in f32.
 
-mua-bake --storage f32 -o hero.muaavatar ...; python tools/measure_storage.py hero.muaavatar
+mua-bake --storage f32 -o hero.muaavatar ...; python tools/research/measure_storage.py hero.muaavatar
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """Train one student by both recipes on one recording and set their losses against the clock.
 
-    OMP_NUM_THREADS=1 python tools/compare_recipes.py RECORDING --preset tiny -o build/recipes
+    OMP_NUM_THREADS=1 python tools/research/compare_recipes.py RECORDING --preset tiny -o build/recipes
 
 The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus appearance) over all frames, taken between the steps, with
 the clock stopped. Two clocks run: on the wall, and the processor time of all threads of this process, which other work

@@ -1,6 +1,6 @@
 """Print how fast the C# reader of unity-package opens a file under mono, and the memory that it takes.
 
-python tools/bench_reader.py [--megabytes 50] [FILE]
+python tools/research/bench_reader.py [--megabytes 50] [FILE]
 """
 
 import argparse
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "unity")]
 
 from csharp import PROGRAMS, RUNTIME, CSharp  # noqa: E402 with the tests' modules on the path

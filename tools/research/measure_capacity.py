@@ -1,6 +1,6 @@
 """What blendshapes of each kind can hold, whatever predicts their coefficients: explained texture against size.
 
-    python tools/measure_capacity.py RECORDING --preset tiny --frames 375 --frames 1500 -o build/capacity
+    python tools/research/measure_capacity.py RECORDING --preset tiny --frames 375 --frames 1500 -o build/capacity
 
 Bases are solved in closed form on the training frames (or on so many of them, evenly spaced); every frame then takes
 the best coefficients there are. What is printed is the share of the variance about the mean texture, over the valid
