@@ -15,15 +15,19 @@ CASES: dict[str, tuple[Break, str]] = {
     ),
     "name of a type": (
         lambda root: replaced(root / FRAME, "class Frame", "class Frames"),
-        f"{FRAME}: type Frames, expected only Frame, the name of the file",
+        f"{FRAME}: no type Frame, expected one of the file's name",
     ),
-    "two types": (
-        lambda root: replaced(root / FRAME, "    public sealed", "    enum Kind { A }\n    public sealed"),
-        f"{FRAME}: type Kind, expected only Frame, the name of the file",
+    "component beside another type": (
+        lambda root: replaced(
+            root / FRAME,
+            "    public sealed",
+            "    enum Kind { A }\n    class Walk : MonoBehaviour { }\n    public sealed",
+        ),
+        f"{FRAME}: type Walk: MonoBehaviour, which Unity looks for in Walk.cs",
     ),
     "no type": (
         lambda root: put(root / FRAME, "// namespace Mua { class Frame }\n"),
-        f"{FRAME}: no type, expected Frame",
+        f"{FRAME}: no type Frame, expected one of the file's name",
     ),
     "foreign namespace": (
         lambda root: replaced(root / FRAME, "namespace Mua.Frames", "namespace Frames"),
@@ -50,3 +54,12 @@ def packages(tmp_path: Path) -> list[Path]:
 @pytest.mark.parametrize(("change", "fault"), CASES.values(), ids=list(CASES))
 def test_finds_one_fault(packages: list[Path], change: Break, fault: str) -> None:
     assert faults_after(packages, change, metas=True) == [f"com.mua.test/{fault}"]
+
+
+def test_a_file_may_hold_a_small_type_beside_its_own(packages: list[Path]) -> None:
+    assert (
+        faults_after(
+            packages, lambda root: replaced(root / FRAME, "    public sealed", "    enum Kind { A }\n    public sealed")
+        )
+        == []
+    )

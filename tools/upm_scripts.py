@@ -37,14 +37,16 @@ MODULES = {
 
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|@"(?:[^"]|"")*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 TOKEN = re.compile(
-    r"[{}]|\bnamespace\s+(?P<namespace>[\w.]+)|\b(?:class|struct|interface|enum)\s+(?P<type>\w+)"
+    r"[{}]|\bnamespace\s+(?P<namespace>[\w.]+)"
+    r"|\b(?:class|struct|interface|enum)\s+(?P<type>\w+)(?:\s*:\s*(?P<base>\w+))?"
     r"|\bdelegate\s+[\w.<>\[\], ]+?\s(?P<delegate>\w+)\s*[<(]"
 )
 OURS = "Mua"
+BY_FILE = {"MonoBehaviour", "ScriptableObject", "ScriptedImporter", "EditorWindow"}  # found by the name of their file
 
 
 def faults(package: Package) -> Iterator[str]:
-    """Each .cs file holds one type of its own name in our namespace, in an assembly, under symbols that can be."""
+    """Each .cs file holds a type of its own name in our namespace, in an assembly, under symbols that can be."""
     for path in package.files(".cs"):
         where = package.where(path)
         assembly = _assembly_of(package, path)
@@ -65,17 +67,17 @@ def faults(package: Package) -> Iterator[str]:
 
 def _types(where: str, stem: str, text: str) -> Iterator[str]:
     found = list(outermost(text))
-    if not found and stem != "AssemblyInfo":
-        yield f"{where}: no type, expected {stem}"
-    for namespace, name in found:
-        if name != stem:
-            yield f"{where}: type {name}, expected only {stem}, the name of the file"
+    if stem not in {name for _, name, _ in found} | {"AssemblyInfo"}:
+        yield f"{where}: no type {stem}, expected one of the file's name"
+    for namespace, name, base in found:
+        if name != stem and base in BY_FILE:
+            yield f"{where}: type {name}: {base}, which Unity looks for in {name}.cs"
         if not is_ours(namespace):
             yield f'{where}: type {name}: namespace "{namespace}", expected {OURS} or below it'
 
 
-def outermost(text: str) -> Iterator[tuple[str, str]]:
-    """Namespace and name of the types of a source that lie in no other; comments and strings are already gone."""
+def outermost(text: str) -> Iterator[tuple[str, str, str]]:
+    """Namespace, name and first base of the types that lie in no other; comments and strings are already gone."""
     namespaces: list[tuple[int, str]] = []  # depth of the braces around each, and its name
     depth, pending = 0, ""
     for token in TOKEN.finditer(text):
@@ -91,7 +93,7 @@ def outermost(text: str) -> Iterator[tuple[str, str]]:
             if namespaces and namespaces[-1][0] == depth:
                 namespaces.pop()
         elif depth == len(namespaces):
-            yield ".".join(name for _, name in namespaces), token["type"] or token["delegate"]
+            yield ".".join(name for _, name in namespaces), token["type"] or token["delegate"], token["base"] or ""
 
 
 def _assembly_of(package: Package, path: PurePosixPath) -> Assembly | None:

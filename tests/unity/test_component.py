@@ -82,6 +82,10 @@ def test_a_clip_plays(story: Story) -> None:
     assert told["log"] == []
 
 
+def test_a_load_asks_once_for_the_packages_resources(story: Story) -> None:
+    assert story("Plays", "first")["asked"] == ["1"]
+
+
 def test_an_avatar_is_decoded_at_its_own_rate_and_posed_in_every_frame(story: Story) -> None:
     posed = FRAME_ORDER[FRAME_ORDER.index("BlendVertices") :]
     decodes, rest = divmod(
@@ -120,6 +124,10 @@ def test_views_are_drawn_in_their_order(story: Story) -> None:
     assert told["shadow"] == ["0 1"]
     assert told["nothing"] == ["0 0"]
     assert told["log"] == []
+
+
+def test_an_editor_that_does_not_play_draws_every_view_in_its_first_picture(story: Story) -> None:
+    assert story("ShowsViewsInEditor", "first")["together"] == ["4 1"]
 
 
 def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story, folder: Path) -> None:

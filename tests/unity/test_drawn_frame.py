@@ -16,7 +16,7 @@ from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
-from test_recorded_frame import FRAME, MIRROR, STAND_INS
+from test_recorded_frame import MIRROR, STAND_INS
 
 from mua.arrays import Array
 from mua.asset import write
@@ -58,7 +58,7 @@ def frame_program(csharp: CSharp) -> Path:
     engine = csharp.build([STAND_INS / "UnityEngine"], library=True)
     file = csharp.build([RUNTIME / "Format"], library=True)
     motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
-    package = [*(RUNTIME / f"{name}.cs" for name in FRAME), RUNTIME / "Kernels"]
+    package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels"]
     return csharp.build(
         [*package, PROGRAMS / "shared", PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion]
     )

@@ -52,7 +52,7 @@ def test_every_test_is_in_the_readme_beside_it() -> None:
 
 
 def test_fields_are_those_of_the_component() -> None:
-    serialized = re.findall(r"private \w+ (\w+) = [^;]+;", RENDERER.split("private AvatarLoader")[0])
+    serialized = re.findall(r"private \w+ (\w+) = [^;]+;", RENDERER.split("private AvatarInstance")[0])
     assert FIELD.findall(section("The component")) == [name.capitalize() for name in serialized]
 
 

@@ -44,11 +44,6 @@ from test_splats import joined, moved
 MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
 VISIBLE_WORD = 7  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
-FRAME = (  # what a frame is made of, without the components around it
-    *("AvatarFrame", "SplatFrame", "AvatarBuffers", "LayerBuffers", "BranchBuffers", "BandBuffers", "StoredBuffer"),
-    *("TexelTiles", "Upsampling"),
-    *("Upload", "BufferSet", "AvatarEyes", "AvatarSpace", "AvatarResources", "AvatarDraw", "AvatarStages"),
-)
 PLACES = (  # Unity's position, then rotation (x, y, z, w)
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
     (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446),
@@ -77,7 +72,7 @@ def program(csharp: CSharp) -> Path:
     engine = csharp.build([STAND_INS / "UnityEngine"], library=True)
     file = csharp.build([RUNTIME / "Format"], library=True)
     motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
-    package = [*(RUNTIME / f"{name}.cs" for name in FRAME), RUNTIME / "Kernels"]
+    package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels"]
     return csharp.build(
         [*package, PROGRAMS / "shared", PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion]
     )

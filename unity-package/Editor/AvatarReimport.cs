@@ -21,7 +21,7 @@ namespace Mua.Editor
 
         private static void Show(string path)
         {
-            foreach (AvatarRenderer shown in AvatarScene.All())
+            foreach (AvatarRenderer shown in AvatarRenderer.All())
             {
                 if (shown.Avatar != null && AssetDatabase.GetAssetPath(shown.Avatar) == path)
                 {

@@ -7,28 +7,19 @@ namespace Mua
     /// <summary>What moves an avatar: the transforms of a rig, else one of its clips, else nothing.</summary>
     internal sealed class AvatarMotion
     {
-        private AvatarFile avatar;
+        private readonly AvatarFile avatar;
         private AvatarJoints joints; // null where a clip gives the pose
 
-        public AvatarPlayback Playback { get; } = new AvatarPlayback();
-
-        /// <summary>Null until there is an avatar.</summary>
-        public AvatarPose Pose { get; private set; }
-
-        public void Take(AvatarFile file)
+        public AvatarMotion(AvatarFile avatar)
         {
-            avatar = file;
-            Pose = new AvatarPose(file);
-            Playback.Take(file);
+            this.avatar = avatar;
+            Pose = new AvatarPose(avatar);
+            Playback = new AvatarPlayback(avatar);
         }
 
-        public void Clear()
-        {
-            avatar = null;
-            Pose = null;
-            joints = null;
-            Playback.Clear();
-        }
+        public AvatarPlayback Playback { get; }
+
+        public AvatarPose Pose { get; }
 
         /// <summary>
         /// Takes the transforms below a root in place of those it had, or none for null; what is wrong with them, or nothing.
@@ -36,7 +27,7 @@ namespace Mua
         public string Bind(Transform root)
         {
             joints = null;
-            if (root == null || avatar == null)
+            if (root == null)
             {
                 return "";
             }

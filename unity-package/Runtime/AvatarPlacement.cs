@@ -27,11 +27,5 @@ namespace Mua
             isKnown = true;
             return true;
         }
-
-        /// <summary>Has the next Follow find another place.</summary>
-        public void Forget()
-        {
-            isKnown = false;
-        }
     }
 }

@@ -6,13 +6,33 @@ using UnityEngine;
 
 namespace Mua
 {
-    /// <summary>The clips of an avatar, which of them plays and how far it is; without an avatar it has none.</summary>
+    /// <summary>The clips of an avatar, which of them plays and how far it is.</summary>
     internal sealed class AvatarPlayback
     {
-        private ClipSampler[] clips = new ClipSampler[0];
-        private string[] names = new string[0];
+        /// <summary>That of no avatar.</summary>
+        public static readonly AvatarPlayback None = new AvatarPlayback(0);
+
+        private readonly ClipSampler[] clips;
+        private readonly string[] names;
         private int index;
+        private double seconds;
         private double shown = double.NaN; // seconds of the pose that Sample gave last
+
+        public AvatarPlayback(AvatarFile avatar)
+            : this(avatar.Clips.Length)
+        {
+            for (int i = 0; i < clips.Length; i++)
+            {
+                clips[i] = new ClipSampler(avatar.Clips[i], avatar.Skeleton, avatar.Encoding.Rate);
+                names[i] = clips[i].Name;
+            }
+        }
+
+        private AvatarPlayback(int count)
+        {
+            clips = new ClipSampler[count];
+            names = new string[count];
+        }
 
         public bool IsEmpty => clips.Length == 0;
 
@@ -30,8 +50,12 @@ namespace Mua
             }
         }
 
-        /// <summary>Seconds into the clip.</summary>
-        public double Seconds { get; set; }
+        /// <summary>Seconds into the clip; 0 where there is none.</summary>
+        public double Seconds
+        {
+            get => seconds;
+            set => seconds = IsEmpty ? 0 : value;
+        }
 
         /// <summary>At the avatar's rate; setting it goes to the frame's beginning.</summary>
         public int Frame
@@ -41,24 +65,6 @@ namespace Mua
         }
 
         public int FrameCount => IsEmpty ? 0 : clips[index].FrameCount;
-
-        /// <summary>Takes an avatar's clips in place of those it had.</summary>
-        public void Take(AvatarFile avatar)
-        {
-            clips = new ClipSampler[avatar.Clips.Length];
-            names = new string[clips.Length];
-            for (int i = 0; i < clips.Length; i++)
-            {
-                clips[i] = new ClipSampler(avatar.Clips[i], avatar.Skeleton, avatar.Encoding.Rate);
-                names[i] = clips[i].Name;
-            }
-        }
-
-        public void Clear()
-        {
-            clips = new ClipSampler[0];
-            names = new string[0];
-        }
 
         /// <summary>Starts the clip of that name, or the first; whether there is one of that name.</summary>
         public bool Choose(string name)

@@ -1,10 +1,47 @@
 using System;
 using System.Collections.Generic;
 using UnityEngine;
-using UnityEngine.Rendering;
 
 namespace Mua
 {
+    /// <summary>What is drawn of an avatar.</summary>
+    [Flags]
+    public enum AvatarViews
+    {
+        None = 0,
+
+        /// <summary>The avatar itself.</summary>
+        Splats = 1,
+
+        /// <summary>The surface through the splats' centres, shaded.</summary>
+        Geometry = 2,
+
+        /// <summary>The coarse template mesh, shaded.</summary>
+        Mesh = 4,
+
+        /// <summary>The bones.</summary>
+        Skeleton = 8,
+
+        /// <summary>The shadow of the template mesh on other objects.</summary>
+        Shadow = 16,
+    }
+
+    /// <summary>How far an AvatarRenderer is with its avatar.</summary>
+    public enum AvatarState
+    {
+        /// <summary>There is nothing to show.</summary>
+        Empty,
+
+        /// <summary>The file is read, checked and uploaded, a part in each frame.</summary>
+        Loading,
+
+        /// <summary>It is drawn.</summary>
+        Ready,
+
+        /// <summary>AvatarRenderer.Message says why it is not.</summary>
+        Failed,
+    }
+
     /// <summary>
     /// Shows an avatar where its GameObject stands: one of its own clips, or the pose of transforms that something else
     /// moves. The character faces the GameObject's forward axis; scale is not supported.
@@ -12,10 +49,10 @@ namespace Mua
     [ExecuteAlways, DisallowMultipleComponent, AddComponentMenu("MUA/Avatar"), DefaultExecutionOrder(1000)]
     public sealed class AvatarRenderer : MonoBehaviour
     {
-        [SerializeField, Tooltip("An imported avatar.")]
+        [SerializeField, Tooltip("The imported avatar to show.")]
         private AvatarAsset avatar = null;
 
-        [SerializeField, Tooltip("In place of an imported avatar: a file in persistentDataPath or StreamingAssets.")]
+        [SerializeField, Tooltip("Path of a .muaavatar file to load at run time if Avatar is empty: a full path, or one in persistentDataPath or StreamingAssets.")]
         private string file = "";
 
         [SerializeField, Tooltip("Root of a rig whose transforms give the pose; without one, a clip of the avatar plays.")]
@@ -30,46 +67,39 @@ namespace Mua
         [SerializeField]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
 
-        private readonly AvatarMotion motion = new AvatarMotion();
-        private readonly AvatarPlacement placement = new AvatarPlacement();
-        private AvatarLoader loader;
-        private AvatarBuffers buffers;
-        private bool hasMoved; // since the last Record
-        private bool isEdited; // the inspector has changed a field
-        private AvatarAsset loaded; // as avatar, file and clip were when they took effect
+        private AvatarInstance shown; // null while there is nothing to show
+        private AvatarAsset loaded; // as avatar and file were when they took effect
         private string loadedFile = "";
-        private string loadedClip = "";
-        private bool isScaleReported;
-        private string refusal; // why there is no room for the avatar beside the others
+        private bool isEdited; // the inspector has changed a field
 
         /// <summary>The imported avatar that is shown; null where it came from a file.</summary>
         public AvatarAsset Avatar => avatar;
 
-        public AvatarState State { get; private set; }
+        public AvatarState State => shown == null ? AvatarState.Empty : shown.State;
 
         /// <summary>Why there is nothing to see, or what is wrong with the pose; empty where all is well.</summary>
-        public string Message { get; private set; } = "";
+        public string Message => shown == null ? "" : shown.Message;
 
         /// <summary>Of loading, from 0 to 1.</summary>
-        public float Progress => State == AvatarState.Ready ? 1 : loader == null ? 0 : loader.Progress;
+        public float Progress => shown == null ? 0 : shown.Progress;
 
         /// <summary>The file's name for the avatar; empty until it is ready.</summary>
-        public string AvatarName => State == AvatarState.Ready ? buffers.Avatar.Name : "";
+        public string AvatarName => shown == null ? "" : shown.Name;
 
         /// <summary>Names of the avatar's clips.</summary>
-        public IReadOnlyList<string> Clips => motion.Playback.Names;
+        public IReadOnlyList<string> Clips => Playback.Names;
 
         /// <summary>Index of the clip that plays.</summary>
         public int ClipIndex
         {
-            get => motion.Playback.Index;
-            set => motion.Playback.Index = value;
+            get => Playback.Index;
+            set => Playback.Index = value;
         }
 
         /// <summary>Whether the clip goes on by itself.</summary>
         public bool IsPlaying { get; set; } = true;
 
-        /// <summary>Of the clip; 1 is as recorded.</summary>
+        /// <summary>Playback speed; 1 plays at the recorded speed.</summary>
         public float Speed
         {
             get => speed;
@@ -79,19 +109,19 @@ namespace Mua
         /// <summary>Seconds into the clip.</summary>
         public double Seconds
         {
-            get => motion.Playback.Seconds;
-            set => motion.Playback.Seconds = value;
+            get => Playback.Seconds;
+            set => Playback.Seconds = value;
         }
 
         /// <summary>Frame of the clip at the avatar's rate; setting it goes to the frame's beginning.</summary>
         public int Frame
         {
-            get => motion.Playback.Frame;
-            set => motion.Playback.Frame = value;
+            get => Playback.Frame;
+            set => Playback.Frame = value;
         }
 
         /// <summary>Frames of the clip at the avatar's rate.</summary>
-        public int FrameCount => motion.Playback.FrameCount;
+        public int FrameCount => Playback.FrameCount;
 
         /// <summary>Transforms that give the pose, or null where a clip does.</summary>
         public Transform Rig
@@ -100,7 +130,7 @@ namespace Mua
             set
             {
                 rig = value;
-                BindRig();
+                shown?.BindRig();
             }
         }
 
@@ -116,15 +146,25 @@ namespace Mua
 
         /// <summary>Box of the last pose in Unity's world, metres.</summary>
         public Bounds Bounds =>
-            State == AvatarState.Ready
-                ? AvatarSpace.Box(Decoded.Low, Decoded.High)
-                : new Bounds(transform.position, Vector3.zero);
+            shown == null ? new Bounds(transform.position, Vector3.zero) : shown.Bounds;
 
         /// <summary>The decoder; null until the avatar is ready.</summary>
-        internal AvatarFrame Decoded { get; private set; }
+        internal AvatarFrame Decoded => shown?.Decoded;
 
-        /// <summary>Its other views; null until the avatar is ready.</summary>
-        internal AvatarSurface Surface { get; private set; }
+        /// <summary>Name of the clip to begin with, as the inspector has it.</summary>
+        internal string Clip => clip;
+
+        private AvatarPlayback Playback => shown == null ? AvatarPlayback.None : shown.Playback;
+
+        /// <summary>Those of active GameObjects in the open scenes, in no order.</summary>
+        internal static AvatarRenderer[] All()
+        {
+#if UNITY_6000_4_OR_NEWER // where the one below is deprecated
+            return FindObjectsByType<AvatarRenderer>();
+#else
+            return FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None);
+#endif
+        }
 
         /// <summary>Whether it shows the file or the imported avatar of that name, without an ending.</summary>
         internal bool Shows(string stem)
@@ -148,35 +188,6 @@ namespace Mua
             Reload();
         }
 
-        /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
-        internal void Record(CommandBuffer commands)
-        {
-            AvatarPose pose = motion.Pose;
-            if (pose.IsFresh)
-            {
-                Decoded.Decode(
-                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value);
-            }
-            else if (hasMoved)
-            {
-                Decoded.Repose(commands, pose.Current, pose.CurrentTranslations, placement.Value);
-            }
-            pose.IsFresh = false;
-            hasMoved = false;
-        }
-
-        /// <summary>Has the next Record pose the avatar again.</summary>
-        internal void MarkMoved()
-        {
-            hasMoved = true;
-        }
-
-        /// <summary>Has the next Update end the avatar; nothing may go while a camera is drawn.</summary>
-        internal void Refuse(string sentence)
-        {
-            refusal = sentence;
-        }
-
         private void OnEnable()
         {
             Reload();
@@ -185,7 +196,6 @@ namespace Mua
         private void OnDisable()
         {
             Release();
-            State = AvatarState.Empty;
         }
 
         private void OnValidate()
@@ -199,24 +209,12 @@ namespace Mua
             {
                 Revise();
             }
-            if (refusal != null)
-            {
-                Fail(buffers.Avatar.Name + " beside the other avatars: " + refusal);
-            }
-            if (State == AvatarState.Loading)
-            {
-                ContinueLoading();
-            }
+            shown?.Update();
         }
 
         private void LateUpdate()
         {
-            if (State == AvatarState.Ready)
-            {
-                Place();
-                Pose();
-                Surface.CastShadow(views, Bounds, gameObject.layer);
-            }
+            shown?.Move(IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
         }
 
         /// <summary>Has what the inspector changed take effect.</summary>
@@ -227,14 +225,9 @@ namespace Mua
             {
                 Reload();
             }
-            else if (State == AvatarState.Ready)
+            else
             {
-                Message = "";
-                if (clip != loadedClip)
-                {
-                    ChooseClip();
-                }
-                BindRig();
+                shown?.Revise();
                 AvatarWorld.Refresh();
             }
         }
@@ -245,131 +238,21 @@ namespace Mua
             isEdited = false;
             loaded = avatar;
             loadedFile = file;
-            State = AvatarState.Empty;
-            Message = "";
             if (!isActiveAndEnabled || (avatar == null && string.IsNullOrEmpty(file)))
             {
                 return;
             }
-            try
-            {
-                AvatarWorld.RequireResources();
-            }
-            catch (InvalidOperationException error)
-            {
-                Fail(error.Message);
-                return;
-            }
-            loader = avatar != null ? AvatarLoader.Of(avatar) : AvatarLoader.Of(file);
-            State = AvatarState.Loading;
+            shown = new AvatarInstance(this, avatar, file);
             if (!Application.isPlaying)
             {
-                ContinueLoading();
+                shown.Update();
             }
         }
 
-        private void ContinueLoading()
-        {
-            try
-            {
-                if (!Application.isPlaying)
-                {
-                    loader.Finish();
-                }
-                else if (!loader.Continue())
-                {
-                    return;
-                }
-                buffers = loader.Take();
-                Decoded = new AvatarFrame(AvatarWorld.RequireResources(), buffers);
-                Surface = new AvatarSurface(AvatarWorld.RequireResources(), Decoded);
-                Begin();
-            }
-            catch (Exception error) // whatever it is: the user sees one sentence, and no frame tries again
-            {
-                Fail(loader.Source + ": " + error.Message);
-            }
-        }
-
-        /// <summary>Everything is on the device.</summary>
-        private void Begin()
-        {
-            loader.Dispose();
-            motion.Take(buffers.Avatar);
-            ChooseClip();
-            AvatarWorld.Add(this);
-            loader = null;
-            State = AvatarState.Ready;
-            BindRig();
-        }
-
-        private void ChooseClip()
-        {
-            loadedClip = clip;
-            if (!motion.Playback.Choose(clip) && !string.IsNullOrEmpty(clip))
-            {
-                Warn("the avatar has no clip " + clip + "; it has " + string.Join(", ", motion.Playback.Names) + ".");
-            }
-        }
-
-        private void BindRig()
-        {
-            string fault = motion.Bind(rig);
-            if (fault.Length > 0)
-            {
-                Warn(fault);
-            }
-        }
-
-        /// <summary>Where the GameObject stands now.</summary>
-        private void Place()
-        {
-            hasMoved |= placement.Follow(transform);
-            if (!isScaleReported && !AvatarSpace.IsRigid(transform.lossyScale))
-            {
-                isScaleReported = true;
-                Warn("the GameObject is scaled by " + transform.lossyScale + "; an avatar keeps its size in metres.");
-            }
-        }
-
-        private void Pose()
-        {
-            if (motion.LosesRig())
-            {
-                Warn("the transforms of its pose were destroyed.");
-            }
-            hasMoved |= motion.Sample(Time.timeAsDouble, IsPlaying && Application.isPlaying ? Time.deltaTime * speed : 0);
-        }
-
-        private void Warn(string sentence)
-        {
-            Message = sentence;
-            Debug.LogWarning("MUA: " + name + ": " + sentence, this);
-        }
-
-        private void Fail(string sentence)
-        {
-            Release();
-            State = AvatarState.Failed;
-            Message = sentence;
-            AvatarWorld.Report(sentence, this);
-        }
-
-        /// <summary>Gives back what the avatar holds, however far it came.</summary>
         private void Release()
         {
-            AvatarWorld.Remove(this);
-            loader?.Dispose();
-            Surface?.Dispose();
-            Decoded?.Dispose();
-            buffers?.Dispose();
-            loader = null;
-            Surface = null;
-            Decoded = null;
-            buffers = null;
-            motion.Clear();
-            placement.Forget();
-            refusal = null;
+            shown?.Dispose();
+            shown = null;
         }
     }
 }

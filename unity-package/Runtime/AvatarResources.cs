@@ -1,3 +1,4 @@
+using System;
 using UnityEngine;
 
 namespace Mua
@@ -6,6 +7,8 @@ namespace Mua
     public sealed class AvatarResources : ScriptableObject
     {
         private const string Asset = "MuaAvatarResources";
+        private const int BuffersOfKernel = 8;
+        private const int BuffersOfVertex = 5; // of a direct draw
 
         [SerializeField] private ComputeShader mlpMatmul = null;
         [SerializeField] private ComputeShader blendSubbands = null;
@@ -38,6 +41,48 @@ namespace Mua
         internal static AvatarResources Load()
         {
             return Resources.Load<AvatarResources>(Asset);
+        }
+
+        /// <summary>
+        /// The package's own, on a device that can run them. InvalidOperationException says what the device or the package
+        /// lacks; an avatar's own kernels are looked for when its AvatarFrame is made.
+        /// </summary>
+        internal static AvatarResources Require()
+        {
+            RequireDevice();
+            AvatarResources resources = Load();
+            if (resources == null)
+            {
+                throw new InvalidOperationException(
+                    "Runtime/Resources/MuaAvatarResources of com.mua.avatar is missing; reimport the package.");
+            }
+            new SplatProject(resources.splatProject);
+            new SplatSort(resources.splatSort);
+            return resources;
+        }
+
+        private static void RequireDevice()
+        {
+            string missing = null;
+            if (!SystemInfo.supportsComputeShaders)
+            {
+                missing = "has no compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";
+            }
+            else if (SystemInfo.maxComputeBufferInputsCompute < BuffersOfKernel)
+            {
+                missing = "binds " + SystemInfo.maxComputeBufferInputsCompute + " buffers to a kernel; MUA needs "
+                    + BuffersOfKernel + ".";
+            }
+            else if (SystemInfo.maxComputeBufferInputsVertex < BuffersOfVertex)
+            {
+                missing = "binds " + SystemInfo.maxComputeBufferInputsVertex + " buffers to a vertex shader; MUA needs "
+                    + BuffersOfVertex + ".";
+            }
+            if (missing != null)
+            {
+                throw new InvalidOperationException(
+                    SystemInfo.graphicsDeviceName + " (" + SystemInfo.graphicsDeviceType + ") " + missing);
+            }
         }
     }
 }

@@ -11,13 +11,12 @@ namespace Mua
     /// </summary>
     internal sealed class AvatarWorld : IDisposable
     {
-        private const int BuffersOfKernel = 8;
-        private const int BuffersOfVertex = 5; // of a direct draw
         private const string Universal = "UniversalRenderPipelineAsset"; // an optional package's; AvatarUrp draws there
 
         private static readonly HashSet<string> Reported = new HashSet<string>();
 
-        private readonly List<AvatarRenderer> avatars = new List<AvatarRenderer>();
+        private readonly AvatarResources resources;
+        private readonly List<AvatarInstance> avatars = new List<AvatarInstance>();
         private readonly List<AvatarFrame> frames = new List<AvatarFrame>();
         private readonly List<AvatarDraw> draws = new List<AvatarDraw>();
         private readonly SplatDraw splatDraw;
@@ -27,7 +26,7 @@ namespace Mua
 
         private AvatarWorld(AvatarResources resources)
         {
-            Resources = resources;
+            this.resources = resources;
             splatDraw = new SplatDraw(resources.Splat);
             builtIn = new AvatarBuiltIn(this);
         }
@@ -35,26 +34,18 @@ namespace Mua
         /// <summary>The one world, or null while no avatar is ready.</summary>
         public static AvatarWorld Current { get; private set; }
 
-        public AvatarResources Resources { get; }
-
         /// <summary>What the last Record found to draw, in this order.</summary>
         public IReadOnlyList<AvatarDraw> Draws => draws;
-
-        /// <summary>Those that are ready, for other views of them.</summary>
-        public IReadOnlyList<AvatarRenderer> Avatars => avatars;
 
         /// <summary>Splats that are sorted together.</summary>
         public int SplatCount => splats == null ? 0 : splats.SplatCount;
 
-        /// <summary>
-        /// Takes an avatar whose buffers are on the device. InvalidOperationException says once what the device or the
-        /// package lacks.
-        /// </summary>
-        public static void Add(AvatarRenderer avatar)
+        /// <summary>Takes an avatar whose buffers are on the device. InvalidOperationException says what the package lacks.</summary>
+        public static void Add(AvatarInstance avatar, AvatarResources resources)
         {
             if (Current == null)
             {
-                Current = new AvatarWorld(RequireResources());
+                Current = new AvatarWorld(resources);
             }
             Current.avatars.Add(avatar);
             Current.hasChanged = true;
@@ -65,7 +56,7 @@ namespace Mua
             }
         }
 
-        public static void Remove(AvatarRenderer avatar)
+        public static void Remove(AvatarInstance avatar)
         {
             if (Current == null || !Current.avatars.Remove(avatar))
             {
@@ -78,39 +69,6 @@ namespace Mua
             {
                 Current.Dispose();
             }
-        }
-
-        /// <summary>The package's resources on a device that can run them.</summary>
-        public static AvatarResources RequireResources()
-        {
-            string missing = null;
-            if (!SystemInfo.supportsComputeShaders)
-            {
-                missing = "has no compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";
-            }
-            else if (SystemInfo.maxComputeBufferInputsCompute < BuffersOfKernel)
-            {
-                missing = "binds " + SystemInfo.maxComputeBufferInputsCompute + " buffers to a kernel; MUA needs "
-                    + BuffersOfKernel + ".";
-            }
-            else if (SystemInfo.maxComputeBufferInputsVertex < BuffersOfVertex)
-            {
-                missing = "binds " + SystemInfo.maxComputeBufferInputsVertex + " buffers to a vertex shader; MUA needs "
-                    + BuffersOfVertex + ".";
-            }
-            if (missing != null)
-            {
-                throw new InvalidOperationException(
-                    SystemInfo.graphicsDeviceName + " (" + SystemInfo.graphicsDeviceType + ") " + missing);
-            }
-            AvatarResources resources = AvatarResources.Load();
-            if (resources == null)
-            {
-                throw new InvalidOperationException(
-                    "Runtime/Resources/MuaAvatarResources of com.mua.avatar is missing; reimport the package.");
-            }
-            RequireKernels(resources);
-            return resources;
         }
 
         /// <summary>Has the next Record sort the avatars that are shown by then.</summary>
@@ -175,7 +133,7 @@ namespace Mua
             }
             for (int i = 0; i < avatars.Count; i++)
             {
-                if ((camera.cullingMask & (1 << avatars[i].gameObject.layer)) != 0)
+                if ((camera.cullingMask & (1 << avatars[i].Layer)) != 0)
                 {
                     return true;
                 }
@@ -201,13 +159,6 @@ namespace Mua
             Reported.Clear(); // avatars that outlive the start of a game without a reload stay in their world
         }
 
-        /// <summary>Those of the sort; an avatar's own are found as its AvatarFrame is made.</summary>
-        private static void RequireKernels(AvatarResources resources)
-        {
-            new SplatProject(resources.SplatProject);
-            new SplatSort(resources.SplatSort);
-        }
-
         /// <summary>
         /// One set of shared buffers for the avatars that there are now, those whose splats are drawn first. Where the device
         /// cannot hold them, the avatar that came last goes.
@@ -221,7 +172,7 @@ namespace Mua
             AddFrames(false);
             try
             {
-                splats = frames.Count == 0 ? null : new SplatFrame(Resources, frames, shown);
+                splats = frames.Count == 0 ? null : new SplatFrame(resources, frames, shown);
             }
             catch (InvalidOperationException error)
             {

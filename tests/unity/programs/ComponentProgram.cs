@@ -46,6 +46,7 @@ namespace Mua
         {
             AvatarRenderer shown = Show(files[0]);
             Say("state", shown.State);
+            Say("asked", Machine.Asked);
             Say("clips", string.Join(" ", new List<string>(shown.Clips).ToArray()));
             Frames(10);
             int dispatches = Recorder.Dispatches, draws = Recorder.Draws;
@@ -119,6 +120,14 @@ namespace Mua
             Say("nothing", Rendered());
         }
 
+        /// <summary>The editor may draw one picture and no other: whatever it shows has to be there at once.</summary>
+        private static void ShowsViewsInEditor()
+        {
+            Machine.Playing(false);
+            Show(files[0]).Views = (AvatarViews)31;
+            Say("together", Rendered(1));
+        }
+
         /// <summary>What is drawn of an avatar between whose texels there is no triangle.</summary>
         private static void ShowsSparse()
         {
@@ -134,10 +143,10 @@ namespace Mua
             }
         }
 
-        /// <summary>Draws of cameras and of lights in a frame.</summary>
-        private static string Rendered()
+        /// <summary>Draws of cameras and of lights in one frame, that one from now on.</summary>
+        private static string Rendered(int frame = 3)
         {
-            Frames(2);
+            Frames(frame - 1);
             int draws = Recorder.Draws, renders = Recorder.Renders;
             Frames(1);
             return (Recorder.Draws - draws) + " " + (Recorder.Renders - renders);

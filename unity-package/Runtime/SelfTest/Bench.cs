@@ -94,7 +94,7 @@ namespace Mua.SelfTest
         /// <summary>The scene's own renderer of the avatar, or a new one; all others are switched off.</summary>
         private void Show()
         {
-            foreach (AvatarRenderer found in AvatarScene.All())
+            foreach (AvatarRenderer found in AvatarRenderer.All())
             {
                 if (shown == null && found.isActiveAndEnabled && found.Shows(avatar))
                 {

@@ -186,6 +186,9 @@ namespace StandIns
         }
 
         /// <summary>Put an asset where Resources.Load finds it.</summary>
+        /// <summary>How often Resources.Load was called.</summary>
+        public static int Asked { get { return Resources.Asked; } }
+
         public static void Place(string path, UnityEngine.Object asset) { Resources.Placed[path] = asset; }
 
         public static void Platform(RuntimePlatform platform) { Application.platform = platform; }

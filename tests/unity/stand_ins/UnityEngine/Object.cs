@@ -113,10 +113,12 @@ namespace UnityEngine
     public static class Resources
     {
         internal static readonly Dictionary<string, Object> Placed = new Dictionary<string, Object>();
+        internal static int Asked;
 
         public static T Load<T>(string path) where T : Object
         {
             Object found;
+            Asked++;
             return Placed.TryGetValue(path, out found) ? found as T : null;
         }
         public static T GetBuiltinResource<T>(string path) where T : Object { return Load<T>(path); }

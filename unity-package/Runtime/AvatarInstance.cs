@@ -1,0 +1,227 @@
+using System;
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    /// <summary>
+    /// One avatar from its file to its end: brought to the device, moved in every frame, and decoded and posed whenever a
+    /// camera draws it. The AvatarRenderer that made it says where it stands, what moves it and which views are drawn.
+    /// </summary>
+    internal sealed class AvatarInstance : IDisposable
+    {
+        private readonly AvatarRenderer owner;
+        private readonly AvatarPlacement placement = new AvatarPlacement();
+        private readonly AvatarResources resources;
+        private AvatarLoader loader; // null once everything is on the device
+        private AvatarBuffers buffers;
+        private AvatarMotion motion;
+        private string chosen = ""; // the clip's name when it took effect
+        private string refusal; // why there is no room beside the other avatars
+        private bool hasMoved; // since the last Record
+        private bool isScaleReported;
+
+        /// <summary>Begins to load an imported avatar, or the file where that is null.</summary>
+        public AvatarInstance(AvatarRenderer owner, AvatarAsset avatar, string file)
+        {
+            this.owner = owner;
+            try
+            {
+                resources = AvatarResources.Require();
+                loader = avatar != null ? AvatarLoader.Of(avatar) : AvatarLoader.Of(file);
+                State = AvatarState.Loading;
+            }
+            catch (InvalidOperationException error)
+            {
+                Fail(error.Message);
+            }
+        }
+
+        public AvatarState State { get; private set; }
+
+        /// <summary>Why it has failed, or what is wrong with the pose; empty where all is well.</summary>
+        public string Message { get; private set; } = "";
+
+        /// <summary>Of loading, from 0 to 1.</summary>
+        public float Progress => State == AvatarState.Ready ? 1 : loader == null ? 0 : loader.Progress;
+
+        /// <summary>The file's name for the avatar; empty until it is ready.</summary>
+        public string Name => State == AvatarState.Ready ? buffers.Avatar.Name : "";
+
+        /// <summary>Its clips; none until it is ready.</summary>
+        public AvatarPlayback Playback => State == AvatarState.Ready ? motion.Playback : AvatarPlayback.None;
+
+        /// <summary>The decoder; null until it is ready.</summary>
+        public AvatarFrame Decoded { get; private set; }
+
+        /// <summary>Its views other than splats; null until it is ready.</summary>
+        public AvatarSurface Surface { get; private set; }
+
+        public AvatarViews Views => owner.Views;
+
+        public int Layer => owner.gameObject.layer;
+
+        /// <summary>Box of the last pose in Unity's world, metres; empty until it is ready.</summary>
+        public Bounds Bounds =>
+            State == AvatarState.Ready
+                ? AvatarSpace.Box(Decoded.Low, Decoded.High)
+                : new Bounds(owner.transform.position, Vector3.zero);
+
+        /// <summary>Loads a frame's share; in an editor that does not play, all of it.</summary>
+        public void Update()
+        {
+            if (refusal != null)
+            {
+                Fail(Name + " beside the other avatars: " + refusal);
+            }
+            if (State != AvatarState.Loading)
+            {
+                return;
+            }
+            try
+            {
+                Continue();
+            }
+            catch (Exception error) // whatever it is: the user sees one sentence, and no frame tries again
+            {
+                Fail(loader.Source + ": " + error.Message);
+            }
+        }
+
+        /// <summary>Goes where the GameObject stands, and on by so many seconds of the clip, and casts its shadow.</summary>
+        public void Move(double step)
+        {
+            if (State != AvatarState.Ready)
+            {
+                return;
+            }
+            hasMoved |= placement.Follow(owner.transform);
+            if (!isScaleReported && !AvatarSpace.IsRigid(owner.transform.lossyScale))
+            {
+                isScaleReported = true;
+                Warn("the GameObject is scaled by " + owner.transform.lossyScale + "; an avatar keeps its size in metres.");
+            }
+            if (motion.LosesRig())
+            {
+                Warn("the transforms of its pose were destroyed.");
+            }
+            hasMoved |= motion.Sample(Time.timeAsDouble, step);
+            Surface.CastShadow(Views, Bounds, Layer);
+        }
+
+        /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
+        public void Record(CommandBuffer commands)
+        {
+            AvatarPose pose = motion.Pose;
+            if (pose.IsFresh)
+            {
+                Decoded.Decode(
+                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value);
+            }
+            else if (hasMoved)
+            {
+                Decoded.Repose(commands, pose.Current, pose.CurrentTranslations, placement.Value);
+            }
+            pose.IsFresh = false;
+            hasMoved = false;
+        }
+
+        /// <summary>Has the next Record pose the avatar again.</summary>
+        public void MarkMoved()
+        {
+            hasMoved = true;
+        }
+
+        /// <summary>Has the next Update end the avatar; nothing may go while a camera is drawn.</summary>
+        public void Refuse(string sentence)
+        {
+            refusal = sentence;
+        }
+
+        /// <summary>Has what the inspector changed take effect.</summary>
+        public void Revise()
+        {
+            if (State == AvatarState.Ready)
+            {
+                Message = "";
+                if (owner.Clip != chosen)
+                {
+                    ChooseClip();
+                }
+                BindRig();
+            }
+        }
+
+        /// <summary>Takes the transforms below the owner's Rig, or the clip where there is none.</summary>
+        public void BindRig()
+        {
+            string fault = State == AvatarState.Ready ? motion.Bind(owner.Rig) : "";
+            if (fault.Length > 0)
+            {
+                Warn(fault);
+            }
+        }
+
+        /// <summary>Gives back what the avatar holds, however far it came.</summary>
+        public void Dispose()
+        {
+            State = AvatarState.Empty;
+            AvatarWorld.Remove(this);
+            loader?.Dispose();
+            Surface?.Dispose();
+            Decoded?.Dispose();
+            buffers?.Dispose();
+            loader = null;
+            Surface = null;
+            Decoded = null;
+            buffers = null;
+            motion = null;
+            refusal = null;
+        }
+
+        private void Continue()
+        {
+            if (!Application.isPlaying)
+            {
+                loader.Finish();
+            }
+            else if (!loader.Continue())
+            {
+                return;
+            }
+            buffers = loader.Take();
+            Decoded = new AvatarFrame(resources, buffers);
+            Surface = new AvatarSurface(resources, Decoded);
+            motion = new AvatarMotion(buffers.Avatar);
+            AvatarWorld.Add(this, resources);
+            loader.Dispose();
+            loader = null;
+            State = AvatarState.Ready;
+            ChooseClip();
+            BindRig();
+        }
+
+        private void ChooseClip()
+        {
+            chosen = owner.Clip;
+            if (!Playback.Choose(chosen) && !string.IsNullOrEmpty(chosen))
+            {
+                Warn("the avatar has no clip " + chosen + "; it has " + string.Join(", ", Playback.Names) + ".");
+            }
+        }
+
+        private void Warn(string sentence)
+        {
+            Message = sentence;
+            Debug.LogWarning("MUA: " + owner.name + ": " + sentence, owner);
+        }
+
+        private void Fail(string sentence)
+        {
+            Dispose();
+            State = AvatarState.Failed;
+            Message = sentence;
+            AvatarWorld.Report(sentence, owner);
+        }
+    }
+}
