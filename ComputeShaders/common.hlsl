@@ -8,6 +8,8 @@
 static const uint STORED_F32 = 0;
 static const uint STORED_F16 = 1;
 
+static const float LARGEST_HALF = 65504;
+
 // The half float in the low half of a word (lane 0) or in its high half (lane 1).
 float halfAt(uint word, uint lane)
 {
@@ -40,6 +42,12 @@ float stored(StructuredBuffer<uint> words, uint3 tensorLayout, uint index)
 uint packHalves(float2 values)
 {
     return f32tof16(values.x) | (f32tof16(values.y) << 16);
+}
+
+// Two half floats in a word; beyond the largest half float the value is held there.
+uint packBounded(float2 values)
+{
+    return packHalves(clamp(values, -LARGEST_HALF, LARGEST_HALF));
 }
 
 float2 unpackHalves(uint word)

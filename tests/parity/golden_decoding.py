@@ -21,7 +21,7 @@ from test_mlp_matmul import layer, shader_bound
 from mua.asset.tensors import Storage
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import METRES2_TO_MM2, blend_texels, blend_vertices, covariances, skin_splats
-from mua.kernels.inverse_dwt import inverse_dwt, texel_tiles, upsample_texels, upsampling_taps
+from mua.kernels.inverse_dwt import inverse_dwt, pack_channels, texel_tiles, upsample_texels, upsampling_taps
 from mua.kernels.mlp_matmul import mlp_matmul
 
 
@@ -139,7 +139,7 @@ def _level(wavelet: str) -> Case:
 
 
 def _texels_of(storage: Storage, *, levels: int) -> Case:
-    channels, size, count, first = 5, 5, 101, 2
+    channels, rows, size, count, first = 5, 2, 5, 101, 2
     rng = np.random.default_rng(4)
     lo = taps("bior4.4")[0]
     ll = rng.normal(size=(channels, size, size)).astype(np.float32)
@@ -150,25 +150,33 @@ def _texels_of(storage: Storage, *, levels: int) -> Case:
     tiles, tile_rows = texel_tiles(texels, side)
     filtered, delay = upsampling_taps(lo, levels)
     reach, factor = filtered.shape
-    found = np.full((first + channels + 1, count), float(UNTOUCHED))
-    found[first : first + channels] = upsample_texels(
-        ll.astype(float), lo, levels, texels=texels, static_offset=offset.values
-    )
+    exact = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=offset.values)
+    padded = np.concatenate([exact, np.zeros((4 * rows - channels, count))])
+    found = padded.reshape(rows, 4, count).swapaxes(1, 2)
     bound = upsampling_bound(lo, levels, float(np.abs(ll).max()), float(np.abs(offset.values).max()))
     return Case(
         f"{storage}, {levels} levels",
         "UpsampleTexels",
-        (len(tiles), 1, -(-channels // 4)),
+        (len(tiles), 1, rows),
         {
             **{"static_offset_layout": offset.layout, "channels": channels, "size": size},
             **{"factor": factor, "reach": reach, "delay": delay},
-            **{"texel_count": count, "first_channel": first},
+            **{"texel_count": count, "first_row": first},
         },
         {
             **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
-            **{"static_offset": offset.words, "texel_channels": np.full(found.size, UNTOUCHED)},
+            **{"static_offset": offset.words, "texel_channels": np.full((first + rows + 1, count, 2), UNWRITTEN)},
         },
-        (Expected("texel_channels", "float", found, bound),),
+        (
+            Expected("texel_channels", "uint", np.full(2 * first * count, UNWRITTEN)),
+            halves("texel_channels", found, bound, first=2 * first * count),
+            Expected(
+                "texel_channels",
+                "uint",
+                np.full(2 * count, UNWRITTEN),
+                first=2 * (first + rows) * count,
+            ),
+        ),
     )
 
 
@@ -194,7 +202,8 @@ def _texels() -> Case:
     vertex_dq = (random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))).astype(np.float32)
     mesh = rng.uniform(-0.5, 0.5, (6, 3)).astype(np.float32)
     texels = random_texels(rng, count)
-    texels.texture[:, 7:10] = rng.uniform(-7, -5, (count, 3))  # 1 to 7 mm, so that one bound fits all covariances
+    millimetres = rng.uniform(-7, -5, (count, 3))  # 1 to 7, so that one bound fits all covariances
+    texels.texture[:, 7:10] = millimetres.astype(np.float16)
     texture = texels.texture.astype(float)
     on_faces = FACES, texels.triangles, texels.barycentrics
     texel_dq = blend_texels(vertex_dq.astype(float), *on_faces)
@@ -209,7 +218,7 @@ def _texels() -> Case:
         {
             **{"vertex_dq": vertex_dq, "mesh": mesh, "faces": FACES.astype(np.uint32)},
             **{"triangles": texels.triangles.astype(np.uint32), "barycentrics": texels.barycentrics[:, :2]},
-            **{"texel_channels": texels.texture.T, "splats": np.full((others + count, 16), UNWRITTEN)},
+            **{"texel_channels": pack_channels(texels.texture), "splats": np.full((others + count, 16), UNWRITTEN)},
         },
         (
             Expected("splats", "uint", np.full(16 * others, UNWRITTEN), length=16, period=16),

@@ -135,12 +135,15 @@ FAULTS = {
         Fault("filter not delayed", "(position + delay) / factor", "position / factor"),
         Fault("last sample left out", "tap += factor;", "tap += factor; j += j + 2 == reach ? 1 : 0;"),
         Fault("written past the last channel", "if (first + i < channels)", "if (first + i <= channels)"),
+        Fault(
+            "half floats of a texel swapped",
+            "packBounded(whole.xy), packBounded(whole.zw)",
+            "packBounded(whole.zw), packBounded(whole.xy)",
+        ),
         Fault("texels without a splat written", "if ((run.y >> thread.x & 1) == 0)", "if (run.y == 0)"),
         Fault("texels of a row counted with their own", "((1u << thread.x) - 1)", "((2u << thread.x) - 1)"),
-        Fault(
-            "appearance written over geometry", "(first_channel + first + i) * texel_count", "(first + i) * texel_count"
-        ),
-        Fault("static offset subtracted", "values[i] + offset", "values[i] - offset"),
+        Fault("appearance written over geometry", "first_row + first / BATCH", "first / BATCH"),
+        Fault("static offset subtracted", "values[i] + stored(", "values[i] - stored("),
         Fault(
             "static offset of another channel", "(first + i) * texel_count + texel);", "first * texel_count + texel);"
         ),
@@ -170,20 +173,22 @@ FAULTS = {
         Fault("dual part not normalised", "total.dual /= norm;", ""),
         Fault("last influence lost", "i < INFLUENCES * (vertex + 1)", "i + 1 < INFLUENCES * (vertex + 1)"),
         Fault("third barycentric", "max(1 - first.x - first.y, 0)", "max(1 - first.x, 0)"),
-        Fault("channels read texel by texel", "index * texel_count + texel", "texel * 23 + index"),
+        Fault("channels read texel by texel", "row * texel_count + texel", "texel * 6 + row"),
         Fault(
             "wrong covariance entry",
             "dot(rows[1], rows[2]), dot(rows[2], rows[2])",
             "dot(rows[0], rows[2]), dot(rows[2], rows[2])",
         ),
         Fault("scale not exponentiated", "exp(logScale)", "logScale"),
-        Fault("scale not bounded", "min(channels3(texel, SCALE), LARGEST_LOG_SCALE)", "channels3(texel, SCALE)"),
+        Fault(
+            "scale not bounded", "min(float3(second4.w, third4.xy), LARGEST_LOG_SCALE)", "float3(second4.w, third4.xy)"
+        ),
         Fault("rotations in the wrong order", "quaternionMultiply(dq.real, own)", "quaternionMultiply(own, dq.real)"),
         Fault("opacity inverted", "logit < 0 ? small : 1", "logit < 0 ? 1 : small"),
         Fault(
             "order of the SH coefficients",
-            "channel(texel, SH + 2 * pair), channel(texel, SH + 2 * pair + 1)",
-            "channel(texel, SH + 2 * pair + 1), channel(texel, SH + 2 * pair)",
+            "uint4(texel_channels[sh], texel_channels[sh + texel_count])",
+            "uint4(texel_channels[sh + texel_count], texel_channels[sh])",
         ),
     ],
     "splat_project": [

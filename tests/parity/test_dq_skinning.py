@@ -20,6 +20,7 @@ from mua.kernels.dq_skinning import (
     pack_splats,
     skin_splats,
 )
+from mua.kernels.inverse_dwt import pack_channels
 
 COUNTS = [0, 1, 7, 101]
 JOINTS = 5
@@ -209,7 +210,7 @@ def test_what_half_floats_cannot_hold_is_held_at_the_largest() -> None:
 
 @dataclass(frozen=True)
 class Texels:
-    """Texels over FACES, as float32 buffers hold them."""
+    """Texels over FACES, as buffers hold them: the texture in half floats."""
 
     triangles: Array  # [N]
     barycentrics: Array  # [N, 3]
@@ -227,7 +228,7 @@ def random_texels(rng: np.random.Generator, count: int) -> Texels:
     texture[:, 7:10] = rng.uniform(-12, 0, (count, 3))
     texture[:, 10] = rng.uniform(-100, 100, count)
     triangles = rng.integers(0, len(FACES), count)
-    return Texels(triangles, np.concatenate([first, third], axis=1), texture.astype(np.float32))
+    return Texels(triangles, np.concatenate([first, third], axis=1), texture.astype(np.float16).astype(np.float32))
 
 
 def blend_on(device: Device, joints: Array, indices: Array, weights: Array) -> Array:
@@ -252,7 +253,7 @@ def skin_on(device: Device, vertex_dq: Array, mesh: Array, faces: Array, texels:
         "faces": faces.astype(np.uint32),
         "triangles": texels.triangles.astype(np.uint32),
         "barycentrics": texels.barycentrics[:, :2],
-        "texel_channels": texels.texture.T,
+        "texel_channels": pack_channels(texels.texture),
         "splats": np.full((count, 16), 0xFFFFFFFF, np.uint32),
     }
     groups = (-(-count // GROUP), 1, 1)
@@ -346,7 +347,7 @@ def test_hlsl_leaves_the_splats_of_others_alone(device: Device, first: int) -> N
         "faces": FACES.astype(np.uint32),
         "triangles": texels.triangles.astype(np.uint32),
         "barycentrics": texels.barycentrics[:, :2],
-        "texel_channels": texels.texture.T,
+        "texel_channels": pack_channels(texels.texture),
         "splats": untouched,
     }
     constants = {"texel_count": GROUP + 1, "first_splat": first}

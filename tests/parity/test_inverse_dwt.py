@@ -3,18 +3,28 @@
 import numpy as np
 import pytest
 import pywt
+from packed_splats import assert_halves
 from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
 from mua.gpu import Device, run
-from mua.kernels.inverse_dwt import add_static, inverse_dwt, texel_tiles, upsample_texels, upsampling_taps
+from mua.kernels.inverse_dwt import (
+    BATCH,
+    add_static,
+    inverse_dwt,
+    pack_channels,
+    texel_tiles,
+    unpack_channels,
+    upsample_texels,
+    upsampling_taps,
+)
 
 WAVELETS = pywt.wavelist("bior")
 SIDES = [1, 2, 3, 5, 8, 13]
 PAPER_LEVELS = [(11, 48), (12, 96)]  # channels, side of the coarse level
 LONGEST = 40  # taps that a file may hold
-TILE, BATCH = 16, 4
+TILE = 16
 UNTOUCHED = np.float32(-7)
 
 
@@ -119,6 +129,22 @@ def test_tiles_hold_each_valid_texel_once_and_no_tile_is_empty() -> None:
     assert found == {texel: place for place, texel in enumerate(texels)}
 
 
+@pytest.mark.parametrize("count", [0, 1, 7])
+def test_packed_channels_are_their_half_floats(count: int) -> None:
+    texture = np.random.default_rng(count).normal(size=(count, 23)).astype(np.float16).astype(np.float32)
+    words = pack_channels(texture)
+    assert words.shape == (6, count, 2)
+    np.testing.assert_array_equal(unpack_channels(words), texture)
+    rows = words.view(np.float16)
+    np.testing.assert_array_equal(rows[2, :, 2:], np.stack([texture[:, 10], np.zeros(count)], axis=1))
+    np.testing.assert_array_equal(rows[3], texture[:, 11:15])
+
+
+def test_channels_beyond_half_floats_are_held_at_the_largest() -> None:
+    texture = np.resize([1e9, -1e9], (1, 23))
+    np.testing.assert_array_equal(unpack_channels(pack_channels(texture)), np.resize([65504.0, -65504.0], (1, 23)))
+
+
 def shader_level(device: Device, ll: Array, details: Array, lo: Array, hi: Array) -> Array:
     """One level by the shader, after checking that it wrote nothing else."""
     channels, side, _ = ll.shape
@@ -187,11 +213,11 @@ def upsampling_bound(lo: Array, levels: int, largest: float, offset: float) -> f
 
 
 def check_texels(
-    device: Device, ll: Array, lo: Array, levels: int, *, count: int, storage: Storage = "f32", first_channel: int = 0
+    device: Device, ll: Array, lo: Array, levels: int, *, count: int, storage: Storage = "f32", first_row: int = 0
 ) -> None:
     """The shader against the reference at `count` valid texels; nothing else is written."""
     channels, side, _ = ll.shape
-    fine = side << levels
+    rows, fine = -(-channels // BATCH), side << levels
     rng = np.random.default_rng(count)
     texels = np.sort(rng.permutation(fine * fine)[:count])
     static_offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
@@ -202,22 +228,24 @@ def check_texels(
         device,
         "inverse_dwt.compute",
         "UpsampleTexels",
-        (len(tiles), 1, -(-channels // BATCH)),
+        (len(tiles), 1, rows),
         {
             **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
             "static_offset": static_offset.words,
-            "texel_channels": np.full((first_channel + channels + 1, count), UNTOUCHED),
+            "texel_channels": np.full((first_row + rows + 1, count, BATCH), UNTOUCHED, np.float16),
         },
         static_offset_layout=static_offset.layout,
         **{"channels": channels, "size": side, "factor": factor, "reach": reach, "delay": delay},
         texel_count=count,
-        first_channel=first_channel,
+        first_row=first_row,
     )["texel_channels"]
-    written = slice(first_channel, first_channel + channels)
+    written = slice(first_row, first_row + rows)
+    halves = found[written].swapaxes(1, 2).reshape(BATCH * rows, count)
     expected = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=static_offset.values)
     largest = np.abs(static_offset.values).max(initial=0)
     bound = upsampling_bound(lo, levels, np.abs(ll).max(initial=0), largest)
-    np.testing.assert_allclose(found[written], expected, rtol=0, atol=bound)
+    assert_halves(halves[:channels], expected, bound)
+    assert not halves[channels:].any()
     assert np.all(np.delete(found, written, axis=0) == UNTOUCHED)
 
 
@@ -230,7 +258,7 @@ def test_texel_shader_equals_the_reference(
     device: Device, channels: int, side: int, levels: int, count: int, storage: Storage
 ) -> None:
     ll = np.random.default_rng(side).normal(size=(channels, side, side)).astype(np.float32)
-    check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_channel=2)
+    check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_row=2)
 
 
 @pytest.mark.parametrize("levels", [0, 1, 2, 4])
@@ -244,4 +272,4 @@ def test_texel_shader_takes_any_even_number_of_taps(device: Device, length: int,
 
 def test_texel_shader_equals_the_reference_at_the_papers_size(device: Device) -> None:
     ll = np.random.default_rng(0).normal(size=(12, 192, 192)).astype(np.float32)
-    check_texels(device, ll, taps("bior4.4")[0], 2, count=300_000, storage="f16", first_channel=11)
+    check_texels(device, ll, taps("bior4.4")[0], 2, count=300_000, storage="f16", first_row=3)

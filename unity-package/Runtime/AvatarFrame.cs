@@ -13,8 +13,7 @@ namespace Mua
     /// </summary>
     internal sealed class AvatarFrame : IDisposable
     {
-        private const int Channels = 23;
-        private const int GeometryStart = 0, AppearanceStart = 11;
+        private const int ChannelRows = 6, AppearanceRow = 3; // of four half floats each
         private const int Corners = 8;
 
         private readonly MlpMatmul mlpMatmul;
@@ -113,8 +112,8 @@ namespace Mua
             WriteDescriptor(rotations, translations);
             WritePose(pose, offsets, place);
             Coarse(commands);
-            Branch(commands, Avatar.Geometry, GeometryStart);
-            Branch(commands, Avatar.Appearance, AppearanceStart);
+            Branch(commands, Avatar.Geometry, 0);
+            Branch(commands, Avatar.Appearance, AppearanceRow);
             Pose(commands);
             IsDecoded = true;
         }
@@ -148,7 +147,7 @@ namespace Mua
                 activations[i] = buffers.Structured("activations", layers, sizeof(float));
                 textures[i] = buffers.Structured("texture", texture >> 2 * i, sizeof(float));
             }
-            texelChannels = buffers.Structured("texel_channels", (long)Channels * SplatCount, sizeof(float));
+            texelChannels = buffers.Structured("texel_channels", (long)ChannelRows * SplatCount, 2 * sizeof(uint));
             Joints = buffers.Structured("joints", jointValues.Length, 4 * sizeof(float));
             VertexDq = buffers.Structured("vertex_dq", 2L * Avatar.VertexCount, 4 * sizeof(float));
         }
@@ -210,7 +209,7 @@ namespace Mua
         /// <summary>
         /// Coefficients, LL, level by level as long as there are details; then the valid texels to `texelChannels`.
         /// </summary>
-        private void Branch(CommandBuffer commands, BranchBuffers branch, int firstChannel)
+        private void Branch(CommandBuffer commands, BranchBuffers branch, int firstRow)
         {
             commands.BeginSample(AvatarStages.Texture);
             GraphicsBuffer alpha = Mlp(commands, branch.Mlp);
@@ -226,7 +225,7 @@ namespace Mua
                 offset += branch.Channels * band.Rank;
                 size *= 2;
             }
-            inverseDwt.UpsampleTexels(commands, Avatar, branch, size, textures[0], texelChannels, firstChannel);
+            inverseDwt.UpsampleTexels(commands, Avatar, branch, size, textures[0], texelChannels, firstRow);
             commands.EndSample(AvatarStages.Texture);
         }
 

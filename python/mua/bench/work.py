@@ -9,10 +9,10 @@ out, as in mua.asset.count, whose sums the network part equals.
 from dataclasses import dataclass
 
 from mua.asset.flatbuffer import Tree
-from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
-from mua.texture.channels import CHANNELS
+from mua.kernels.inverse_dwt import BATCH, ROWS, texel_tiles, upsampling_taps
 
 FLOAT = UINT = 4  # bytes
+HALF = 2
 DUAL_QUATERNION, SPLAT, ELLIPSE, COLOR = 8 * FLOAT, 64, 6 * FLOAT, 8  # bytes
 INFLUENCES = 8
 PROJECT_GROUP = 256  # splats that share one count
@@ -99,7 +99,7 @@ def inverse_dwt(channels: int, size: int, taps: int) -> Work:
 
 
 def upsample_texels(branch: Tree, upsampling: tuple[int, int], tiles: int) -> Work:
-    """LL [C, n, n], filter [reach, factor], 132 bytes for each of the tiles and static offset read, [C, N] written.
+    """LL [C, n, n], filter [reach, factor], 132 bytes for each of the tiles and static offset read; halves written.
 
     Levels without details are one filter of `reach` samples for each texel; along the rows the texels of a column share
     what they need, `factor` of them to a sample.
@@ -108,7 +108,7 @@ def upsample_texels(branch: Tree, upsampling: tuple[int, int], tiles: int) -> Wo
     size = _shape(branch["ll_mean"])[-1] << len(branch["details"])
     reach, factor = upsampling
     moved = _stored(branch["static_offset"]) + TILE * tiles
-    moved += FLOAT * (channels * (size**2 + texels) + reach * factor)
+    moved += FLOAT * (channels * size**2 + reach * factor) + HALF * BATCH * _groups(channels, BATCH) * texels
     return Work(moved, channels * texels * (2 * reach + 2 * reach // factor + 1))
 
 
@@ -122,7 +122,7 @@ def blend_vertices(joints: int, vertices: int) -> Work:
 def skin_splats(texels: int, vertices: int, faces: int) -> Work:
     """Vertices and faces, triangle, two barycentrics and 23 channels for each texel read, 64 bytes of splat written."""
     shared = (DUAL_QUATERNION + 3 * FLOAT) * vertices + 3 * UINT * faces
-    return Work(shared + texels * (UINT + 2 * FLOAT + CHANNELS * FLOAT + SPLAT), texels * SKIN)
+    return Work(shared + texels * (UINT + 2 * FLOAT + ROWS * BATCH * HALF + SPLAT), texels * SKIN)
 
 
 def splat_project(texels: int, visible: int, eyes: int) -> Work:

@@ -17,6 +17,7 @@ from mua.compare.system import Budget, System, TrainingFrames
 from mua.compare.systems import SYSTEMS
 from mua.errors import InputError
 from mua.gpu import Device
+from mua.kernels.inverse_dwt import unpack_channels
 from mua.player.buffers import AvatarBuffers
 from mua.player.splats import SplatFrame
 from mua.recording import Recording, WholeFrame
@@ -166,8 +167,8 @@ class _Decoder:
         commands = self._device.commands()
         self._frame.decode(commands, frame.clip.rotations[window], frame.clip.translations[window])
         commands.submit()
-        channels = self._frame.texel_channels.read(np.float32).reshape(-1, self._frame.splat_count)
-        return Picture(np.ascontiguousarray(channels.T), self._frame.mesh.read(np.float32).reshape(-1, 3))
+        texture = unpack_channels(self._frame.texel_channels.read())
+        return Picture(texture, self._frame.mesh.read(np.float32).reshape(-1, 3))
 
 
 def _check_rig(path: Path, own: Rig, recorded: Rig) -> None:

@@ -7,8 +7,11 @@ of PyWavelets' mode "periodization", where a[k] is centred on sample 2k and d[k]
 import numpy as np
 
 from mua.arrays import Array
+from mua.texture.channels import APPEARANCE
 
 TILE = 16  # texels along a side of a group of UpsampleTexels
+BATCH = 4  # channels that lie together in a row of texel_channels
+ROWS = 6  # of them, 3 for either branch
 
 
 def inverse_dwt(
@@ -48,6 +51,27 @@ def upsample_texels(
     for _ in range(levels):
         ll = inverse_dwt(ll, None, rec_lo, rec_lo)
     return add_static(ll, texels, static_offset)
+
+
+def pack_channels(
+    texture: Array,  # [N, 23] raw channels
+) -> Array:
+    """Channels as the kernels hold them, [6, N, 2] uint32: geometry in three rows of four half floats, then appearance.
+
+    Beyond the largest half float, values are held there; the twelfth of geometry is zero.
+    """
+    padded = np.insert(texture, APPEARANCE.start, 0, axis=1)
+    largest = np.finfo(np.float16).max
+    halves = np.clip(padded, -largest, largest).astype("<f2").reshape(len(texture), ROWS, BATCH)
+    return np.ascontiguousarray(halves.swapaxes(0, 1)).view("<u4")
+
+
+def unpack_channels(
+    words: Array,  # [6, N, 2] uint32, or as many words in a row
+) -> Array:
+    """The raw channels [N, 23] that pack_channels packed, float32."""
+    halves = np.ascontiguousarray(words, "<u4").view("<f2").reshape(ROWS, -1, BATCH).swapaxes(0, 1)
+    return np.delete(halves.reshape(-1, ROWS * BATCH), APPEARANCE.start, axis=1).astype(np.float32)
 
 
 def upsampling_taps(

@@ -8,16 +8,16 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.gpu import Buffer, Commands, Device
+from mua.kernels.inverse_dwt import BATCH, ROWS
 from mua.motion.descriptor import describe_window
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, LayerBuffers
-from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 
 FLOAT = 4  # bytes
 LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
 LL_TEXELS = 64  # of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
-CHANNEL_BATCH = 4  # of a group of UpsampleTexels
+TEXEL_CHANNELS = 2 * ROWS * BATCH  # bytes
 SKINNED = 64  # vertices or texels of a group of BlendVertices and SkinSplats
 IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # where the clip puts it
 
@@ -68,7 +68,7 @@ class AvatarFrame:
         self.textures = tuple(
             buffer(texture >> 2 * i, name=f"texture {i}") for i in range(2)
         )  # finest with details, its ll
-        self.texel_channels = buffer(FLOAT * CHANNELS * splats, name="texel_channels")  # [23, N]
+        self.texel_channels = buffer(TEXEL_CHANNELS * splats, name="texel_channels")  # [6, N, 4] halves
         self.joints = buffer(FLOAT * 8 * joints, name="joints")  # [J, 8]
         self.vertex_dq = buffer(FLOAT * 8 * vertices, name="vertex_dq")  # [V, 8]
 
@@ -85,8 +85,8 @@ class AvatarFrame:
         """
         self._write_pose(rotations, translations, place)
         self._coarse(commands)
-        self._branch(commands, self.avatar.geometry, first_channel=GEOMETRY.start)
-        self._branch(commands, self.avatar.appearance, first_channel=APPEARANCE.start)
+        self._branch(commands, self.avatar.geometry, first_row=0)
+        self._branch(commands, self.avatar.appearance, first_row=ROWS // 2)
         self._pose(commands)
 
     def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
@@ -132,7 +132,7 @@ class AvatarFrame:
             relu=0,
         )
 
-    def _branch(self, commands: Commands, branch: BranchBuffers, *, first_channel: int) -> None:
+    def _branch(self, commands: Commands, branch: BranchBuffers, *, first_row: int) -> None:
         """Coefficients, LL, level by level as long as there are details; then the valid texels to `texel_channels`."""
         alpha = self._mlp(commands, branch.mlp)
         levels = len(branch.details)
@@ -145,7 +145,7 @@ class AvatarFrame:
             self._synthesise(commands, branch, ll, fine, size)
             offset += branch.channels * band.rank
             size *= 2
-        self._upsample(commands, branch, size, first_channel)
+        self._upsample(commands, branch, size, first_row)
 
     def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
         commands.dispatch(
@@ -195,12 +195,12 @@ class AvatarFrame:
             taps=len(self.avatar.avatar.wavelet.rec_lo),
         )
 
-    def _upsample(self, commands: Commands, branch: BranchBuffers, size: int, first_channel: int) -> None:
+    def _upsample(self, commands: Commands, branch: BranchBuffers, size: int, first_row: int) -> None:
         """All levels without details, from planes of `size`, and the static offset, at the valid texels."""
         upsampling = branch.upsampling
         commands.dispatch(
             self._upsample_texels,
-            (self.avatar.tile_count, 1, groups(branch.channels, CHANNEL_BATCH)),
+            (self.avatar.tile_count, 1, groups(branch.channels, BATCH)),
             {
                 "ll": self.textures[0],
                 "upsampling": upsampling.taps,
@@ -216,7 +216,7 @@ class AvatarFrame:
             reach=upsampling.reach,
             delay=upsampling.delay,
             texel_count=self.splat_count,
-            first_channel=first_channel,
+            first_row=first_row,
         )
 
     def _pose(self, commands: Commands) -> None:

@@ -5,12 +5,12 @@ import numpy as np
 from mua.arrays import Array
 from mua.bounds import frame_boxes
 from mua.gpu import Commands, Device
+from mua.kernels.inverse_dwt import pack_channels
 from mua.motion.clip import Clip
-from mua.player.frame import FLOAT, SKINNED, groups
+from mua.player.frame import FLOAT, SKINNED, TEXEL_CHANNELS, groups
 from mua.player.splats import SplatFrame
 from mua.rig.rig import Rig
 from mua.rig.skeleton import Pose
-from mua.texture.channels import CHANNELS
 
 
 class TexturedFrame(SplatFrame):
@@ -37,7 +37,7 @@ class TexturedFrame(SplatFrame):
         self._barycentrics = buffer(texels.barycentrics[:, :2].astype(np.float32), name="texels.barycentrics")
         self._vertices = len(rig.mesh.vertices)
         self._mesh = buffer(FLOAT * 3 * self._vertices, name="mesh")  # [V, 3] canonical vertices
-        self._texel_channels = buffer(FLOAT * CHANNELS * self.splat_count, name="texel_channels")  # [23, N]
+        self._texel_channels = buffer(TEXEL_CHANNELS * self.splat_count, name="texel_channels")  # [6, N, 4]
         self._joints = buffer(FLOAT * 8 * len(rig.skeleton.names), name="joints")  # [J, 8]
         self._vertex_dq = buffer(FLOAT * 8 * self._vertices, name="vertex_dq")  # [V, 8]
 
@@ -59,7 +59,7 @@ class TexturedFrame(SplatFrame):
         joints = self.rig.skeleton.skinning(pose.rotations, pose.translations)
         self._joints.write(joints.astype(np.float32))
         self._mesh.write(np.ascontiguousarray(mesh, dtype=np.float32))
-        self._texel_channels.write(np.ascontiguousarray(texture.T, dtype=np.float32))
+        self._texel_channels.write(pack_channels(texture))
         (self._box,) = frame_boxes(self.rig, Clip("", 1.0, pose.rotations[None], pose.translations[None]))
         commands.dispatch(
             self._blend_vertices,

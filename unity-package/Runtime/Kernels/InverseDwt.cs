@@ -28,7 +28,7 @@ namespace Mua
         private static readonly int StaticOffsetLayout = Shader.PropertyToID("static_offset_layout");
         private static readonly int TexelChannels = Shader.PropertyToID("texel_channels");
         private static readonly int TexelCount = Shader.PropertyToID("texel_count");
-        private static readonly int FirstChannel = Shader.PropertyToID("first_channel");
+        private static readonly int FirstRow = Shader.PropertyToID("first_row");
 
         private readonly Kernel full;
         private readonly Kernel upsampleTexels;
@@ -58,11 +58,11 @@ namespace Mua
 
         /// <summary>
         /// All levels without details, from planes of `size`, plus the static offset, at the valid texels, to rows from
-        /// `firstChannel` on.
+        /// `firstRow` on.
         /// </summary>
         public void UpsampleTexels(
             CommandBuffer commands, AvatarBuffers avatar, BranchBuffers branch, int size, GraphicsBuffer ll,
-            GraphicsBuffer texelChannels, int firstChannel)
+            GraphicsBuffer texelChannels, int firstRow)
         {
             upsampleTexels.Set(commands, Ll, ll);
             upsampleTexels.Set(commands, UpsamplingTaps, branch.Upsampling.Taps.Buffer);
@@ -76,7 +76,7 @@ namespace Mua
             upsampleTexels.Set(commands, Reach, branch.Upsampling.Reach);
             upsampleTexels.Set(commands, Delay, branch.Upsampling.Delay);
             upsampleTexels.Set(commands, TexelCount, avatar.SplatCount);
-            upsampleTexels.Set(commands, FirstChannel, firstChannel);
+            upsampleTexels.Set(commands, FirstRow, firstRow);
             upsampleTexels.Dispatch(commands, avatar.TileCount, 1, Kernel.Groups(branch.Channels, ChannelBatch));
         }
     }
