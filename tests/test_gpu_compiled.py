@@ -8,17 +8,16 @@ import gen_spirv
 import pytest
 
 from mua.errors import InputError
-from mua.gpu import compile, compiled, compilers, sources
+from mua.gpu import compile, compiled, glslang, sources
 from mua.gpu.reflect import reflect
 
 ENTRIES = check_shaders.entry_points()
 
 
 @pytest.fixture
-def without_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A machine without a shader compiler, on which nothing has been compiled yet."""
-    monkeypatch.setattr(compilers, "find", lambda _: None)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def without_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine without a shader compiler."""
+    monkeypatch.setattr(glslang, "find", lambda: None)
 
 
 @pytest.fixture
@@ -64,8 +63,7 @@ def test_a_changed_shader_asks_for_a_compiler_in_one_sentence(
         compile.spirv(path, "MlpMatmul")
 
 
-def test_a_changed_shader_is_compiled_anew(copied: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def test_a_changed_shader_is_compiled_anew(copied: Path) -> None:
     path = copied / "mlp_matmul.compute"
     path.write_text(path.read_text().replace("numthreads(LANES, ROWS", "numthreads(ROWS, LANES"))
     assert reflect(compile.spirv(path, "MlpMatmul")).threads == (8, 32, 1)

@@ -5,10 +5,11 @@ from pathlib import Path
 import check_shaders
 import gen_kernel_table
 import pytest
+import shader_compilers
 import shader_rules
 import shader_source
 
-from mua.gpu import compile, compilers
+from mua.gpu import compile
 from mua.gpu.reflect import reflect
 
 GOOD = """
@@ -163,7 +164,7 @@ def test_tells_reads_from_writes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["glslang", "slang"])
 def test_tells_what_a_compiler_says(tmp_path: Path, name: str) -> None:
-    compiler = compilers.find(name)
+    compiler = shader_compilers.find(name)
     assert compiler is not None
     good = written(tmp_path, GOOD)
     assert check_shaders.messages(compiler, good.path, "Scale", "comp") == []

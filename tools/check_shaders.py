@@ -8,16 +8,17 @@ import sys
 import tempfile
 from pathlib import Path
 
+import shader_compilers
 import shader_rules
 import shader_source
 from rich.box import SIMPLE
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
+from shader_compilers import Compiler
 from shader_source import Shader
 
-from mua.gpu import compilers, sources
-from mua.gpu.compile import run_compiler
+from mua.gpu import sources
 
 ROOT = Path(__file__).resolve().parents[1]
 KERNELS = ROOT / "ComputeShaders"
@@ -56,17 +57,17 @@ def entry_points() -> list[tuple[Path, str, str]]:
     return entries
 
 
-def messages(compiler: compilers.Compiler, path: Path, entry: str, stage: str) -> list[str]:
+def messages(compiler: Compiler, path: Path, entry: str, stage: str) -> list[str]:
     """The warnings and errors of compiling one entry point; none if it is accepted without one."""
     defines = sources.kernels(sources.read(path)).get(entry, ())
     with tempfile.TemporaryDirectory() as scratch:
-        done = run_compiler(compiler, path, entry, stage, Path(scratch) / "code", defines)
+        done = shader_compilers.run_compiler(compiler, path, entry, stage, Path(scratch) / "code", defines)
     said = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
     found = [line for line in said if MESSAGE.search(line) and not UNKNOWN_PRAGMA.search(line)]
     return found if found or done.returncode == 0 else [f"status {done.returncode}", *said[:1]]
 
 
-def compile_all(found: list[compilers.Compiler], console: Console) -> dict[tuple[str, str, str], list[str]]:
+def compile_all(found: list[Compiler], console: Console) -> dict[tuple[str, str, str], list[str]]:
     """The messages of each compiler by file, entry point and compiler."""
     return {
         (path.name, entry, compiler.name): messages(compiler, path, entry, stage)
@@ -75,7 +76,7 @@ def compile_all(found: list[compilers.Compiler], console: Console) -> dict[tuple
     }
 
 
-def table(results: dict[tuple[str, str, str], list[str]], found: list[compilers.Compiler]) -> Table:
+def table(results: dict[tuple[str, str, str], list[str]], found: list[Compiler]) -> Table:
     shown = Table("file", "entry point", *(f"{compiler.name}\n{compiler.version}" for compiler in found), box=SIMPLE)
     for file, entry in dict.fromkeys((file, entry) for file, entry, _ in results):
         said = [results[file, entry, compiler.name] for compiler in found]
@@ -85,13 +86,15 @@ def table(results: dict[tuple[str, str, str], list[str]], found: list[compilers.
 
 def main() -> None:
     console = Console()
-    candidates = {name: compilers.find(name) for name in compilers.FINDERS} | {"fxc": compilers.find_fxc()}
+    candidates = {name: shader_compilers.find(name) for name in shader_compilers.FINDERS}
     found = [compiler for compiler in candidates.values() if compiler is not None]
     results = compile_all(found, console)
     console.print(table(results, found))
     for name, compiler in candidates.items():
         if compiler is None:
-            console.print(f"{name} is not on this machine; it comes with {compilers.INSTALL[name]}", highlight=False)
+            console.print(
+                f"{name} is not on this machine; it comes with {shader_compilers.INSTALL[name]}", highlight=False
+            )
     faults = [
         f"{file}: {entry}: {name}: {line}" for (file, entry, name), lines in results.items() for line in lines
     ] + rule_faults()

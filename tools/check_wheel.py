@@ -130,7 +130,6 @@ def fault(run: Run, folder: Path, programs: Path, named: dict[str, str]) -> str 
     environment = {
         "PATH": str(programs),  # and no compiler
         "HOME": str(folder),
-        "XDG_CACHE_HOME": str(folder / "cache"),
         "COLUMNS": "200",
         **{name: os.environ[name] for name in ("SYSTEMROOT", "VK_ICD_FILENAMES", "TMPDIR") if name in os.environ},
     }

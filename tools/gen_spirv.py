@@ -10,10 +10,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import shader_compilers
 from check_shaders import entry_points
 
 from mua.errors import InputError
-from mua.gpu import compile, compiled, compilers
+from mua.gpu import compile, compiled, glslang
 
 ROOT = Path(__file__).resolve().parents[1]
 ABOUT = "written by tools/gen_spirv.py"
@@ -28,12 +29,12 @@ def sources() -> dict[str, str]:
     return found
 
 
-def codes(compiler: compilers.Compiler) -> dict[str, bytes]:
+def codes() -> dict[str, bytes]:
     """The content of each file, compiled now."""
     found = {}
     for path, entry, stage in entry_points():
         _, options = compile.made_from(path, entry, stage)
-        found[compiled.file_name(path, entry, stage)] = compile.compile_entry(compiler, path, options)
+        found[compiled.file_name(path, entry, stage)] = glslang.compile(path, options)
     return found
 
 
@@ -44,10 +45,9 @@ def faults(folder: Path) -> list[str]:
     found = [f"{name} was made from another text" for name in wanted if made_from.get(name) != wanted[name]]
     found += [f"{name} is missing" for name in sorted(wanted.keys() - there)]
     found += [f"{name} belongs to no entry point" for name in sorted((there | made_from.keys()) - wanted.keys())]
-    compiler = compilers.find(compiled.COMPILER)
-    if found or compiler is None or signature(compiler) != index["compiler"]:
+    if found or signature() != index["compiler"]:
         return found
-    made = codes(compiler).items()
+    made = codes().items()
     return [f"{name} is not what the compiler makes" for name, code in made if (folder / name).read_bytes() != code]
 
 
@@ -56,21 +56,22 @@ def read_index(folder: Path) -> dict[str, Any]:
     return content
 
 
-def signature(compiler: compilers.Compiler | None) -> str:
+def signature() -> str:
+    """Name and version of the compiler of this machine."""
+    compiler = shader_compilers.find("glslang")
     return "no compiler" if compiler is None else f"{compiler.name} {compiler.version}"
 
 
 def write(folder: Path) -> None:
     """Compile everything; raises InputError where the compiler is absent or refuses."""
-    compiler = compile.find_compiler(compiled.COMPILER)
-    made = codes(compiler)
+    made = codes()
     folder.mkdir(exist_ok=True)
     for path in folder.glob("*.spv"):
         if path.name not in made:
             path.unlink()
     for name, code in made.items():
         (folder / name).write_bytes(code)
-    index = {"about": ABOUT, "compiler": signature(compiler), "made from": sources()}
+    index = {"about": ABOUT, "compiler": signature(), "made from": sources()}
     (folder / compiled.INDEX).write_text(json.dumps(index, indent=1) + "\n")
 
 
@@ -85,7 +86,7 @@ def main() -> None:
         return
     if wrong := faults(compiled.FOLDER):
         sys.exit("\n".join([*wrong, f"{compiled.FOLDER.relative_to(ROOT)} is out of date: run tools/gen_spirv.py"]))
-    here, made_by = signature(compilers.find(compiled.COMPILER)), read_index(compiled.FOLDER)["compiler"]
+    here, made_by = signature(), read_index(compiled.FOLDER)["compiler"]
     if here != made_by:
         print(f"compiled code was not compared: it is of {made_by}, this machine has {here}")
 

@@ -101,7 +101,6 @@ class Checkout:
             **os.environ,
             "PYTHONPATH": os.pathsep.join(paths),
             "TMPDIR": str(self.folder / "tmp"),
-            "XDG_CACHE_HOME": str(self.folder / "cache"),
             "OMP_NUM_THREADS": "1",  # several faults are tried at once
         }
         words = "-m pytest -x -q -rfE --tb=short -p no:cacheprovider -p no:randomly"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
-from mua.gpu import Device
+from mua.gpu import Device, Kernel
 
 FOLDER = Path(__file__).parent / "golden"
 DTYPES = {"uint": "<u4", "float": "<f4", "half": "<f4"}
@@ -38,9 +38,9 @@ def read_golden() -> list[Golden]:
     return found
 
 
-def replay(device: Device, golden: Golden, *, compiler: str = "glslang") -> dict[str, Array]:
-    """Dispatch a case; the words of its writable buffers afterwards."""
-    kernel = device.kernel(golden.kernel, golden.case["entry"], compiler=compiler)
+def replay(device: Device, golden: Golden, kernel: Kernel | None = None) -> dict[str, Array]:
+    """Dispatch a case, by another build of its kernel if one is given; the words of its writable buffers afterwards."""
+    kernel = kernel or device.kernel(golden.kernel, golden.case["entry"])
     buffers = {}
     for described in golden.case["buffers"]:
         words = described["count"] * words_of(described["element"])

@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
+import shader_compilers
 from golden import Golden, read_golden, replay, values_of
 
 from mua.arrays import Array
-from mua.gpu import Device, compilers, sources
+from mua.gpu import Device, sources
 from mua.gpu.compile import spirv
 from mua.gpu.reflect import reflect
 
 ALL = read_golden()
-OTHERS = [name for name in compilers.FINDERS if name != "glslang" and compilers.find(name)]
+OTHERS = [name for name in shader_compilers.SPIRV if name != "glslang" and shader_compilers.find(name)]
 
 
 def both(described: dict[str, object], found: tuple[dict[str, Array], dict[str, Array]]) -> tuple[Array, Array]:
@@ -18,8 +19,15 @@ def both(described: dict[str, object], found: tuple[dict[str, Array], dict[str, 
     return first, second
 
 
+def built_by(name: str, golden: Golden) -> bytes:
+    """The kernel of a case as a compiler builds it."""
+    compiler = shader_compilers.find(name)
+    assert compiler is not None
+    return shader_compilers.spirv(compiler, sources.find(golden.kernel), golden.case["entry"])
+
+
 def test_there_are_two_compilers() -> None:
-    assert compilers.find("glslang")
+    assert shader_compilers.find("glslang")
     assert "slang" in OTHERS, "the development requirements bring slangc in the package slangtorch"
 
 
@@ -27,7 +35,8 @@ def test_there_are_two_compilers() -> None:
 @pytest.mark.parametrize("golden", ALL, ids=str)
 def test_builds_agree(device: Device, golden: Golden, other: str) -> None:
     """Whole numbers are equal; each build may be off by the bound of the case, so two differ by twice that at most."""
-    found = replay(device, golden), replay(device, golden, compiler=other)
+    kernel = device.kernel_of(golden.case["entry"], built_by(other, golden))
+    found = replay(device, golden), replay(device, golden, kernel)
     for described in golden.case["expected"]:
         first, second = both(described, found)
         bound = 2 * (described["absolute"] + described["relative"] * np.maximum(np.abs(first), np.abs(second)))
@@ -38,7 +47,7 @@ def test_builds_agree(device: Device, golden: Golden, other: str) -> None:
 def test_builds_bind_alike(other: str) -> None:
     for golden in ALL:
         path, entry = sources.find(golden.kernel), golden.case["entry"]
-        first, second = (reflect(spirv(path, entry, compiler=name)) for name in ("glslang", other))
+        first, second = reflect(spirv(path, entry)), reflect(built_by(other, golden))
         assert first.threads == second.threads
         assert {(b.name, b.scalar, b.stride) for b in first.buffers} == {
             (b.name, b.scalar, b.stride) for b in second.buffers

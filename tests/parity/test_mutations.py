@@ -38,7 +38,7 @@ def test_fault_is_not_stale(kernel: str, fault: Fault) -> None:
 @pytest.mark.long
 def test_every_fault_fails_the_parity_test(kernel: str, tmp_path: Path) -> None:
     copy = shutil.copytree(sources.directory(), tmp_path / "shaders")
-    environment = {**os.environ, "MUA_SHADERS": str(copy), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    environment = {**os.environ, "MUA_SHADERS": str(copy)}
     command = [sys.executable, mutate.__file__, kernel]
     ran = subprocess.run(command, capture_output=True, text=True, check=True, timeout=SECONDS, env=environment)
     found = json.loads(ran.stdout)

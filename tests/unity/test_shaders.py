@@ -1,39 +1,33 @@
 """Every program of the package's shaders compiles without a warning in every variant that Unity asks for."""
 
 import re
-from functools import partial
 from pathlib import Path
 
 import pytest
+import shader_compilers
 import shader_rules
 from check_shaders import messages
+from shader_compilers import Compiler
 from shader_programs import SAMPLES, SHADERS, VARIANTS, Program, programs
 from shader_source import closing
 
-from mua.gpu import compilers
-
 PROGRAMS = [program for path in (*SHADERS, *SAMPLES) for program in programs(path)]
-FINDERS = {
-    "glslang": partial(compilers.find, "glslang"),
-    "dxc": partial(compilers.find, "dxc"),
-    "fxc": compilers.find_fxc,
-}
-COMPILERS = [name for name, find in FINDERS.items() if name == "glslang" or find() is not None]  # one there must be
+COMPILERS = ["glslang", *(name for name in ("dxc", "fxc") if shader_compilers.find(name))]  # one there must be
 COLOR_SPACES = {"linear": (), "gamma": ("UNITY_COLORSPACE_GAMMA",)}
 ENGINE_WORDS = re.compile(r"\b(?:unity_\w+|_ProjectionParams|_ScreenParams|UNITY_UV_STARTS_AT_TOP|UNITY_MATRIX_\w+)\b")
 
 
 @pytest.fixture(params=COMPILERS)
-def compiler(request: pytest.FixtureRequest) -> compilers.Compiler:
-    found = FINDERS[request.param]()
-    assert found is not None, f"needs {request.param}: {compilers.INSTALL[request.param]} (tools/README.md)"
+def compiler(request: pytest.FixtureRequest) -> Compiler:
+    found = shader_compilers.find(request.param)
+    assert found is not None, f"needs {request.param}: {shader_compilers.INSTALL[request.param]} (tools/README.md)"
     return found
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
 @pytest.mark.parametrize("program", PROGRAMS, ids=str)
 def test_every_variant_compiles_without_a_warning(
-    tmp_path: Path, compiler: compilers.Compiler, program: Program, variant: str
+    tmp_path: Path, compiler: Compiler, program: Program, variant: str
 ) -> None:
     for space in COLOR_SPACES.values() if variant == "mono" else [()]:
         path = program.write(tmp_path, *VARIANTS[variant], *space)

@@ -11,15 +11,12 @@ from pathlib import Path
 
 FOLDER = Path(__file__).with_name("spirv")
 INDEX = "index.json"
-COMPILER = "glslang"
 
 
-def find(path: Path, texts: Iterable[str], options: tuple[str, ...]) -> bytes | None:
-    """The code of an entry point if it was made from these very texts; `options` begin with (entry, stage)."""
+def find(path: Path, options: tuple[str, ...], made_from: str) -> bytes | None:
+    """The code of an entry point if it was made from what has this digest; `options` begin with (entry, stage)."""
     name = file_name(path, *options[:2])
-    if index().get(name) != digest(texts, options):
-        return None
-    return (FOLDER / name).read_bytes()
+    return (FOLDER / name).read_bytes() if index().get(name) == made_from else None
 
 
 def file_name(path: Path, entry: str, stage: str) -> str:

@@ -30,7 +30,7 @@ class Device:
         self.limits: dict[str, int] = dict(device.limits)
         self.timestamps = "timestamp-query" in device.features
         self._uniforms = Uniforms(device)
-        self._kernels: dict[tuple[Path, str, str], tuple[bytes, Kernel]] = {}
+        self._kernels: dict[tuple[Path, str], tuple[bytes, Kernel]] = {}
 
     def buffer(self, content: Array | int, *, name: str, indirect: bool = False) -> Buffer:
         """A buffer of an array's bytes (any type of at most 4 bytes), or of so many zero bytes.
@@ -39,15 +39,19 @@ class Device:
         """
         return Buffer(self.wgpu, content, name=name, indirect=indirect)
 
-    def kernel(self, file: str | Path, entry: str, *, compiler: str = "glslang") -> Kernel:
+    def kernel(self, file: str | Path, entry: str) -> Kernel:
         """An entry point of a shader in the shaders' directory, or at an absolute path; compiled once."""
         path = sources.find(file)
-        code = compile.spirv(path, entry, compiler=compiler)
-        known = self._kernels.get((path, entry, compiler))
+        code = compile.spirv(path, entry)
+        known = self._kernels.get((path, entry))
         if known is None or known[0] != code:  # the file may have been edited since
-            known = code, Kernel(self.wgpu, self._uniforms, name=entry, code=code)
-            self._kernels[path, entry, compiler] = known
+            known = code, self.kernel_of(entry, code)
+            self._kernels[path, entry] = known
         return known[1]
+
+    def kernel_of(self, entry: str, code: bytes) -> Kernel:
+        """An entry point of SPIR-V."""
+        return Kernel(self.wgpu, self._uniforms, name=entry, code=code)
 
     def commands(self, *, timed: bool = False) -> Commands:
         """An empty list of dispatches; with `timed`, the device notes when each begins and ends."""

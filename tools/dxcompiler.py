@@ -1,4 +1,4 @@
-"""DXC's command line over the shared library that the PyPI package compushady brings: `python -m mua.gpu.dxcompiler`.
+"""DXC's command line over the shared library that the PyPI package compushady brings.
 
 Microsoft publishes no DXC for pip or apt. The interface is COM as of DXC 1.7 on Linux and macOS: a table of functions
 that starts with three of IUnknown and the two destructors of a C++ class (dxcapi.h and WinAdapter.h of

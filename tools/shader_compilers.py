@@ -7,19 +7,21 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
-from mua.gpu import slang
+import slang_output
 
-FRAGMENT_GROUP = 1  # descriptor set of what a fragment entry reads; all other stages read from set 0
+from mua.gpu import compile, glslang
+
 SLANG_STAGES = {"comp": "compute", "vert": "vertex", "frag": "fragment"}
 PROFILES = {"comp": "cs", "vert": "vs", "frag": "ps"}
 UNKNOWN_PRAGMA = "15601"  # slangc's warning about `#pragma kernel`
 INSTALL = {
-    "glslang": "glslangValidator: Debian package glslang-tools, on Windows and macOS the Vulkan SDK",
+    "glslang": glslang.INSTALL,
     "slang": "slangc: PyPI package slangtorch, or the Vulkan SDK",
     "dxc": "dxc: the Vulkan SDK, a command in $MUA_DXC, or the PyPI package compushady",
     "fxc": "fxc: the Windows SDK, or a command in $MUA_FXC",
@@ -43,11 +45,39 @@ class Compiler:
 
 @cache
 def find(name: str) -> Compiler | None:
-    """The compiler of SPIR-V with this name, None if it is not on this machine; KeyError if there is none like it."""
+    """The compiler with this name, None if it is not on this machine; KeyError if there is none like it."""
     return FINDERS[name]()
 
 
-def find_fxc() -> Compiler | None:
+def run_compiler(
+    compiler: Compiler, path: Path, entry: str, stage: str, output: Path, defines: tuple[str, ...]
+) -> subprocess.CompletedProcess[str]:
+    """Compile one entry point of a file into `output`, beside which a prelude may be written."""
+    if compiler.prelude:
+        include = f'#include "{path.resolve().as_posix()}"\n'
+        path = output.with_suffix(".hlsl")
+        path.write_text(compiler.prelude + include)
+    command = compiler.command(path.resolve(), entry, stage, output) + glslang.shared_options(list(defines))
+    return subprocess.run(command, cwd=path.parent, capture_output=True, text=True, check=False)
+
+
+def spirv(compiler: Compiler, path: Path, entry: str, stage: str = "comp") -> bytes:
+    """The SPIR-V of one entry point; raises InputError where it does not compile."""
+    _, (_, _, *defines) = compile.made_from(path, entry, stage)
+    with tempfile.TemporaryDirectory() as scratch:
+        output = Path(scratch) / "code.spv"
+        done = run_compiler(compiler, path, entry, stage, output, tuple(defines))
+        return compiler.finish(glslang.result(path, entry, output, done))
+
+
+def _glslang() -> Compiler | None:
+    program = glslang.find()
+    if program is None:
+        return None
+    return Compiler("glslang", _version([program, "--version"]), partial(glslang.command, program))
+
+
+def _fxc() -> Compiler | None:
     """FXC, which makes no SPIR-V: $MUA_FXC or `fxc` on the PATH."""
     program = _program("MUA_FXC", "fxc")
     if program is None:
@@ -58,20 +88,6 @@ def find_fxc() -> Compiler | None:
         return [*program, "-nologo", "-T", f"{PROFILES[stage]}_5_0", "-E", entry, "-Fo", str(output), path.name]
 
     return Compiler("fxc", "", command)
-
-
-def _glslang() -> Compiler | None:
-    program = shutil.which("glslangValidator") or shutil.which("glslang")
-    if program is None:
-        return None
-
-    def command(path: Path, entry: str, stage: str, output: Path) -> list[str]:
-        # --amb numbers the bindings; each stage starts from 0, so the fragment's go to a set of their own
-        group = ["--resource-set-binding", "frag", str(FRAGMENT_GROUP)] if stage == "frag" else []
-        options = ["-D", "-V", "--target-env", "vulkan1.1", "-S", stage, "--amb", *group]
-        return [program, *options, "-e", entry, "--source-entrypoint", entry, "-o", str(output), str(path)]
-
-    return Compiler("glslang", _version([program, "--version"]), command)
 
 
 def _slang() -> Compiler | None:
@@ -85,14 +101,15 @@ def _slang() -> Compiler | None:
         names = ["-stage", SLANG_STAGES[stage], "-entry", entry, "-o", str(output)]
         return [program, "-lang", "hlsl", str(path), *options, *names]
 
-    return Compiler("slang", _version([program, "-v"]), command, slang.PRELUDE, slang.without_lone_switches)
+    version = _version([program, "-v"])
+    return Compiler("slang", version, command, slang_output.PRELUDE, slang_output.without_lone_switches)
 
 
 def _dxc() -> Compiler | None:
     """$MUA_DXC or `dxc` on the PATH, else the library that comes with compushady."""
     program = _program("MUA_DXC", "dxc")
     if program is None and _wheel("compushady", "backends"):
-        program = [sys.executable, "-m", "mua.gpu.dxcompiler"]
+        program = [sys.executable, str(Path(__file__).with_name("dxcompiler.py"))]
     if program is None:
         return None
 
@@ -103,7 +120,8 @@ def _dxc() -> Compiler | None:
     return Compiler("dxc", _version([*program, "--version"]), command)
 
 
-FINDERS: dict[str, Callable[[], Compiler | None]] = {"glslang": _glslang, "slang": _slang, "dxc": _dxc}
+SPIRV: dict[str, Callable[[], Compiler | None]] = {"glslang": _glslang, "slang": _slang, "dxc": _dxc}
+FINDERS = {**SPIRV, "fxc": _fxc}
 
 
 def _program(variable: str, name: str) -> list[str] | None:
