@@ -78,7 +78,7 @@ def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
 def test_json_and_verify_are_one_or_the_other(avatar_file: Path) -> None:
     refused = inspect("--json", "--verify", str(avatar_file))
     assert (refused.returncode, refused.stdout) == (1, "")
-    assert refused.stderr.startswith("error: --json: --verify prints one sentence")
+    assert refused.stderr.startswith("error: --json and --verify are both given")
 
 
 def test_a_file_without_clips_says_so(tmp_path: Path) -> None:

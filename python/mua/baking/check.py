@@ -84,7 +84,7 @@ def likeness_of(character: Character, clips: Sequence[Clip], *, texels: int) -> 
     try:
         likeness = compare(character, clips, texels=texels, source=character.source)
     except InputError as error:
-        return None, (f"The likeness is not measured: {error}.",)
+        return None, (f"The splats were not compared with the source: {error}.",)
     return likeness, told.sentences(likeness)
 
 
