@@ -55,13 +55,13 @@ namespace Mua
         [SerializeField, Tooltip("Path of a .muaavatar file to load at run time if Avatar is empty: a full path, or one in persistentDataPath or StreamingAssets.")]
         private string file = "";
 
-        [SerializeField, Tooltip("Root of a rig whose transforms give the pose; without one, a clip of the avatar plays.")]
+        [SerializeField, Tooltip("Root of a rig whose transforms pose the avatar; if empty, a clip of the avatar plays.")]
         private Transform rig = null;
 
-        [SerializeField, Tooltip("Name of a clip of the avatar; the first where it is empty.")]
+        [SerializeField, Tooltip("Name of the clip to play; if empty, the first.")]
         private string clip = "";
 
-        [SerializeField, Tooltip("Of the clip; 1 is as recorded.")]
+        [SerializeField, Tooltip("Playback speed; 1 plays the clip at its recorded speed.")]
         private float speed = 1;
 
         [SerializeField]
