@@ -76,6 +76,19 @@ BAD = [  # what is replaced, by what, and what the fault must say
         "in a branch",
     ),
     ("float twice(", "float Twice(", "Twice, expected camelCase"),
+    ("    GroupMemoryBarrierWithGroupSync();", "", "no barrier between two uses of shared_values"),
+    (
+        "    shared_values[thread] =",
+        "    for (uint i = 0; i < 2; i++)\n    shared_values[63 - thread] += shared_values[thread];\n"
+        "    shared_values[thread] =",
+        "two uses of shared_values",
+    ),
+    (
+        "    return 2 *",
+        "    shared_values[0] = value;\n    GroupMemoryBarrierWithGroupSync();\n    value += shared_values[1];\n"
+        "    return 2 *",
+        "two uses of shared_values",
+    ),
 ]
 
 
@@ -111,6 +124,17 @@ def test_tells_a_broken_rule(tmp_path: Path, original: str, replacement: str, fa
 def test_a_return_after_the_last_barrier_is_no_fault(tmp_path: Path) -> None:
     text = GOOD.replace("    if (id.x < count)\n", "    if (id.x >= count)\n        return;\n    if (id.x < count)\n")
     assert shader_rules.kernel_faults(written(tmp_path, text)) == []
+
+
+def test_atomic_additions_need_no_barrier_between_them(tmp_path: Path) -> None:
+    text = GOOD.replace("float shared_values[64]", "uint shared_value")
+    text = text.replace(
+        "shared_values[thread] =", "for (uint i = 0; i < 2; i++) InterlockedAdd(shared_value, 1);\n    1;"
+    )
+    text = text.replace("shared_values[63 - thread]", "shared_value")
+    assert shader_rules.kernel_faults(written(tmp_path, text)) == []
+    text = text.replace("    for", "    shared_value = 0;\n    for")
+    assert "no barrier between two uses of shared_value" in shader_rules.kernel_faults(written(tmp_path, text))[0]
 
 
 def test_tells_a_ninth_buffer(tmp_path: Path) -> None:

@@ -6,9 +6,10 @@ They keep to what Unity's default compiler and the smallest devices take, whatev
 import math
 import re
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
-from shader_source import COMMENT, Shader, closing
+from shader_source import COMMENT, Shader, accesses, closing
 
 MOST_BUFFERS = 8  # storage buffers that one stage may bind on every device
 MOST_GROUPSHARED = 16 * 1024  # bytes
@@ -27,6 +28,8 @@ FORBIDDEN = (
 SNAKE_CASE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 CAMEL_CASE = re.compile(r"[a-z][A-Za-z0-9]*")
 PASCAL_CASE = re.compile(r"[A-Z][A-Za-z0-9]*")
+LOOP = re.compile(r"\s*(?:\[\w+\]\s*)?(?:for|while)\s*\(")
+STATEMENT = re.compile(r"[^;{}]*[;{}]?")
 BARRIER = re.compile(r"\b(?:Group|Device|All)MemoryBarrier\w*")
 
 
@@ -120,6 +123,7 @@ def _entry_faults(shader: Shader) -> Iterator[str]:
         if not LEAST_THREADS <= threads <= MOST_THREADS:
             yield f"{where} has {threads} threads in a group, expected {LEAST_THREADS} to {MOST_THREADS}"
         yield from _barrier_faults(shader, entry)
+        yield from _race_faults(shader, entry)
 
 
 def _barrier_faults(shader: Shader, entry: str) -> Iterator[str]:
@@ -137,12 +141,57 @@ def _barrier_faults(shader: Shader, entry: str) -> Iterator[str]:
             yield f"{where} has a barrier in a branch"
 
 
+def _race_faults(shader: Shader, entry: str) -> Iterator[str]:
+    """Elements of groupshared memory that one statement writes and another reads, with no barrier between the two.
+
+    An index that is spelled alike is taken for the thread's own element, and one statement for safe in itself.
+    """
+    since: list[tuple[str, str, str, str]] = []  # after the last barrier: statement, array, r or w, index
+    faults = set[str]()
+    for statement in _steps(shader, shader.functions[entry].body):
+        if BARRIER.search(statement):
+            since = []
+        found = [(statement, name, *access) for name in shader.groupshared for access in accesses(statement, name)]
+        faults |= {former[1] for former, latter in product(since, found) if _races(former, latter)}
+        since += found
+    for name in sorted(faults):
+        yield f"{shader.path.name}: {entry}: no barrier between two uses of {name}"
+
+
+def _races(former: tuple[str, str, str, str], latter: tuple[str, str, str, str]) -> bool:
+    (first, name, before, place), (second, other, after, index) = former, latter
+    if name != other or (place == index != "") or ("Interlocked" in first and "Interlocked" in second):
+        return False
+    return ("w" in before and "r" in after) or ("r" in before and "w" in after)
+
+
+def _steps(shader: Shader, body: str) -> Iterator[str]:
+    """Statements in the order in which a thread meets them; what is repeated or called comes twice."""
+    at = 0
+    while at < len(body):
+        if loop := LOOP.match(body, at):
+            start = closing(body, loop.end() - 1) + 1
+            at = _statement_end(body, start)
+            yield from 2 * list(_steps(shader, body[start:at]))
+        else:
+            statement = STATEMENT.match(body, at)[0]
+            for word in re.findall(r"\w+", statement):
+                if word in shader.functions:
+                    yield from 2 * list(_steps(shader, shader.functions[word].body))
+            yield statement
+            at += len(statement)
+
+
+def _statement_end(body: str, start: int) -> int:
+    block = re.match(r"\s*\{", body[start:])
+    return (closing(body, start + block.end() - 1) if block else body.index(";", start)) + 1
+
+
 def _branches(body: str) -> Iterator[tuple[int, int]]:
     """Where the statements under each `if` and `else` begin and end."""
     for found in re.finditer(r"\b(?:if|else)\b(?!\s+if\b)", body):
         start = found.end() if found[0] == "else" else closing(body, body.index("(", found.end())) + 1
-        block = re.match(r"\s*\{", body[start:])
-        yield start, closing(body, start + block.end() - 1) if block else body.index(";", start)
+        yield start, _statement_end(body, start) - 1
 
 
 def _waits(shader: Shader, name: str) -> bool:

@@ -77,7 +77,7 @@ class Shader:
 
     def accesses(self, entry: str, buffer: str) -> tuple[bool, bool]:
         """Whether an entry point reads elements of a buffer, and whether it writes them."""
-        kinds = [kind for function in self.reached(entry) for kind in _accesses(function.body, buffer)]
+        kinds = [kind for function in self.reached(entry) for kind, _ in accesses(function.body, buffer)]
         return any("r" in kind for kind in kinds), any("w" in kind for kind in kinds)
 
     def threads(self, entry: str) -> tuple[int, ...]:
@@ -166,15 +166,15 @@ def _declare(shader: Shader, statement: str) -> None:
         shader.functions[found[1]] = Function(found[1], head, body if known is None else known.body + body)
 
 
-def _accesses(body: str, buffer: str) -> list[str]:
-    """r, w or rw for each element of a buffer that a function body names."""
+def accesses(body: str, buffer: str) -> list[tuple[str, str]]:
+    """r, w or rw for each element of a buffer that a function body names, and its index."""
     found = []
     for place in re.finditer(rf"(?<![.\w]){buffer}\b", body):
-        before, after = body[: place.start()], _after_index(body, place.end())
+        before, (index, after) = body[: place.start()], _index(body, place.end())
         if re.search(r"Interlocked\w+\(\s*$", before) or re.match(r"\s*(?:[-+*/&|^]|<<|>>)=|\s*(?:\+\+|--)", after):
-            found.append("rw")
+            found.append(("rw", index))
         else:
-            found.append("w" if re.match(r"\s*(?:\.\w+)?\s*=(?!=)", after) else "r")
+            found.append(("w" if re.match(r"\s*(?:\.\w+)?\s*=(?!=)", after) else "r", index))
     return found
 
 
@@ -188,7 +188,10 @@ def closing(text: str, at: int) -> int:
     return len(text)
 
 
-def _after_index(body: str, at: int) -> str:
-    """What follows `[...]` at a place of a text."""
+def _index(body: str, at: int) -> tuple[str, str]:
+    """What stands in the `[...]` at a place of a text, and what follows it."""
     blank = len(body[at:]) - len(body[at:].lstrip())
-    return body[closing(body, at + blank) + 1 :] if body[at + blank : at + blank + 1] == "[" else body[at:]
+    if body[at + blank : at + blank + 1] != "[":
+        return "", body[at:]
+    end = closing(body, at + blank)
+    return body[at + blank + 1 : end], body[end + 1 :]
