@@ -1,13 +1,15 @@
 """A run over a small tree: what tests catch, what survives, what is known as no fault."""
 
 import subprocess
+from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import mutant_tests
 import pytest
 import run_mutants
 from mutant_sites import Mutant, mutants
-from mutant_tests import Checkout, Seen, record, seeing
+from mutant_tests import BOUND, Checkout, SeenTest, afforded, record, seeing
 from run_mutants import CAUGHT, EQUAL, SURVIVED, TIMED_OUT, UNCOMPILED, Outcome, drawn, reason, run, table
 
 CODE = "def larger(a, b):\n    return a > b\n\ndef unseen(a):\n    return a + 1\n\ndef halved(a):\n    return a / 2\n"
@@ -28,20 +30,27 @@ def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         '[[equivalent]]\nfile = "python/*"\noperator = "constant"\nline = "return a / 2"\nreason = "nobody halves"\n'
     )
     subprocess.run(["git", "init", "-q", root], check=True)
+    monkeypatch.setattr(mutant_tests, "IMPORTED", ())
     monkeypatch.setattr(run_mutants, "ROOT", root)
     monkeypatch.setattr(run_mutants, "EQUIVALENT", root / "equivalent.toml")
     monkeypatch.setattr(run_mutants, "LANGUAGES", {"python": ("python/*.py",)})
     return root
 
 
-def test_each_fault_ends_as_caught_survived_or_equivalent(tree: Path, tmp_path: Path) -> None:
-    checkout = Checkout(tmp_path / "job")
+@pytest.fixture
+def checkout(tmp_path: Path) -> Iterator[Checkout]:
+    with closing(Checkout(tmp_path / "job")) as opened:
+        yield opened
+
+
+def test_each_fault_ends_as_caught_survived_or_equivalent(tree: Path, tmp_path: Path, checkout: Checkout) -> None:
     checkout.refresh(tree)
-    seen = record([checkout], tmp_path / "seen.json")
-    assert seen["tests/test_code_.py"].functions["python/code_.py"] == ["<module>", "halved", "larger"]
+    tests = record([checkout], tmp_path / "seen")
+    code = {f"python/code_.py\t{function}" for function in ("<module>", "halved", "larger")}
+    assert [(test.name, test.places) for test in tests] == [("tests/test_code_.py::test_it", code)]
     found = {
         each.mutant.lines(CODE)[2]: each
-        for each in run(iter(mutants(tree / "python/code_.py", tree)), 9, [checkout], seen)
+        for each in run(iter(mutants(tree / "python/code_.py", tree)), 9, [checkout], tests)
     }
     assert {line: each.result for line, each in found.items()} == {
         "return a >= b": CAUGHT,
@@ -77,8 +86,10 @@ def test_the_seed_decides_which_faults_are_drawn(tree: Path) -> None:
     assert all(len(lines(seed)) == 3 for seed in range(8))  # one fault of each line that has any
 
 
-def test_a_changed_test_is_watched_anew(tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    checkout, kept = Checkout(tmp_path / "job"), tmp_path / "seen.json"
+def test_a_changed_test_is_watched_anew(
+    tree: Path, tmp_path: Path, checkout: Checkout, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kept = tmp_path / "seen"
     checkout.refresh(tree)
     record([checkout], kept)
     capsys.readouterr()
@@ -86,25 +97,82 @@ def test_a_changed_test_is_watched_anew(tree: Path, tmp_path: Path, capsys: pyte
     assert capsys.readouterr().out == ""
     (tree / "tests" / "test_code_.py").write_text(TEST + "\ndef test_fails():\n    assert larger(1, 2)\n")
     checkout.refresh(tree)
-    assert not record([checkout], kept)["tests/test_code_.py"].passes
-    assert "FAILS" in capsys.readouterr().out
+    assert [test.name for test in record([checkout], kept)] == ["tests/test_code_.py::test_it"]
+    assert "FAILS tests/test_code_.py::test_fails" in capsys.readouterr().out
+
+
+SHARED = """
+import functools, subprocess, sys
+import pytest
+from code_ import halved, larger, unseen
+
+@functools.lru_cache
+def cached():
+    return halved(2)
+
+@pytest.fixture(scope="module")
+def shared():
+    return larger(1, 2)
+
+def test_a(shared): cached()
+def test_b(shared): pass
+def test_c(): cached()
+def test_d(): subprocess.run([sys.executable, "-c", "import code_; code_.unseen(1)"], check=True)
+"""
+
+
+def test_tests_see_what_fixtures_caches_and_child_processes_meet(
+    tree: Path, tmp_path: Path, checkout: Checkout
+) -> None:
+    (tree / "tests" / "test_code_.py").write_text(SHARED)
+    checkout.refresh(tree)
+    places = {test.function[-1]: test.places for test in record([checkout], tmp_path / "seen")}
+    seen = {name: {place.split("\t")[1] for place in places[name]} - {"<module>"} for name in places}
+    assert seen == {"a": {"larger", "halved"}, "b": {"larger"}, "c": {"halved"}, "d": {"unseen"}}
+
+
+def test_a_fault_that_never_ends_is_stopped(tree: Path, tmp_path: Path, checkout: Checkout) -> None:
+    (tree / "tests" / "test_code_.py").write_text("import time\ndef test_it():\n    time.sleep(600)\n")
+    checkout.refresh(tree)
+    assert checkout.pytest(["tests/test_code_.py"], seconds=2)[0] is None
+    (checkout.root / "tests" / "test_code_.py").write_text("def test_it():\n    assert False\n")
+    assert checkout.pytest(["tests/test_code_.py"], seconds=60)[0] == ["tests/test_code_.py::test_it"]
+
+
+def a_test(file: str, seconds: float, *places: str, fixtures: dict[str, float] | None = None) -> SeenTest:
+    return SeenTest(file, f"{file}::test", seconds, set(places), fixtures or {})
 
 
 def test_faults_meet_the_tests_that_enter_their_function() -> None:
-    seen = {
-        "tests/test_b.py": Seen("", 3, True, {"a.py": ["<module>", "f"]}, ["a.cs"]),
-        "tests/test_c.py": Seen("", 2, True, {"a.py": ["<module>", "f", "g"]}, []),
-        "tests/test_a.py": Seen("", 9, True, {"a.py": ["<module>", "f"]}, ["a.cs"]),
-        "tests/test_d.py": Seen("", 1, False, {"a.py": ["<module>", "f", "g"]}, ["a.cs"]),
-        "tests/test_e.py": Seen("", 1, True, {"a.py": ["<module>"]}, []),
-    }
-    named_first_then_fastest = ["tests/test_a.py", "tests/test_c.py", "tests/test_b.py"]
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", "f"), seen, {}) == named_first_then_fastest
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", "g"), seen, {}) == ["tests/test_c.py"]
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", ""), seen, {}) == named_first_then_fastest  # outside of any function
-    caught = {(".", "tests/test_b.py"): 2, ("b", "tests/test_c.py"): 9}
-    assert seeing(Mutant("a.py", "sign", 0, 1, "", "f"), seen, caught)[1:] == ["tests/test_b.py", "tests/test_c.py"]
-    assert seeing(Mutant("a.cs", "sign", 0, 1, ""), seen, {}) == ["tests/test_a.py", "tests/test_b.py"]
+    tests = [
+        a_test("tests/test_b.py", 3, "a.py\t<module>", "a.py\tf", "a.cs"),
+        a_test("tests/test_c.py", 2, "a.py\t<module>", "a.py\tf", "a.py\tg"),
+        a_test("tests/test_a.py", 9, "a.py\t<module>", "a.py\tf", "a.cs"),
+        a_test("tests/test_e.py", 1, "a.py\t<module>"),
+    ]
+
+    def order(path: str, function: str, caught: dict[tuple[str, str], int] | None = None) -> str:
+        found = seeing(Mutant(path, "sign", 0, 1, "", function), tests, caught or {})
+        return "".join(test.file[-4] for test in found)
+
+    named_first_then_fastest = "acb"
+    assert order("a.py", "f") == named_first_then_fastest
+    assert order("a.py", "g") == "c"
+    assert order("a.py", "") == named_first_then_fastest  # outside of any function
+    caught = {(".", "tests/test_b.py::test"): 2, ("b", "tests/test_c.py::test"): 9}
+    assert order("a.py", "f", caught) == "abc"
+    assert order("a.cs", "") == "ab"
+
+
+def test_tests_of_one_fault_keep_within_the_bound() -> None:
+    shared = {"trained": BOUND / 2}
+    first = a_test("tests/test_a.py", 1, fixtures=shared)
+    same = a_test("tests/test_a.py", 1, fixtures=shared)
+    other = a_test("tests/test_b.py", 1, fixtures=shared)
+    short = a_test("tests/test_b.py", BOUND / 2 - 2)
+    assert afforded([first, same, other, short]) == ([first, same, short], BOUND)
+    slow = a_test("tests/test_a.py", 2 * BOUND)
+    assert afforded([slow, short]) == ([slow], 2 * BOUND)
 
 
 def test_what_does_not_compile_counts_apart() -> None:
@@ -113,7 +181,7 @@ def test_what_does_not_compile_counts_apart() -> None:
     last = table({"hlsl": [Outcome(mutant, each, "") for each in results if each != SURVIVED]}).splitlines()[-1]
     assert last.split() == ["all", "3", "3", "100.0", "%", "1", "1"]
     for printed in ("a.cs(3,4): error CS0019: no", "a.hlsl: Sort does not compile: x", "ERROR: a.hlsl:3:4: no"):
-        assert mutant_tests.NOT_COMPILED.search(f"E   {printed}" if "ERROR:" not in printed else printed)
+        assert run_mutants.NOT_COMPILED.search(f"E   {printed}" if "ERROR:" not in printed else printed)
 
 
 def test_every_listed_fault_stands_where_the_list_says() -> None:

@@ -1,4 +1,4 @@
-"""Which test files see which functions and sources: recorded once by running each test file in a process of its own.
+"""Which tests see which functions and sources, recorded once; a copy of the tree that runs those that are asked for.
 
 Of Python the functions that were entered are kept, in child processes too; of C# and HLSL the files that were read.
 """
@@ -6,17 +6,17 @@ Of Python the functions that were entered are kept, in child processes too; of C
 import hashlib
 import json
 import os
-import re
 import shutil
-import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
 from pathlib import Path
+from typing import TypeVar
 
 from mutant_sites import Mutant
 
@@ -27,43 +27,36 @@ LEFT_OUT = (
     "tests/test_mutant_sites.py",
     "tests/test_run_mutants.py",
 )
-FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.MULTILINE)
-NOT_COMPILED = re.compile(r"error CS\d{4}|: \w+ does not compile: |^ERROR: .*\d+:\d+: ", re.MULTILINE)
-WATCHER = """
-import os, sys, threading
-root, out = {root!r}, os.open({out!r}, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
-suffixes, seen = (".cs", ".hlsl", ".compute", ".shader"), {{}}
-def note(line):
-    if line not in seen:
-        seen[line] = None
-        os.write(out, line.encode() + b"\\n")
-def entered(frame, event, argument):
-    code = frame.f_code
-    if id(code) not in seen:
-        seen[id(code)] = code
-        if code.co_filename.startswith(root):
-            is_function = code.co_flags & 1  # not the body of a module or class, which an import runs
-            note(code.co_filename[len(root):] + "\\t" + (code.co_qualname if is_function else "<module>"))
-def opened(event, arguments):
-    if event == "open" and isinstance(arguments[0], (str, os.PathLike)):
-        path = os.path.abspath(os.fspath(arguments[0]))
-        if isinstance(path, str) and path.endswith(suffixes) and path.startswith(root):
-            note(path[len(root):])
-sys.addaudithook(opened)
-sys.settrace(entered)
-threading.settrace(entered)
-"""
+IMPORTED = (  # slow ones of those that tests import; none of this repository, whose files change
+    *(
+        "numpy",
+        "scipy.ndimage",
+        "scipy.optimize",
+        "scipy.sparse.linalg",
+        "scipy.spatial",
+        "torch._dynamo",
+        "torchmetrics",
+    ),
+    *("wgpu", "typer", "rich.table", "trimesh", "pygltflib", "pxr.Usd", "PIL.Image", "matplotlib.pyplot", "pywt"),
+    *("moderngl", "xatlas", "imgui_bundle"),
+)
+BOUND = 60  # seconds of CPU that the tests of one fault may take
+T, R = TypeVar("T"), TypeVar("R")
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What one test file sees, and how long it takes."""
+class SeenTest:
+    """What one test sees, and how long it takes."""
 
-    digest: str  # of the test file
-    seconds: float
-    passes: bool
-    functions: dict[str, list[str]]  # of each Python file the functions that were entered, by their qualified names
-    files: list[str]  # C# and HLSL that were read
+    file: str
+    name: str  # as pytest takes it
+    seconds: float  # of CPU, without fixtures that it shares
+    places: set[str]  # C# and HLSL files that were read; of Python file, tab, a function's qualified name
+    fixtures: dict[str, float]  # seconds of those that it shares with other tests of the file
+
+    @property
+    def function(self) -> str:
+        return self.name.split("[")[0]
 
 
 @dataclass(frozen=True)
@@ -94,94 +87,148 @@ class Checkout:
         if (source.parent / "shared").is_dir() and not beside.exists():
             beside.symlink_to(source.parent / "shared")
 
-    def pytest(self, tests: list[str], *, seconds: float, before: Path | None = None) -> tuple[int | None, str]:
-        """Exit status, None where the time was over, and what was printed."""
-        paths = [*([str(before)] if before else []), str(self.root / "python")]
+    @cached_property
+    def _worker(self) -> subprocess.Popen[str]:
         environment = {
             **os.environ,
-            "PYTHONPATH": os.pathsep.join(paths),
+            "PYTHONPATH": str(self.root / "python"),
             "TMPDIR": str(self.folder / "tmp"),
             "OMP_NUM_THREADS": "1",  # several faults are tried at once
         }
-        words = "-m pytest -x -q -rfE --tb=short -p no:cacheprovider -p no:randomly"
-        command = [sys.executable, *words.split()]
-        process = subprocess.Popen(
-            [*command, *tests], cwd=self.root, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True, errors="replace", start_new_session=True,
-        )  # fmt: skip
-        try:
-            printed, _ = process.communicate(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            return None, process.communicate()[0]
-        return process.returncode, printed
+        program = [sys.executable, str(Path(__file__).with_name("mutant_worker.py")), *IMPORTED]
+        return subprocess.Popen(
+            program, cwd=self.root, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    def pytest(
+        self, files: Iterable[str], tests: Iterable[str] = (), *, seconds: float, watch: Path | None = None
+    ) -> tuple[list[str] | None, str]:
+        """Tests of some files that fail, None where the time was over, and what was printed."""
+        printed = self.folder / "printed.txt"
+        environment = {} if watch is None else self._watching(watch)
+        order = {"files": [*files], "tests": [*tests], "seconds": int(seconds), "environment": environment}
+        stdin, stdout = self._worker.stdin, self._worker.stdout
+        assert stdin is not None
+        assert stdout is not None
+        stdin.write(json.dumps({**order, "watch": watch is not None, "printed": str(printed)}) + "\n")
+        stdin.flush()
+        answer = json.loads(stdout.readline())
+        return None if answer["over"] else answer["failed"], printed.read_text(errors="replace")
+
+    def close(self) -> None:
+        """End the process that runs tests; the next one starts another."""
+        if (worker := self.__dict__.pop("_worker", None)) is not None:
+            worker.communicate()
+
+    def _watching(self, out: Path) -> dict[str, str]:
+        folder = self.folder / "watcher"
+        folder.mkdir(exist_ok=True)
+        start = f"import sys; sys.path.append({str(Path(__file__).parent)!r}); import mutant_watcher as w; w.Watcher()"
+        (folder / "sitecustomize.py").write_text(start)  # runs first of all in child processes
+        paths = os.pathsep.join([str(folder), str(self.root / "python")])
+        return {"PYTHONPATH": paths, "MUTANTS_ROOT": f"{self.root}/", "MUTANTS_SEEN": str(out)}
 
 
-def record(checkouts: list[Checkout], kept: Path, *, again: bool = False) -> dict[str, Seen]:
-    """What every test file sees; only what is new or changed is run, unless `again`."""
-    root = checkouts[0].root
-    known = {} if again or not kept.is_file() else json.loads(kept.read_text())
-    wanted = {path.relative_to(root).as_posix(): _digest(path) for path in sorted(root.glob("tests/**/test_*.py"))}
-    found = {name: Seen(**seen) for name, seen in known.items() if wanted.get(name) == seen["digest"]}
-    free, one_at_a_time = list(checkouts), threading.Lock()
+def spread(work: Callable[[Checkout, T], R], items: Iterable[T], checkouts: list[Checkout]) -> Iterator[R]:
+    """Results in the order of the items, by as many threads as there are checkouts, each with one to itself."""
+    free = list(checkouts)
 
-    def watched(name: str) -> None:
+    def lent(item: T) -> R:
         checkout = free.pop()
-        watching = _watch(checkout, name, wanted[name])
-        free.append(checkout)
-        print(f"{watching.seconds:6.1f} s  {name}{'' if watching.passes else '  FAILS'}", flush=True)
-        with one_at_a_time:
-            found[name] = watching
-            kept.write_text(json.dumps({name: asdict(found[name]) for name in sorted(found)}))
+        try:
+            return work(checkout, item)
+        finally:
+            free.append(checkout)
 
     with ThreadPoolExecutor(len(checkouts)) as pool:
-        list(pool.map(watched, [name for name in wanted if name not in found and name not in LEFT_OUT]))
-    return found
+        yield from pool.map(lent, items)
 
 
-def _watch(checkout: Checkout, name: str, digest: str) -> Seen:
-    folder = checkout.folder / "watcher"
-    folder.mkdir(exist_ok=True)
-    out = folder / "seen.txt"
+def record(checkouts: list[Checkout], kept: Path, *, again: bool = False) -> list[SeenTest]:
+    """What every test sees; only files that are new or changed are run, unless `again`."""
+    root = checkouts[0].root
+    kept.mkdir(parents=True, exist_ok=True)
+    names = [path.relative_to(root).as_posix() for path in sorted(root.glob("tests/**/test_*.py"))]
+
+    def watched(checkout: Checkout, name: str) -> list[SeenTest]:
+        found, digest = kept / f"{name.replace('/', '.')}.json", _digest(root / name)
+        if again or not found.is_file() or json.loads(found.read_text())["digest"] != digest:
+            start = time.monotonic()
+            contexts, failed = _watch(checkout, name)
+            print(f"{time.monotonic() - start:6.1f} s  {name}", *(f"\n    FAILS {test}" for test in failed), flush=True)
+            found.write_text(json.dumps({"digest": digest, "failed": failed, "contexts": contexts}))
+        return _tests(name, **json.loads(found.read_text()))
+
+    return list(chain(*spread(watched, [name for name in names if name not in LEFT_OUT], checkouts)))
+
+
+def _watch(checkout: Checkout, name: str) -> tuple[dict[str, list[str]], list[str]]:
+    """By test or fixture what it meets, its seconds and the fixtures that it is given; tests that fail."""
+    out = checkout.folder / "seen.txt"
     out.unlink(missing_ok=True)
-    (folder / "sitecustomize.py").write_text(WATCHER.format(root=f"{checkout.root}/", out=str(out)))
-    start = time.monotonic()
-    status, _ = checkout.pytest([name], seconds=1800, before=folder)
-    functions: dict[str, set[str]] = {}
-    files = set[str]()
+    failed, _ = checkout.pytest([name], seconds=1800, watch=out)
+    contexts: dict[str, list[str]] = {}
     for line in out.read_text().splitlines() if out.is_file() else []:
-        path, _, function = line.partition("\t")
-        if not path.startswith("tests/"):
-            functions.setdefault(path, set()).add(function.split(".<locals>")[0]) if function else files.add(path)
-    passes = status in (0, 5)  # none collected, where all are marked, is no failure
-    return Seen(digest, time.monotonic() - start, passes, {p: sorted(f) for p, f in functions.items()}, sorted(files))
+        context, _, what = line.partition("\t")
+        if not what.startswith("tests/"):
+            contexts.setdefault(context, []).append(what)
+    return contexts, [name] if failed is None else failed
+
+
+def _tests(file: str, digest: str, failed: list[str], contexts: dict[str, list[str]]) -> list[SeenTest]:
+    def places(context: str) -> set[str]:
+        return {sys.intern(what) for what in contexts.get(context, ()) if what[0] != "\t"}
+
+    def seconds(context: str) -> float:
+        told = (what[1:] for what in contexts[context] if what[0] == "\t")
+        return sum(float(word) for word in told if word[0].isdigit())
+
+    tests = []
+    for name in contexts:
+        if "::" in name and not {name, file} & set(failed):
+            given = [word for what in contexts[name] if what[0] == "\t" and (word := what[1:]) in contexts]
+            seen = places("").union(places(name), *(places(fixture) for fixture in given))
+            tests.append(SeenTest(file, name, seconds(name), seen, {fixture: seconds(fixture) for fixture in given}))
+    return tests
 
 
 def _digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
-def seeing(mutant: Mutant, seen: dict[str, Seen], caught: Mapping[tuple[str, str], int]) -> list[str]:
-    """The test files that can notice a fault, those that are likely to first.
+def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str], int]) -> list[SeenTest]:
+    """The tests that can notice a fault, those that are likely to first.
 
     That is those named after the file, then those that `caught` most in its folder, then the fastest.
     """
-    sound = {name: each for name, each in seen.items() if each.passes}
     if not mutant.path.endswith(".py"):
-        chosen = [name for name, each in sound.items() if mutant.path in each.files]
+        chosen = [test for test in tests if mutant.path in test.places]
     else:
-        entered = {name: set(each.functions.get(mutant.path, ())) for name, each in sound.items()}
-        chosen = [name for name, functions in entered.items() if mutant.scope in functions]
-        chosen = chosen or [name for name, functions in entered.items() if any(f[0] != "<" for f in functions)]
-        chosen = chosen or [name for name, functions in entered.items() if functions]
+        within = f"{mutant.path}\t"
+        chosen = [test for test in tests if within + mutant.scope in test.places]
+        chosen = chosen or [test for test in tests if any(p.startswith(within) and p[-1] != ">" for p in test.places)]
+        chosen = chosen or [test for test in tests if f"{within}<module>" in test.places]
     stem, folder = Path(mutant.path).stem, folder_of(mutant)
     family = stem.split("_")[0]
 
-    def rank(name: str) -> tuple[bool, bool, int, float]:
-        own = Path(name).stem
-        return stem not in own, family not in own, -caught.get((folder, name), 0), sound[name].seconds
+    def rank(test: SeenTest) -> tuple[bool, bool, int, float]:
+        own = Path(test.file).stem
+        return stem not in own, family not in own, -caught.get((folder, test.function), 0), test.seconds
 
     return sorted(chosen, key=rank)
+
+
+def afforded(tests: list[SeenTest]) -> tuple[list[SeenTest], float]:
+    """Of tests in order those that together keep within the bound, and their seconds."""
+    chosen, paid, spent = [], set[tuple[str, str]](), 0.0
+    for test in tests:
+        fixtures = {(test.file, name): seconds for name, seconds in test.fixtures.items()}
+        seconds = test.seconds + sum(s for fixture, s in fixtures.items() if fixture not in paid)
+        if spent + seconds <= BOUND or not chosen:
+            chosen.append(test)
+            paid.update(fixtures)
+            spent += seconds
+    return chosen, spent
 
 
 def folder_of(mutant: Mutant) -> str:

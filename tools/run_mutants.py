@@ -4,7 +4,7 @@
     python tools/run_mutants.py --seed 7 --language hlsl --number 40
     python tools/run_mutants.py --file python/mua/rotation.py
 
-Each fault meets only the test files that see its place, fastest first, up to the first failure. Which these are is
+Each fault meets only tests that see its place, up to the first failure or a minute of CPU time. Which these are is
 recorded once in build/mutants and then kept; `--record` does it anew. Faults that do not compile count apart, and so do
 those that tools/mutants.toml names, with a reason, as no change of behaviour.
 """
@@ -13,17 +13,18 @@ import argparse
 import fnmatch
 import os
 import random
+import re
 import subprocess
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
 from mutant_sites import Mutant, mutants
-from mutant_tests import FAILED, NOT_COMPILED, Checkout, Seen, folder_of, record, seeing
+from mutant_tests import Checkout, SeenTest, afforded, folder_of, record, seeing, spread
 
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / "build" / "mutants"
@@ -37,6 +38,7 @@ LANGUAGES = {
     ),
     "csharp": ("unity-package/Runtime/**/*.cs", "unity-package/Editor/**/*.cs", "unity-package/Samples~/**/*.cs"),
 }
+NOT_COMPILED = re.compile(r"error CS\d{4}|: \w+ does not compile: |^ERROR: .*\d+:\d+: ", re.MULTILINE)
 CAUGHT, TIMED_OUT, SURVIVED, EQUAL, UNCOMPILED = "caught", "timed out", "survived", "equivalent", "does not compile"
 
 
@@ -46,7 +48,7 @@ class Outcome:
 
     mutant: Mutant
     result: str
-    by: str  # the test that failed; how many test files ran where none did
+    by: str  # the test that failed; what ran where none did
 
     def __str__(self) -> str:
         line, before, after = self.mutant.lines((ROOT / self.mutant.path).read_text())
@@ -81,9 +83,9 @@ def reason(mutant: Mutant, text: str, known: list[dict[str, str]]) -> str:
     return ""
 
 
-def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen], caught: Counter[tuple[str, str]]) -> Outcome:
+def tried(mutant: Mutant, checkout: Checkout, tests: list[SeenTest], caught: Counter[tuple[str, str]]) -> Outcome:
     """Put a fault in, run the tests that see it, take it out."""
-    path, tests = checkout.root / mutant.path, seeing(mutant, seen, caught)
+    path, all_tests = checkout.root / mutant.path, seeing(mutant, tests, caught)
     text, times = path.read_text(encoding="utf-8"), path.stat()
     mutated = mutant.apply(text)
     if path.suffix == ".py":
@@ -91,54 +93,51 @@ def tried(mutant: Mutant, checkout: Checkout, seen: dict[str, Seen], caught: Cou
             compile(mutated, str(path), "exec")
         except SyntaxError as error:
             return Outcome(mutant, UNCOMPILED, str(error))
-    if not tests:
+    if not all_tests:
         return Outcome(mutant, SURVIVED, "no test sees it")
     path.write_text(mutated, encoding="utf-8")
     os.utime(path, (mutant.start + 1, mutant.start + 1))  # of its own, or Python might take the compiled former one
     try:
-        return _judged(mutant, checkout, tests, 120 + 4 * sum(seen[name].seconds for name in tests))
+        return _judged(mutant, checkout, all_tests)
     finally:
         path.write_text(text, encoding="utf-8")
         os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
-def _judged(mutant: Mutant, checkout: Checkout, tests: list[str], seconds: float) -> Outcome:
-    status, printed = checkout.pytest(tests, seconds=seconds)
-    if status is None:
-        return Outcome(mutant, TIMED_OUT, f"{seconds:.0f} s")
-    if status in (0, 5):
-        return Outcome(mutant, SURVIVED, f"{len(tests)} test files pass")
-    if mutant.path.endswith(".py") or not (error := NOT_COMPILED.search(printed)):
-        failed = FAILED.search(printed)
-        return Outcome(mutant, CAUGHT, failed[1] if failed else f"exit status {status}")
-    return Outcome(mutant, UNCOMPILED, printed[error.start() :].splitlines()[0])
+def _judged(mutant: Mutant, checkout: Checkout, tests: list[SeenTest]) -> Outcome:
+    chosen, seconds = afforded(tests)
+    files = dict.fromkeys(test.file for test in chosen)
+    failed, printed = checkout.pytest(files, [test.name for test in chosen], seconds=60 + 8 * seconds)
+    if failed is None:
+        return Outcome(mutant, TIMED_OUT, f"in {len(chosen)} tests")
+    if not failed:
+        left = f"; {len(tests) - len(chosen)} slower ones were not run" if len(chosen) < len(tests) else ""
+        return Outcome(mutant, SURVIVED, f"{len(chosen)} tests pass{left}")
+    if not mutant.path.endswith(".py") and (error := NOT_COMPILED.search(printed)):
+        return Outcome(mutant, UNCOMPILED, printed[error.start() :].splitlines()[0])
+    return Outcome(mutant, CAUGHT, failed[0])
 
 
-def run(waiting: Iterator[Mutant], number: int, checkouts: list[Checkout], seen: dict[str, Seen]) -> list[Outcome]:
+def run(waiting: Iterator[Mutant], number: int, checkouts: list[Checkout], tests: list[SeenTest]) -> list[Outcome]:
     """Outcomes until `number` of the faults, taken in order, compiled and are not known as equivalent."""
-    known, free = tomllib.loads(EQUIVALENT.read_text())["equivalent"], list(checkouts)
-    caught = Counter[tuple[str, str]]()  # by folder of the fault and test file
+    known = tomllib.loads(EQUIVALENT.read_text())["equivalent"]
+    caught = Counter[tuple[str, str]]()  # by folder of the fault and test
 
-    def outcome(mutant: Mutant) -> Outcome:
+    def outcome(checkout: Checkout, mutant: Mutant) -> Outcome:
         if why := reason(mutant, (ROOT / mutant.path).read_text(encoding="utf-8"), known):
             return Outcome(mutant, EQUAL, why)
-        checkout = free.pop()
-        try:
-            done = tried(mutant, checkout, seen, caught)
-            caught[folder_of(mutant), done.by.split("::")[0]] += done.result == CAUGHT
-            return done
-        finally:
-            free.append(checkout)
+        done = tried(mutant, checkout, tests, caught)
+        caught[folder_of(mutant), done.by.split("[")[0]] += done.result == CAUGHT
+        return done
 
     outcomes: list[Outcome] = []
-    with ThreadPoolExecutor(len(checkouts)) as pool:
-        while missing := number - sum(each.result in (CAUGHT, TIMED_OUT, SURVIVED) for each in outcomes):
-            batch = [mutant for mutant, _ in zip(waiting, range(missing), strict=False)]
-            for done in pool.map(outcome, batch):
-                outcomes.append(done)
-                print(done, flush=True)
-            if len(batch) < missing:
-                break
+    while missing := number - sum(each.result in (CAUGHT, TIMED_OUT, SURVIVED) for each in outcomes):
+        batch = [mutant for mutant, _ in zip(waiting, range(missing), strict=False)]
+        for done in spread(outcome, batch, checkouts):
+            outcomes.append(done)
+            print(done, flush=True)
+        if len(batch) < missing:
+            break
     return outcomes
 
 
@@ -163,15 +162,16 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="faults tried at once")
     parser.add_argument("--record", action="store_true", help="find out anew which tests see what")
     given = parser.parse_args()
-    checkouts = [Checkout(WORK / f"job-{k}") for k in range(given.jobs)]
-    for checkout in checkouts:
-        checkout.refresh(ROOT)
-    seen = record(checkouts, WORK / "seen.json", again=given.record)
-    languages = given.language or list(LANGUAGES)
     outcomes = {}
-    for k, language in enumerate(languages):
-        number = (given.number + k) // len(languages)
-        outcomes[language] = run(drawn(language, given.seed, given.file), number, checkouts, seen)
+    with ExitStack() as opened:
+        checkouts = [opened.enter_context(closing(Checkout(WORK / f"job-{k}"))) for k in range(given.jobs)]
+        for checkout in checkouts:
+            checkout.refresh(ROOT)
+        tests = record(checkouts, WORK / "seen", again=given.record)
+        languages = given.language or list(LANGUAGES)
+        for k, language in enumerate(languages):
+            number = (given.number + k) // len(languages)
+            outcomes[language] = run(drawn(language, given.seed, given.file), number, checkouts, tests)
     commit = subprocess.run(
         ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
     )

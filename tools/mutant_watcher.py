@@ -1,0 +1,87 @@
+"""Notes what a test meets: Python functions that are entered, C# and HLSL that is read, in child processes too.
+
+Lines of context, path and, in Python, function; each once in a context, which is a test, a fixture that tests share, or
+nothing while modules are imported. A line without a path tells seconds of CPU time, or a fixture that a test is given.
+"""
+
+import functools
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+from weakref import WeakSet
+
+SUFFIXES = (".cs", ".hlsl", ".compute", ".shader")
+
+
+class Watcher:
+    """What stands below `MUTANTS_ROOT` and is met is appended to the file `MUTANTS_SEEN`."""
+
+    def __init__(self) -> None:
+        self._root, out = os.environ["MUTANTS_ROOT"], os.environ["MUTANTS_SEEN"]
+        self._out = os.open(out, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+        self._context = os.environ.setdefault("MUTANTS_CONTEXT", "")  # child processes go on in that of their parent
+        self._seen: dict[object, object] = {}
+        self._caches = WeakSet[Any]()
+        self._told = 0.0  # seconds
+        functools.lru_cache = self._noted(functools.lru_cache)
+        sys.addaudithook(self._opened)
+        sys.settrace(self._entered)
+        threading.settrace(self._entered)
+
+    def _noted(self, make: Callable[..., Any]) -> Callable[..., Any]:
+        """Of what makes caches one that notes those of this repository."""
+
+        def kept(made: Any) -> Any:
+            if not hasattr(made, "cache_clear"):  # but a decorator
+                return lambda function: kept(made(function))
+            code = getattr(made.__wrapped__, "__code__", None)
+            if code and code.co_filename.startswith(self._root):
+                self._caches.add(made)
+            return made
+
+        return lambda *given, **named: kept(make(*given, **named))
+
+    def _note(self, *words: str) -> None:
+        os.write(self._out, ("\t".join((self._context, *words)) + "\n").encode())
+
+    def _entered(self, frame: FrameType, event: str, argument: object) -> None:
+        code = frame.f_code
+        if id(code) not in self._seen:
+            self._seen[id(code)] = code
+            if code.co_filename.startswith(self._root):
+                is_function = code.co_flags & 1  # not the body of a module or class, which an import runs
+                name = code.co_qualname.split(".<locals>")[0] if is_function else "<module>"
+                self._note(code.co_filename[len(self._root) :], name)
+
+    def _opened(self, event: str, arguments: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(arguments[0], str | os.PathLike):
+            path = os.path.abspath(os.fsdecode(arguments[0]))  # noqa: PTH100 links are not followed
+            if path.endswith(SUFFIXES) and path.startswith(self._root) and path not in self._seen:
+                self._seen[path] = path
+                self._note(path[len(self._root) :])
+
+    @contextmanager
+    def within(self, context: str, *given: str) -> Iterator[None]:
+        outer, start = self._context, _seconds() - self._told
+        for cache in self._caches:
+            cache.cache_clear()  # or only the first of several tests would be seen to need what it holds
+        self._enter(context)
+        for fixture in given:
+            self._note("", fixture)
+        yield
+        seconds = _seconds() - self._told - start
+        self._told += seconds
+        self._note("", f"{seconds:.2f}")
+        self._enter(outer)
+
+    def _enter(self, context: str) -> None:
+        self._context = os.environ["MUTANTS_CONTEXT"] = context
+        self._seen.clear()
+
+
+def _seconds() -> float:
+    return sum(os.times()[:4])
