@@ -8,18 +8,18 @@ import numpy as np
 import torch
 from synthetic_avatar import synthetic_clip, synthetic_rig
 
+from mua.channels import ATTRIBUTES
 from mua.compare.motion import training_frames
 from mua.compare.network import Forgetful, NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
 from mua.compare.systems import SYSTEMS
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip, Recording, TeacherWriter, record
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 from mua.student.optimise import Progress, Run
 from mua.student.settings import Ranks, Schedule, Settings
 from mua.teachers.teacher import TeacherFrame
-from mua.texture.channels import ATTRIBUTES
 
 SETTINGS = Settings(
     texels=32,

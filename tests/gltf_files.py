@@ -10,8 +10,8 @@ import numpy as np
 from PIL import Image
 
 from mua import rotation
-from mua.rig.assemble import Surfaces
-from mua.rig.read import read_surfaces
+from mua.atlas.surfaces import Surfaces
+from mua.characters.read import read_surfaces
 
 TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}

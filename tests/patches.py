@@ -3,11 +3,11 @@
 import numpy as np
 
 from mua.arrays import Array
-from mua.rig.assemble import Surfaces
+from mua.atlas.surfaces import Surfaces
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character
-from mua.rig.scene import Material, Wrap
-from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap, build_texel_map
+from mua.scene import Material, Wrap
 
 ONE_JOINT = Skeleton(
     names=("root",),

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
-from mua.motion.clip import Clip
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 # Parents, and world positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is
 # mirrored.

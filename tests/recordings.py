@@ -8,12 +8,12 @@ import numpy as np
 from synthetic_avatar import synthetic_rig
 
 from mua.arrays import Array
-from mua.motion.clip import Clip
+from mua.channels import ATTRIBUTES
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip, TeacherWriter, record
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 from mua.teachers.teacher import TeacherFrame
-from mua.texture.channels import ATTRIBUTES
 
 RATE = 24.0
 

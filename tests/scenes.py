@@ -7,8 +7,8 @@ import numpy as np
 from gltf_files import posed
 from scipy.spatial.transform import Rotation
 
-from mua.rig.assemble import Surfaces
-from mua.rig.scene import Material, Motion, Part, Scene, Skin
+from mua.atlas.surfaces import Surfaces
+from mua.scene import Material, Motion, Part, Scene, Skin
 
 HERE = Path("body.glb")
 GREY = Material("grey", np.full((1, 1, 4), 128, np.uint8))

@@ -11,11 +11,11 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.motion.clip import Clip
-from mua.motion.encoding import Normalization, PoseEncoding
+from mua.pose.clip import Clip
+from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap
 
 SIZE = 32

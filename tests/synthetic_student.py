@@ -6,13 +6,13 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from mua.motion.encoding import PoseEncoding
+from mua.channels import ATTRIBUTES, CHANNELS
+from mua.pose.encoding import PoseEncoding
 from mua.student.checkpoint import Checkpoints
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress, Run
 from mua.student.settings import Ranks, Schedule, Settings
 from mua.student.train import Samples
-from mua.texture.channels import ATTRIBUTES, CHANNELS
 
 SIZE = 48  # LL 3 x 3
 ENCODING = PoseEncoding(joints=(), rate=30.0, window=1)

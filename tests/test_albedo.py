@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from mua.rig.filtering import CLEAR, TRACE
+from mua.atlas.filtering import CLEAR, TRACE
 from mua.texture.albedo import sample_albedo
 
 SINGLE = 8 * float(np.finfo(np.float32).eps)  # four products of values up to 1

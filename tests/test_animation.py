@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from gltf_files import FLOAT_BOUND, HALF_TURN, Glb, animate, body, weighted
 
+from mua.characters.animation import Animation
+from mua.characters.read import read_animation, read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
-from mua.rig.animation import Animation
-from mua.rig.read import read_animation, read_surfaces
-from mua.rig.skeleton import Skeleton
+from mua.pose.skeleton import Skeleton
 
 # Name, parent and offset of each joint, centimetres, Z up: what stands below a node that turns and scales it.
 BONES = [

@@ -11,9 +11,9 @@ from scenes import (
     scene,
 )
 
+from mua.characters.assemble import assemble, first_of_equal
 from mua.errors import InputError
-from mua.rig.assemble import assemble, first_of_equal
-from mua.rig.scene import Material, Part
+from mua.scene import Material, Part
 
 
 def test_seams_keep_their_texture_coordinates() -> None:

@@ -20,9 +20,9 @@ from scenes import (
 )
 from scipy.spatial.transform import Rotation
 
+from mua.characters.assemble import assemble
 from mua.errors import InputError
-from mua.rig.assemble import assemble
-from mua.rig.scene import Skin
+from mua.scene import Skin
 
 
 def test_bind_pose_reproduces_the_bind_vertices() -> None:

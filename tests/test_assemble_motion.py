@@ -6,9 +6,9 @@ import numpy as np
 from gltf_files import posed
 from scenes import BIND, HERE, NAMES, PARENTS, WEIGHT_BOUND, assert_follows, at, moving, part, scene, skinned
 
-from mua.rig.assemble import assemble
-from mua.rig.scene import Motion, Skin
+from mua.characters.assemble import assemble
 from mua.rig.stretched import stretched
+from mua.scene import Motion, Skin
 
 
 def test_clip_follows_the_sources_matrices() -> None:

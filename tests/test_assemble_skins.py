@@ -12,8 +12,8 @@ from scenes import (
     scene,
 )
 
-from mua.rig.assemble import assemble, limit_influences
-from mua.rig.scene import Skin
+from mua.characters.assemble import assemble, limit_influences
+from mua.scene import Skin
 
 
 def test_keeps_the_eight_largest_influences() -> None:

@@ -24,16 +24,16 @@ from mua.baking.order import Order
 from mua.baking.pipeline import bake, recording_key
 from mua.baking.plan import plan, split
 from mua.baking.sources import RATE, load_character
+from mua.channels import ATTRIBUTES
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.locks import DirectoryLock
-from mua.motion.clip import Clip
-from mua.motion.descriptor import describe
-from mua.motion.resample import resample
+from mua.pose.clip import Clip
+from mua.pose.descriptor import describe
+from mua.pose.resample import resample
 from mua.recording import Recording
 from mua.student.distil import distil
 from mua.student.settings import Ranks, Schedule, preset
-from mua.texture.channels import ATTRIBUTES
 
 SMALL = dataclasses.replace(
     preset("tiny"),

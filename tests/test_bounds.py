@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar
 
-from mua.bounds import frame_boxes, margin, playback_bounds, root_positions, union
 from mua.decode import decode_clip_frame
-from mua.motion.clip import Stretches
+from mua.pose.clip import Stretches
+from mua.rig.bounds import frame_boxes, margin, playback_bounds, root_positions, union
 
 AVATAR = synthetic_avatar()
 RIG, CLIP = AVATAR.rig, AVATAR.clips[0]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.rig.chart_shapes import GUTTER, SAMPLING, Shape, grown, narrowest_angles, points_on, rasterised, ways
+from mua.atlas.chart_shapes import GUTTER, SAMPLING, Shape, grown, narrowest_angles, points_on, rasterised, ways
 
 TRIANGLE = np.array([[[1.0, 2.0], [9.3, 4.1], [5.2, 8.7]]])
 ANGLE_BOUND = np.radians(90 / 32)  # the steps in which angles are tried

@@ -8,12 +8,12 @@ import torch
 from compared import trained
 
 from mua.asset import count
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.compare.bands import BandNetwork, scale_branch
 from mua.compare.network import NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
 from mua.student.export import export_branches, export_coarse, export_wavelet
 from mua.student.model import Student
-from mua.texture.channels import APPEARANCE, GEOMETRY
 
 
 def test_ours_equals_the_student_that_the_package_trains(smooth_frames: TrainingFrames) -> None:

@@ -10,7 +10,7 @@ from mua import rotation
 from mua.compare.maps import SurfaceMaps
 from mua.compare.motion import motion_of
 from mua.compare.system import Budget, TrainingFrames
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording import Recording
 
 

@@ -11,7 +11,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.motion.encoding import PoseEncoding
+from mua.pose.encoding import PoseEncoding
 from mua.student.settings import Ranks, preset
 
 PAPER = preset("paper")

@@ -12,8 +12,8 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.decode import Splats, decode, decode_clip_frame, pose_splats
 from mua.model import Branch, Mlp
-from mua.motion.descriptor import describe
-from mua.rig.skeleton import Pose
+from mua.pose.descriptor import describe
+from mua.pose.skeleton import Pose
 
 # Sums on the way of one value: four layers of at most 63 terms, 4 basis maps, 4 levels of 2 x 10 taps, 20 in posing.
 OPERATIONS = 4 * 63 + 4 + 80 + 20

@@ -9,9 +9,9 @@ from operator import add
 import pytest
 from silent import Silent
 
+from mua.baking.evaluate import TRAINING, Errors
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
-from mua.evaluate import TRAINING, Errors
 from mua.student.settings import preset
 
 # Shares of the variance about the mean texture: 3 points below what was found on training frames, 8 on unseen motion.

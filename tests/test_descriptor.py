@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
-from mua.motion.clip import Clip
-from mua.motion.descriptor import (
+from mua.pose.clip import Clip
+from mua.pose.descriptor import (
     choose_joints,
     choose_translated,
     describe,
@@ -15,8 +15,8 @@ from mua.motion.descriptor import (
     normalization,
     units_of,
 )
-from mua.motion.encoding import PoseEncoding
-from mua.rig.skeleton import Skeleton
+from mua.pose.encoding import PoseEncoding
+from mua.pose.skeleton import Skeleton
 
 FRAMES = 7
 BOUND = 256 * np.finfo(float).eps * 8  # some hundred operations on numbers up to 8
@@ -47,7 +47,7 @@ def matrix(q: np.ndarray) -> np.ndarray:
 
 
 def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: int) -> np.ndarray:
-    """One descriptor as mua.motion.encoding words it, for the skeleton of this file, by 3x3 matrices."""
+    """One descriptor as mua.pose.encoding words it, for the skeleton of this file, by 3x3 matrices."""
     above = matrix(skeleton.bind_rotations[0])
     bind = above @ matrix(skeleton.bind_rotations[1])
 

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
+from mua.atlas.detail import BY_DEFAULT, LARGEST_SHARES, factors, read_detail
+from mua.atlas.surfaces import Surfaces
+from mua.atlas.texel_density import describe_texels
+from mua.atlas.uv import build_atlas
 from mua.cli.bake import main
 from mua.errors import InputError
-from mua.rig.assemble import Surfaces
+from mua.pose.skeleton import Skeleton
 from mua.rig.body_parts import BODY_PARTS, body_parts
 from mua.rig.character import Character
 from mua.rig.charts import areas
-from mua.rig.detail import BY_DEFAULT, LARGEST_SHARES, factors, read_detail
-from mua.rig.scene import Material
-from mua.rig.skeleton import Skeleton
-from mua.rig.texel_density import describe_texels
 from mua.rig.texel_map import build_texel_map
-from mua.rig.uv import build_atlas
+from mua.scene import Material
 
 JOINTS = ("Hips", "Head", "LeftEye", "LeftHand", "LeftHandIndex1")
 PARENTS = (-1, 0, 1, 0, 3)

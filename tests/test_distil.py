@@ -12,15 +12,15 @@ from synthetic_student import SETTINGS, quick
 from mua.asset.read import read
 from mua.asset.write import write
 from mua.baking.assemble import assemble
+from mua.channels import ATTRIBUTES, CHANNELS
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
-from mua.motion.descriptor import describe
+from mua.pose.descriptor import describe
+from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
-from mua.rig.skeleton import Pose
 from mua.student.distil import distil, moving_joints
 from mua.student.model import Student
 from mua.student.settings import Settings
-from mua.texture.channels import ATTRIBUTES, CHANNELS
 
 CPU = torch.device("cpu")
 RELATIVE = 1e-5  # of the largest value: a float32 file against the torch student

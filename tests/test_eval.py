@@ -32,9 +32,9 @@ from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.offscreen import Offscreen
 from mua.player.toggles import Toggles
+from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip, Recording, TeacherWriter, WholeFrame, record
 from mua.rendering import render_over
-from mua.rig.skeleton import Pose
 from mua.student import settings as presets
 from mua.student.optimise import Report
 from mua.student.settings import Schedule

@@ -10,11 +10,11 @@ from shared_data import SharedData
 from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
+from mua.baking.portrait import THREE_QUARTER, portrait
 from mua.decode import decode_clip_frame
 from mua.motion.facing import front_of
 from mua.motion.load import load_motion
-from mua.portrait import THREE_QUARTER, portrait
-from mua.rig.skeleton import Skeleton
+from mua.pose.skeleton import Skeleton
 
 ROUNDING = 1e-6  # radians
 SIDES = ("Left", "Right")

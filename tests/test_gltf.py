@@ -23,8 +23,8 @@ from gltf_files import (
 )
 from scipy.spatial import cKDTree
 
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
-from mua.rig.read import read_surfaces
 
 
 def test_folds_unequal_scales_of_joints_into_the_mesh(tmp_path: Path) -> None:

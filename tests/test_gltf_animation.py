@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 from gltf_files import FLOAT_BOUND, HALF_TURN, animate, body, read
 
-from mua.motion.joint_names import limb_count
+from mua.characters.gltf.animation import sample
 from mua.motion.read import read_motion
-from mua.rig.gltf_animation import sample
+from mua.pose.joint_names import limb_count
 
 
 def test_clip_turns_and_moves_the_joints(tmp_path: Path) -> None:

@@ -14,8 +14,8 @@ from gltf_files import (
     read,
 )
 
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
-from mua.rig.read import read_surfaces
 
 
 def test_reads_json_with_buffer_beside_it(tmp_path: Path) -> None:

@@ -20,8 +20,8 @@ from gltf_files import (
 )
 from gltf_files import POINTS as COLUMN
 
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
-from mua.rig.read import read_surfaces
 
 BLOCK = COLUMN * 0.2
 

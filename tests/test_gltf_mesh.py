@@ -20,8 +20,8 @@ from gltf_files import (
     weighted,
 )
 
+from mua.characters.read import read_character
 from mua.errors import InputError
-from mua.rig.read import read_character
 
 
 def test_reads_positions_weights_and_texture_coordinates(tmp_path: Path) -> None:

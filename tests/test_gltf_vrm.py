@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from gltf_files import Glb, assert_is_column, body
 
+from mua.atlas.surfaces import Surfaces
+from mua.characters.gltf.vrm import ROLES
+from mua.characters.read import read_animation, read_character, read_surfaces
 from mua.errors import InputError
-from mua.motion.joint_names import roles
-from mua.rig.assemble import Surfaces
-from mua.rig.gltf_vrm import ROLES
-from mua.rig.read import read_animation, read_character, read_surfaces
-from mua.rig.skeleton import Skeleton
+from mua.pose.joint_names import roles
+from mua.pose.skeleton import Skeleton
 
 BONES = {"hips": 0, "spine": 1, "head": 2}
 

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from mua.motion.joint_names import roles
-from mua.rig.skeleton import Skeleton
+from mua.pose.joint_names import roles
+from mua.pose.skeleton import Skeleton
 
 LEG = ("left thigh", "left shin", "left foot", "left toe")
 ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")

@@ -7,12 +7,12 @@ import pytest
 from people import person, walk, world
 from scipy.spatial.transform import Rotation
 
-from mua.motion.joint_names import roles
 from mua.motion.joint_places import roles_by_place
 from mua.motion.match import match_joints
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
-from mua.rig.skeleton import Skeleton
+from mua.pose.joint_names import roles
+from mua.pose.skeleton import Skeleton
 
 
 def nameless(skeleton: Skeleton) -> Skeleton:

@@ -15,6 +15,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.baking.check import WITHOUT_FILE, likeness_of
 from mua.camera import Camera, orbit
+from mua.characters.read import read_character
 from mua.kernels.splat_project import LEAST_OPACITY
 from mua.likeness import splats as splat_painting
 from mua.likeness import told
@@ -27,8 +28,7 @@ from mua.likeness.sheet import likeness_sheet
 from mua.likeness.splats import SplatPainter
 from mua.rendering import frame_bounds, render_premultiplied
 from mua.rig.character import Character
-from mua.rig.read import read_character
-from mua.rig.scene import Material, Part, Source
+from mua.scene import Material, Part, Source
 
 SIDE = 9  # pixels, odd: a pixel's middle is on the axis
 AHEAD = Camera(np.eye(4), np.diag([1.0, 1.0, 0.5, 1.0]), (SIDE, SIDE))  # sees -1..1; what has more z is behind

@@ -12,9 +12,9 @@ from limbs import limbs_apart, two_limbs
 from synthetic_avatar import synthetic_rig
 from synthetic_student import SETTINGS, new_student
 
-from mua.motion.encoding import PoseEncoding
+from mua.pose.encoding import PoseEncoding
+from mua.pose.skeleton import Skeleton
 from mua.recording import Recording
-from mua.rig.skeleton import Skeleton
 from mua.student.coarse import mesh_pca
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd

@@ -8,9 +8,10 @@ from people import person
 from scenes import GREY, HERE, at, part
 from scipy.spatial.transform import Rotation
 
-from mua.motion.joint_names import roles
-from mua.rig.assemble import Surfaces, assemble
-from mua.rig.scene import Scene, Skin
+from mua.atlas.surfaces import Surfaces
+from mua.characters.assemble import assemble
+from mua.pose.joint_names import roles
+from mua.scene import Scene, Skin
 
 
 def whole(turn: Rotation, *, sitting: float = 0.0, rest: Rotation | None = None) -> Scene:

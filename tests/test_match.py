@@ -8,7 +8,7 @@ from people import person
 
 from mua.errors import InputError
 from mua.motion.match import joint_pairs, match_joints, require_limbs, unmatched_source, unmatched_target
-from mua.rig.skeleton import Skeleton
+from mua.pose.skeleton import Skeleton
 
 
 def chain(*names: str) -> Skeleton:

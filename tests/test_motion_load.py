@@ -9,10 +9,10 @@ from bvh_files import BVH
 
 from mua import rotation
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.motion.load import counted, load_motion, same_joints
 from mua.motion.read import read_motion
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 
 @pytest.fixture

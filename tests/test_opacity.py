@@ -7,12 +7,12 @@ import pytest
 from patches import patch, plain, points, ramp, surfaces_of, texels_and_colours, uv_map
 
 from mua.arrays import Array
+from mua.atlas.opacity import without_unseen
+from mua.atlas.surfaces import Surfaces
+from mua.atlas.uv import build_atlas
 from mua.errors import InputError
 from mua.kernels.splat_project import LEAST_OPACITY
-from mua.rig.assemble import Surfaces
-from mua.rig.opacity import without_unseen
-from mua.rig.scene import AlphaMode, Wrap, wrapped
-from mua.rig.uv import build_atlas
+from mua.scene import AlphaMode, Wrap, wrapped
 from mua.teachers.texels import MOST_CLEAR
 from mua.texture.albedo import sample_albedo
 

@@ -7,9 +7,9 @@ from tube import swing, tube
 
 from mua import rotation
 from mua.decode import pose_splats
+from mua.pose.skeleton import Pose
 from mua.rig.build import build_rig
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 
 EXAMPLE = load_example("own_template")
 CHARACTER = tube()

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.rig import packing, packing_grid
-from mua.rig.chart_shapes import GUTTER
+from mua.atlas import packing, packing_grid
+from mua.atlas.chart_shapes import GUTTER
+from mua.atlas.packing import pack
+from mua.atlas.packing_grid import GRID
 from mua.rig.charts import areas
-from mua.rig.packing import pack
-from mua.rig.packing_grid import GRID
 from mua.rig.texel_map import cover
 
 LENGTH_BOUND = 1e-9  # relative: float64 of a rotation and a scale

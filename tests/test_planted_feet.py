@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from people import person, walk, world
 
-from mua.motion.clip import Clip
 from mua.motion.match import match_joints
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 ROUNDING = 1e-9  # turns through some ten products of rotations
 STRETCH = 0.03  # metres by which a foot rises where the leg is too short to reach

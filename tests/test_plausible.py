@@ -12,19 +12,19 @@ from shared_data import SharedData
 
 from mua import rotation
 from mua.arrays import Array
+from mua.channels import ATTRIBUTES, SH_C0
+from mua.characters.read import read_character
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 from mua.recording import LikelyMistake, Recording, TeacherWriter
 from mua.recording.plausible import Plausible, rig_findings
 from mua.recording.plausible.fit import explain, unit_of
 from mua.rig.character import Character
-from mua.rig.read import read_character
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 from mua.teachers.procedural import procedural_character
 from mua.teachers.simulated import SimulatedTeacher
 from mua.teachers.teacher import TeacherFrame
-from mua.texture.channels import ATTRIBUTES, SH_C0
 
 TEXELS = 96
 OFFSET, ROTATION, SCALE, OPACITY, SH = ATTRIBUTES.values()

@@ -5,7 +5,7 @@ import pytest
 
 from mua.baking.playback import choose, held_out, held_out_sentence, typical_frame, whole_clips
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording import RecordedClip
 
 

@@ -19,7 +19,6 @@ from mua.decode import Splats, decode_clip_frame
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.dq_skinning import blend_vertices
-from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import view_projection
 from mua.player.overlays import (
@@ -41,7 +40,8 @@ from mua.player.scene import Scene, draw_picture
 from mua.player.splats import SplatFrame
 from mua.player.surface import surface_mesh
 from mua.player.toggles import Toggles, parse_toggles
-from mua.rig.skeleton import Pose
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 
 SCREEN = (97, 131)  # pixels
 HALF = 2.0**-11  # relative rounding of a half float: the picture's format

@@ -9,12 +9,12 @@ from synthetic_avatar import synthetic_avatar
 
 from mua import rotation
 from mua.arrays import Array
-from mua.bounds import frame_boxes, root_positions, union
 from mua.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.player.focus import find_focus
 from mua.player.shot import Shot, film, full_turn
+from mua.pose.clip import Clip
+from mua.rig.bounds import frame_boxes, root_positions, union
 
 AVATAR = synthetic_avatar()
 RIG, CLIP = AVATAR.rig, AVATAR.clips[0]

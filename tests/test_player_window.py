@@ -28,7 +28,6 @@ from mua.camera import orbit
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.motion.clip import Clip
 from mua.player.focus import find_focus
 from mua.player.panel import KEYS, WIDTH
 from mua.player.session import Session
@@ -38,6 +37,7 @@ from mua.player.toggles import Toggles
 from mua.player.viewer import Viewer
 from mua.player.viewpoint import FARTHEST, NEAREST, Viewpoint, framing
 from mua.player.window import show
+from mua.pose.clip import Clip
 
 SIZE = (640, 360)
 FRONT = np.zeros(1)

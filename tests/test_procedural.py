@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from mua import rotation
 from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.rig.character import MAX_INFLUENCES, Character
 from mua.rig.texel_map import build_texel_map
 from mua.teachers.procedural import procedural_character

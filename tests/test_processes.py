@@ -9,10 +9,10 @@ import torch
 from synthetic_student import bands_of_frames
 from together import errors, start, trained
 
+from mua.channels import GEOMETRY
 from mua.processes import ALONE, Processes
 from mua.student.model import Bands
 from mua.student.source import hold
-from mua.texture.channels import GEOMETRY
 
 State = dict[str, torch.Tensor]
 Losses = dict[tuple[str, int], float | None]

@@ -17,7 +17,7 @@ from mua.baking import pipeline
 from mua.baking.listener import Listener
 from mua.baking.order import Order
 from mua.decode import decode_clip_frame
-from mua.motion.resample import resample
+from mua.pose.resample import resample
 from mua.student.settings import preset
 
 AVATAR = synthetic_avatar()

@@ -8,12 +8,12 @@ from people import person, walk, world
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
-from mua.motion.clip import Clip
 from mua.motion.match import match_joints
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 ANGLE_BOUND = 1e-4  # degrees: chains of at most 12 joints in double precision
 

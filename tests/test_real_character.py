@@ -6,9 +6,9 @@ import pytest
 from shared_data import SharedData
 from silent import Silent
 
+from mua.baking.evaluate import TRAINING
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
-from mua.evaluate import TRAINING
 from mua.student.settings import preset
 
 LEAST_TRAINING = 0.80  # share of the variance about the mean texture

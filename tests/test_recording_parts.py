@@ -11,10 +11,10 @@ from recordings import RATE, FormulaTeacher, clip, content, plan
 from synthetic_avatar import synthetic_rig
 from together import errors, start
 
+from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.recording import PlannedClip, Recording, TeacherWriter, parts, record
 from mua.recording.parts import divide, join_parts, part_directory, record_share, share
-from mua.texture.channels import CHANNELS
 
 
 def record_parts(directory: Path, processes: int) -> None:

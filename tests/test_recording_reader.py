@@ -13,9 +13,9 @@ from recordings import RATE, FormulaTeacher, aligned, content, plan, truth, writ
 from synthetic_avatar import synthetic_rig
 
 from mua.arrays import Array
+from mua.channels import GEOMETRY
 from mua.errors import InputError
 from mua.recording import Recording, TeacherWriter
-from mua.texture.channels import GEOMETRY
 from mua.texture.fill import Fill
 
 HALF = 2.0**-11  # relative rounding error of half precision

@@ -16,12 +16,12 @@ from recordings import RATE, FormulaTeacher, content, plan
 from synthetic_avatar import synthetic_rig
 
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 from mua.recording import workers
 from mua.recording.parts import is_joined, join_parts, record_share
 from mua.recording.workers import record_by_workers
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 from mua.teachers.teacher import TeacherFrame
 
 TESTS = Path(__file__).parent

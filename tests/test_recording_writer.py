@@ -19,8 +19,8 @@ from synthetic_avatar import synthetic_rig
 
 from mua.arrays import Array
 from mua.errors import InputError
+from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
-from mua.rig.skeleton import Pose
 
 
 def test_full_images_are_taken_at_the_valid_texels(tmp_path: Path) -> None:

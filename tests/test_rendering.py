@@ -8,10 +8,10 @@ import pytest
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import Camera, orbit
+from mua.channels import SH_C0
 from mua.decode import Splats, box_of
 from mua.kernels.splat_draw import MOST_ALPHA
 from mua.rendering import frame_bounds, render_over, render_premultiplied
-from mua.texture.channels import SH_C0
 
 RED, GREEN = (1.0, 0, 0), (0, 1.0, 0)
 BOX = np.array([[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]])

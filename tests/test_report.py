@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from mua.baking.evaluate import Errors, Picture, held_out_errors
 from mua.baking.report import HELD_OUT, Stored, as_json, closing, markdown, table
 from mua.cli.display import Display
-from mua.evaluate import Errors, Picture, held_out_errors
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording import RecordedClip, WholeFrame
 
 

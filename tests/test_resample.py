@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
-from mua.motion.clip import Clip, Stretches
-from mua.motion.resample import resample
+from mua.pose.clip import Clip, Stretches
+from mua.pose.resample import resample
 
 BOUND = 64 * np.finfo(float).eps  # a slerp is some dozens of operations on numbers up to 1
 

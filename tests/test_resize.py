@@ -12,11 +12,12 @@ from scenes import (
     scene,
 )
 
+from mua.atlas.surfaces import Surfaces
+from mua.characters.assemble import assemble
+from mua.characters.correction import ADULT
+from mua.characters.figure_size import FigureSize
+from mua.characters.resize import resized
 from mua.errors import InputError
-from mua.rig.assemble import Surfaces, assemble
-from mua.rig.correction import ADULT
-from mua.rig.figure_size import FigureSize
-from mua.rig.resize import resized
 
 
 @pytest.mark.parametrize(("unit", "told"), [(100.0, 0.01), (1000.0, 0.001), (0.01, 100.0)])

@@ -9,16 +9,16 @@ from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 
 from mua import rotation
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.amass import nominal_skeleton
 from mua.motion.bvh import read_bvh
-from mua.motion.clip import Clip
 from mua.motion.match import match_joints
 from mua.motion.quality import measure_motion
 from mua.motion.retarget import retarget, retarget_matched
 from mua.motion.source import SourceMotion
-from mua.rig.read import read_surfaces
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 # Chains of at most 12 joints, some 100 operations each on lengths up to 10 m, divided by bones of at least 0.1 m.
 POSITION_BOUND = 12 * 100 * 10 * np.finfo(float).eps

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from mua import rotation
+from mua.channels import SH_C0, SH_C1
 from mua.texture import sh
-from mua.texture.channels import SH_C0, SH_C1
 
 ROUNDING = 64 * float(np.finfo(np.float64).eps)  # a rotation and a sum of four products of values of about 1
 
 
 def colors(coefficients: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """[N, M, 3] the colours that mua.texture.channels defines, in M directions."""
+    """[N, M, 3] the colours that mua.channels defines, in M directions."""
     c0, c1, c2, c3 = coefficients.reshape(-1, 4, 1, 3).swapaxes(0, 1)
     x, y, z = directions.T[:, None, :, None]
     return 0.5 + SH_C0 * c0 + SH_C1 * (-y * c1 + z * c2 - x * c3)

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
-from mua.rig.read import read_surfaces
 
 LFS = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
 WRONG = {

@@ -7,11 +7,12 @@ import pytest
 from tube import still, swing, tube
 
 from mua import rotation
+from mua.channels import ATTRIBUTES, CHANNELS
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
-from mua.motion.clip import Clip, Stretches
+from mua.pose.clip import Clip, Stretches
+from mua.pose.skeleton import Pose
 from mua.rig.character import Character
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 from mua.teachers import texels
 from mua.teachers.bones import fit_bones
 from mua.teachers.chords import SEEN
@@ -21,7 +22,6 @@ from mua.teachers.simulation import Simulation
 from mua.teachers.still import StillTeacher
 from mua.teachers.teacher import TeacherFrame
 from mua.texture import rims
-from mua.texture.channels import ATTRIBUTES, CHANNELS
 
 SIZE = 48
 SINGLE = 32 * float(np.finfo(np.float32).eps)  # metres; sums of some ten terms of up to 2 m

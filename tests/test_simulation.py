@@ -9,7 +9,7 @@ from tube import RATE, still, swing, tube
 from mua import rotation
 from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.rig.character import Character
 from mua.teachers.bones import Bones, fit_bones
 from mua.teachers.simulation import DEVICE, Simulation, gravity_beyond_rest, one_rings

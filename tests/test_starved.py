@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.rig.charts import find_charts, starved
+from mua.atlas.chart_quality import starved
+from mua.rig.charts import find_charts
 
 ROWS, COLUMNS = 12, 20
 

@@ -8,13 +8,13 @@ from tube import HEIGHT, RADIUS, tube
 
 from mua.arrays import Array
 from mua.camera import orbit
+from mua.channels import SH_C0
 from mua.decode import pose_splats
 from mua.rendering import render_premultiplied
 from mua.rig.character import Character
 from mua.rig.texel_map import build_texel_map
 from mua.teachers import texels
 from mua.teachers.still import StillTeacher
-from mua.texture.channels import SH_C0
 from mua.texture.sharpness import SPREAD, Sharpness
 
 SCREEN = (96, 256)  # pixels

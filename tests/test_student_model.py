@@ -6,11 +6,11 @@ import pywt
 import torch
 from synthetic_student import INPUTS, SIZE, VERTICES, bands_of_frames, random_student, valid_texels
 
+from mua.channels import CHANNELS, GEOMETRY
 from mua.errors import InputError
-from mua.motion.encoding import PoseEncoding
+from mua.pose.encoding import PoseEncoding
 from mua.student.model import Alphas, Branch, Student, build_mlp
 from mua.student.settings import PRESETS, Settings, preset
-from mua.texture.channels import CHANNELS, GEOMETRY
 
 FLOAT32 = float(np.finfo(np.float32).eps)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.rig.chart_shapes import Shape, ways
-from mua.rig.taken_cells import TakenCells, beside, each_bit, first_bits, places
+from mua.atlas.chart_shapes import Shape, ways
+from mua.atlas.taken_cells import TakenCells, beside, each_bit, first_bits, places
 
 SIDE = 37
 

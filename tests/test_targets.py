@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import torch
 
+from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY
 from mua.student.targets import LEAST_SPREAD, channel_weights, still_channels
-from mua.texture.channels import APPEARANCE, ATTRIBUTES, GEOMETRY
 
 SPREADS = {"offset": 0.02, "rotation": 0.3, "scale": 0.5, "opacity": 4.0, "SH": 0.1}
 

@@ -7,10 +7,10 @@ import pytest
 import trimesh
 
 from mua.arrays import Array
+from mua.characters.read import read_character
+from mua.pose.skeleton import Skeleton
 from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
-from mua.rig.read import read_character
-from mua.rig.skeleton import Skeleton
 from mua.rig.surface_points import points_on_surface
 from mua.rig.template import CLOSE_ENOUGH, make_template
 from mua.rig.texel_map import build_texel_map

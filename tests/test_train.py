@@ -21,6 +21,7 @@ from synthetic_student import (
 )
 from trainings import one_by_one
 
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.student import coarse, targets
 from mua.student import regress as regression
 from mua.student import source as sources
@@ -34,7 +35,6 @@ from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights, joint_targets, still_channels
 from mua.student.train import BestCoefficients, train
-from mua.texture.channels import APPEARANCE, GEOMETRY
 
 CPU = torch.device("cpu")
 

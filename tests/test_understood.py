@@ -12,8 +12,8 @@ from trainings import mua_train, sentence
 from mua import rotation
 from mua.baking.frames_picture import CAPTION, CELL
 from mua.baking.understood import understand
+from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
-from mua.rig.skeleton import Pose
 
 EXAMPLE = load_example("own_teacher")
 RIG = EXAMPLE.build_rig()

@@ -10,6 +10,7 @@ from synthetic_student import random_student
 from tube import swing, tube
 
 from mua.arrays import Array
+from mua.channels import ATTRIBUTES
 from mua.recording import Recording, TeacherWriter
 from mua.rig.build import build_rig
 from mua.student.distil import distil
@@ -17,7 +18,6 @@ from mua.student.export import export_branches
 from mua.student.model import Student
 from mua.student.settings import PRESETS, Schedule
 from mua.student.unseen import LEVEL_GAINS, leave_unseen
-from mua.texture.channels import ATTRIBUTES
 
 TEXELS = 128
 QUICK = replace(

@@ -9,11 +9,11 @@ from PIL import Image
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
 
 from mua import rotation
+from mua.atlas.surfaces import Surfaces
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
 from mua.motion.retarget import retarget
-from mua.rig.assemble import Surfaces
-from mua.rig.read import read_surfaces
 
 JOINTS = ["Hips", "Hips/Spine", "Hips/Spine/Head"]
 HEIGHTS = (0.0, 60.0, 120.0)  # of the joints above the floor, centimetres, along the stage's up axis

@@ -8,9 +8,9 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, Vt
 from test_usd import edited, write_character
 
+from mua.atlas.surfaces import Surfaces
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
-from mua.rig.assemble import Surfaces
-from mua.rig.read import read_surfaces
 
 Change = Callable[[Usd.Stage], object]
 

@@ -9,12 +9,13 @@ import pytest
 from patches import patch, plain, points, ramp, surfaces_of, texels_and_colours, uv_map
 from scipy import ndimage
 
-from mua.rig.bake_texture import bake_texture
-from mua.rig.charts import areas, find_charts, isometric, signed_areas
-from mua.rig.read import read_surfaces
-from mua.rig.scene import Material, Wrap
+from mua.atlas.bake_texture import bake_texture
+from mua.atlas.chart_quality import isometric
+from mua.atlas.uv import build_atlas
+from mua.characters.read import read_surfaces
+from mua.rig.charts import areas, find_charts, signed_areas
 from mua.rig.texel_map import build_texel_map
-from mua.rig.uv import build_atlas
+from mua.scene import Material, Wrap
 
 ROUNDED = 1  # a colour of a linear ramp is exact before it is rounded to a byte, once in the ramp and once in the atlas
 LENGTH_BOUND = 1e-9  # float64 of metres through a handful of products and an eigendecomposition

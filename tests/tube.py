@@ -4,9 +4,9 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character, Mesh
-from mua.rig.skeleton import Skeleton
 
 HEIGHT, RADIUS = 1.75, 0.12  # metres
 RATE = 30.0

@@ -18,8 +18,8 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)")
 GUIDES, FORMAT, REFERENCE = "docs", "schemas/README.md", "docs/reference.md"
 GIVEN = (  # records that public functions take or give
     "mua.rig.rig.Rig",
-    "mua.rig.skeleton.Skeleton",
-    "mua.motion.encoding.PoseEncoding",
+    "mua.pose.skeleton.Skeleton",
+    "mua.pose.encoding.PoseEncoding",
     "mua.baking.distillation.Baked",
     "mua.baking.listener.Listener",
 )

@@ -14,9 +14,9 @@ import numpy as np
 
 import mua
 from mua import rotation
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import build_texel_map
 
 RATE = 30.0  # frames per second

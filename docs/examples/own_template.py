@@ -9,9 +9,9 @@ import numpy as np
 import mua
 from mua import rotation
 from mua.decode import pose_splats
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap
 from mua.texture import sh
 

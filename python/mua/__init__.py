@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from mua.baking.bake import bake
     from mua.baking.train import train
     from mua.camera import Camera
+    from mua.characters.load import load_rig
     from mua.decode import Splats
-    from mua.motion.clip import Clip
+    from mua.pose.clip import Clip
+    from mua.pose.skeleton import Pose
     from mua.recording import Recording, TeacherWriter
     from mua.rendering import render
-    from mua.rig.load import load_rig
-    from mua.rig.skeleton import Pose
 
 __version__ = "0.1.0"
 __all__ = [
@@ -54,14 +54,14 @@ __all__ = [
 _PLACES = {
     "Avatar": "mua.asset.avatar:Avatar",
     "Camera": "mua.camera:Camera",
-    "Clip": "mua.motion.clip:Clip",
-    "Pose": "mua.rig.skeleton:Pose",
+    "Clip": "mua.pose.clip:Clip",
+    "Pose": "mua.pose.skeleton:Pose",
     "Recording": "mua.recording:Recording",
     "Splats": "mua.decode:Splats",
     "TeacherWriter": "mua.recording:TeacherWriter",
     "bake": "mua.baking.bake:bake",
     "load": "mua.asset.read:read",
-    "load_rig": "mua.rig.load:load_rig",
+    "load_rig": "mua.characters.load:load_rig",
     "render": "mua.rendering:render",
     "save": "mua.asset.write:write",
     "train": "mua.baking.train:train",

@@ -7,17 +7,17 @@ import numpy.typing as npt
 
 from mua import rotation
 from mua.arrays import Array
+from mua.channels import APPEARANCE
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
 from mua.kernels.inverse_dwt import add_static, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
 from mua.model import Branch, Mlp, Model, Wavelet
-from mua.motion.clip import Clip
-from mua.motion.descriptor import describe_window
-from mua.motion.resample import sample
+from mua.pose.clip import Clip
+from mua.pose.descriptor import describe_window
+from mua.pose.resample import sample
+from mua.pose.skeleton import Pose
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
-from mua.texture.channels import APPEARANCE
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -26,7 +26,7 @@ class Splats:
 
     canonical: Array  # [V, 3] canonical vertices
     mesh: Array  # [V, 3] posed vertices
-    texture: Array  # [N, 23] raw channels (mua.texture.channels)
+    texture: Array  # [N, 23] raw channels (mua.channels)
     centres: Array  # [N, 3]
     rotations: Array  # [N, 4] unit, wxyz
     scales: Array  # [N, 3] standard deviations

@@ -6,7 +6,7 @@ Spatial tensors are channel-first: a GPU reads them plane by plane.
 from dataclasses import dataclass
 
 from mua.arrays import Array
-from mua.motion.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Normalization, PoseEncoding
 from mua.rig.rig import Rig
 
 

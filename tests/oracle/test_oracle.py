@@ -21,16 +21,16 @@ from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
-from mua.bounds import playback_bounds
 from mua.camera import orbit
 from mua.decode import decode_clip_frame
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import splat_project
-from mua.motion.encoding import PoseEncoding
-from mua.motion.resample import resample
+from mua.pose.encoding import PoseEncoding
+from mua.pose.resample import resample
+from mua.pose.skeleton import Skeleton
 from mua.rendering import frame_bounds
-from mua.rig.skeleton import Skeleton
+from mua.rig.bounds import playback_bounds
 from mua.student.settings import preset
 
 POSITION, COLOUR = 1e-6, 1e-5  # metres; of 1: stored f32 numbers are rounded by 6e-8 of themselves

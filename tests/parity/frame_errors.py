@@ -13,16 +13,16 @@ from packed_splats import unpacked
 from splat_rounding import exact_keys
 
 from mua.arrays import Array
-from mua.bounds import frame_boxes, union
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device, open_device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
-from mua.motion.clip import Clip
-from mua.motion.resample import resample
 from mua.player.buffers import AvatarBuffers
 from mua.player.splats import SplatFrame
+from mua.pose.clip import Clip
+from mua.pose.resample import resample
+from mua.rig.bounds import frame_boxes, union
 from mua.rig.rig import Rig
 
 VISIBLE_WORD = 7  # of `arguments`

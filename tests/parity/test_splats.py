@@ -15,7 +15,6 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset import write
 from mua.asset.avatar import Avatar
-from mua.bounds import union
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import Splats, box_of, decode_clip_frame
 from mua.gpu import Device
@@ -25,6 +24,7 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.splats import SplatFrame
 from mua.rendering import frame_bounds, render_premultiplied
+from mua.rig.bounds import union
 
 INDICES = (0, 3, 6)  # of the frame that each avatar shows
 VISIBLE_WORD = 7  # of `arguments`

@@ -17,11 +17,11 @@ from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.model import Layer, Mlp
-from mua.motion.clip import Clip
-from mua.motion.descriptor import describe
-from mua.motion.encoding import Normalization, PoseEncoding
-from mua.motion.resample import resample
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.descriptor import describe
+from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.resample import resample
+from mua.pose.skeleton import Skeleton
 
 BOUND = 2048 * np.finfo(float).eps  # some hundred operations, each rounded once, on numbers up to ten
 ROUNDING = np.finfo(np.float32).eps  # what the kernels read is rounded to float32 in the end

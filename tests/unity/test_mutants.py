@@ -20,7 +20,7 @@ from mua.asset.read import MAX_FRAMES, decode_tree, parse_checked
 from mua.asset.tensors import Storage
 from mua.asset.write import encode
 from mua.decode import decode_clip_frame
-from mua.motion.resample import resample
+from mua.pose.resample import resample
 
 STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32")
 BATCH = 500  # files on the disk at once

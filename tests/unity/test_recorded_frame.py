@@ -15,7 +15,6 @@ from mua.arrays import Array
 from mua.asset import read, write
 from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
-from mua.bounds import root_positions
 from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
@@ -23,6 +22,7 @@ from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
 from mua.rendering import render_premultiplied
+from mua.rig.bounds import root_positions
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 

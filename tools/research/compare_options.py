@@ -26,6 +26,7 @@ from left_out import left_out, some
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
 from mua.files import replacing
 from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints, run_key
@@ -37,7 +38,6 @@ from mua.student.optimise import Progress
 from mua.student.settings import Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BRANCHES, Samples, train
-from mua.texture.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
 
 CPU = torch.device("cpu")
 BATCH = 64  # frames of a measurement

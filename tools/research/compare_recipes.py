@@ -25,6 +25,7 @@ from scipy.optimize import curve_fit
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.files import replacing
 from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints
@@ -37,7 +38,6 @@ from mua.student.settings import RECIPES, Settings, preset, with_recipe
 from mua.student.source import Source, hold
 from mua.student.targets import channel_weights
 from mua.student.train import BRANCHES, fit_branch
-from mua.texture.channels import APPEARANCE, GEOMETRY
 
 PAPER_STEPS = 1_000_000
 BATCH = 64  # frames of a measurement

@@ -20,6 +20,7 @@ import typer
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.recording import Recording
 from mua.student.descend import set_means
 from mua.student.factorize import Factors, separable_blendshapes
@@ -27,7 +28,6 @@ from mua.student.model import STATIC_LEVELS, Bands, Branch, lowpass_texels
 from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BestCoefficients, factorize_channel
-from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import synthesise_lowpass, waverec2
 
 FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the preset's ranks

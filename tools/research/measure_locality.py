@@ -18,6 +18,7 @@ from left_out import left_out
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
 from mua.recording import Recording
 from mua.student.distil import prepare
 from mua.student.local import Parts
@@ -26,7 +27,6 @@ from mua.student.regress import whitening
 from mua.student.settings import preset
 from mua.student.smoother import fit_smoother
 from mua.student.targets import channel_weights
-from mua.texture.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
 
 STRIDE = 16  # of the samples
 FADES = (1.0, 0.8, 0.7, 0.6, 0.5, 0.3)

@@ -13,9 +13,9 @@ from mua.arguments import finite_array, float_type, told, unit_quaternions, whol
 from mua.decode import Splats, decode, decode_clip_frame
 from mua.errors import InputError
 from mua.model import Model
-from mua.motion.clip import Clip
-from mua.motion.resample import frames_at
-from mua.rig.skeleton import Pose
+from mua.pose.clip import Clip
+from mua.pose.resample import frames_at
+from mua.pose.skeleton import Pose
 from mua.rig.surface import Surface
 
 

@@ -12,11 +12,11 @@ from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.tensors import indices, reals
 from mua.errors import InputError
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.motion.clip import LARGEST_RATE, LEAST_RATE, Clip
-from mua.motion.encoding import Normalization, PoseEncoding
+from mua.pose.clip import LARGEST_RATE, LEAST_RATE, Clip
+from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.rig.surface import END, Surface, block_triangles, blocks, codes_of, count_codes
 from mua.rig.texel_map import TexelMap
 

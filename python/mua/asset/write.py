@@ -16,10 +16,10 @@ from mua.asset.tensors import Storage, pack, pack_indices
 from mua.errors import InputError
 from mua.files import write_bytes
 from mua.model import Branch, Coarse, DetailBand, Mlp
-from mua.motion.clip import Clip
-from mua.motion.encoding import Normalization, PoseEncoding
+from mua.pose.clip import Clip
+from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.rig.surface import Surface
 
 

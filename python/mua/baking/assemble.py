@@ -9,13 +9,13 @@ from PIL import Image
 from mua import __version__
 from mua.asset.avatar import Avatar
 from mua.baking.playback import typical_frame
-from mua.bounds import playback_bounds
+from mua.baking.portrait import portrait
 from mua.decode import decode_clip_frame
 from mua.likeness.background import background_for, over
-from mua.motion.clip import Clip
-from mua.motion.encoding import PoseEncoding
-from mua.portrait import portrait
+from mua.pose.clip import Clip
+from mua.pose.encoding import PoseEncoding
 from mua.rendering import render_premultiplied, to_bytes
+from mua.rig.bounds import playback_bounds
 from mua.rig.rig import Rig
 from mua.rig.triangulate import triangulate
 from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet

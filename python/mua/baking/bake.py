@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 from mua.arguments import PathLike
 from mua.asset.tensors import Storage
+from mua.atlas.detail import UvMode
 from mua.baking.listener import Listener, Log
 from mua.baking.options import read_order
 from mua.baking.order import DeviceName
 from mua.extras import naming_extras
 from mua.motion.planted_feet import Feet
-from mua.rig.detail import UvMode
 
 if TYPE_CHECKING:  # torch takes seconds to load
     from mua.baking.distillation import Baked

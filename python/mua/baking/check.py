@@ -16,12 +16,12 @@ from mua.files import replacing, require_writable, write_bytes
 from mua.likeness import told
 from mua.likeness.compare import Likeness, compare
 from mua.likeness.sheet import likeness_sheet
-from mua.motion.clip import Clip
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
+from mua.pose.clip import Clip
 from mua.rig.character import Character
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"

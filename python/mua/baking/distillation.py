@@ -15,15 +15,15 @@ from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.baking import playback, report
 from mua.baking.assemble import assemble
+from mua.baking.contact_sheet import contact_sheet
+from mua.baking.evaluate import Errors, evaluate
 from mua.baking.listener import Listener
 from mua.baking.order import ALL, DeviceName
-from mua.contact_sheet import contact_sheet
 from mua.errors import InputError
-from mua.evaluate import Errors, evaluate
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
 from mua.likeness.compare import Likeness
 from mua.memory import give_back
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.student.distil import distil, distil_stage

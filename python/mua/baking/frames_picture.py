@@ -6,9 +6,9 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mua.arrays import Array
+from mua.baking.portrait import portrait
 from mua.decode import pose_splats
 from mua.likeness.background import background_for, over
-from mua.portrait import portrait
 from mua.recording import WholeFrame
 from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.rig import Rig

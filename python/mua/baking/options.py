@@ -8,14 +8,14 @@ from typing import get_args
 
 from mua.arguments import PathLike, as_names, as_path, as_paths, finite_array, one_of, whole_number
 from mua.asset.tensors import Storage
+from mua.atlas.detail import UvMode, read_detail
 from mua.baking.order import DeviceName, Order
+from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
 from mua.files import missing_directory
 from mua.inputs import require_file, require_motion
 from mua.motion.mapping import read_mapping
 from mua.motion.planted_feet import Feet
-from mua.rig.detail import UvMode, read_detail
-from mua.rig.figure_size import FigureSize
 from mua.student.settings import Settings, preset, with_recipe
 
 SUFFIX = ".muaavatar"

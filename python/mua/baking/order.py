@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Literal
 
 from mua.asset.tensors import Storage
+from mua.atlas.detail import Detail, UvMode
+from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.motion.planted_feet import Feet
-from mua.rig.detail import Detail, UvMode
-from mua.rig.figure_size import AS_FOUND, FigureSize
 from mua.student.settings import Settings
 
 ALL, NONE = "all", "none"  # of the clips

@@ -7,6 +7,7 @@ from functools import partial
 import torch
 
 from mua import __version__
+from mua.atlas.texel_density import describe_texels
 from mua.baking.check import likeness_of
 from mua.baking.distillation import Baked, Distillation, choose_device, finish, teach
 from mua.baking.listener import Listener
@@ -21,13 +22,12 @@ from mua.likeness import told
 from mua.likeness.compare import Likeness
 from mua.locks import DirectoryLock
 from mua.memory import give_back
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
 from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.template import make_template
-from mua.rig.texel_density import describe_texels
 from mua.teachers.simulated import SimulatedTeacher
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording import PlannedClip
 
 HELD_SHARE = 5  # without --hold-out, the last fifth of every clip is held out

@@ -7,7 +7,7 @@ import numpy as np
 from mua.baking.order import ALL, NONE
 from mua.baking.plan import ENDING
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording import RecordedClip
 
 LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is pictured

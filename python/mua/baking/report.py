@@ -9,8 +9,8 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
-from mua.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
-from mua.texture.channels import ATTRIBUTES
+from mua.baking.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_out_errors
+from mua.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"
 UNSAID = "the recording does not say whether its teacher is a capture or a simulation"

@@ -3,17 +3,17 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mua.atlas.detail import Detail, UvMode
 from mua.baking.order import Order
+from mua.characters.figure_size import AS_FOUND, FigureSize
+from mua.characters.read import read_character
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
-from mua.motion.resample import resample
+from mua.pose.clip import Clip
+from mua.pose.resample import resample
 from mua.rig.character import Character
-from mua.rig.detail import Detail, UvMode
-from mua.rig.figure_size import AS_FOUND, FigureSize
-from mua.rig.read import read_character
 
 RATE = 30.0  # frames per second of every clip, and of the window that the student sees
 ATLAS = 1024  # texels of the base-colour atlas along a side

@@ -7,11 +7,11 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
+from mua.channels import ATTRIBUTES, SH_C0
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 from mua.recording import Recording, WholeFrame
 from mua.recording.plausible import Finding, Plausible, rig_findings
-from mua.rig.skeleton import Skeleton
-from mua.texture.channels import ATTRIBUTES, SH_C0
 
 PICTURED = 3  # frames
 MESHES = 64  # that are looked at, beside those of whole frames

@@ -16,12 +16,12 @@ from mua.errors import InputError
 from mua.gpu import Commands, Device
 from mua.gpu.failure import naming
 from mua.gpu.timestamps import Timestamps
-from mua.motion.clip import Clip
-from mua.motion.resample import resample
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer
 from mua.player.shot import Shot, film
 from mua.player.splats import SplatFrame
+from mua.pose.clip import Clip
+from mua.pose.resample import resample
 
 WARM_UP = 3  # frames before the first that counts
 COPIED = 128 << 20  # bytes of the copy; more than any cache holds

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from mua.asset.tensors import Storage
+from mua.atlas.detail import UvMode
 from mua.baking.options import read_order
 from mua.baking.order import DeviceName
 from mua.cli.console import printer
@@ -13,7 +14,6 @@ from mua.cli.failure import refusing
 from mua.cli.offered import offered
 from mua.errors import InputError
 from mua.motion.planted_feet import Feet
-from mua.rig.detail import UvMode
 from mua.student.settings import PRESETS, RECIPES
 
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.player.motion import require_frame
 from mua.player.viewpoint import FARTHEST, NEAREST
+from mua.pose.clip import Clip
 
 LARGEST = 8192  # pixels along a side
 VIDEOS = (".mp4", ".webm", ".gif")

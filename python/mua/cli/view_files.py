@@ -19,12 +19,12 @@ from mua.camera import Camera
 from mua.cli.choices import is_video, parse_frame, parse_frames
 from mua.cli.view_options import Kind
 from mua.files import replacing
-from mua.motion.clip import Clip
 from mua.player.motion import named_clip, player_clips
 from mua.player.picture import Reference, over
 from mua.player.shot import Look, film, full_turn
 from mua.player.source import Source
 from mua.player.toggles import Toggles
+from mua.pose.clip import Clip
 
 Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
 

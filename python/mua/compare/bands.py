@@ -13,6 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from mua.asset.count import synthesis
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.compare.descend import Groups
 from mua.compare.maps import CHANNELS as MAP_CHANNELS
 from mua.compare.maps import SurfaceMaps
@@ -24,7 +25,6 @@ from mua.student.model import STATIC_LEVELS, Bands, Branch, lowpass_texels
 from mua.student.optimise import Run
 from mua.student.settings import Ranks
 from mua.student.train import start_branch
-from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import filters
 
 PARTS = {"geometry": GEOMETRY, "appearance": APPEARANCE}

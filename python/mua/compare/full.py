@@ -6,6 +6,7 @@ from dataclasses import replace
 import torch
 from torch import Tensor, nn
 
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.compare.descend import Groups
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
@@ -18,7 +19,6 @@ from mua.student.optimise import Run
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Ranks
 from mua.student.targets import joint_targets
-from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import synthesise_lowpass, waverec2
 
 PARTS = (GEOMETRY, APPEARANCE)

@@ -9,14 +9,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from mua.arrays import Array
-from mua.bounds import frame_boxes, root_positions, union
 from mua.camera import Camera, orbit
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.motion.clip import Clip
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.textured import TexturedFrame
+from mua.pose.clip import Clip
 from mua.recording import WholeFrame
+from mua.rig.bounds import frame_boxes, root_positions, union
 from mua.rig.rig import Rig
 
 FIRST_VIEW = np.radians(30)  # azimuth in the world, from +Z towards +X

@@ -8,10 +8,11 @@ from torch import Tensor
 
 from mua import rotation
 from mua.arrays import Array
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.compare.system import Motion, Sizes, TrainingFrames
 from mua.kernels.dq_skinning import blend_vertices
-from mua.motion.clip import Clip
-from mua.motion.descriptor import describe, heading_of
+from mua.pose.clip import Clip
+from mua.pose.descriptor import describe, heading_of
 from mua.recording import Recording
 from mua.rig.rig import Rig
 from mua.student.coarse import fit_coarse
@@ -22,7 +23,6 @@ from mua.student.settings import Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights
 from mua.teachers.bones import figure_scale
-from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 
 
 def training_frames(recording: Recording, settings: Settings, *, run: Run) -> TrainingFrames:

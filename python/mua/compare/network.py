@@ -13,6 +13,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from mua.channels import CHANNELS
 from mua.compare.descend import Groups, descend
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames, coarse_flops, coarse_parameters
 from mua.student.checkpoint import Checkpoints
@@ -22,7 +23,6 @@ from mua.student.model import Coarse, linear_layers
 from mua.student.optimise import Report, Run
 from mua.student.settings import Generalisation
 from mua.teachers.bones import figure_scale
-from mua.texture.channels import CHANNELS
 
 FRAMES_AT_ONCE = 16
 

@@ -12,13 +12,13 @@ from typing import Any, Protocol
 import torch
 from torch import Tensor
 
-from mua.motion.encoding import PoseEncoding
+from mua.channels import CHANNELS
+from mua.pose.encoding import PoseEncoding
 from mua.rig.rig import Rig
 from mua.student.local import Parts
 from mua.student.model import Bands, Coarse, Student, lowpass_texels
 from mua.student.optimise import Report
 from mua.student.settings import Settings
-from mua.texture.channels import CHANNELS
 
 ALL = slice(0, CHANNELS)
 
@@ -50,7 +50,7 @@ class Budget:
 class Motion:
     """F frames as the systems see them."""
 
-    descriptors: Tensor  # [F, k D] as `mua.motion.descriptor` makes them
+    descriptors: Tensor  # [F, k D] as `mua.pose.descriptor` makes them
     canonical: Tensor  # [F, V, 3] the coarse mesh before posing, metres
     posed: Tensor  # [F, V, 3] posed, relative to the root joint and its heading, metres
 

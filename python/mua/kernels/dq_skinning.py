@@ -2,7 +2,7 @@
 
 A dual quaternion is [8]: the real part q (wxyz), then the dual part 0.5 (0, t) q. Blending is linear, each term on the
 hemisphere of a reference, then divided by the norm of the real part, without orthogonalisation (Kavan et al. 2007,
-https://doi.org/10.1145/1230100.1230107). Texture channels are those of mua.texture.channels.
+https://doi.org/10.1145/1230100.1230107). Texture channels are those of mua.channels.
 """
 
 import numpy as np

@@ -7,7 +7,7 @@ of PyWavelets' mode "periodization", where a[k] is centred on sample 2k and d[k]
 import numpy as np
 
 from mua.arrays import Array
-from mua.texture.channels import APPEARANCE
+from mua.channels import APPEARANCE
 
 TILE = 16  # texels along a side of a group of UpsampleTexels
 BATCH = 4  # channels that lie together in a row of texel_channels

@@ -13,8 +13,8 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.channels import SH_C0, SH_C1
 from mua.kernels.splat_project import half_extents, half_lengths
-from mua.texture.channels import SH_C0, SH_C1
 
 MOST_ALPHA = 0.99  # of one splat at one pixel, as in 3D Gaussian Splatting
 BAND_PIXELS = 1 << 16  # pixels drawn together, so that their indices sort as 16-bit numbers

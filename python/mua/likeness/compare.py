@@ -15,9 +15,9 @@ from mua.likeness.measure import Agreement, agreement, together, worst_place
 from mua.likeness.painter import Painter
 from mua.likeness.posing import Moment, Poser, carriers, skinned
 from mua.likeness.splats import SplatPainter
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.rig.character import Character
-from mua.rig.scene import Source
+from mua.scene import Source
 from mua.teachers.still import StillTeacher
 
 SCREEN = (384, 512)  # width, height, pixels

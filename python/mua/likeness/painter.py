@@ -8,11 +8,11 @@ import numpy as np
 from PIL import Image
 
 from mua.arrays import Array
+from mua.atlas.filtering import bled
+from mua.atlas.opacity import EDGE, cut_out
 from mua.camera import Camera
 from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
-from mua.rig.filtering import bled
-from mua.rig.opacity import EDGE, cut_out
-from mua.rig.scene import Material, Part
+from mua.scene import Material, Part
 
 SAMPLES = 3  # along a side of a pixel; an odd number, so that no coverage is exactly one half
 LARGEST = 2048  # texels along a side of a texture: no picture shows more

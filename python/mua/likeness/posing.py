@@ -6,12 +6,12 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip, Stretches
-from mua.motion.descriptor import heading_of
-from mua.rig.assemble import weighted
-from mua.rig.rigid_skeleton import rest_pose
-from mua.rig.scene import Part, Scene, Source
-from mua.rig.skeleton import Pose, Skeleton
+from mua.characters.assemble import weighted
+from mua.characters.rigid_skeleton import rest_pose
+from mua.pose.clip import Clip, Stretches
+from mua.pose.descriptor import heading_of
+from mua.pose.skeleton import Pose, Skeleton
+from mua.scene import Part, Scene, Source
 
 REST = "as the file stands"
 AGREED = 0.5  # of the surface: where less of it is turned alike, it has no heading of its own

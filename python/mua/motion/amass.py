@@ -13,9 +13,9 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.motion.source import SourceMotion
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 # Joint, parent and offset in centimetres; sided joints are given for the left (+X) and mirrored. In the models' order.
 _BODY = (

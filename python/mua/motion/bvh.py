@@ -12,10 +12,10 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.clip import Clip
-from mua.motion.joint_names import roles
 from mua.motion.source import SourceMotion
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.joint_names import roles
+from mua.pose.skeleton import Skeleton
 
 UNITS = (1.0, 0.01, 0.001, 0.1, 0.0254)  # metres per unit, the likeliest first
 PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child to giant

@@ -4,11 +4,11 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.descriptor import heading_of
-from mua.motion.joint_names import SIDES, Roles, roles
 from mua.motion.rest import frame
 from mua.motion.trunk import AROUND, nearest_axis, trunk_of, unit
-from mua.rig.skeleton import Skeleton
+from mua.pose.descriptor import heading_of
+from mua.pose.joint_names import SIDES, Roles, roles
+from mua.pose.skeleton import Skeleton
 
 AHEAD = np.array([0.0, 0, 1])  # where a bind pose faces that does not show a trunk
 

@@ -5,9 +5,9 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import STANDING, planted
-from mua.motion.joint_names import SIDES, ancestors
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.strays import stray_joints
+from mua.pose.joint_names import SIDES, ancestors
 
 SOLES = ("foot", "toe")
 GOING = 0.2  # legs per second of the hips above standing feet from which these show how far a step carries

@@ -10,9 +10,9 @@ from itertools import combinations
 import numpy as np
 
 from mua.arrays import Array
-from mua.motion.joint_names import ancestors
 from mua.motion.trunk import degrees, unit
-from mua.rig.skeleton import Skeleton
+from mua.pose.joint_names import ancestors
+from mua.pose.skeleton import Skeleton
 
 ON_FLOOR = 0.12  # of the height: how near to the lowest joint a leg ends
 ARM = 0.2  # of the height: the least length of an arm
@@ -35,7 +35,7 @@ class _Limbs:
 
 
 def roles_by_place(skeleton: Skeleton) -> dict[str, str]:
-    """Joint name to role (mua.motion.joint_names.ROLES); empty where the places do not tell."""
+    """Joint name to role (mua.pose.joint_names.ROLES); empty where the places do not tell."""
     _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     height = float(np.ptp(at[:, 1]))
     if height <= 0 or len(set(skeleton.names)) < len(skeleton.names):

@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
-from mua.motion.resample import resample
 from mua.motion.retarget import retarget_matched
 from mua.motion.source import SourceMotion
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.resample import resample
+from mua.pose.skeleton import Skeleton
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.joint_names import FINGERS, NAMESPACE, SIDES, Roles, ancestors
-from mua.motion.joint_names import roles as find_roles
 from mua.motion.joint_places import roles_by_place
-from mua.rig.skeleton import Skeleton
+from mua.pose.joint_names import FINGERS, NAMESPACE, SIDES, Roles, ancestors
+from mua.pose.joint_names import roles as find_roles
+from mua.pose.skeleton import Skeleton
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
 from mua.motion.match import Matches
-from mua.motion.resample import resample
 from mua.motion.source import SourceMotion
 from mua.motion.trunk import AT_EASE, SIDES, Trunk, lean_of, leaned, stands, trunk_of
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.resample import resample
+from mua.pose.skeleton import Skeleton
 
 
 @dataclass(frozen=True, eq=False)

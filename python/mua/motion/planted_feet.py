@@ -13,16 +13,16 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
 from mua.motion.contacts import planted, spans, speed
 from mua.motion.floor import attached
-from mua.motion.joint_names import SIDES, ancestors
 from mua.motion.match import Matches
 from mua.motion.pair import Pair
 from mua.motion.rest import Rest, rest_of
 from mua.motion.source import SourceMotion
 from mua.motion.trunk import degrees, unit
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.joint_names import SIDES, ancestors
+from mua.pose.skeleton import Skeleton
 
 Feet = Literal["auto", "keep", "plant"]
 

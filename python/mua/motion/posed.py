@@ -16,9 +16,9 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import planted
-from mua.motion.joint_names import FINGERS, ROLES, ancestors
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.trunk import AROUND, AT_EASE, Trunk, degrees, leaned, nearest_axis, trunk_of, unit
+from mua.pose.joint_names import FINGERS, ROLES, ancestors
 
 UPRIGHT = 0.75  # quantile of uprightness from which a frame shows how the trunk is at ease
 PRIOR = 0.1  # weight of the axis that a straight limb would bend about, against that seen while it bends

@@ -7,13 +7,13 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
 from mua.motion.contacts import STANDING, planted, speed
 from mua.motion.match import Matches
 from mua.motion.pair import Pair, Side
 from mua.motion.source import SourceMotion
 from mua.motion.trunk import SIDES, degrees, trunk_of, unit
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 
 SEGMENTS = {  # limbs compared: where they begin and end
     f"{side} {limb}": (f"{side} {limb}", f"{side} {end}")

@@ -38,7 +38,7 @@ def read_motion(path: Path) -> list[SourceMotion]:
 
 
 def _read_rig_clips(path: Path) -> list[SourceMotion]:
-    from mua.rig.read import read_animation  # here, because scene readers are slow to import
+    from mua.characters.read import read_animation  # here, because scene readers are slow to import
 
     animation = read_animation(path)
     if not animation.clips:

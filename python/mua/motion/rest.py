@@ -13,7 +13,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.motion.match import Matches
 from mua.motion.trunk import SIDES, nearest_axis, unit
-from mua.rig.skeleton import Skeleton
+from mua.pose.skeleton import Skeleton
 
 LIMBS = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}  # bones aligned: where they end
 CLEARLY = 10  # times nearer to the shin's plane than to the vertical one: a foot that rolls with its leg

@@ -17,17 +17,17 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
-from mua.motion.descriptor import heading_of
 from mua.motion.floor import placed
 from mua.motion.match import Matches, match_joints, missing_limbs, require_limbs
 from mua.motion.posed import posed_calibrations
-from mua.motion.resample import resample
 from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
 from mua.motion.source import SourceMotion
 from mua.motion.strays import stray_joints
 from mua.motion.trunk import SIDES, stands, unit
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.descriptor import heading_of
+from mua.pose.resample import resample
+from mua.pose.skeleton import Skeleton
 
 ALIKE = 30.0  # degrees within which an estimate agrees
 MOST = 0.75  # of the joints asked

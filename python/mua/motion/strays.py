@@ -1,7 +1,7 @@
 """Joints of a character that nothing moves and that hang on no moved joint: the trunk has to take them along."""
 
-from mua.motion.joint_names import ancestors
 from mua.motion.rest import Rest
+from mua.pose.joint_names import ancestors
 
 TRUNK = ("hips", "spine")
 

@@ -8,9 +8,9 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.joint_names import NAMESPACE, Roles, roles
+from mua.pose.joint_names import NAMESPACE, Roles, roles
+from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 
 OFFERED = 8  # names in the sentence that refuses one
 

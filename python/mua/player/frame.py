@@ -9,8 +9,8 @@ from mua import rotation
 from mua.arrays import Array
 from mua.gpu import Buffer, Commands, Device
 from mua.kernels.inverse_dwt import BATCH, ROWS
-from mua.motion.descriptor import describe_window
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, LayerBuffers
+from mua.pose.descriptor import describe_window
 
 FLOAT = 4  # bytes
 LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from mua.asset.avatar import Avatar
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.motion.load import counted, load_motion, unique_names
-from mua.motion.resample import resample
+from mua.pose.clip import Clip
+from mua.pose.resample import resample
 
 
 def player_clips(

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from mua.arrays import Array
 from mua.camera import Camera
 from mua.gpu import Device
-from mua.motion.clip import Clip
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import image_format
 from mua.player.overlays import ground_height
 from mua.player.scene import Scene, draw_picture
 from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
+from mua.pose.clip import Clip
 
 
 class Offscreen:

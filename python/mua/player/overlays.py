@@ -11,13 +11,13 @@ import wgpu
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.bounds import frame_boxes, margin
 from mua.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
-from mua.motion.clip import Clip
 from mua.player.draw import view_projection
 from mua.player.surface import surface_mesh
+from mua.pose.clip import Clip
+from mua.rig.bounds import frame_boxes, margin
 from mua.rig.rig import Rig
 
 SHADERS = Path(__file__).parent / "shaders"

@@ -9,7 +9,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.camera import Camera
 from mua.decode import decode_clip_frame
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.rendering import render_premultiplied, to_bytes
 
 

@@ -11,7 +11,6 @@ from mua.arrays import Array
 from mua.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.motion.clip import Clip
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
@@ -22,6 +21,7 @@ from mua.player.shot import GROUND, Look, eyes_of
 from mua.player.source import Source
 from mua.player.splats import SplatFrame
 from mua.player.viewpoint import Viewpoint, framing
+from mua.pose.clip import Clip
 
 SMOOTHING = 0.1  # share of the newest frame in the times on screen
 ROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)  # radians: all sides of a figure

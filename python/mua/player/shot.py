@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.arrays import Array
-from mua.bounds import frame_boxes, root_positions, union
 from mua.camera import Camera, stereo
 from mua.errors import InputError
-from mua.motion.clip import Clip
 from mua.motion.facing import front_of
 from mua.player.focus import find_focus
 from mua.player.toggles import Toggles
 from mua.player.viewpoint import Viewpoint, framing
+from mua.pose.clip import Clip
+from mua.rig.bounds import frame_boxes, root_positions, union
 from mua.rig.rig import Rig
 
 GROUND = np.array([1.0, 0, 1])  # a camera that follows keeps its height

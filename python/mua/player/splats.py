@@ -9,13 +9,13 @@ from itertools import accumulate
 import numpy as np
 
 from mua.arrays import Array
-from mua.bounds import union
 from mua.camera import Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SortedSplats
 from mua.player.frame import AvatarFrame, groups
+from mua.rig.bounds import union
 
 EYES = 2  # at most
 FLOAT = 4  # bytes

@@ -3,14 +3,14 @@
 import numpy as np
 
 from mua.arrays import Array
-from mua.bounds import frame_boxes
 from mua.gpu import Commands, Device
 from mua.kernels.inverse_dwt import pack_channels
-from mua.motion.clip import Clip
 from mua.player.frame import FLOAT, SKINNED, TEXEL_CHANNELS, groups
 from mua.player.splats import SplatFrame
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
+from mua.rig.bounds import frame_boxes
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 
 
 class TexturedFrame(SplatFrame):

@@ -7,11 +7,11 @@ import numpy as np
 import torch
 
 from mua.arrays import Array
+from mua.channels import ATTRIBUTES, CHANNELS
 from mua.errors import InputError
 from mua.files import replacing
 from mua.recording.layout import DYNAMIC_LEVELS, STATIC_LEVELS, Header
 from mua.recording.npz import read_npz
-from mua.texture.channels import ATTRIBUTES, CHANNELS
 from mua.texture.fill import Fill
 from mua.wavelets import analyse_lowpass, wavedec2
 

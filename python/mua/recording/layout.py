@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
+from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.files import write_bytes
 from mua.recording.rig_file import rig_hash
 from mua.rig.rig import Rig
-from mua.texture.channels import CHANNELS
 
 VERSION = 2
 WAVELET = "bior4.4"  # unless a writer is told another

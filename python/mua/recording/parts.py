@@ -17,6 +17,7 @@ import numpy as np
 
 from mua.arguments import PathLike, as_path
 from mua.arrays import Array
+from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.processes import Processes
 from mua.recording.layout import (
@@ -37,7 +38,6 @@ from mua.recording.record import PlannedClip, record
 from mua.recording.shard import sync
 from mua.recording.writer import TeacherWriter
 from mua.teachers.teacher import Teacher, TeacherFrame
-from mua.texture.channels import CHANNELS
 
 MOST_PARTS = 64  # each has a copy of rig and reference until it is joined
 

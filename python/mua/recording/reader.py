@@ -14,8 +14,9 @@ from torch import Tensor
 
 from mua.arguments import PathLike, as_path
 from mua.arrays import Array
+from mua.channels import CHANNELS
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
 from mua.recording.encode import load_reference
 from mua.recording.layout import (
     HEADER,
@@ -35,7 +36,6 @@ from mua.recording.layout import (
     whole_name,
 )
 from mua.recording.rig_file import load_rig, rig_hash
-from mua.texture.channels import CHANNELS
 
 Rows = Sequence[int] | Array | Tensor  # recorded frames of one kind, counted from 0 in the order of recording
 

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from mua.errors import InputError
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 from mua.recording.writer import TeacherWriter
-from mua.rig.skeleton import Pose
 from mua.teachers.teacher import Teacher, TeacherFrame
 
 

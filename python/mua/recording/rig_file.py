@@ -7,10 +7,10 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.files import replacing
+from mua.pose.skeleton import Skeleton
 from mua.recording.npz import read_npz
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap
 
 NAMES = (

@@ -10,9 +10,11 @@ import numpy as np
 
 from mua.arguments import PathLike, as_path, told, whole_number
 from mua.arrays import Array
+from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.locks import DirectoryLock
-from mua.motion.clip import LARGEST_RATE, LEAST_RATE
+from mua.pose.clip import LARGEST_RATE, LEAST_RATE
+from mua.pose.skeleton import Pose
 from mua.recording.encode import (
     HALF_MAX,
     TENSOR,
@@ -44,8 +46,6 @@ from mua.recording.plausible import Finding, LikelyMistake, Plausible, rig_findi
 from mua.recording.rig_file import save_rig
 from mua.recording.shard import Shard
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
-from mua.texture.channels import CHANNELS
 from mua.texture.fill import Fill
 from mua.wavelets import filters
 
@@ -164,7 +164,7 @@ class TeacherWriter:
         self,
         pose: Pose,
         mesh: Array | None = None,  # [V, 3] canonical template vertices, metres
-        texture: Array | None = None,  # [N, 23] at the valid texels, or [H, W, 23]; raw channels (mua.texture.channels)
+        texture: Array | None = None,  # [N, 23] at the valid texels, or [H, W, 23]; raw channels (mua.channels)
         *,
         frame: int | None = None,  # which frame of the clip this is, from 0; then frames out of order are refused
         whole: bool | None = None,  # keep the texture itself too, for evaluation; None: every `whole_every`-th time

@@ -6,8 +6,8 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from mua.arrays import Array
-from mua.motion.joint_names import roles
-from mua.rig.skeleton import Skeleton
+from mua.pose.joint_names import roles
+from mua.pose.skeleton import Skeleton
 
 BodyPart: TypeAlias = Literal["head", "hands", "arms", "body", "legs", "feet"]
 

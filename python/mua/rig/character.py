@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mua.arrays import Array
-from mua.motion.clip import Clip
-from mua.rig.scene import Source
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
+from mua.scene import Source
 
 MAX_INFLUENCES = 8
 

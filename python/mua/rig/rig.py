@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from mua.arrays import Array
+from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
-from mua.rig.skeleton import Skeleton
 from mua.rig.texel_map import TexelMap
 
 

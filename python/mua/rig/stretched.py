@@ -5,8 +5,8 @@ from typing import Protocol
 import numpy as np
 
 from mua.arrays import Array
-from mua.motion.clip import Stretches
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Stretches
+from mua.pose.skeleton import Skeleton
 
 
 class Skinned(Protocol):

@@ -14,8 +14,8 @@ from torch import Tensor
 from mua import __version__
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.motion.descriptor import choose_joints, choose_translated, describe, normalization, units_of
-from mua.motion.encoding import PoseEncoding
+from mua.pose.descriptor import choose_joints, choose_translated, describe, normalization, units_of
+from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.rig.rig import Rig

@@ -8,9 +8,9 @@ from torch import Tensor
 
 from mua import model
 from mua.arrays import Array
-from mua.motion.encoding import Normalization
+from mua.channels import APPEARANCE, GEOMETRY
+from mua.pose.encoding import Normalization
 from mua.student.model import Branch, Coarse, Detail, Student, linear_layers
-from mua.texture.channels import APPEARANCE, GEOMETRY
 from mua.wavelets import filters
 
 LEVELS = 4

@@ -13,9 +13,9 @@ from scipy.ndimage import distance_transform_edt
 from torch import Tensor
 
 from mua.arrays import Array
-from mua.motion.encoding import PoseEncoding
+from mua.pose.encoding import PoseEncoding
+from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 from mua.student.model import Branch
 from mua.student.targets import Targets
 

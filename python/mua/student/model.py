@@ -6,9 +6,9 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from mua.motion.encoding import PoseEncoding
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.pose.encoding import PoseEncoding
 from mua.student.settings import Ranks, Settings
-from mua.texture.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.wavelets import synthesise_lowpass, waverec2
 
 STATIC_LEVELS = 2  # the two finest levels are the mean over training frames
@@ -143,7 +143,7 @@ class Coarse(nn.Module):
 
 
 class Student(nn.Module):
-    """The whole student; descriptors enter as `mua.motion.descriptor` makes them and are normalised here."""
+    """The whole student; descriptors enter as `mua.pose.descriptor` makes them and are normalised here."""
 
     mean: Tensor
     scale: Tensor

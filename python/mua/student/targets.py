@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from mua.channels import ATTRIBUTES
 from mua.student.factorize import truncated_svd
 from mua.student.model import Branch, outer_products
-from mua.texture.channels import ATTRIBUTES
 
 # No one sees an attribute vary by less, in its own unit (metres on a person, quaternion, log scale, logit, SH).
 LEAST_SPREAD = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3, "SH": 1e-4}

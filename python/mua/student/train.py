@@ -7,6 +7,7 @@ from functools import partial
 import torch
 from torch import Tensor
 
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.errors import InputError
 from mua.memory import give_back
 from mua.processes import ALONE, Processes
@@ -26,7 +27,6 @@ from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
 from mua.student.unseen import hold_still, leave_unseen
 from mua.teachers.bones import figure_scale
-from mua.texture.channels import APPEARANCE, GEOMETRY
 
 BRANCHES = ("geometry", "appearance")
 
@@ -35,7 +35,7 @@ BRANCHES = ("geometry", "appearance")
 class Samples:
     """F training frames as the student sees them."""
 
-    descriptors: Tensor  # [F, k D] as `mua.motion.descriptor` makes them
+    descriptors: Tensor  # [F, k D] as `mua.pose.descriptor` makes them
     meshes: Tensor  # [F, V, 3] canonical vertices, metres
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels

@@ -14,12 +14,12 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.clip import Clip
-from mua.motion.descriptor import heading_of
+from mua.pose.clip import Clip
+from mua.pose.descriptor import heading_of
+from mua.pose.skeleton import Pose
 from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 from mua.rig.stretched import stretched
 from mua.rig.template import make_template
 from mua.teachers.bones import figure_scale, fit_bones

@@ -3,10 +3,10 @@
 import numpy as np
 
 from mua import rotation
-from mua.motion.clip import Stretches
+from mua.pose.clip import Stretches
+from mua.pose.skeleton import Pose
 from mua.rig.build import build_rig
 from mua.rig.character import Character
-from mua.rig.skeleton import Pose
 from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale
 from mua.teachers.chords import straighten

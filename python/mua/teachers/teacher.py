@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from mua.arrays import Array
-from mua.motion.clip import Clip
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +16,7 @@ class TeacherFrame:
 
     pose: Pose
     mesh: Array  # [V, 3] float32 canonical template vertices, metres
-    texture: Array  # [N, 23] float32 raw channels (mua.texture.channels) at the valid texels of the map
+    texture: Array  # [N, 23] float32 raw channels (mua.channels) at the valid texels of the map
 
 
 class Teacher(Protocol):

@@ -4,13 +4,13 @@ import numpy as np
 from scipy import sparse
 
 from mua.arrays import Array
+from mua.channels import CHANNELS, SH_C0, SH_C1
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.surface_points import points_on_surface
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teachers.light import Light
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
-from mua.texture.channels import CHANNELS, SH_C0, SH_C1
 from mua.texture.deconvolution import deconvolved
 from mua.texture.sh import LINEAR
 from mua.texture.sharpness import Sharpness, sharpness

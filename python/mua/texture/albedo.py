@@ -3,7 +3,7 @@
 import numpy as np
 
 from mua.arrays import Array
-from mua.rig.filtering import bilinear, bled, reduced
+from mua.atlas.filtering import bilinear, bled, reduced
 
 FINER = 2  # points along a texel, at which pictures are looked at that are finer than texels
 

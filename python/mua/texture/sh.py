@@ -8,7 +8,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.texture.channels import SH_C0, SH_C1
+from mua.channels import SH_C0, SH_C1
 
 LINEAR = ((1, -1), (2, 1), (0, -1))  # c1, c2, c3: which component of a, and its sign
 

@@ -4,7 +4,7 @@ using Mua.Format;
 namespace Mua.Motion
 {
     /// <summary>
-    /// A clip at the rate of an avatar's encoding: the frames of python/mua/motion/resample.py, computed when asked for.
+    /// A clip at the rate of an avatar's encoding: the frames of python/mua/pose/resample.py, computed when asked for.
     /// </summary>
     public sealed class ClipSampler
     {

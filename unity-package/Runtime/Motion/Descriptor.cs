@@ -4,7 +4,7 @@ using Mua.Format;
 namespace Mua.Motion
 {
     /// <summary>
-    /// The normalised motion descriptor of a window of poses; the same numbers as python/mua/motion/descriptor.py.
+    /// The normalised motion descriptor of a window of poses; the same numbers as python/mua/pose/descriptor.py.
     /// </summary>
     public sealed class Descriptor
     {

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from mua.arrays import Array
+from mua.pose.skeleton import Pose
 from mua.recording.plausible.finding import Finding, LikelyMistake
 from mua.recording.plausible.mesh import Meshes
 from mua.recording.plausible.orientation import Orientations
@@ -16,7 +17,6 @@ from mua.recording.plausible.pose import Poses
 from mua.recording.plausible.rig import rig_findings
 from mua.recording.plausible.texture import Textures
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 
 __all__ = ["Finding", "LikelyMistake", "Plausible", "rig_findings"]
 

@@ -7,10 +7,10 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.kernels.dq_skinning import blend_vertices
+from mua.pose.skeleton import Pose
 from mua.recording.plausible.finding import Finding
 from mua.recording.plausible.fit import EXPLAINED, explain, rms, unit_of
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
 
 SAMPLES = 1024  # vertices that are looked at
 NEAR = 0.05  # of the figure's size: how far a canonical mesh is from the template on average, loose clothes included

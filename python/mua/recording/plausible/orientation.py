@@ -7,11 +7,11 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.channels import ATTRIBUTES
 from mua.kernels.dq_skinning import blend_texels, blend_vertices
+from mua.pose.skeleton import Pose
 from mua.recording.plausible.finding import Finding
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Pose
-from mua.texture.channels import ATTRIBUTES
 
 SAMPLES = 2048  # texels that are looked at
 FLAT = np.log(1.5)  # between the thinnest and the next axis of a splat that has a side

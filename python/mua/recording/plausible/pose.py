@@ -6,9 +6,9 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.pose.skeleton import Pose, Skeleton
 from mua.recording.plausible.finding import Finding
 from mua.recording.plausible.fit import explain, rms, unit_of
-from mua.rig.skeleton import Pose, Skeleton
 
 TURNED, CALM = np.radians(100), np.radians(50)  # a joint's median turn away from the bind pose, wrong and undone
 OTHER_LENGTH = 10.0  # times a bone's: no animation stretches all by as much

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from mua.arrays import Array
+from mua.pose.skeleton import Skeleton
 from mua.recording.plausible.finding import Finding
 from mua.recording.plausible.fit import explain, rms, unit_of
 from mua.rig.rig import Rig
-from mua.rig.skeleton import Skeleton
 
 SMALLEST, LARGEST = 0.01, 100.0  # metres: the sizes of figures that bake, bounds and player are made for
 PERSON = 1.75  # metres

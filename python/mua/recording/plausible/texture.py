@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from mua.arrays import Array
+from mua.channels import APPEARANCE, ATTRIBUTES
 from mua.recording.plausible.finding import Finding
 from mua.rig.rig import Rig
-from mua.texture.channels import APPEARANCE, ATTRIBUTES
 
 SAMPLES = 4096  # texels that are looked at
 LARGE, SMALL = 8.0, 0.01  # half of all splats are so many steps between texels long: far more, or less, than any need

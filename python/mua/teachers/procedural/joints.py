@@ -3,7 +3,7 @@
 import numpy as np
 
 from mua.arrays import Array
-from mua.rig.skeleton import Skeleton
+from mua.pose.skeleton import Skeleton
 from mua.teachers.procedural.grid import smoothstep
 
 ARM_DIRECTION = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0.0])  # left arm of the A-pose, 45 degrees below the horizontal

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from mua.arrays import Array
-from mua.motion.clip import Clip
-from mua.rig.skeleton import Skeleton
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
 from mua.teachers.procedural.grid import smoothstep
 from mua.teachers.procedural.performance import SIDES, Arm, Foot, Performance, joint_rotations
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.rig.skeleton import Skeleton
+from mua.pose.skeleton import Skeleton
 from mua.teachers.procedural.grid import smoothstep
 from mua.teachers.procedural.joints import ARM_DIRECTION, INDEX, PLACES
 

@@ -1,0 +1,81 @@
+"""Carries textures over from the UVs that a file came with to the UVs of the atlas."""
+
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from mua.arrays import Array
+from mua.atlas.filtering import bilinear, bled, reduced
+from mua.atlas.opacity import cut_out
+from mua.atlas.pictures import multiplied
+from mua.rig.charts import areas
+from mua.rig.texel_map import TexelMap
+from mua.scene import Material, Wrap, wrapped
+
+
+def bake_texture(
+    texels: TexelMap,  # of the atlas
+    corners: Array,  # [F, 3, 2] UV that the materials' pictures belong to
+    face_material: Array,  # [F] into materials
+    *,
+    materials: tuple[Material, ...],
+    colors: Array | None = None,  # [F, 3, 4] linear colour and opacity of the corners, multiplied in
+) -> Array:
+    """Sample every texel of the atlas where its point lay in its material's picture: [S, S, 4] uint8 sRGB.
+
+    Pictures finer than the atlas are averaged first. Texels that no triangle covers take the colour of the nearest that
+    one does, so that interpolation across chart borders never meets a foreign colour.
+    """
+    picture = np.zeros((texels.size * texels.size, 4), np.uint8)
+    points = np.einsum("nk,nkd->nd", texels.barycentrics, corners[texels.triangles])
+    for index, material in enumerate(materials):
+        rows = face_material[texels.triangles] == index
+        if rows.any():
+            picture[texels.texels[rows]] = _sample(
+                _averaged(material, corners[face_material == index], int(rows.sum())),
+                points[rows],
+                wraps=(material.wrap_u, material.wrap_v),
+            )
+    if colors is not None:
+        factors = np.einsum("nk,nkc->nc", texels.barycentrics, colors[texels.triangles])
+        picture[texels.texels] = multiplied(picture[texels.texels], factors)
+    empty = np.ones((texels.size, texels.size), bool)
+    empty.flat[texels.texels] = False
+    return _fill_from_nearest(picture.reshape(texels.size, texels.size, 4), empty)
+
+
+def _averaged(
+    material: Material,
+    corners: Array,  # [F, 3, 2] UV of the triangles that use it
+    wanted: int,  # texels that these triangles have in the atlas
+) -> Array:
+    """Its picture reduced by the whole factor by which it is finer than the atlas, no colour in it foreign: uint8."""
+    image, used = material.image, areas(corners).sum()
+    if material.alpha_mode == "mask":
+        image = cut_out(material, np.sqrt(used * image.shape[0] * image.shape[1] / wanted))
+    return bled(reduced(image, int(np.sqrt(used * image.shape[0] * image.shape[1] / wanted))))
+
+
+def _sample(
+    image: Array,  # [h, w, 4] uint8
+    points: Array,  # [n, 2] UV
+    *,
+    wraps: tuple[Wrap, Wrap],
+) -> Array:
+    """Bilinear interpolation between texel centres: [n, 4] uint8."""
+    height, width = image.shape[:2]
+    place = points * (width, height) - 0.5
+    first = np.floor(place).astype(np.int64)
+    columns = wrapped(first[:, 0], width, wraps[0]), wrapped(first[:, 0] + 1, width, wraps[0])
+    rows = wrapped(first[:, 1], height, wraps[1]), wrapped(first[:, 1] + 1, height, wraps[1])
+    return np.rint(bilinear(image, rows, columns, place - first)).astype(np.uint8)
+
+
+def _fill_from_nearest(
+    picture: Array,  # [S, S, 4]
+    empty: Array,  # [S, S] bool
+) -> Array:
+    """The picture with every empty texel replaced by the nearest that is not."""
+    if empty.all() or not empty.any():
+        return picture
+    rows, columns = distance_transform_edt(empty, return_distances=False, return_indices=True)
+    return picture[rows, columns]

@@ -1,0 +1,57 @@
+"""The contact sheet: teacher, student and their difference side by side, on frames that the student never saw."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.baking.portrait import portrait
+from mua.decode import decode_clip_frame, pose_splats
+from mua.likeness.background import background_for, over
+from mua.likeness.compare import Likeness
+from mua.likeness.sheet import worst_strips
+from mua.recording import WholeFrame
+from mua.rendering import render_premultiplied, to_bytes
+
+CELL = (288, 416)  # width, height, pixels
+CAPTION = 22  # pixels
+GAIN = 4  # the difference is shown this many times as strong
+COLUMNS = 2  # frames beside each other
+TITLES = ("teacher", "student", f"difference x{GAIN}")
+
+
+def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, likeness: Likeness | None = None) -> Image.Image:
+    """One picture with three cells for each frame, below those of the source beside the splats where there are any."""
+    strips = [] if likeness is None else worst_strips(likeness, CELL)
+    strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
+    strips += [_strip(avatar, frame) for frame in frames]
+    blank = np.full_like(strips[0], 255)
+    strips += [blank] * (-len(strips) % COLUMNS)
+    rows = [np.hstack(strips[i : i + COLUMNS]) for i in range(0, len(strips), COLUMNS)]
+    return Image.fromarray(np.vstack(rows))
+
+
+def _strip(avatar: Avatar, frame: WholeFrame) -> Array:
+    """Teacher, student and difference of one frame [h, 3 w, 3], under a caption."""
+    pose = frame.clip.pose(frame.index)
+    teacher = pose_splats(avatar.rig, frame.mesh, texture=frame.texture, pose=pose)
+    student = decode_clip_frame(avatar, frame.clip, frame=frame.index)
+    camera = portrait(teacher, avatar.rig.skeleton, pose=pose, screen=CELL)
+    drawn = [render_premultiplied(splats, camera) for splats in (teacher, student)]
+    shown = [over(image, background_for(drawn[:1])) for image in drawn]
+    difference = 1 - GAIN * np.abs(shown[0] - shown[1])
+    picture = np.hstack([to_bytes(image) for image in (*shown, difference)])
+    kind = "held out" if frame.clip.held_out else "trained on"
+    return np.vstack([_caption(f"{frame.clip.name}, frame {frame.index} ({kind})"), picture])
+
+
+def _caption(text: str) -> Array:
+    width = CELL[0]
+    bar = Image.new("RGB", (len(TITLES) * width, CAPTION), "white")
+    draw = ImageDraw.Draw(bar)
+    font = ImageFont.load_default(12)
+    for i, title in enumerate(TITLES):
+        draw.text((i * width + 6, 4), f"{title}: {text}" if i == 0 else title, fill="black", font=font)
+    return np.asarray(bar)

@@ -1,0 +1,166 @@
+"""How much of a teacher a student explains, and whether bands, bases or coefficients miss the rest.
+
+Errors are taken on the full-resolution texture of frames that the recording keeps whole, over the valid texels, in raw
+channels. Four pictures of each frame stand beside the teacher's: the mean texture of the training frames; the best that
+the dynamic subbands could do (D1 and D0 at their mean); the best coefficients for the learnt bases; the student's own.
+"""
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
+from mua.decode import decode_clip_frame
+from mua.recording import Recording, WholeFrame
+from mua.student.branches import thread_share
+from mua.student.model import STATIC_LEVELS, Bands, Student
+from mua.student.train import BestCoefficients
+from mua.texture.fill import Fill
+from mua.threads import in_order
+from mua.wavelets import analyse_lowpass, wavedec2
+
+TRAINING = "training"
+MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
+BATCH = 2  # frames whose images are held at once, by each thread
+THREADS = 4  # at most: each holds some hundred megabytes
+DYNAMIC_LEVELS = 2  # D3 and D2
+PICTURES = ("mean", "bands", "best", "student")
+
+# what an RMS error of 1 in raw channels means to a person
+UNITS = {
+    "offset": ("mm", 1000.0),
+    "rotation": ("degrees", math.degrees(2)),  # of a small turn: 2 |dq| radians over the four components
+    "scale": ("%", 100.0),  # of a length: d log s
+    "opacity": ("logit", 1.0),
+    "SH": ("/255", 255 * SH_C0),  # as if all of it were the constant term
+    "mesh": ("mm", 1000.0),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What stands beside a teacher's frame."""
+
+    texture: Array  # [N, 23] raw channels
+    mesh: Array | None = None  # [V, 3] canonical vertices, metres
+
+
+@dataclass
+class Errors:
+    """Sums of squared errors of one group of frames by attribute and picture."""
+
+    frames: int = 0
+    squares: dict[tuple[str, str], float] = field(default_factory=dict)
+    vectors: dict[str, int] = field(default_factory=dict)
+
+    def add(self, frame: WholeFrame, pictures: Mapping[str, Picture]) -> None:
+        """Count one frame."""
+        self.frames += 1
+        for name, picture in pictures.items():
+            by_channel = np.square(picture.texture - frame.texture, dtype=np.float64).sum(axis=0)
+            for attribute, channels in ATTRIBUTES.items():
+                self._count(attribute, name, float(by_channel[channels].sum()))
+            if picture.mesh is not None:
+                self._count(MESH, name, float(np.square(picture.mesh - frame.mesh, dtype=np.float64).sum()))
+        for attribute in ATTRIBUTES:
+            self.vectors[attribute] = self.vectors.get(attribute, 0) + len(frame.texture)
+        self.vectors[MESH] = self.vectors.get(MESH, 0) + len(frame.mesh)
+
+    def _count(self, attribute: str, picture: str, square: float) -> None:
+        self.squares[attribute, picture] = self.squares.get((attribute, picture), 0.0) + square
+
+    def __add__(self, other: "Errors") -> "Errors":
+        """Both groups as one."""
+        squares, vectors = dict(self.squares), dict(self.vectors)
+        for key, square in other.squares.items():
+            squares[key] = squares.get(key, 0.0) + square
+        for attribute, count in other.vectors.items():
+            vectors[attribute] = vectors.get(attribute, 0) + count
+        return Errors(self.frames + other.frames, squares, vectors)
+
+    def rms(self, attribute: str, picture: str) -> float:
+        """Root mean square error of a vector (all components of the attribute together) in its unit."""
+        return UNITS[attribute][1] * math.sqrt(self.squares[attribute, picture] / self.vectors[attribute])
+
+    def explained(self, attribute: str, picture: str = "student") -> float:
+        """Share of the variance about the mean texture that a picture explains; nan where nothing varies."""
+        variance = self.squares[attribute, "mean"]
+        return 1 - self.squares[attribute, picture] / variance if variance > 0 else math.nan
+
+
+def evaluate(
+    recording: Recording,
+    student: Student,
+    *,
+    avatar: Avatar,  # as read back from its file
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> dict[str, Errors]:
+    """Errors by group: all training frames together, then each held-out clip by its name."""
+    judge = _Judge(recording, student, avatar)
+    groups: dict[str, Errors] = {}
+    frames = recording.whole_frames()
+    batches = iter(lambda: list(itertools.islice(frames, BATCH)), [])
+    threads = min(torch.get_num_threads(), THREADS)
+    done = 0
+    with thread_share(threads):
+        for batch, judged in in_order(lambda batch: (batch, judge.errors(batch)), batches, threads=threads):
+            for frame, own in zip(batch, judged, strict=True):
+                group = frame.clip.name if frame.clip.held_out else TRAINING
+                groups[group] = groups.get(group, Errors()) + own
+                done += 1
+                progress(done, recording.whole_count)
+    return dict(sorted(groups.items(), key=lambda item: item[0] != TRAINING))
+
+
+def held_out_errors(groups: Mapping[str, Errors]) -> Errors | None:
+    """Errors of all held-out clips together; None where there is no such clip."""
+    held = [errors for name, errors in groups.items() if name != TRAINING]
+    return sum(held[1:], start=held[0]) if held else None
+
+
+class _Judge:
+    """Holds what every frame is compared with."""
+
+    def __init__(self, recording: Recording, student: Student, avatar: Avatar) -> None:
+        self.student, self.avatar = student, avatar
+        self.mean = Picture(recording.mean_texture(), recording.mean_mesh())
+        self.fill = Fill(recording.rig.texels)
+        parts = zip(student.branches, (GEOMETRY, APPEARANCE), strict=True)
+        self.best = [(BestCoefficients(branch), channels) for branch, channels in parts]
+
+    def errors(self, frames: Sequence[WholeFrame]) -> list[Errors]:
+        """Errors of each frame alone."""
+        counted = []
+        for frame, pictures in zip(frames, self.pictures(frames), strict=True):
+            counted.append(Errors())
+            counted[-1].add(frame, pictures)
+        return counted
+
+    def pictures(self, frames: Sequence[WholeFrame]) -> Iterator[dict[str, Picture]]:
+        """The pictures of each frame by name."""
+        bands, best = self._closest(frames)
+        for i, frame in enumerate(frames):
+            posed = decode_clip_frame(self.avatar, frame.clip, frame=frame.index)
+            yield {
+                "mean": self.mean,
+                "bands": Picture(bands[i]),
+                "best": Picture(best[i]),
+                "student": Picture(posed.texture, posed.canonical),
+            }
+
+    @torch.no_grad()
+    def _closest(self, frames: Sequence[WholeFrame]) -> tuple[Array, Array]:
+        """Textures [F, N, 23] whose D1 and D0 are at their mean, and those of the best coefficients."""
+        images = torch.stack([self.fill(torch.from_numpy(frame.texture)) for frame in frames])
+        wavelet = self.student.wavelet
+        ll, (d3, d2) = wavedec2(analyse_lowpass(images, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
+        bands = Bands(ll, d3.transpose(1, 2), d2.transpose(1, 2))
+        alphas = [best(bands.of(channels)) for best, channels in self.best]
+        best = self.student.synthesize((alphas[0], alphas[1]))
+        return self.student.texture(bands).numpy(), self.student.texture(best).numpy()

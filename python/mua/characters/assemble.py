@@ -1,0 +1,240 @@
+"""From the pieces that a scene file holds to one surface on one rigid skeleton; shared by all readers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.atlas.surfaces import Surfaces
+from mua.characters.bind_pose import Bind, bind_pose
+from mua.characters.correction import check_scales, corrected
+from mua.characters.findings import UNHELD, Findings
+from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
+from mua.errors import InputError
+from mua.rig.character import MAX_INFLUENCES
+from mua.scene import Part, Scene, Source, without
+
+WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
+WEIGHT_STEP = 1e-5  # weights nearer than this are equal
+LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
+OTHER_SIZE = "--height METRES makes it another height; --scale FACTOR multiplies the units of the file."
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """All parts in one index space, before welding."""
+
+    groups: Array  # [N] int
+    vertices: Array  # [N, 3] metres
+    indices: Array  # [N, 8] int32 joints
+    weights: Array  # [N, 8] float64
+    faces: Array  # [F, 3] int
+    uv: Array  # [T, 2]
+    uv_faces: Array  # [F, 3] int
+    face_material: Array  # [F] int32
+    colors: Array  # [F, 3, 4] linear
+    notes: tuple[str, ...]
+
+
+def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+    """Merge a scene's parts into one welded mesh on rigid joints, upright, facing +Z and in metres.
+
+    `leave_out` names meshes, nodes or materials whose triangles are no part of the character.
+    Raises an InputError that names `path` where no skinned triangle is left, or where it holds no such name.
+    """
+    scene = without(scene, leave_out, path)
+    if not any(len(part.faces) for part in scene.parts):
+        still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
+        advice = "; what has no skeleton can be rigged in Blender or by Mixamo" if still else ""
+        raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character{advice}")
+    check_scales(scene, path)
+    scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
+    bind = bind_pose(scene)
+    mesh = _merge(scene, bind)
+    used = mesh.vertices[np.unique(mesh.faces)]
+    if not np.ptp(used, axis=0).any():
+        raise InputError(f"{path}: all vertices of the skinned meshes lie at {used[0].tolist()}, expected a surface")
+    scene, change = corrected(scene, bind, points=used, stand=True)
+    if change.unit != 1 or change.notes:
+        bind = bind_pose(scene)
+        mesh = _merge(scene, bind)
+    size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
+    mesh = _weld(mesh)
+    rigged = rigid_skeleton(scene, bind)
+    joint_of_node = np.zeros(len(scene.parents), np.int32)
+    joint_of_node[rigged.nodes] = np.arange(len(rigged.nodes))
+    shown, face_material = np.unique(mesh.face_material, return_inverse=True)
+    indices = np.where(mesh.weights > 0, joint_of_node[bind.nodes[mesh.indices]], 0).astype(np.int32)
+    return Surfaces(
+        name=scene.name,
+        skeleton=rigged.skeleton,
+        vertices=mesh.vertices,
+        faces=mesh.faces.astype(np.int32),
+        uv=mesh.uv,
+        uv_faces=mesh.uv_faces.astype(np.int32),
+        face_material=face_material.reshape(-1).astype(np.int32),
+        materials=tuple(scene.materials[m] for m in shown),
+        skin_indices=indices,
+        skin_weights=mesh.weights.astype(np.float32),
+        clips=rigged.clips,
+        source=Source(scene, rigged.nodes),
+        corner_colors=None if (mesh.colors == 1).all() else mesh.colors,
+        roles=roles_of(scene, rigged),
+        notes=(*scene.notes, *_rigid_parts(scene), *size_notes, *change.notes, *mesh.notes, *rigged.notes),
+        unit=change.unit,
+        size_notes=size_notes,
+    )
+
+
+def _rigid_parts(scene: Scene) -> tuple[str, ...]:
+    """A sentence on the meshes that only hang on a joint: a hat, a weapon, a robot's limbs."""
+    findings = Findings()
+    for part in scene.parts:
+        if scene.skins[part.skin].rigid:
+            findings.add("Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): {}.", part.node)
+    return findings.notes()
+
+
+def limit_influences(
+    joints: Array,  # [N, K] int
+    weights: Array,  # [N, K] >= 0, rows sum to 1
+) -> tuple[Array, Array, float]:
+    """Keep the eight largest influences of each vertex, largest first, normalised.
+
+    Returns joints [N, 8] int32, weights [N, 8] and the largest share of weight that a vertex lost. A joint named
+    twice counts once with the sum.
+    """
+    order = np.argsort(joints, axis=1, kind="stable")
+    joints = np.take_along_axis(joints, order, axis=1)
+    weights = np.take_along_axis(weights, order, axis=1)
+    for k in range(1, joints.shape[1]):
+        same = joints[:, k] == joints[:, k - 1]
+        weights[:, k] += np.where(same, weights[:, k - 1], 0)
+        weights[:, k - 1] = np.where(same, 0, weights[:, k - 1])
+    order = np.argsort(-weights, axis=1, kind="stable")[:, :MAX_INFLUENCES]
+    kept = np.zeros((len(weights), MAX_INFLUENCES))
+    indices = np.zeros((len(weights), MAX_INFLUENCES), np.int32)
+    kept[:, : order.shape[1]] = np.take_along_axis(weights, order, axis=1)
+    indices[:, : order.shape[1]] = np.take_along_axis(joints, order, axis=1)
+    indices[kept == 0] = 0
+    remaining = kept.sum(axis=1, keepdims=True)
+    return indices, kept / remaining, 1 - float(remaining.min(initial=1.0))
+
+
+def weighted(weights: Array) -> Array:
+    """Weights [N, K] scaled to sum to 1; a vertex without any goes to its first joint."""
+    weights = weights.astype(float)
+    total = weights.sum(axis=1, keepdims=True)
+    weights[:, :1] = np.where(total > 0, weights[:, :1], 1)
+    return weights / np.where(total > 0, total, 1)
+
+
+def _merge(scene: Scene, bind: Bind) -> _Mesh:
+    joint_of = {int(node): j for j, node in enumerate(bind.nodes)}
+    columns: dict[str, list[Array]] = {name: [] for name in _Mesh.__annotations__ if name != "notes"}
+    notes: list[str] = []
+    vertex_count = uv_count = 0
+    for part in scene.parts:
+        skin_joints = np.array([joint_of[int(node)] for node in scene.skins[part.skin].joints])
+        indices, weights, lost = limit_influences(skin_joints[part.joints], part.weights)
+        if lost > LOST_WEIGHT:
+            notes.append(
+                f"Mesh {part.name} has vertices with more than {MAX_INFLUENCES} influences; "
+                f"up to {100 * lost:.0f} % of a vertex's weight is dropped."
+            )
+        vertices, mirrored = _place(scene, part, bind=bind, joints=skin_joints)
+        turn = [0, 2, 1] if mirrored else [0, 1, 2]
+        columns["groups"].append(np.full(len(vertices), part.group))
+        columns["vertices"].append(vertices)
+        columns["indices"].append(indices)
+        columns["weights"].append(weights)
+        columns["faces"].append(part.faces[:, turn] + vertex_count)
+        columns["uv"].append(part.uv)
+        columns["uv_faces"].append(np.where(part.uv_faces < 0, -1, part.uv_faces + uv_count)[:, turn])
+        columns["face_material"].append(np.full(len(part.faces), part.material, np.int32))
+        colors = np.ones((len(part.faces), 3, 4)) if part.colors is None else part.colors
+        columns["colors"].append(colors[:, turn])
+        vertex_count += len(vertices)
+        uv_count += len(part.uv)
+    return _Mesh(**{name: np.concatenate(column) for name, column in columns.items()}, notes=tuple(notes))
+
+
+def _place(scene: Scene, part: Part, *, bind: Bind, joints: Array) -> tuple[Array, bool]:
+    """A part's vertices [N, 3] in the bind pose, and whether that mirrors its triangles.
+
+    Skins bound in different poses or spaces meet here: each vertex is carried by its own weights.
+    """
+    spaces = bind.matrices[joints] @ scene.skins[part.skin].inverse_binds
+    weights = part.weights
+    bound = np.zeros_like(part.positions)
+    for k in range(weights.shape[1]):
+        space = spaces[part.joints[:, k]]
+        bound += weights[:, k, None] * (np.einsum("nij,nj->ni", space[:, :3, :3], part.positions) + space[:, :3, 3])
+    stretched = np.zeros_like(bound)
+    for k in range(weights.shape[1]):
+        j = joints[part.joints[:, k]]
+        apart = np.einsum("nij,nj->ni", bind.stretch[j], bound - bind.matrices[j, :3, 3])
+        stretched += weights[:, k, None] * (bind.places[j] + apart)
+    used = np.unique(part.joints[weights > 0])
+    return stretched, bool(np.median(np.linalg.det(spaces[used, :3, :3])) < 0)
+
+
+def _weld(mesh: _Mesh) -> _Mesh:
+    """Make one vertex of those of a mesh at one place with equal weights, and drop faces that this leaves empty."""
+    size = np.ptp(mesh.vertices, axis=0).max()
+    keys = np.concatenate(
+        [
+            mesh.groups[:, None],
+            np.round(mesh.vertices / (WELD * size)),
+            mesh.indices,
+            np.round(mesh.weights / WEIGHT_STEP),
+        ],
+        axis=1,
+    )
+    first, welded = first_of_equal(keys.astype(np.int64))
+    faces = welded[mesh.faces]
+    distinct = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    kept = np.flatnonzero(distinct)
+    kept = np.sort(kept[first_of_equal(np.sort(faces[kept], axis=1))[0]])
+    doubled = int(distinct.sum()) - len(kept)
+    faces, uv_faces, face_material = faces[kept], mesh.uv_faces[kept], mesh.face_material[kept]
+    used, faces = np.unique(faces, return_inverse=True)
+    faces = faces.reshape(-1, 3)
+    uv, uv_faces = _corners(faces, mesh.uv, uv_faces=uv_faces, face_material=face_material)
+    rows = first[used]
+    told = (f"{doubled} triangles that lie on others are dropped.",) if doubled else ()
+    return replace(
+        mesh,
+        groups=mesh.groups[rows],
+        vertices=mesh.vertices[rows],
+        indices=mesh.indices[rows],
+        weights=mesh.weights[rows],
+        faces=faces,
+        uv=uv,
+        uv_faces=uv_faces,
+        face_material=face_material,
+        colors=mesh.colors[kept],
+        notes=(*mesh.notes, *told),
+    )
+
+
+def first_of_equal(rows: Array) -> tuple[Array, Array]:
+    """Indices of the first of each run of equal rows, in order of appearance, and for each row which it equals."""
+    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), int)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[inverse.reshape(-1)]
+
+
+def _corners(faces: Array, uv: Array, *, uv_faces: Array, face_material: Array) -> tuple[Array, Array]:
+    """One UV corner for each vertex, material and UV, so that corners meet exactly where the texture is continuous."""
+    mapped = uv_faces[:, 0] >= 0
+    corners = uv_faces[mapped].ravel()
+    keys = np.stack([faces[mapped].ravel(), np.repeat(face_material[mapped], 3), *uv[corners].T], axis=1)
+    first, welded = first_of_equal(keys)
+    joined = np.full(uv_faces.shape, -1)
+    joined[mapped] = welded.reshape(-1, 3)
+    return uv[corners[first]].reshape(-1, 2), joined

@@ -1,0 +1,179 @@
+"""Triangles, texture coordinates and weights of glTF meshes."""
+
+from typing import Any
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.characters.findings import Findings
+from mua.characters.gltf.compression import decode_draco
+from mua.characters.gltf.document import Document
+from mua.characters.gltf.materials import Coordinates
+from mua.characters.gltf.nodes import node_name
+from mua.scene import Part
+
+DRACO = "KHR_draco_mesh_compression"
+TRIANGLES, STRIP, FAN = 4, 5, 6
+TYPES = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",), "COLOR": ("VEC3", "VEC4")}
+
+
+def read_parts(
+    document: Document,
+    node: int,
+    *,
+    skin: int,
+    bones: int,
+    coordinates: tuple[Coordinates, ...],
+    findings: Findings,
+) -> list[Part]:
+    """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `findings`."""
+    source = document.gltf.nodes[node]
+    mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
+    name = mesh.name or f"mesh{source.mesh}"
+    morphs = source.weights or mesh.weights or []
+    parts = []
+    for p, primitive in enumerate(mesh.primitives or []):
+        where = f"meshes[{source.mesh}].primitives[{p}]"
+        mode = TRIANGLES if primitive.mode is None else primitive.mode
+        if mode not in (TRIANGLES, STRIP, FAN):
+            findings.add("Points and lines are left out, of: {}.", name)
+            continue
+        material = len(coordinates) - 1 if primitive.material is None else primitive.material
+        if not 0 <= material < len(coordinates):
+            raise document.error(f"{where}.material is {material}, but materials holds {len(coordinates) - 1} entries")
+        geometry = _geometry(document, primitive, where)
+        faces = _triangles(geometry["indices"], mode)
+        rigid = source.skin is None
+        joints, weights = _influences(document, geometry, where, bones=bones, rigid=rigid)
+        uv = geometry.get(f"TEXCOORD_{coordinates[material].texcoord}")
+        if uv is None and coordinates[material].needed:
+            findings.add("Meshes without the texture coordinates that their material asks for: {}.", name)
+        positions = geometry["POSITION"].astype(float)
+        if primitive.targets:
+            findings.add("Morph targets are not carried beyond their weights at rest, of: {}.", name)
+            positions += _morphed(document, primitive.targets, morphs, where, count=len(positions))
+        parts.append(
+            Part(
+                name=name,
+                group=node,
+                positions=positions,
+                faces=faces,
+                uv=np.zeros((0, 2)) if uv is None else coordinates[material].apply(uv.astype(float)),
+                uv_faces=np.full_like(faces, -1) if uv is None else faces,
+                material=material,
+                skin=skin,
+                joints=joints,
+                weights=weights,
+                node=node_name(document, node),
+                colors=_colors(geometry, faces, coordinates[material]),
+            )
+        )
+    return parts
+
+
+def _morphed(document: Document, targets: Any, weights: Any, where: str, *, count: int) -> Array:
+    """How far [V, 3] the targets move the vertices at these weights, of which missing ones are 0."""
+    if not np.isfinite(weights).all():
+        raise document.error(f"{where} is morphed by the weights {weights}, expected finite numbers")
+    moved = np.zeros((count, 3))
+    for t, (target, weight) in enumerate(zip(targets, weights, strict=False)):
+        if weight and target.POSITION is not None:
+            field = f"{where}.targets[{t}].POSITION"
+            offsets = document.accessor(target.POSITION, field=field, types=("VEC3",))
+            if len(offsets) != count:
+                raise document.error(f"{field} holds {len(offsets)} elements for {count} vertices")
+            moved += weight * offsets
+    return moved
+
+
+def _colors(geometry: dict[str, Array], faces: Array, reads: Coordinates) -> Array | None:
+    """Linear colours and opacity [F, 3, 4] of the triangles' corners; None where there are none but white."""
+    colors = geometry.get("COLOR_0")
+    if colors is None or not reads.vertex_colors:
+        return None
+    if colors.dtype.kind in "iu":  # stored without the flag that says so, which the format asks for
+        colors = colors / np.iinfo(colors.dtype).max
+    rgba = np.ones((len(colors), 4))
+    channels = 3 if reads.opaque else colors.shape[1]
+    rgba[:, :channels] = np.clip(colors[:, :channels], 0, 1)
+    return None if (rgba == 1).all() else rgba[faces]
+
+
+def _geometry(document: Document, primitive: Any, where: str) -> dict[str, Array]:
+    """Attributes [V, n] that matter here, and "indices" [I]; all of one length and in range."""
+    if primitive.attributes is None:
+        raise document.error(f"{where} has no attributes")
+    wanted = {
+        name: accessor
+        for name, accessor in vars(primitive.attributes).items()
+        if accessor is not None
+        and (name.split("_")[0] in ("POSITION", "TEXCOORD", "JOINTS", "WEIGHTS") or name == "COLOR_0")
+    }
+    if "POSITION" not in wanted:
+        raise document.error(f"{where}.attributes has no POSITION")
+    draco = (primitive.extensions or {}).get(DRACO)
+    packed = _draco(document, draco, where, wanted=wanted) if draco else {}
+    geometry = dict(packed)
+    for name, accessor in wanted.items():
+        if name not in packed:
+            types = TYPES.get(name.split("_")[0], ("VEC4",))
+            geometry[name] = document.accessor(accessor, field=f"{where}.attributes.{name}", types=types)
+    count = len(geometry["POSITION"])
+    for name in wanted:
+        if len(geometry[name]) != count:
+            raise document.error(f"{where}.attributes.{name} holds {len(geometry[name])} elements for {count} vertices")
+    if "indices" not in geometry:
+        if primitive.indices is None:
+            geometry["indices"] = np.arange(count)
+        else:
+            field = f"{where}.indices"
+            geometry["indices"] = document.accessor(primitive.indices, field=field, types=("SCALAR",))[:, 0].astype(int)
+    if geometry["indices"].max(initial=-1) >= count:
+        raise document.error(f"{where}.indices holds {geometry['indices'].max()}, but there are {count} vertices")
+    return geometry
+
+
+def _draco(document: Document, extension: dict[str, Any], where: str, *, wanted: dict[str, int]) -> dict[str, Array]:
+    where = f"{where}.extensions.{DRACO}"
+    content = document.view(extension.get("bufferView"), field=f"{where}.bufferView")
+    ids = {name: unique for name, unique in (extension.get("attributes") or {}).items() if name in wanted}
+    try:
+        faces, attributes = decode_draco(content, ids)
+    except ValueError as broken:
+        raise document.error(f"{where} cannot be decoded: {broken}") from broken
+    geometry = {"indices": faces.reshape(-1).astype(int)}
+    for name, stored in attributes.items():
+        accessor = document.item("accessors", wanted[name], field=f"{where}.attributes.{name}")
+        geometry[name] = document.numbers(stored, f"{where}.attributes.{name}", normalized=bool(accessor.normalized))
+    return geometry
+
+
+def _triangles(indices: Array, mode: int) -> Array:
+    """Triangles [F, 3] of an index list, a strip or a fan; an incomplete last one is dropped."""
+    if mode == TRIANGLES:
+        return indices[: len(indices) // 3 * 3].reshape(-1, 3)
+    count = max(len(indices) - 2, 0)
+    steps = np.arange(count)
+    if mode == FAN:
+        return np.stack([indices[steps + 1], indices[steps + 2], np.repeat(indices[:1], count)], axis=1)
+    odd = steps % 2
+    return np.stack([indices[steps], indices[steps + 1 + odd], indices[steps + 2 - odd]], axis=1)
+
+
+def _influences(
+    document: Document, geometry: dict[str, Array], where: str, *, bones: int, rigid: bool
+) -> tuple[Array, Array]:
+    count = len(geometry["POSITION"])
+    if rigid:
+        return np.zeros((count, 1), int), np.ones((count, 1))
+    sets = sorted(name for name in geometry if name.startswith("JOINTS_"))
+    if not sets or any(name.replace("JOINTS", "WEIGHTS") not in geometry for name in sets):
+        raise document.error(f"{where}.attributes of a skinned mesh lacks JOINTS_0 with WEIGHTS_0, expected both")
+    joints = np.concatenate([geometry[name] for name in sets], axis=1).astype(int)
+    weights = np.concatenate([geometry[name.replace("JOINTS", "WEIGHTS")] for name in sets], axis=1).astype(float)
+    if weights.min() < 0:
+        raise document.error(f"{where}.attributes.WEIGHTS holds {weights.min()}, expected no negative weight")
+    beyond = (joints >= bones) & (weights > 0)
+    if beyond.any():
+        raise document.error(f"{where}.attributes.JOINTS holds {joints[beyond].max()}, but the skin has {bones} joints")
+    return np.where(weights > 0, joints, 0), weights

@@ -1,0 +1,178 @@
+"""Characters from .glb, .gltf and .vrm files."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from mua.atlas.surfaces import Surfaces
+from mua.characters.animation import Animation, bare_animation
+from mua.characters.assemble import assemble
+from mua.characters.findings import UNHELD, Findings
+from mua.characters.gltf.animation import chain, moved_nodes, read_animations
+from mua.characters.gltf.document import Document, load
+from mua.characters.gltf.holders import Holders
+from mua.characters.gltf.materials import read_materials
+from mua.characters.gltf.mesh import read_parts
+from mua.characters.gltf.nodes import Tree, below, local_matrix, node_name, read_tree
+from mua.characters.gltf.vrm import Vrm, read_vrm
+from mua.pose.joint_names import limb_count
+from mua.scene import Part, Scene, Skin
+
+INSTANCES = "EXT_mesh_gpu_instancing"
+
+
+def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+    """Read all skinned meshes of a .glb, .gltf or .vrm, with what hangs rigidly on their joints, and its clips.
+
+    Where nothing is skinned, meshes on animated nodes are taken, each rigid on its node. `leave_out` names meshes,
+    nodes or materials that are not part of the character.
+    Raises an InputError that names the field where the file is broken, needs an extension that is not read, or
+    holds no mesh on a skeleton.
+    """
+    document = load(path)
+    return assemble(_meshes(document, read_tree(document)), path, leave_out=leave_out)
+
+
+def read_gltf_animation(path: Path) -> Animation:
+    """Read the skeleton and clips of a .glb or .gltf: those of its skinned meshes, else of its skins or moved nodes.
+
+    Where the mesh is a part of the body alone, such as a face, the nodes that clips move are taken with all limbs.
+    Raises an InputError where `read_gltf` does, except that a mesh may be missing where there are joints.
+    """
+    document = load(path)
+    tree = read_tree(document)
+    scene = _meshes(document, tree)
+    vrm = read_vrm(document)
+    if not any(len(part.faces) for part in scene.parts):
+        return bare_animation(_scene(document, tree, _bare_skins(document, tree), vrm=vrm), path)
+    rig = assemble(scene, path)
+    meshed = Animation(rig.skeleton, rig.clips, (), rig.roles)
+    if set(moved_nodes(document)) <= {int(node) for skin in _skins(document) for node in skin.joints}:
+        return meshed
+    whole = bare_animation(_scene(document, tree, _moved_tree(document, tree), vrm=vrm), path)
+    return whole if limb_count(whole.skeleton) > limb_count(meshed.skeleton) else meshed
+
+
+def _meshes(document: Document, tree: Tree) -> Scene:
+    """All that the file shows and that hangs on a joint, and a sentence on what is left out."""
+    vrm = read_vrm(document)
+    findings = Findings()
+    materials, coordinates = read_materials(document, findings)
+    skins = _skins(document)
+    holders = Holders(document, tree, [*vrm.bones.values(), *(int(node) for skin in skins for node in skin.joints)])
+    parts: list[Part] = []
+    for node in _drawn(document, tree, vrm, findings):
+        skin = document.gltf.nodes[node].skin
+        if skin is None:
+            holder = holders.of(node)
+            if holder is None:
+                findings.add(UNHELD, node_name(document, node))
+                continue
+            skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
+            skin = len(skins) - 1
+        else:
+            document.item("skins", skin, field=f"nodes[{node}].skin")
+        count = len(skins[skin].joints)
+        parts += read_parts(document, node, skin=skin, bones=count, coordinates=coordinates, findings=findings)
+    used = sorted({part.skin for part in parts})
+    parts = [replace(part, skin=used.index(part.skin)) for part in parts]
+    bones = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them
+    kept = [skins[s] for s in used] + ([replace(bones, rigid=True)] if parts and vrm.bones else [])
+    scene = _scene(document, tree, kept, vrm=vrm)
+    return replace(scene, parts=tuple(parts), materials=materials, notes=(*vrm.notes, *findings.notes(), *scene.notes))
+
+
+def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list[int]:
+    """The nodes with a mesh that a viewer shows, parents first."""
+    drawn = []
+    for node in tree.order:
+        source = document.gltf.nodes[node]
+        if source.mesh is None:
+            continue
+        if node not in tree.shown:
+            findings.add("Meshes of other scenes than the file's first are left out: {}.", node_name(document, node))
+            continue
+        if INSTANCES in (source.extensions or {}):
+            findings.add("Meshes that the file repeats at many places are drawn once: {}.", node_name(document, node))
+        flat = source.skin is None and abs(np.linalg.det(tree.world[node][:3, :3])) < np.finfo(np.float32).tiny
+        if flat or node in tree.hidden or node in vrm.hidden_nodes or source.mesh in vrm.hidden_meshes:
+            findings.add("Meshes that the file hides are left out: {}.", node_name(document, node))
+            continue
+        drawn.append(node)
+    return drawn
+
+
+def _bare_skins(document: Document, tree: Tree) -> list[Skin]:
+    """The file's skins, bound in the rest pose where they do not say how; without any, the tree that clips move most.
+
+    Nodes that the rest pose scales to nothing are no joints.
+    """
+    skins = _skins(document)
+    found = [
+        skin if source.inverseBindMatrices is not None else _at_rest(tree, skin.joints.tolist())
+        for skin, source in zip(skins, document.gltf.skins or [], strict=True)
+    ]
+    if any(len(skin.joints) for skin in found):
+        return [skin for skin in found if len(skin.joints)]
+    return _moved_tree(document, tree)
+
+
+def _moved_tree(document: Document, tree: Tree) -> list[Skin]:
+    """All nodes of the tree that clips move most, bound as they rest; no skin where no clip moves anything."""
+    moved = Counter([*tree.upwards(node)][-1] for node in moved_nodes(document))
+    if not moved:
+        return []
+    return [_at_rest(tree, below(document, [max(moved, key=lambda top: moved[top])]))]
+
+
+def _at_rest(tree: Tree, nodes: list[int]) -> Skin:
+    solid = [node for node in nodes if abs(np.linalg.det(tree.world[node][:3, :3])) >= np.finfo(np.float32).tiny]
+    return Skin(np.array(solid, int), np.linalg.inv(tree.world[solid]))
+
+
+def _scene(document: Document, tree: Tree, skins: list[Skin], *, vrm: Vrm) -> Scene:
+    """Keep the nodes that joints and their ancestors are, renumbered parents first, and sample the clips on them."""
+    followed: set[int] = set()
+    for skin in skins:
+        for node in skin.joints:
+            followed.update(tree.upwards(int(node)))
+    nodes = [node for node in tree.order if node in followed]
+    index = {node: n for n, node in enumerate(nodes)}
+    parents = np.array([index[tree.parents[node]] if node in tree.parents else -1 for node in nodes], np.int32)
+    rest = np.array([local_matrix(document, node) for node in nodes]).reshape(-1, 4, 4)
+    motions, left_out = read_animations(document, nodes, parents=parents, rest=rest)
+    return Scene(
+        name=document.path.stem,
+        node_names=tuple(node_name(document, node) for node in nodes),
+        parents=parents,
+        rest=chain(rest, parents),
+        skins=tuple(replace(skin, joints=np.array([index[int(node)] for node in skin.joints])) for skin in skins),
+        parts=(),
+        materials=(),
+        motions=motions,
+        notes=left_out,
+        roles={index[node]: role for node, role in vrm.roles.items() if node in index},
+    )
+
+
+def _skins(document: Document) -> list[Skin]:
+    skins = []
+    for s, skin in enumerate(document.gltf.skins or []):
+        joints = skin.joints or []
+        for joint in joints:
+            document.item("nodes", joint, field=f"skins[{s}].joints")
+        binds = np.broadcast_to(np.eye(4), (len(joints), 4, 4))
+        if skin.inverseBindMatrices is not None:
+            field = f"skins[{s}].inverseBindMatrices"
+            columns = document.accessor(skin.inverseBindMatrices, field=field, types=("MAT4",))
+            if len(columns) < len(joints):
+                raise document.error(f"{field} holds {len(columns)} matrices for {len(joints)} joints")
+            binds = columns[: len(joints)].reshape(-1, 4, 4).swapaxes(1, 2)
+            singular = np.abs(np.linalg.det(binds)) < np.finfo(np.float32).tiny
+            if singular.any():
+                raise document.error(f"{field}[{int(singular.argmax())}] cannot be inverted, expected a rigid matrix")
+        skins.append(Skin(np.array(joints, int), binds))
+    return skins

@@ -1,0 +1,50 @@
+"""A person who lies in the bind pose: nobody is bound to a mesh so, but files say another up axis than they have."""
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.characters.bind_pose import Bind
+from mua.pose.joint_names import SIDES, roles
+from mua.pose.skeleton import Skeleton
+from mua.scene import Scene
+
+STRAIGHT = 45.0  # degrees between trunk and legs up to which a body is upright in itself, as no animal on four legs is
+ALONG = 30.0  # degrees from a level axis within which it lies
+Y = np.array([0.0, 1, 0])
+
+
+def turn_to_stand(scene: Scene, bind: Bind) -> Array | None:
+    """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not tell a person."""
+    found = _roles(scene, bind)
+    body = [_upright(found, places) for places in (bind.places, scene.rest[bind.nodes, :3, 3])]
+    bound, rests = body
+    if bound is None or rests is None:
+        return None
+    axis = np.where([True, False, True], np.sign(bound), 0) * (np.abs(bound) == np.abs(bound).max())
+    near = np.cos(np.radians(ALONG))
+    if bound @ axis < near or rests @ axis < near:
+        return None
+    return rotation.to_matrix(rotation.between(axis, Y))
+
+
+def _roles(scene: Scene, bind: Bind) -> dict[str, tuple[int, ...]]:
+    names = tuple(scene.node_names[node] for node in bind.nodes)
+    still = np.tile([1.0, 0, 0, 0], (len(names), 1))
+    said = {name: scene.roles[int(node)] for name, node in zip(names, bind.nodes, strict=True) if node in scene.roles}
+    return roles(Skeleton(names, bind.parents, still, bind.places, root=0), said)
+
+
+def _upright(found: dict[str, tuple[int, ...]], places: Array) -> Array | None:
+    """The unit direction [3] from feet to head of a body that is straight; None where it is bent or not known."""
+    pairs = [[found.get(f"{side} {part}") for side in SIDES] for part in ("thigh", "shin")]
+    top = found.get("head") or found.get("neck")
+    if top is None or any(joints is None for pair in pairs for joints in pair):
+        return None
+    hips, knees = (np.mean([places[joints[0]] for joints in pair if joints], axis=0) for pair in pairs)
+    trunk, legs = places[top[0]] - hips, hips - knees
+    lengths = np.linalg.norm(trunk), np.linalg.norm(legs)
+    if not all(lengths) or trunk @ legs < np.cos(np.radians(STRAIGHT)) * lengths[0] * lengths[1]:
+        return None
+    along = trunk / lengths[0] + legs / lengths[1]
+    return np.asarray(along / np.linalg.norm(along))

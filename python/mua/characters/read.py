@@ -1,0 +1,70 @@
+"""One way in for characters of any file format."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mua.atlas.detail import Detail, UvMode
+from mua.atlas.surfaces import Surfaces
+from mua.atlas.uv import build_atlas
+from mua.characters.animation import Animation
+from mua.characters.figure_size import AS_FOUND, FigureSize
+from mua.characters.gltf.read import read_gltf, read_gltf_animation
+from mua.characters.resize import resized
+from mua.errors import InputError
+from mua.rig.character import Character
+from mua.signature import refuse_foreign, require_kind
+
+GLTF = (".glb", ".gltf", ".vrm")
+GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh
+USD = (".usd", ".usda", ".usdc", ".usdz")
+
+
+def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequence[str] = ()) -> Surfaces:
+    """Read a rigged character by its suffix, less the meshes, nodes or materials that `leave_out` names.
+
+    Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
+    """
+    if _checked_suffix(path, (*GLTF, *USD)) in GLTF:
+        return resized(read_gltf(path, leave_out=leave_out), size, path)
+    from mua.characters.usd.read import read_usd  # with USD's library, which takes long to load
+
+    return resized(read_usd(path, leave_out=leave_out), size, path)
+
+
+def read_animation(path: Path) -> Animation:
+    """Read a file's skeleton and clips by its suffix, with or without a mesh; raises as `read_surfaces` does."""
+    suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, *USD))
+    if suffix not in USD:
+        return read_gltf_animation(path)
+    from mua.characters.usd.read import read_usd_animation
+
+    return read_usd_animation(path)
+
+
+def _checked_suffix(path: Path, known: Sequence[str]) -> str:
+    suffix = path.suffix.lower()
+    if suffix not in known:
+        refuse_foreign(path)
+        raise InputError(f"{path}: the suffix is {path.suffix or 'missing'}, expected one of {', '.join(known)}")
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    if suffix in USD:
+        kinds = ("a ZIP archive",) if suffix == ".usdz" else ("a USD file", "a ZIP archive")
+        require_kind(path, "a USD stage", kinds=kinds)
+    else:
+        require_kind(path, "a glTF file", kinds=("a glTF binary", "JSON"))
+    return suffix
+
+
+def read_character(
+    path: Path,
+    uv: UvMode = "auto",
+    *,
+    atlas_size: int = 2048,
+    detail: Detail | None = None,
+    size: FigureSize = AS_FOUND,
+    leave_out: Sequence[str] = (),
+) -> Character:
+    """Read a rigged, textured character and bring its materials into one atlas of `atlas_size` texels a side."""
+    surfaces = read_surfaces(path, size=size, leave_out=leave_out)
+    return build_atlas(surfaces, uv=uv, size=atlas_size, detail=detail)

@@ -1,0 +1,178 @@
+"""Base colour and glow of USD materials: UsdPreviewSurface with UsdUVTexture or a primvar, or displayColor.
+
+UsdPreviewSurface specification (https://openusd.org/release/spec_usdpreviewsurface.html). Image rows are kept as in
+glTF; texture coordinates, whose v points up in USD, are turned by whoever reads them.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+from pxr import Ar, Sdf, Usd, UsdGeom, UsdShade
+
+from mua.arrays import Array
+from mua.atlas import pictures
+from mua.characters.findings import Findings
+from mua.errors import InputError
+from mua.scene import Material, Wrap
+
+WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp"}
+CHANNELS = {"r": 0, "g": 1, "b": 2, "a": 3}
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """A material, the primvar of its texture coordinates, and the affine map [2, 3] on them (v up)."""
+
+    material: Material
+    primvar: str | None = None
+    matrix: Array | None = None
+    needed: bool = False  # there is a picture, which the coordinates place
+    color_primvar: str | None = None  # of the mesh, multiplied in
+    opacity_primvar: str | None = None
+
+
+def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, findings: Findings) -> Look:
+    """The look of a mesh or of one of its subsets `prim`; what is not drawn goes to `findings`."""
+    material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+    shader = material.ComputeSurfaceSource()[0] if material else None
+    if not shader:
+        return _display_look(mesh, prim)
+    look = _surface_look(material.GetPrim().GetName(), shader, path)
+    glow, source = _value(shader, "emissiveColor", default=(0, 0, 0))
+    if source is None:
+        picture = pictures.flat(np.array([*glow, 1]))
+    else:
+        textured = _textured(look.material.name, source[0], path)
+        picture = textured.material.image
+        if not look.needed:
+            image = look.material.image
+            look = replace(textured, material=replace(textured.material, image=image), color_primvar=look.color_primvar)
+        elif not _same_place(look, textured):
+            sentence = "Glow that is mapped otherwise than the base colour is left out, of materials: {}."
+            findings.add(sentence, look.material.name)
+            return look
+    if not picture[..., :3].any():
+        return look
+    return replace(look, material=replace(look.material, image=pictures.glowing(look.material.image, picture)))
+
+
+def _same_place(look: Look, other: Look) -> bool:
+    """Whether two textures lie at the same place of the surface."""
+    here, there = (np.eye(2, 3) if one.matrix is None else one.matrix for one in (look, other))
+    wraps = [(one.material.wrap_u, one.material.wrap_v) for one in (look, other)]
+    return look.primvar == other.primvar and wraps[0] == wraps[1] and bool(np.allclose(here, there))
+
+
+def _surface_look(name: str, shader: UsdShade.Shader, path: Path) -> Look:
+    """Diffuse colour and opacity of a UsdPreviewSurface."""
+    opacity, alpha_source = _value(shader, "opacity", default=1.0)
+    color, source = _value(shader, "diffuseColor", default=(0.18, 0.18, 0.18))
+    if isinstance(color, str):
+        return Look(Material(name, pictures.flat(np.array([1, 1, 1, opacity]))), color_primvar=color)
+    if source is None:
+        look = Look(Material(name, pictures.flat(np.array([*color, opacity]))))
+    else:
+        look = _textured(name, source[0], path)
+    threshold = float(_value(shader, "opacityThreshold", default=0.0)[0])
+    if threshold > 0:
+        look = replace(look, material=replace(look.material, alpha_mode="mask", alpha_cutoff=threshold))
+    if alpha_source is not None:
+        alpha = _picture(alpha_source[0], path)[..., CHANNELS[alpha_source[1]]]
+        return replace(look, material=replace(look.material, image=_with_alpha(look.material.image, alpha)))
+    if source is None:
+        return look
+    image = pictures.tinted(pictures.opaque(look.material.image), np.array([1, 1, 1, float(opacity)]))
+    return replace(look, material=replace(look.material, image=image))
+
+
+def _display_look(mesh: UsdGeom.Mesh, prim: Usd.Prim) -> Look:
+    """The look of a mesh without a material: its displayColor and displayOpacity, constant or over the surface."""
+    color, opacity = UsdGeom.PrimvarsAPI(mesh), mesh.GetDisplayOpacityPrimvar()
+    found = color.FindPrimvarWithInheritance("displayColor")
+    values = np.array(found.ComputeFlattened(Usd.TimeCode.EarliestTime()) if found and found.HasValue() else [], float)
+    varies = len(values) > 1
+    flat = [1, 1, 1] if varies else values.reshape(-1, 3)[0] if len(values) else [0.5, 0.5, 0.5]
+    return Look(
+        Material(prim.GetName(), pictures.flat(np.array([*flat, 1.0]))),
+        color_primvar="displayColor" if varies else None,
+        opacity_primvar="displayOpacity" if opacity and opacity.HasValue() else None,
+    )
+
+
+def _value(shader: UsdShade.Shader, name: str, *, default: Any) -> tuple[Any, tuple[UsdShade.Shader, str] | None]:
+    """An input's constant or, as a string, the primvar that it reads; and the texture (with its output), if any."""
+    given = shader.GetInput(name)
+    if not given:
+        return default, None
+    for attribute in UsdShade.Utils.GetValueProducingAttributes(given):
+        producer = UsdShade.Shader(attribute.GetPrim())
+        if producer and producer.GetIdAttr().Get() == "UsdUVTexture":
+            return default, (producer, attribute.GetBaseName())
+        if producer and producer.GetIdAttr().Get() == "UsdPrimvarReader_float3":
+            return str(_constant(producer, "varname", "displayColor")), None
+        constant = attribute.Get(Usd.TimeCode.EarliestTime())
+        if constant is not None:
+            return constant, None
+    return default, None
+
+
+def _textured(name: str, texture: UsdShade.Shader, path: Path) -> Look:
+    image = _picture(texture, path)
+    wraps = [WRAPS.get(_constant(texture, wrap, "repeat"), "repeat") for wrap in ("wrapS", "wrapT")]
+    reader = _source(texture, "st")
+    matrix = None
+    if reader is not None and reader.GetIdAttr().Get() == "UsdTransform2d":
+        angle = np.radians(_constant(reader, "rotation", 0.0))
+        (su, sv), (du, dv) = _constant(reader, "scale", (1, 1)), _constant(reader, "translation", (0, 0))
+        c, s = np.cos(angle), np.sin(angle)
+        matrix = np.array([[c * su, -s * sv, du], [s * su, c * sv, dv]])
+        reader = _source(reader, "in")
+    primvar = None if reader is None else str(_constant(reader, "varname", "st"))
+    return Look(Material(name, image, wraps[0], wraps[1]), primvar, matrix, needed=True)
+
+
+def _source(shader: UsdShade.Shader, name: str) -> UsdShade.Shader | None:
+    given = shader.GetInput(name)
+    for attribute in UsdShade.Utils.GetValueProducingAttributes(given) if given else []:
+        source = UsdShade.Shader(attribute.GetPrim())
+        if source:
+            return source
+    return None
+
+
+def _constant(shader: UsdShade.Shader, name: str, default: Any) -> Any:
+    given = shader.GetInput(name)
+    for attribute in UsdShade.Utils.GetValueProducingAttributes(given) if given else []:
+        value = attribute.Get(Usd.TimeCode.EarliestTime())
+        if value is not None:
+            return value
+    return default
+
+
+def _picture(texture: UsdShade.Shader, path: Path) -> Array:
+    """The image [h, w, 4] of a UsdUVTexture with its scale, from beside the stage or inside its package."""
+    field = f"{texture.GetPath()}.inputs:file"
+    asset = _constant(texture, "file", None)
+    if not isinstance(asset, Sdf.AssetPath) or not asset.resolvedPath:
+        raise InputError(f"{path}: {field} names {getattr(asset, 'path', asset)}, which cannot be found")
+    opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(asset.resolvedPath))
+    if not opened:
+        raise InputError(f"{path}: {field} names {asset.path}, which cannot be read")
+    with opened:
+        content = bytes(opened.GetBuffer())
+    try:
+        image = pictures.decode_image(content)
+    except ValueError as broken:
+        raise InputError(f"{path}: {field} names {asset.path}, which cannot be decoded: {broken}") from broken
+    return pictures.tinted(image, np.array(_constant(texture, "scale", (1, 1, 1, 1)), float))
+
+
+def _with_alpha(image: Array, alpha: Array) -> Array:
+    """The picture [h, w, 4] with the opacity [h', w'], both brought to the larger size."""
+    height, width = np.maximum(image.shape[:2], alpha.shape)
+    color = np.asarray(Image.fromarray(image[..., :3]).resize((width, height), Image.Resampling.BILINEAR))
+    opacity = np.asarray(Image.fromarray(alpha).resize((width, height), Image.Resampling.BILINEAR))
+    return np.dstack([color, opacity])

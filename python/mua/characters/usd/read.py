@@ -1,0 +1,190 @@
+"""Characters from .usd, .usda, .usdc and .usdz files, by UsdSkel, else of rigid parts that move."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from pxr import Tf, Usd, UsdGeom, UsdSkel
+
+from mua.arrays import Array
+from mua.atlas.surfaces import Surfaces
+from mua.characters.animation import Animation, bare_animation
+from mua.characters.assemble import assemble
+from mua.characters.findings import UNHELD, Findings
+from mua.characters.usd.materials import read_look
+from mua.characters.usd.mesh import read_part, subsets
+from mua.characters.usd.rigid import Movers, find_movers
+from mua.characters.usd.skeleton import NO_TIME, PREDICATE, Bones, animated, bindings, columns, read_bones, read_skin
+from mua.errors import InputError
+from mua.scene import Material, Motion, Part, Scene, Skin
+
+RATE = 30.0  # frames per second that clips of a file are sampled at
+
+_Nodes: TypeAlias = Bones | Movers
+
+
+def read_usd(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
+    """Read all skinned meshes of a stage, in metres and Y up, and the animation bound to their skeletons.
+
+    Where nothing is skinned, meshes on prims that move are taken, each rigid on its prim. `leave_out` names meshes or
+    materials that are not part of the character.
+    Raises an InputError that names the prim and attribute where the stage is broken or holds no such mesh.
+    """
+    return assemble(_meshes(_opened(path), path), path, leave_out=leave_out)
+
+
+def read_usd_animation(path: Path) -> Animation:
+    """Read the skeletons of a stage and the animation bound to them: those of its skinned meshes, else all animated.
+
+    Raises an InputError where `read_usd` does, except that a mesh may be missing where a skeleton is animated.
+    """
+    stage = _opened(path)
+    scene = _meshes(stage, path)
+    if any(len(part.faces) for part in scene.parts):
+        rig = assemble(scene, path)
+        return Animation(rig.skeleton, rig.clips, ())
+    skeletons: list[Bones] = []
+    for query in animated(stage):
+        skeletons.append(read_bones(query, path, first=_node_count(skeletons)))
+    joints = [bones.first + 1 + np.arange(len(bones.paths)) for bones in skeletons]
+    skins = [Skin(at, np.linalg.inv(bones.binds)) for at, bones in zip(joints, skeletons, strict=True)]
+    return bare_animation(_scene(stage, skeletons, skins, name=path.stem), path)
+
+
+def _opened(path: Path) -> Usd.Stage:
+    try:
+        return Usd.Stage.Open(str(path))
+    except Tf.ErrorException as broken:
+        raise InputError(f"{path}: USD cannot open the stage: {str(broken).strip().splitlines()[-1]}") from broken
+
+
+def _meshes(stage: Usd.Stage, path: Path) -> Scene:
+    """All that the stage shows and that hangs on a joint, and a sentence on what is left out."""
+    findings = Findings()
+    drawn = _drawn(stage, findings)
+    nodes: list[_Nodes] = []
+    skins: list[Skin] = []
+    held: list[tuple[Usd.Prim, UsdSkel.SkinningQuery | None]] = []  # one for each skin
+    for skeleton, targets in bindings(stage):
+        bones = read_bones(skeleton, path, first=_node_count(nodes))
+        nodes.append(bones)
+        for target in targets:
+            if target.GetPrim().GetPath() in drawn:
+                skins.append(read_skin(target, bones, path))
+                held.append((drawn.pop(target.GetPrim().GetPath()), target))
+    movers = find_movers(stage, [] if held else list(drawn.values()), first=_node_count(nodes))
+    nodes.append(movers)
+    for mesh in drawn.values():
+        holder = movers.holder(mesh)
+        if holder is None:
+            findings.add(UNHELD, mesh.GetName())
+            continue
+        skins.append(_rigid_skin(mesh, movers, holder))
+        held.append((mesh, None))
+    parts, materials = _parts(held, skins, path, findings)
+    scene = _scene(stage, nodes, skins, name=path.stem)
+    return replace(scene, parts=parts, materials=materials, notes=findings.notes())
+
+
+def _drawn(stage: Usd.Stage, findings: Findings) -> dict[object, Usd.Prim]:
+    """The meshes that a render of the stage shows, by path; those that it hides are told."""
+    drawn = {}
+    for prim in stage.Traverse(PREDICATE):
+        if not prim.IsA(UsdGeom.Mesh):
+            continue
+        shown = UsdGeom.Imageable(prim)
+        if shown.ComputeVisibility(NO_TIME) == UsdGeom.Tokens.invisible:
+            findings.add("Meshes that the file hides are left out: {}.", prim.GetName())
+        elif shown.ComputePurpose() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy):
+            findings.add(
+                "Meshes that stand for others while working (guides, proxies) are left out: {}.", prim.GetName()
+            )
+        else:
+            drawn[prim.GetPath()] = prim
+    return drawn
+
+
+def _rigid_skin(mesh: Usd.Prim, movers: Movers, holder: int) -> Skin:
+    placed = columns(UsdGeom.Xformable(mesh).ComputeLocalToWorldTransform(NO_TIME))
+    at_rest = movers.worlds(NO_TIME, at_rest=True)[holder - movers.first]
+    return Skin(np.array([holder]), (np.linalg.inv(at_rest) @ placed)[None], rigid=True)
+
+
+def _parts(
+    held: list[tuple[Usd.Prim, UsdSkel.SkinningQuery | None]], skins: list[Skin], path: Path, findings: Findings
+) -> tuple[tuple[Part, ...], tuple[Material, ...]]:
+    parts: list[Part] = []
+    materials: list[Material] = []
+    for s, (prim, target) in enumerate(held):
+        mesh = UsdGeom.Mesh(prim)
+        if target is not None and target.HasBlendShapes():
+            findings.add("Blend shapes are not carried, of: {}.", prim.GetName())
+        for owner, faces in subsets(mesh):
+            look = read_look(mesh, owner, path, findings)
+            at = {"skin": s, "bones": len(skins[s].joints), "material": len(materials)}
+            parts.append(read_part(mesh, look, path, target=target, chosen=faces, findings=findings, **at))
+            materials.append(look.material)
+    return tuple(parts), tuple(materials)
+
+
+def _scene(stage: Usd.Stage, nodes: Sequence[_Nodes], skins: list[Skin], *, name: str) -> Scene:
+    world = _to_metres(stage)
+    return Scene(
+        name=name,
+        node_names=tuple(name for group in nodes for name in group.names),
+        parents=np.concatenate([np.zeros(0, int), *(group.parents for group in nodes)]),
+        rest=world @ _worlds(nodes, NO_TIME, at_rest=True),
+        skins=tuple(skins),
+        parts=(),
+        materials=(),
+        motions=tuple(_motions(stage, nodes, world=world)),
+        notes=(),
+    )
+
+
+def _node_count(nodes: Sequence[_Nodes]) -> int:
+    return sum(len(group.names) for group in nodes)
+
+
+def _worlds(nodes: Sequence[_Nodes], time: Usd.TimeCode, *, at_rest: bool) -> Array:
+    return np.concatenate([np.zeros((0, 4, 4)), *(group.worlds(time, at_rest=at_rest) for group in nodes)])
+
+
+def _to_metres(stage: Usd.Stage) -> Array:
+    """The matrix [4, 4] from the stage's axes and unit to Y up and metres."""
+    world = np.eye(4)
+    if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
+        world[:3, :3] = [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
+    world[:3, :3] *= UsdGeom.GetStageMetersPerUnit(stage)
+    return world
+
+
+def _motions(stage: Usd.Stage, nodes: Sequence[_Nodes], *, world: Array) -> list[Motion]:
+    """The one clip of the stage, on all its skeletons at once; none where nothing changes over time."""
+    animations = [group.query.GetAnimQuery() for group in nodes if isinstance(group, Bones)]
+    animations = [animation for animation in animations if animation]
+    times = {t for animation in animations for t in animation.GetJointTransformTimeSamples()}
+    times |= {t for group in nodes for prim in group.prims for t in _transform_times(prim)}
+    start, end = (min(times), max(times)) if times else (0.0, 0.0)
+    if stage.HasAuthoredTimeCodeRange() and stage.GetStartTimeCode() < end and start < stage.GetEndTimeCode():
+        start, end = max(start, stage.GetStartTimeCode()), min(end, stage.GetEndTimeCode())
+    per_second = stage.GetTimeCodesPerSecond()
+    if (end - start) / per_second < 0.5 / RATE:
+        return []
+    count = int(np.floor((end - start) / per_second * RATE + 1e-3)) + 1
+    codes = start + np.arange(count) * per_second / RATE
+    worlds = [_worlds(nodes, Usd.TimeCode(float(code)), at_rest=False) for code in codes]
+    name = animations[0].GetPrim().GetName() if animations else "Animation"
+    return [Motion(name, RATE, world @ np.array(worlds))]
+
+
+def _transform_times(prim: Usd.Prim) -> set[float]:
+    """When the place of a prim in the world is stated to change."""
+    times: set[float] = set()
+    while prim and not prim.IsPseudoRoot():
+        xform = UsdGeom.Xformable(prim)
+        times |= set(xform.GetTimeSamples()) if xform else set()
+        prim = prim.GetParent()
+    return times

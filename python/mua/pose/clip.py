@@ -1,0 +1,54 @@
+"""A clip of motion on one skeleton."""
+
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from mua.arguments import whole_number
+from mua.arrays import Array
+from mua.errors import InputError
+from mua.pose.skeleton import Pose
+
+LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second that a file may say
+
+
+@dataclass(frozen=True, eq=False)
+class Stretches:
+    """What rigid joints cannot carry: some scale or shear the surface about themselves, before they move it."""
+
+    joints: Array  # [K] int, ascending
+    matrices: Array  # [F, K, 3, 3] in the axes of the bind pose; the identity does nothing
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Clip:
+    """Poses at a steady rate; local rotations and translations of every joint.
+
+    Stretches are for teachers alone, who put them into the surface; no file holds them.
+    """
+
+    name: str
+    rate: float  # frames per second
+    rotations: Array  # [F, J, 4] local joint rotations, unit, wxyz
+    translations: Array  # [F, J, 3] local joint translations, metres
+    stretches: Stretches | None = field(default=None, kw_only=True)
+
+    def __len__(self) -> int:
+        return len(self.rotations)
+
+    def __repr__(self) -> str:
+        joints = self.rotations.shape[1] if self.rotations.ndim == 3 else "?"
+        return f"<mua.Clip {self.name!r}: {len(self)} frames at {self.rate:g} a second, {joints} joints>"
+
+    def pose(self, index: int) -> Pose:
+        """The pose of a frame, counted from 0; raises InputError where there is none."""
+        if not 0 <= whole_number(index, "frame") < len(self):
+            raise InputError(f"frame is {index}; clip {self.name!r} has frames 0 to {len(self) - 1}")
+        return Pose(self.rotations[index], self.translations[index])
+
+    def cut(self, frames: slice | Array) -> Self:
+        """The same clip with these frames alone."""
+        kept = self.stretches
+        stretches = None if kept is None else replace(kept, matrices=kept.matrices[frames])
+        return replace(
+            self, rotations=self.rotations[frames], translations=self.translations[frames], stretches=stretches
+        )

@@ -1,0 +1,139 @@
+"""The motion descriptor: what the MLPs read of a window of poses (mua.pose.encoding; paper, Data Assumption)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.pose.clip import Clip
+from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.skeleton import Skeleton
+
+STILL = np.radians(0.1)  # standard deviation below which a joint counts as not moving
+MOVES = 1e-3  # of the character's size; standard deviation below which a joint counts as not translated
+SCALE_FLOOR = 1e-3  # a millimetre of a person of 1.75 m, or 0.06 degrees: what varies less is not stretched
+
+
+@dataclass(frozen=True, eq=False)
+class _Frames:
+    """What every frame adds to the windows that hold it."""
+
+    position: Array  # [F, 3] world position of the root, metres
+    turn: Array  # [F, 4] world rotation of the root relative to bind
+    joints: Array  # [F, 6 n + 3 m] local rotations and translations of the encoded joints
+
+
+def describe(
+    skeleton: Skeleton,
+    encoding: PoseEncoding,
+    rotations: Array,  # [F, J, 4] local, unit
+    translations: Array,  # [F, J, 3] local, metres
+) -> Array:
+    """Descriptors [F, k D] float64 of every frame of a clip; before its first frame, the clip is held still."""
+    window = np.arange(len(rotations))[:, None] - np.arange(encoding.window)
+    return _gather(encoding, _frames(skeleton, encoding, rotations, translations), np.maximum(window, 0))
+
+
+def describe_window(
+    skeleton: Skeleton,
+    encoding: PoseEncoding,
+    rotations: Array,  # [k, J, 4] local, unit, newest first
+    translations: Array,  # [k, J, 3] local, metres, newest first
+) -> Array:
+    """Descriptor [k D] float64 of one window: the numbers that `describe` gives for its newest frame."""
+    frames = _frames(skeleton, encoding, rotations, translations)
+    return np.asarray(_gather(encoding, frames, np.arange(encoding.window)[None])[0])
+
+
+def choose_joints(
+    skeleton: Skeleton,
+    clips: Sequence[Clip],
+    used: Array,  # [J] bool, joints that move the mesh themselves or through a descendant
+) -> tuple[int, ...]:
+    """Joints to encode beside the root: those in use whose local rotation varies over all `clips` together."""
+    rotations = np.concatenate([clip.rotations for clip in clips])
+    aligned = np.where(np.sum(rotations * rotations[:1], axis=-1, keepdims=True) < 0, -rotations, rotations)
+    mean = rotation.normalize(aligned.sum(axis=0))
+    away = np.linalg.norm(rotation.multiply(rotation.conjugate(mean), rotations)[..., 1:], axis=-1)
+    angles = 2 * np.arcsin(np.minimum(away, 1))
+    varies = np.sqrt(np.mean(angles**2, axis=0)) > STILL
+    return tuple(int(j) for j in np.flatnonzero(varies & used) if j != skeleton.root)
+
+
+def choose_translated(
+    skeleton: Skeleton,
+    clips: Sequence[Clip],
+    used: Array,  # [J] bool, as for choose_joints
+) -> tuple[int, ...]:
+    """Joints whose local translation is encoded: those in use, not above the root, where it varies over all `clips`.
+
+    What is above the root moves the whole character, of which the descriptor tells the root's path alone.
+    """
+    varies = np.concatenate([clip.translations for clip in clips]).std(axis=0).max(axis=-1) > MOVES * skeleton.size
+    above = set(skeleton.ancestors(skeleton.root))
+    return tuple(int(j) for j in np.flatnonzero(varies & used) if j != skeleton.root and j not in above)
+
+
+def normalization(
+    descriptors: Array,  # [N, k D]
+    units: Array,  # [k D] as of `units_of`
+) -> Normalization:
+    """Mean and scale of descriptors; columns that hardly vary keep a scale of one unit."""
+    deviation = descriptors.std(axis=0)
+    return Normalization(descriptors.mean(axis=0), np.where(deviation > SCALE_FLOOR * units, deviation, units))
+
+
+def units_of(
+    encoding: PoseEncoding,
+    size: float,  # of the figure over that of a person
+) -> Array:
+    """How much of each column [k D] of a descriptor is as much as 1 on a person: lengths grow with the figure."""
+    turns = np.ones(6 + 6 * len(encoding.joints))
+    return np.tile(
+        np.concatenate([np.full(3, size), turns, np.full(3 * len(encoding.translated), size)]), encoding.window
+    )
+
+
+def heading_of(turn: Array) -> Array:
+    """The twist about Y [..., 4] of rotations [..., 4]; identity where they have none (swing-twist decomposition)."""
+    twist = turn * np.array([1.0, 0, 1, 0])
+    length = np.linalg.norm(twist, axis=-1, keepdims=True)
+    vanishes = length < np.sqrt(np.finfo(float).eps)
+    return np.where(vanishes, [1.0, 0, 0, 0], twist / np.where(vanishes, 1, length))
+
+
+def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, translations: Array) -> _Frames:
+    rotations, translations = np.asarray(rotations, dtype=float), np.asarray(translations, dtype=float)
+    turned, position = _root_world(skeleton, rotations, translations)
+    bind, _ = _root_world(skeleton, skeleton.bind_rotations, skeleton.bind_translations)
+    turns = rotation.to_6d(rotations[:, list(encoding.joints)])
+    moved = list(encoding.translated)
+    moves = translations[:, moved] - skeleton.bind_translations[moved]
+    return _Frames(
+        position=position,
+        turn=rotation.multiply(turned, rotation.conjugate(bind)),
+        joints=np.concatenate([turns.reshape(len(rotations), -1), moves.reshape(len(rotations), -1)], axis=-1),
+    )
+
+
+def _root_world(skeleton: Skeleton, rotations: Array, translations: Array) -> tuple[Array, Array]:
+    """World rotation [..., 4] and position [..., 3] of the root joint alone."""
+    turned, position = rotations[..., skeleton.root, :], translations[..., skeleton.root, :]
+    joint = int(skeleton.parents[skeleton.root])
+    while joint >= 0:
+        turned = rotation.multiply(rotations[..., joint, :], turned)
+        position = translations[..., joint, :] + rotation.rotate(rotations[..., joint, :], position)
+        joint = int(skeleton.parents[joint])
+    return turned, position
+
+
+def _gather(encoding: PoseEncoding, frames: _Frames, window: Array) -> Array:
+    """Descriptors [N, k D] of windows [N, k] of frame indices, newest first."""
+    moved = frames.position[window] - frames.position[window[:, :1]]
+    turn = frames.turn[window]
+    if encoding.heading:
+        back = rotation.conjugate(heading_of(turn[:, :1]))
+        moved, turn = rotation.rotate(back, moved), rotation.multiply(back, turn)
+    return np.concatenate([moved, rotation.to_6d(turn), frames.joints[window]], axis=-1).reshape(len(window), -1)

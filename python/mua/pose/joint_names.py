@@ -1,0 +1,219 @@
+"""What a joint is, by its name: a body part and a side behind every naming habit.
+
+A role is a part ("hips", "spine", "neck", "head") or a side and a part ("left thigh"). Several joints of one chain
+may share a role (CMU's lowerneck and upperneck are the neck); they are listed from the root outwards.
+"""
+
+import re
+from collections.abc import Mapping
+
+from mua.pose.skeleton import Skeleton
+
+Roles = dict[str, tuple[int, ...]]
+
+SIDES = ("left", "right")
+FINGERS = ("thumb", "index", "middle", "ring", "pinky")
+CENTRAL_PARTS = ("hips", "spine", "neck", "head")
+SIDED_PARTS = ("shoulder", "upper_arm", "forearm", "hand", "thigh", "shin", "foot", "toe", *FINGERS)
+ROLES = (*CENTRAL_PARTS, *(f"{side} {part}" for side in SIDES for part in SIDED_PARTS))
+
+_FINGER_NAMES = {
+    "thumb": ("thumb",),
+    "index": ("index", "pointer"),
+    "middle": ("middle", "mid"),
+    "ring": ("ring",),
+    "pinky": ("pinky", "little"),
+}
+_SEGMENTS = ("", "proximal", "intermediate", "distal", "metacarpal")
+
+_CENTRAL = {
+    "hips": ("hips", "hip", "pelvis", "spinebase"),
+    "spine": (
+        *("spine", "chest", "upperchest", "lowerchest", "thorax", "lowerback", "upperback", "back", "waist", "torso"),
+        *("abdomen", "lowerabdomen", "upperabdomen", "ab", "spinemid", "spinenavel", "spinechest", "spineshoulder"),
+    ),
+    "neck": ("neck", "lowerneck", "upperneck", "necktwist"),
+    "head": ("head", "skull"),
+}
+_SIDED = {
+    "collar": ("collar", "clavicle", "scapula", "collarbone"),
+    "shoulder": ("shoulder",),
+    "upper_arm": ("arm", "upperarm", "uparm", "humerus", "shldr", "bicep"),
+    "forearm": ("forearm", "lowerarm", "lowarm", "radius", "elbow"),
+    "hand": ("hand", "wrist", "fist"),
+    "hip": ("hip",),
+    "thigh": ("thigh", "upleg", "upperleg", "femur"),
+    "shin": ("shin", "leg", "lowerleg", "lowleg", "calf", "tibia", "knee"),
+    "ankle": ("ankle",),
+    "foot": ("foot",),
+    "toe": ("toe", "toes", "toebase", "ball"),
+} | {
+    part: tuple(f"{before}{name}{segment}" for name in names for before in ("", "hand", "f") for segment in _SEGMENTS)
+    for part, names in _FINGER_NAMES.items()
+}
+_CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names}
+_SIDED_PART = {name: part for part, names in _SIDED.items() for name in names}
+_SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
+_NO_PART = {"bind", "jnt", "joint", "bone", "bend", "m", "c"}  # words that say nothing about where a joint is
+_BELOW = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}
+
+NAMESPACE = re.compile(r"^.*[:|]")
+_RIG_PREFIX = re.compile(
+    r"^(valvebiped\.)?(mixamorig\d*|bip\d+|cc_base|def|j_bip(_c)?|b|jnt|joint|character\d*|skeleton)[\s_.\-]",
+    re.IGNORECASE,
+)
+_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
+_NUMBERED_FINGER = re.compile(r"finger[\s_.\-]?(\d)", re.IGNORECASE)
+
+
+def roles(
+    skeleton: Skeleton,
+    said: Mapping[str, str] | None = None,  # joint name to role, one of ROLES, where its file itself says it
+) -> Roles:
+    """Joints of every role, from the root outwards: by what the file says, else by what their names give away."""
+    found: dict[str, list[int]] = {}
+    first_finger = _first_finger(skeleton)
+    for joint, name in enumerate(skeleton.names):
+        role = _role(name, first_finger)
+        if role is not None:
+            found.setdefault(role, []).append(joint)
+    for side in SIDES:
+        _settle_side(found, side)
+    chains = {role: _one_chain(skeleton, joints) for role, joints in found.items()}
+    told = _told(skeleton, said or {})
+    taken = {joint for joints in told.values() for joint in joints}
+    left = {role: tuple(joint for joint in joints if joint not in taken) for role, joints in chains.items()}
+    chains = {role: joints for role, joints in left.items() if joints and role not in told} | told
+    _keep_to_limbs(skeleton, chains)
+    _settle_legs(skeleton, chains)
+    _settle_trunk(skeleton, chains)
+    return chains
+
+
+def limb_count(skeleton: Skeleton) -> int:
+    """How many of the eight bones of arms and legs the joints' names tell."""
+    found = roles(skeleton)
+    return sum(f"{side} {part}" in found for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin"))
+
+
+def _told(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
+    found: dict[str, list[int]] = {}
+    for joint, name in enumerate(skeleton.names):
+        if name in said:
+            found.setdefault(said[name], []).append(joint)
+    return {role: tuple(joints) for role, joints in found.items()}
+
+
+def _role(name: str, first_finger: int) -> str | None:
+    bare = _RIG_PREFIX.sub("", NAMESPACE.sub("", name))
+    words = [word.lower() for word in _WORD.findall(bare)]
+    sides = [_SIDE[word] for word in words if word in _SIDE]
+    kept = [word for word in words if word not in _SIDE and word not in _NO_PART]
+    part = "".join(kept)
+    for side in SIDES:
+        if not sides and part not in _CENTRAL_PART and (part.startswith(side) or part.endswith(side)):
+            sides, part = [side], part.removeprefix(side).removesuffix(side)
+    if not sides and part[:1] in _SIDE and part[1:] in _SIDED_PART:  # lhumerus, rfoot, lindex
+        sides, part = [_SIDE[part[0]]], part[1:]
+    if len(sides) != 1:
+        return None if sides else _CENTRAL_PART.get(part, _CENTRAL_PART.get("".join(kept[::-1])))
+    if numbered := _NUMBERED_FINGER.search(bare):
+        finger = int(numbered[1]) - first_finger
+        return f"{sides[0]} {FINGERS[finger]}" if 0 <= finger < len(FINGERS) else None
+    found = _SIDED_PART.get(part, _SIDED_PART.get("".join(kept[::-1])))  # armUpper
+    return None if found is None else f"{sides[0]} {found}"
+
+
+def _first_finger(skeleton: Skeleton) -> int:
+    """The number of the thumb where fingers are numbered: 0 in bipeds of 3ds Max, else 1."""
+    numbers = [int(found[1]) for name in skeleton.names if (found := _NUMBERED_FINGER.search(name))]
+    return min(numbers, default=1)
+
+
+def _settle_side(found: dict[str, list[int]], side: str) -> None:
+    """Settle names whose part depends on their neighbours: SMPL's foot is the toe, its shoulder the upper arm."""
+
+    def rename(old: str, new: str) -> None:
+        joints = found.pop(f"{side} {old}", [])
+        if joints:
+            found[f"{side} {new}"] = sorted(found.get(f"{side} {new}", []) + joints)
+
+    if f"{side} ankle" in found:
+        rename("foot", "toe")
+        rename("ankle", "foot")
+    if f"{side} upper_arm" not in found:
+        rename("shoulder", "upper_arm")
+    rename("collar", "shoulder")
+    if f"{side} thigh" not in found:
+        rename("hip", "thigh")
+    found.pop(f"{side} hip", None)
+
+
+def _keep_to_limbs(skeleton: Skeleton, chains: Roles) -> None:
+    """Leave twist joints, which share a limb's name beside the way to its end, out of the limb."""
+    for role, joints in chains.items():
+        side, _, part = role.rpartition(" ")
+        below = chains.get(f"{side} {_BELOW.get(part)}")
+        if below:
+            way = set(ancestors(skeleton, below[0]))
+            kept = tuple(joint for joint in joints if joint in way)
+            chains[role] = kept or joints
+
+
+def _settle_legs(skeleton: Skeleton, chains: Roles) -> None:
+    """A leg above a knee is the thigh, and the last of several joints of a foot its toe, where no name says so.
+
+    So is a leg that hangs on what carries the other one too: it is a leg of one bone.
+    """
+    shins = [chains[role][0] for role in (f"{side} shin" for side in SIDES) if role in chains]
+    carrying = set.intersection(*(set(ancestors(skeleton, joint)) for joint in shins)) if len(shins) == 2 else set()
+    for side in SIDES:
+        shin, foot = (chains.get(f"{side} {part}", ()) for part in ("shin", "foot"))
+        if f"{side} thigh" not in chains and (len(shin) > 1 or (shin and skeleton.parents[shin[0]] in carrying)):
+            chains[f"{side} thigh"], chains[f"{side} shin"] = shin[:1], shin[1:]
+        if not chains.get(f"{side} shin"):
+            chains.pop(f"{side} shin", None)
+        if len(foot) > 1 and f"{side} toe" not in chains:
+            chains[f"{side} foot"], chains[f"{side} toe"] = foot[:-1], foot[-1:]
+
+
+def _settle_trunk(skeleton: Skeleton, chains: Roles) -> None:
+    """Hips carry both legs and the spine; the spine ends where the arms begin, and neck and head go on from there."""
+    legs = [chains[role][0] for role in ("left thigh", "right thigh") if role in chains]
+    arms = [chains[role][0] for role in ("left upper_arm", "right upper_arm") if role in chains]
+    spine = chains.get("spine", ())
+    carrying = set.intersection(*(set(ancestors(skeleton, joint)) for joint in legs)) if len(legs) == 2 else set()
+    below = tuple(joint for joint in spine if joint in carrying)
+    if below and "hips" not in chains:
+        chains["hips"] = below
+    hips = chains.get("hips", (skeleton.root,))
+    if carrying and not carrying & set(hips):
+        above = set.intersection(carrying, ancestors(skeleton, hips[0]))
+        hips = (max(above), *hips) if above else hips
+    chains["hips"] = hips
+    spine = tuple(joint for joint in spine if joint not in hips)
+    reach = set.union(*(set(ancestors(skeleton, joint)) for joint in arms)) if arms else set(spine)
+    beyond = tuple(joint for joint in spine if joint not in reach) if reach & set(spine) else ()
+    if len(beyond) > 1 and "neck" not in chains and "head" not in chains:
+        chains["neck"], chains["head"] = beyond[:-1], beyond[-1:]
+        spine = tuple(joint for joint in spine if joint not in beyond)
+    if spine:
+        chains["spine"] = spine
+    else:
+        chains.pop("spine", None)
+
+
+def _one_chain(skeleton: Skeleton, joints: list[int]) -> tuple[int, ...]:
+    chain = joints[:1]
+    for joint in joints[1:]:
+        if chain[-1] in ancestors(skeleton, joint):
+            chain.append(joint)
+    return tuple(chain)
+
+
+def ancestors(skeleton: Skeleton, joint: int) -> list[int]:
+    """Joints above a joint, the nearest first."""
+    found = []
+    while (joint := int(skeleton.parents[joint])) >= 0:
+        found.append(joint)
+    return found

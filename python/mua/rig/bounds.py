@@ -1,0 +1,51 @@
+"""Boxes around posed avatars, from the skinned template: no texel needs to be decoded for them."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.kernels.dq_skinning import blend_vertices
+from mua.pose.clip import Clip
+from mua.rig.rig import Rig
+from mua.rig.stretched import stretched
+
+MARGIN = 0.06  # of the figure's size, that cloth may leave the skinned template
+
+
+def playback_bounds(rig: Rig, clips: Iterable[Clip]) -> Array:
+    """Lowest and highest corner [2, 3] float32 of all frames of all clips about the root joint's position, metres."""
+    boxes = [frame_boxes(rig, clip) - root_positions(rig, clip)[:, None] for clip in clips]
+    return union(np.concatenate(boxes)).astype(np.float32)
+
+
+def frame_boxes(rig: Rig, clip: Clip) -> Array:
+    """Lowest and highest corner [F, 2, 3] of every frame of a clip in the world, metres."""
+    boxes, around = [], margin(rig)
+    for frame, joints in enumerate(rig.skeleton.skinning(clip.rotations, clip.translations)):
+        dual = blend_vertices(joints, rig.skin_indices, rig.skin_weights)
+        shape = rig.mesh.vertices
+        if clip.stretches is not None:
+            shape = stretched(rig, clip.stretches, frame, shape)
+        posed = rotation.dual_transform(dual, shape)
+        boxes.append([posed.min(axis=0) - around, posed.max(axis=0) + around])
+    return np.array(boxes)
+
+
+def margin(rig: Rig) -> float:
+    """How far the boxes reach beyond the skinned template, metres."""
+    return MARGIN * float(np.ptp(rig.mesh.vertices, axis=0).max())
+
+
+def root_positions(rig: Rig, clip: Clip) -> Array:
+    """World positions [F, 3] of the root joint, metres."""
+    _, placed = rig.skeleton.world(clip.rotations, clip.translations)
+    return np.asarray(placed[:, rig.skeleton.root])
+
+
+def union(
+    boxes: Array,  # [B, 2, 3]
+) -> Array:
+    """The box [2, 3] around all boxes."""
+    return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
