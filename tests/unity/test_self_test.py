@@ -112,7 +112,7 @@ def answer(device: Device, recording: Path) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("name", ["Plays", "PlaysOnLoad", "PlaysFromPackage", "WaitsForNothing", "WaitsInEditor"])
+@pytest.mark.parametrize("name", ["Plays", "PlaysOnLoad", "PlaysFromPackage"])
 def test_every_case_passes(device: Device, story: Story, tmp_path: Path, name: str) -> None:
     recording = tmp_path / "recorded"
     story(name, recording=recording)
@@ -120,7 +120,7 @@ def test_every_case_passes(device: Device, story: Story, tmp_path: Path, name: s
     assert ran.failed == {}
     assert len(ran.cases) == CASES
     assert ran.said["Log"][-1] == f"MUA-SELFTEST {RUN} PASS {CASES}/{CASES}"
-    assert ran.said.get("exit", ["0"]) == ["0"]
+    assert ran.said["exit"] == ["0"]
 
 
 @pytest.mark.parametrize("kernel", CAUGHT)
@@ -156,9 +156,8 @@ def test_a_device_is_described_in_a_line(story: Story) -> None:
     assert "Vulkan" in described
 
 
-@pytest.mark.parametrize("name", ["IsStuck", "IsBroken", "IsBrokenAndWaits"])
-def test_a_buffer_that_cannot_be_read_fails_its_case(story: Story, name: str) -> None:
-    failed = story(name).failed
+def test_a_buffer_that_cannot_be_read_fails_its_case(story: Story) -> None:
+    failed = story("IsBroken").failed
     assert len(failed) == CASES
     assert {"read back" in what for what in failed.values()} == {True}
 

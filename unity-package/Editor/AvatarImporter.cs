@@ -1,6 +1,7 @@
 using System;
 using System.IO;
 using Mua.Format;
+using UnityEditor;
 using UnityEditor.AssetImporters;
 using UnityEngine;
 
@@ -65,6 +66,44 @@ namespace Mua.Editor
             ctx.AddObjectToAsset(AvatarId, asset);
             ctx.SetMainObject(asset);
             ctx.LogImportError("MUA: " + ctx.assetPath + ": " + fault + ".", asset);
+        }
+    }
+
+    /// <summary>An avatar's import has no settings; AvatarAssetEditor shows what came of it.</summary>
+    [CustomEditor(typeof(AvatarImporter))]
+    internal sealed class AvatarImporterEditor : ScriptedImporterEditor
+    {
+        protected override bool needsApplyRevert => false;
+
+        public override void OnInspectorGUI()
+        {
+        }
+    }
+
+    /// <summary>Shows an avatar anew when its file has changed: a component notices only another asset.</summary>
+    internal sealed class AvatarReimport : AssetPostprocessor
+    {
+        private static void OnPostprocessAllAssets(
+            string[] importedAssets, string[] deletedAssets, string[] movedAssets, string[] movedFromAssetPaths)
+        {
+            foreach (string path in importedAssets)
+            {
+                if (Path.GetExtension(path) == "." + AvatarImporter.Extension)
+                {
+                    Show(path);
+                }
+            }
+        }
+
+        private static void Show(string path)
+        {
+            foreach (AvatarRenderer shown in AvatarRenderer.All())
+            {
+                if (shown.Avatar != null && AssetDatabase.GetAssetPath(shown.Avatar) == path)
+                {
+                    shown.Load(shown.Avatar);
+                }
+            }
         }
     }
 }

@@ -1,4 +1,5 @@
 using System.Collections.Generic;
+using System.IO;
 using System.Linq;
 using UnityEditor;
 using UnityEngine;
@@ -152,6 +153,35 @@ namespace Mua.Editor
             {
                 Debug.Log($"MUA set {change}");
             }
+        }
+    }
+
+    /// <summary>How a run ended; the number is the editor's exit code in batch mode.</summary>
+    internal enum ProjectOutcome
+    {
+        Done = 0,
+        Failed = 1,
+
+        /// <summary>Packages or scripts were brought; the same command is to be run once more.</summary>
+        Again = 3, // 2 is Unity's own, for tests
+    }
+
+    /// <summary>Folders of a project for what set-up and the build make.</summary>
+    internal static class ProjectAssets
+    {
+        public const string Folder = "Assets/MUA";
+
+        /// <summary>Makes a folder, and those above it, where there is none.</summary>
+        public static void MakeFolder(string path)
+        {
+            path = path.Replace('\\', '/');
+            if (AssetDatabase.IsValidFolder(path))
+            {
+                return;
+            }
+            string parent = Path.GetDirectoryName(path);
+            MakeFolder(parent);
+            AssetDatabase.CreateFolder(parent.Replace('\\', '/'), Path.GetFileName(path));
         }
     }
 }

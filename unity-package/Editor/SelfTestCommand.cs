@@ -1,6 +1,7 @@
 using System.Collections;
 using Mua.SelfTest;
 using UnityEditor;
+using UnityEditor.Build;
 using UnityEngine;
 
 namespace Mua.Editor
@@ -20,13 +21,41 @@ namespace Mua.Editor
                 EditorUtility.DisplayDialog(Title, GoldenFolder.Missing, "OK");
                 return;
             }
-            var test = new SelfTestRun(Run, folder, true);
+            var test = new SelfTestRun(Run, folder);
             IEnumerator steps = test.Run();
             while (steps.MoveNext())
             {
             }
             string sentence = test.Passed + " of " + test.Total + " cases passed on " + SystemInfo.graphicsDeviceName;
             EditorUtility.DisplayDialog(Title, sentence + (test.HasPassed ? "." : "; the console says what failed."), "OK");
+        }
+    }
+
+    /// <summary>Puts golden files into builds of the player, which mua-deploy tests; into no other application.</summary>
+    internal sealed class SelfTestData : BuildPlayerProcessor
+    {
+        private static readonly string[] Endings = { ".json", ".bin" };
+
+        public override void PrepareForBuild(BuildPlayerContext buildPlayerContext)
+        {
+            if (!Build.IsOfPlayer && PlayerSettings.applicationIdentifier != ProjectPlayer.Identifier)
+            {
+                return;
+            }
+            string folder = GoldenFolder.Find(GoldenFile.Stems[0] + Endings[0]);
+            if (folder == null)
+            {
+                Debug.LogWarning("MUA: the player cannot test its kernels: " + GoldenFolder.Missing);
+                return;
+            }
+            foreach (string stem in GoldenFile.Stems)
+            {
+                foreach (string ending in Endings)
+                {
+                    buildPlayerContext.AddAdditionalPathToStreamingAssets(
+                        folder + "/" + stem + ending, GoldenFolder.Name + "/" + stem + ending);
+                }
+            }
         }
     }
 }

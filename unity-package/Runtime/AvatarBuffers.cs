@@ -112,9 +112,13 @@ namespace Mua
             for (int i = 0; i < layers.Length; i++)
             {
                 string layer = path + "[" + i + "]";
-                StoredBuffer weight = StoredOf(layers[i].Weight, layer + ".weight");
-                StoredBuffer bias = StoredOf(layers[i].Bias, layer + ".bias");
-                uploaded[i] = new LayerBuffers(weight, bias, layers[i].Inputs, layers[i].Outputs);
+                uploaded[i] = new LayerBuffers
+                {
+                    Weight = StoredOf(layers[i].Weight, layer + ".weight"),
+                    Bias = StoredOf(layers[i].Bias, layer + ".bias"),
+                    Inputs = layers[i].Inputs,
+                    Outputs = layers[i].Outputs,
+                };
             }
             return uploaded;
         }
@@ -122,8 +126,13 @@ namespace Mua
         /// <summary>Canonical vertices as a layer whose weight lies transposed: the basis [K, 3 V], the mean [3 V].</summary>
         private LayerBuffers MeshOf(Coarse coarse)
         {
-            StoredBuffer basis = StoredOf(coarse.Basis, "coarse.basis"), mean = StoredOf(coarse.Mean, "coarse.mean");
-            return new LayerBuffers(basis, mean, coarse.Basis.Shape[0], 3 * coarse.Basis.Shape[1]);
+            return new LayerBuffers
+            {
+                Weight = StoredOf(coarse.Basis, "coarse.basis"),
+                Bias = StoredOf(coarse.Mean, "coarse.mean"),
+                Inputs = coarse.Basis.Shape[0],
+                Outputs = 3 * coarse.Basis.Shape[1],
+            };
         }
 
         private BranchBuffers BranchOf(Branch branch, string name)
@@ -149,9 +158,14 @@ namespace Mua
 
         private BandBuffers BandOf(DetailBand band, string path)
         {
-            StoredBuffer mean = StoredOf(band.Mean, path + ".mean");
-            StoredBuffer h = StoredOf(band.H, path + ".h"), w = StoredOf(band.W, path + ".w");
-            return new BandBuffers(mean, h, w, band.Rank, band.Size);
+            return new BandBuffers
+            {
+                Mean = StoredOf(band.Mean, path + ".mean"),
+                H = StoredOf(band.H, path + ".h"),
+                W = StoredOf(band.W, path + ".w"),
+                Rank = band.Rank,
+                Size = band.Size,
+            };
         }
 
         /// <summary>Of the levels beyond the `dynamic` ones that have details.</summary>

@@ -60,7 +60,7 @@ namespace Mua
         /// <summary>At the avatar's rate; setting it goes to the frame's beginning.</summary>
         public int Frame
         {
-            get => IsEmpty ? 0 : (int)AvatarPose.Position(clips[index], Seconds);
+            get => IsEmpty ? 0 : (int)clips[index].Position(seconds);
             set => Seconds = IsEmpty ? 0 : value / clips[index].Rate;
         }
 

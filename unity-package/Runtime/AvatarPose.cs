@@ -72,7 +72,7 @@ namespace Mua
         /// <summary>The clip at a time that starts over at its end; between its frames the drawn pose is interpolated.</summary>
         public void Sample(ClipSampler source, double seconds)
         {
-            double position = Position(source, seconds);
+            double position = source.Position(seconds);
             int frame = (int)position;
             if (source != clip || frame != index)
             {
@@ -121,16 +121,6 @@ namespace Mua
             clip = null;
             index = 0;
             return !isSame;
-        }
-
-        /// <summary>Frame of the clip that a time falls in, and how far it is past it.</summary>
-        public static double Position(ClipSampler source, double seconds)
-        {
-            double position = seconds * source.Rate, whole = Math.Round(position);
-            position = Math.Abs(position - whole) < FrameSlack ? whole : position;
-            position %= source.FrameCount;
-            position = position < 0 ? position + source.FrameCount : position;
-            return position < source.FrameCount ? position : 0;
         }
 
         private void Approach(double t)

@@ -52,7 +52,7 @@ internal static class FormatProgram
             case "checksums":
                 for (int count = 0; count < 64; count++)
                 {
-                    Console.WriteLine(Crc32.Append(Crc32.Append(0, content, 0, count), content, count, 2 * count + 1));
+                    Console.WriteLine(Checksum.Append(Checksum.Append(0, content, 0, count), content, count, 2 * count + 1));
                 }
                 return 0;
             case "time":
@@ -88,8 +88,8 @@ internal static class FormatProgram
             return allocated + answer;
         }
         ulong sum = 0;
-        print = (name, kind, bytes) => sum += Crc32.Append(
-            Crc32.Append(0, Encoding.UTF8.GetBytes(name + kind), 0, name.Length + kind.Length), bytes, 0, bytes.Length);
+        print = (name, kind, bytes) => sum += Checksum.Append(
+            Checksum.Append(0, Encoding.UTF8.GetBytes(name + kind), 0, name.Length + kind.Length), bytes, 0, bytes.Length);
         Dump(AvatarFile.Read(content));
         return allocated + "ok\t" + sum;
     }

@@ -40,7 +40,7 @@ namespace Mua
 
         public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place)
         {
-            Clip.ReadWindow(Clip.FrameAt(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
+            Clip.ReadWindow((int)Clip.Position(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
             Frame.Decode(commands, rotations, translations, place);
         }
 

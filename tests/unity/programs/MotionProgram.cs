@@ -42,12 +42,12 @@ internal static class MotionProgram
             }
             for (int i = 1; i < arguments.Length; i++)
             {
-                Console.WriteLine("at " + sampler.FrameAt(double.Parse(arguments[i])));
+                Console.WriteLine("at " + (int)sampler.Position(double.Parse(arguments[i])));
             }
             long before = GC.GetAllocatedBytesForCurrentThread();
             for (int i = 0; i < Repeats; i++)
             {
-                int frame = sampler.FrameAt(0.01 * i);
+                int frame = (int)sampler.Position(0.01 * i);
                 Play(sampler, frame, window, rotations, translations, inputs, skinning, descriptor, pose);
             }
             Console.WriteLine("allocated " + (GC.GetAllocatedBytesForCurrentThread() - before));

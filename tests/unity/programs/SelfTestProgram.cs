@@ -99,38 +99,10 @@ namespace Mua
             Plays();
         }
 
-        private static void WaitsForNothing()
-        {
-            Machine.Readback(false);
-            Plays();
-        }
-
-        private static void WaitsInEditor()
-        {
-            var run = new SelfTestRun("0123abcd", streaming + "/" + GoldenFolder.Name, true);
-            IEnumerator steps = run.Run();
-            while (steps.MoveNext())
-            {
-            }
-            Say("passed", run.HasPassed);
-        }
-
-        private static void IsStuck()
-        {
-            Readbacks.Stuck = true;
-            Plays();
-        }
-
         private static void IsBroken()
         {
             Readbacks.Broken = true;
             Plays();
-        }
-
-        private static void IsBrokenAndWaits()
-        {
-            Machine.Readback(false);
-            IsBroken();
         }
 
         private static void LacksCompute()

@@ -166,7 +166,7 @@ namespace Mua
             var clip = new ClipSampler(file.Clips[0], file.Skeleton, file.Encoding.Rate);
             var rotations = new double[4 * file.Encoding.Window * file.Skeleton.JointCount];
             var translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
-            clip.ReadWindow(clip.FrameAt(Number(words, 1)), file.Encoding.Window, rotations, translations);
+            clip.ReadWindow((int)clip.Position(Number(words, 1)), file.Encoding.Window, rotations, translations);
             var position = new Vector3(Number(words, 2), Number(words, 3), Number(words, 4));
             var rotation = new Quaternion(Number(words, 5), Number(words, 6), Number(words, 7), Number(words, 8));
             frame.Decode(Commands, rotations, translations, AvatarSpace.Place(position, rotation));

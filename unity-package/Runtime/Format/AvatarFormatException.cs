@@ -1,4 +1,5 @@
 using System;
+using System.Globalization;
 
 namespace Mua.Format
 {
@@ -16,6 +17,16 @@ namespace Mua.Format
         {
             Code = code;
             Field = field;
+        }
+    }
+
+    /// <summary>Refuses a value outside its meaning: code `value`.</summary>
+    internal static class Refusal
+    {
+        public static AvatarFormatException Of(string field, string sentence, params object[] values)
+        {
+            return new AvatarFormatException(
+                "value", field, string.Format(CultureInfo.InvariantCulture, sentence, values));
         }
     }
 }

@@ -3,6 +3,15 @@ using System.Runtime.InteropServices;
 
 namespace Mua.Format
 {
+    /// <summary>How a tensor's elements are stored; the values are those of the file.</summary>
+    public enum ElementType : byte
+    {
+        F32,
+        F16,
+        I8,
+        I32,
+    }
+
     /// <summary>A view of one tensor in the bytes of its file, row-major and in its stored type.</summary>
     public sealed class Tensor
     {

@@ -8,7 +8,7 @@ namespace Mua.Motion
     /// </summary>
     public sealed class ClipSampler
     {
-        private const double LastFrameSlack = 1e-6; // frames by which rounding may place the end before the last sample
+        private const double FrameSlack = 1e-6; // frames by which rounding may place a time before a frame's own
 
         private readonly Clip clip;
         private readonly Skeleton skeleton;
@@ -22,7 +22,7 @@ namespace Mua.Motion
             Rate = rate;
             step = clip.Rate / rate;
             int last = clip.FrameCount - 1;
-            FrameCount = IsPlain ? clip.FrameCount : (int)(last / (double)clip.Rate * rate + LastFrameSlack) + 1;
+            FrameCount = IsPlain ? clip.FrameCount : (int)(last / (double)clip.Rate * rate + FrameSlack) + 1;
         }
 
         public string Name => clip.Name;
@@ -34,11 +34,16 @@ namespace Mua.Motion
 
         private bool IsPlain => Rate == clip.Rate;
 
-        /// <summary>The frame shown at `seconds`; the clip starts over at its end, and plays back before 0.</summary>
-        public int FrameAt(double seconds)
+        /// <summary>
+        /// The frame that a time falls in, and how far it is past it; the clip starts over at its end, and plays back before 0.
+        /// </summary>
+        public double Position(double seconds)
         {
-            double frame = seconds * Rate % FrameCount;
-            return (int)(frame < 0 ? frame + FrameCount : frame) % FrameCount;
+            double position = seconds * Rate, whole = Math.Round(position);
+            position = Math.Abs(position - whole) < FrameSlack ? whole : position;
+            position %= FrameCount;
+            position = position < 0 ? position + FrameCount : position;
+            return position < FrameCount ? position : 0;
         }
 
         /// <summary>

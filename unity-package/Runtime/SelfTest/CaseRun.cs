@@ -1,82 +1,51 @@
 using System;
 using System.Collections.Generic;
 using System.Globalization;
+using System.Linq;
 using UnityEngine;
 using UnityEngine.Rendering;
 
 namespace Mua.SelfTest
 {
     /// <summary>One golden case on the device: its buffers, its dispatch, and what came of it.</summary>
-    internal sealed class CaseRun : IDisposable
+    internal sealed class CaseRun
     {
         private readonly GoldenFile file;
         private readonly GoldenCase golden;
-        private readonly GraphicsBuffer[] buffers;
-        private readonly Dictionary<string, Readback> readbacks = new Dictionary<string, Readback>();
+        private readonly Dictionary<string, GraphicsBuffer> buffers = new Dictionary<string, GraphicsBuffer>();
 
-        /// <summary>
-        /// Dispatches; `waits` as of Readback. InvalidOperationException or ArgumentException says what the device or
-        /// the package lacks.
-        /// </summary>
-        public CaseRun(ComputeShader shader, GoldenFile file, GoldenCase golden, bool waits)
+        private CaseRun(GoldenFile file, GoldenCase golden)
         {
             this.file = file;
             this.golden = golden;
-            buffers = new GraphicsBuffer[golden.buffers.Length];
-            try
+        }
+
+        /// <summary>
+        /// Runs a case and waits for it; the first buffer that is not as it must be, and where, or nothing where all are.
+        /// InvalidOperationException or ArgumentException says what the device or the package lacks.
+        /// </summary>
+        public static string Difference(ComputeShader shader, GoldenFile file, GoldenCase golden)
+        {
+            var kernel = new Kernel(shader, file.kernel, golden.entry);
+            using (var held = new BufferSet())
             {
-                Dispatch(new Kernel(shader, file.kernel, golden.entry));
-                foreach (GoldenExpected part in golden.expected)
-                {
-                    if (!readbacks.ContainsKey(part.buffer))
-                    {
-                        readbacks[part.buffer] = new Readback(buffers[golden.IndexOf(part.buffer)], waits);
-                    }
-                }
-            }
-            catch
-            {
-                Dispose();
-                throw;
+                var run = new CaseRun(file, golden);
+                run.Upload(held);
+                run.Dispatch(kernel);
+                return run.Compare();
             }
         }
 
-        /// <summary>Whether Difference can be asked.</summary>
-        public bool Continue()
+        private void Upload(BufferSet held)
         {
-            bool isDone = true;
-            foreach (Readback readback in readbacks.Values)
+            foreach (GoldenBuffer described in golden.buffers)
             {
-                isDone &= readback.Continue();
-            }
-            return isDone;
-        }
-
-        /// <summary>The first buffer that is not as it must be, and where; empty where all are.</summary>
-        public string Difference()
-        {
-            foreach (GoldenExpected part in golden.expected)
-            {
-                Readback readback = readbacks[part.buffer];
-                bool isRead = readback.Problem.Length == 0;
-                string found = isRead ? Compare(part, readback.Words) : part.buffer + " " + readback.Problem;
-                if (found.Length > 0)
-                {
-                    return found;
-                }
-            }
-            return "";
-        }
-
-        public void Dispose()
-        {
-            for (int i = 0; i < buffers.Length; i++)
-            {
-                if (buffers[i] != null)
-                {
-                    buffers[i].Dispose();
-                    buffers[i] = null;
-                }
+                var words = new uint[described.count * described.Words];
+                Buffer.BlockCopy(file.Binary, described.offset, words, 0, sizeof(uint) * words.Length);
+                string name = "golden " + described.name;
+                GraphicsBuffer buffer = held.Structured(name, described.count, sizeof(uint) * described.Words);
+                buffer.SetData(words);
+                buffers[described.name] = buffer;
             }
         }
 
@@ -84,11 +53,9 @@ namespace Mua.SelfTest
         {
             using (var commands = new CommandBuffer { name = "MUA self-test" })
             {
-                for (int i = 0; i < buffers.Length; i++)
+                foreach (KeyValuePair<string, GraphicsBuffer> buffer in buffers)
                 {
-                    GoldenBuffer described = golden.buffers[i];
-                    buffers[i] = Upload(described);
-                    kernel.Set(commands, Shader.PropertyToID(described.name), buffers[i]);
+                    kernel.Set(commands, Shader.PropertyToID(buffer.Key), buffer.Value);
                 }
                 foreach (GoldenConstant constant in golden.constants)
                 {
@@ -99,15 +66,33 @@ namespace Mua.SelfTest
             }
         }
 
-        private GraphicsBuffer Upload(GoldenBuffer described)
+        private string Compare()
         {
-            var words = new uint[described.count * described.Words];
-            Buffer.BlockCopy(file.Binary, described.offset, words, 0, sizeof(uint) * words.Length);
-            var buffer = new GraphicsBuffer(
-                GraphicsBuffer.Target.Structured, described.count, sizeof(uint) * described.Words);
-            buffer.name = "MUA golden " + described.name;
-            buffer.SetData(words);
-            return buffer;
+            var read = new Dictionary<string, uint[]>();
+            foreach (GoldenExpected part in golden.expected)
+            {
+                if (!read.ContainsKey(part.buffer))
+                {
+                    read[part.buffer] = Read(part.buffer);
+                }
+            }
+            IEnumerable<string> differences = golden.expected.Select(part => Compare(part, read[part.buffer]));
+            return differences.FirstOrDefault(difference => difference.Length > 0) ?? "";
+        }
+
+        private uint[] Read(string name)
+        {
+            GraphicsBuffer buffer = buffers[name];
+            var words = new uint[buffer.count * (buffer.stride / sizeof(uint))];
+            try
+            {
+                buffer.GetData(words);
+            }
+            catch (Exception error) // whatever the engine refuses, the case fails and the run goes on
+            {
+                throw new InvalidOperationException(name + " could not be read back: " + error.Message);
+            }
+            return words;
         }
 
         private static void Set(Kernel kernel, CommandBuffer commands, GoldenConstant constant)

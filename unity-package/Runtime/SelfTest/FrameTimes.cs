@@ -5,6 +5,26 @@ using UnityEngine;
 
 namespace Mua.SelfTest
 {
+    /// <summary>GPU milliseconds of one stage in each frame that had it.</summary>
+    [Serializable]
+    internal sealed class BenchStage
+    {
+        public string name = "";
+        public float[] gpu = new float[0];
+    }
+
+    /// <summary>What bench.json holds; names of fields are those of the file, times are milliseconds.</summary>
+    [Serializable]
+    internal sealed class BenchReport
+    {
+        public string avatar = "";
+        public string device = "";
+        public float[] frames = new float[0]; // from one to the next
+        public float[] cpu = new float[0]; // as FrameTimingManager has them; empty where it is off
+        public float[] gpu = new float[0];
+        public BenchStage[] stages = new BenchStage[0]; // those that the device times
+    }
+
     /// <summary>Times of frames as they pass, in milliseconds, without an allocation.</summary>
     internal sealed class FrameTimes : IDisposable
     {

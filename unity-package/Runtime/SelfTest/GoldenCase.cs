@@ -1,9 +1,123 @@
 using System;
 using System.IO;
 using System.Text;
+using Mua.Format;
 
 namespace Mua.SelfTest
 {
+    /// <summary>A constant of a golden case; names of fields are those of the file.</summary>
+    [Serializable]
+    internal sealed class GoldenConstant
+    {
+        public string name = "";
+        public string scalar = "";
+        public int[] shape = new int[0];
+        public double[] values = new double[0];
+
+        /// <summary>Whether SelfTest can set it.</summary>
+        public bool IsKnown()
+        {
+            switch (scalar + " " + shape.Length)
+            {
+                case "uint 0":
+                case "float 0":
+                    return values.Length == 1;
+                case "uint 1":
+                case "float 1":
+                    return values.Length == shape[0] && shape[0] >= 2 && shape[0] <= 4;
+                case "float 3":
+                    return shape[1] == 4 && shape[2] == 4 && values.Length > 0 && values.Length == shape[0] * 16L;
+                default:
+                    return false;
+            }
+        }
+    }
+
+    /// <summary>What a buffer holds before the dispatch; names of fields are those of the file.</summary>
+    [Serializable]
+    internal sealed class GoldenBuffer
+    {
+        public string name = "";
+        public string element = "";
+        public int count = 0;
+        public int offset = 0;
+
+        /// <summary>Of one element, in 4 bytes each; 0 where the type is not known.</summary>
+        public int Words
+        {
+            get
+            {
+                switch (element)
+                {
+                    case "uint":
+                    case "float":
+                        return 1;
+                    case "uint2":
+                    case "float2":
+                        return 2;
+                    case "uint4":
+                    case "float4":
+                        return 4;
+                    default:
+                        return 0;
+                }
+            }
+        }
+    }
+
+    /// <summary>What stands in some words of a buffer afterwards; names of fields are those of the file.</summary>
+    [Serializable]
+    internal sealed class GoldenExpected
+    {
+        public string buffer = "";
+        public string kind = "";
+        public int first = 0;
+        public int length = 0;
+        public int period = 0;
+        public int count = 0;
+        public int offset = 0;
+        public double absolute = 0;
+        public double relative = 0;
+
+        /// <summary>Values in a word; 0 where the kind is not known.</summary>
+        public int PerWord => kind == "half" ? 2 : kind == "uint" || kind == "float" ? 1 : 0;
+
+        /// <summary>Index of the buffer's word in which a value lies.</summary>
+        public long Word(int value)
+        {
+            long word = value / PerWord;
+            return first + word / length * period + word % length;
+        }
+
+        /// <summary>The value that stands in its word of a buffer.</summary>
+        public double Found(uint[] words, int value)
+        {
+            uint word = words[Word(value)];
+            if (kind == "half")
+            {
+                return Half.ToSingle((ushort)(word >> (16 * (value % 2))));
+            }
+            return Number(word);
+        }
+
+        /// <summary>A value of the file, which holds no halves.</summary>
+        public double Wanted(byte[] binary, int value)
+        {
+            return Number(BitConverter.ToUInt32(binary, offset + sizeof(uint) * value));
+        }
+
+        /// <summary>Whether a value is as near as it must be; no number is not.</summary>
+        public bool Allows(double found, double wanted)
+        {
+            return Math.Abs(found - wanted) - absolute - relative * Math.Abs(wanted) <= 0;
+        }
+
+        private double Number(uint word)
+        {
+            return kind == "uint" ? word : BitConverter.ToSingle(BitConverter.GetBytes(word), 0);
+        }
+    }
+
     /// <summary>One dispatch and what it must leave behind; names of fields are those of the file.</summary>
     [Serializable]
     internal sealed class GoldenCase

@@ -36,7 +36,7 @@ namespace Mua.SelfTest
             bool isRight = true;
             if (line.IsSelfTest)
             {
-                var test = new SelfTestRun(line.Run, GoldenFolder.InPlayer, false);
+                var test = new SelfTestRun(line.Run, GoldenFolder.InPlayer);
                 yield return test.Run();
                 isRight = test.HasPassed;
             }
@@ -51,6 +51,36 @@ namespace Mua.SelfTest
             {
                 Application.Quit(isRight ? 0 : 1); // a person sees the scene go on; a script waits for an exit code
             }
+        }
+    }
+
+    /// <summary>What mua-deploy told the player (docs/deploy.md).</summary>
+    internal sealed class CommandLine
+    {
+        private const string DefaultRun = "00000000"; // for people who start the player by hand
+
+        private readonly string[] words;
+
+        public CommandLine(string[] words)
+        {
+            this.words = words;
+        }
+
+        public bool IsSelfTest => Array.IndexOf(words, "-muaSelfTest") >= 0;
+
+        /// <summary>The avatar to measure; null where none is.</summary>
+        public string Bench => After("-muaBench");
+
+        /// <summary>How long to measure, as written; null where it is left out.</summary>
+        public string Seconds => After("-muaSeconds");
+
+        /// <summary>What answers carry.</summary>
+        public string Run => After("-muaRun") ?? DefaultRun;
+
+        private string After(string word)
+        {
+            int at = Array.IndexOf(words, word);
+            return at >= 0 && at + 1 < words.Length ? words[at + 1] : null;
         }
     }
 }

@@ -33,7 +33,7 @@ namespace Mua.SelfTest
                 + SystemInfo.maxComputeBufferInputsCompute + ", of a vertex shader "
                 + SystemInfo.maxComputeBufferInputsVertex + "; threads of a group " + SystemInfo.maxComputeWorkGroupSize
                 + "; threads of a wave " + SystemInfo.computeSubGroupSize + "; bytes of a buffer "
-                + SystemInfo.maxGraphicsBufferSize + "; async readback " + SystemInfo.supportsAsyncGPUReadback);
+                + SystemInfo.maxGraphicsBufferSize);
         }
 
         private static void Write(string line)

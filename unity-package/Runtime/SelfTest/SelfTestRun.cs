@@ -5,23 +5,20 @@ using UnityEngine;
 
 namespace Mua.SelfTest
 {
-    /// <summary>Every kernel on its golden buffers, a case in a frame or two; the log has the outcomes.</summary>
+    /// <summary>Every kernel on its golden buffers, a case in a frame; the log has the outcomes.</summary>
     internal sealed class SelfTestRun
     {
         private const string Mark = "MUA-SELFTEST";
 
         private readonly RunLog log;
         private readonly string folder;
-        private readonly bool waits;
         private readonly List<GoldenFile> files = new List<GoldenFile>();
         private readonly List<string> problems = new List<string>(); // of what cannot run
 
-        /// <summary>`waits` as of Readback.</summary>
-        public SelfTestRun(string run, string folder, bool waits)
+        public SelfTestRun(string run, string folder)
         {
             log = new RunLog(Mark, run);
             this.folder = folder;
-            this.waits = waits;
         }
 
         public int Passed { get; private set; }
@@ -59,11 +56,7 @@ namespace Mua.SelfTest
             {
                 foreach (GoldenCase golden in file.cases)
                 {
-                    IEnumerator running = Run(file, golden, ShaderOf(resources, file.Stem));
-                    while (running.MoveNext())
-                    {
-                        yield return null;
-                    }
+                    Run(file, golden, ShaderOf(resources, file.Stem));
                     yield return null;
                 }
             }
@@ -92,25 +85,16 @@ namespace Mua.SelfTest
             }
         }
 
-        private IEnumerator Run(GoldenFile file, GoldenCase golden, ComputeShader shader)
+        private void Run(GoldenFile file, GoldenCase golden, ComputeShader shader)
         {
-            string problem = null;
-            CaseRun run = null;
+            string problem;
             try
             {
-                run = new CaseRun(shader, file, golden, waits);
+                problem = CaseRun.Difference(shader, file, golden);
             }
             catch (Exception error) // whatever the engine refuses is an outcome of this case
             {
                 problem = error.Message;
-            }
-            using (run)
-            {
-                while (run != null && !run.Continue())
-                {
-                    yield return null;
-                }
-                problem = problem ?? run.Difference();
             }
             bool isRight = problem.Length == 0;
             Passed += isRight ? 1 : 0;

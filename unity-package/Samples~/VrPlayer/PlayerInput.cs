@@ -1,5 +1,60 @@
+using System;
+using UnityEngine;
+
 namespace Mua.Samples.VrPlayer
 {
+    /// <summary>What happens once when a button or key goes down.</summary>
+    [Flags]
+    internal enum PlayerAction
+    {
+        None = 0,
+        PlayPause = 1,
+        NextFrame = 2,
+        PreviousFrame = 4,
+        NextClip = 8,
+        PreviousClip = 16,
+        NextAvatar = 32,
+        PreviousAvatar = 64,
+        Splats = 128,
+        Geometry = 256,
+        Mesh = 512,
+        Skeleton = 1024,
+        Shadow = 2048,
+
+        /// <summary>User and avatar go back to where they began, at natural size.</summary>
+        Reset = 4096,
+
+        /// <summary>Shows or hides the page of buttons.</summary>
+        Help = 8192,
+    }
+
+    /// <summary>
+    /// What the user asks for in one frame, whichever device said so. Amounts are of full speed, from -1 to 1.
+    /// </summary>
+    internal struct PlayerIntents
+    {
+        /// <summary>Buttons and keys that went down in this frame.</summary>
+        public PlayerAction Pressed;
+
+        /// <summary>To the right and forward, of where the user looks.</summary>
+        public Vector2 Walk;
+
+        /// <summary>Upwards.</summary>
+        public float Rise;
+
+        /// <summary>To the right and up, degrees of this frame.</summary>
+        public Vector2 Look;
+
+        /// <summary>Of the avatar, seen from above clockwise.</summary>
+        public float Turn;
+
+        /// <summary>Nearer, which shows it larger.</summary>
+        public float Zoom;
+
+        /// <summary>Through the clip, forwards.</summary>
+        public float Scrub;
+    }
+
     /// <summary>All devices as one: what any of them asks for counts.</summary>
     internal sealed class PlayerInput
     {

@@ -105,7 +105,7 @@ namespace UnityEngine
     {
         static SystemInfo()
         {
-            supportsComputeShaders = supportsIndirectArgumentsBuffer = supportsAsyncGPUReadback = true;
+            supportsComputeShaders = supportsIndirectArgumentsBuffer = true;
             maxComputeBufferInputsCompute = maxComputeBufferInputsVertex = 8;
             maxGraphicsBufferSize = 1L << 31;
             graphicsDeviceType = Rendering.GraphicsDeviceType.Vulkan;
@@ -113,7 +113,6 @@ namespace UnityEngine
 
         public static bool supportsComputeShaders { get; internal set; }
         public static bool supportsIndirectArgumentsBuffer { get; internal set; }
-        public static bool supportsAsyncGPUReadback { get; internal set; }
         public static bool supportsGpuRecorder { get; internal set; }
         public static bool supportsMultiview { get; internal set; }
         public static bool usesReversedZBuffer { get { return true; } }
@@ -178,17 +177,16 @@ namespace StandIns
         /// <summary>What the player was told to exit with; null while it runs on.</summary>
         public static int? ExitCode { get; internal set; }
 
-        public static void Readback(bool supported) { SystemInfo.supportsAsyncGPUReadback = supported; }
         public static void Paths(string streamingAssets, string persistentData)
         {
             Application.streamingAssetsPath = streamingAssets;
             Application.persistentDataPath = persistentData;
         }
 
-        /// <summary>Put an asset where Resources.Load finds it.</summary>
         /// <summary>How often Resources.Load was called.</summary>
         public static int Asked { get { return Resources.Asked; } }
 
+        /// <summary>Put an asset where Resources.Load finds it.</summary>
         public static void Place(string path, UnityEngine.Object asset) { Resources.Placed[path] = asset; }
 
         public static void Platform(RuntimePlatform platform) { Application.platform = platform; }

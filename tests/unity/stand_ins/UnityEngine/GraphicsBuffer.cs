@@ -84,8 +84,6 @@ namespace UnityEngine
         {
             CheckUsable("GetData");
             byte[] content = StandIns.Readbacks.Of(this);
-            if (content == null)
-                throw new InvalidOperationException("stand-in: broken");
             if (Buffer.ByteLength(data) > content.Length)
                 throw new ArgumentException("GetData(): Accessing " + Buffer.ByteLength(data) + " bytes of " + content.Length);
             Buffer.BlockCopy(content, 0, data, 0, Buffer.ByteLength(data));
@@ -114,6 +112,35 @@ namespace UnityEngine
             if (data == null)
                 throw new ArgumentNullException("data");
             return data.Length;
+        }
+    }
+}
+
+namespace StandIns
+{
+    using UnityEngine;
+
+    /// <summary>
+    /// Answers reads of buffers in two runs: the first marks them in the recording and answers zeros, the second answers
+    /// with the files that the replay made of the marks. Not part of Unity's API.
+    /// </summary>
+    public static class Readbacks
+    {
+        private static int asked;
+
+        /// <summary>Holds `readback N.bin`; null in the first run.</summary>
+        public static string Folder { get; set; }
+
+        /// <summary>Whether reads fail.</summary>
+        public static bool Broken { get; set; }
+
+        internal static byte[] Of(GraphicsBuffer buffer)
+        {
+            string label = "readback " + asked++;
+            Recorder.Keep(buffer, label);
+            if (Broken)
+                throw new InvalidOperationException("stand-in: broken");
+            return Folder == null ? new byte[buffer.count * buffer.stride] : System.IO.File.ReadAllBytes(System.IO.Path.Combine(Folder, label + ".bin"));
         }
     }
 }
