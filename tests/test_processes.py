@@ -10,7 +10,7 @@ from synthetic_student import bands_of_frames
 from together import errors, start, trained
 
 from mua.channels import GEOMETRY
-from mua.processes import ALONE, Processes
+from mua.processes import ALONE, Processes, another_ended
 from mua.student.model import Bands
 from mua.student.source import hold
 
@@ -98,6 +98,22 @@ def test_both_processes_end_with_the_same_bytes(pair: Path, name: str) -> None:
 
 def test_only_the_first_process_reports(pair: Path) -> None:
     assert result(pair, "closed form", 1)[1] == {}
+
+
+@pytest.mark.parametrize(
+    ("message", "ended"),
+    [
+        ("[../third_party/gloo/gloo/transport/tcp/pair.cc:534] Connection closed by peer [127.0.0.1]:3381", True),
+        ("[../third_party/gloo/gloo/transport/tcp/unbound_buffer.cc:78] Timed out waiting 3000ms for recv", True),
+        ("NCCL error in: ProcessGroupNCCL.cpp, ncclRemoteError: A call failed, possibly a process has exited", True),
+        ("[enforce fail at ../third_party/gloo/gloo/allreduce.cc:101] ptr != nullptr", False),
+        ("NCCL error in: ProcessGroupNCCL.cpp, ncclInvalidUsage: This usually reflects invalid usage", False),
+        ("NCCL error in: ProcessGroupNCCL.cpp, ncclUnhandledCudaError: CUDA out of memory", False),
+        ("CUDA error: the launch timed out and was terminated", False),
+    ],
+)
+def test_only_what_another_process_causes_is_put_down_to_it(message: str, ended: bool) -> None:
+    assert another_ended(RuntimeError(message)) == ended
 
 
 @pytest.mark.usefixtures("one_thread")

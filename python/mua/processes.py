@@ -22,7 +22,11 @@ from mua.errors import InputError
 TIMEOUT = timedelta(minutes=10)  # longer than any process computes between two exchanges
 PATIENCE = timedelta(days=7)  # for others to record their part; a process that ends is noticed at once
 HALVES = 2  # that a process alone computes a batch in: as two processes do, so that both add up the same numbers
-LOST = ("gloo", "Gloo", "NCCL", "Connection closed", "Connection reset")  # what torch's errors say of a dead process
+# What the errors of gloo and NCCL say of a process that is gone or silent, and of nothing else.
+LOST = (
+    *("Connection closed", "Connection reset", "Broken pipe", "ncclRemoteError"),
+    *("Timed out", "wait timeout", "Socket Timeout", "collective operation timeout", "Application timeout"),
+)
 
 T = TypeVar("T")
 
@@ -173,9 +177,14 @@ def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
     except InputError as error:
         raise InputError(f"process {rank + 1} of {count}: {error}") from error
     except RuntimeError as error:
-        if not isinstance(error, dist.DistError) and not any(word in str(error) for word in LOST):
+        if not another_ended(error):
             raise
         raise InputError(
             f"process {rank + 1} of {count}: another has ended or said nothing for {timeout.total_seconds():.0f} s; "
             "start all again to go on from the last checkpoint"
         ) from error
+
+
+def another_ended(error: RuntimeError) -> bool:
+    """Whether torch says that another process is gone or silent, and not that this one did something wrong."""
+    return isinstance(error, dist.DistNetworkError) or any(word in str(error) for word in LOST)
