@@ -16,6 +16,7 @@ from torch import Tensor
 
 from mua.arrays import Array
 from mua.errors import InputError
+from mua.levels import DYNAMIC_LEVELS, STATIC_LEVELS
 
 
 def wavedec2(
@@ -36,6 +37,16 @@ def wavedec2(
         details.append(torch.stack([y[..., h:, :w], y[..., :h, w:], y[..., h:, w:]], dim=-3))
         x = y[..., :h, :w]
     return x, details[::-1]
+
+
+def dynamic_subbands(
+    x: Tensor,  # [..., C, H, W]
+    wavelet: str,
+) -> tuple[Tensor, Tensor, Tensor]:
+    """LL [..., C, n, n], D3 [..., 3, C, n, n] and D2 [..., 3, C, 2n, 2n]: what of a texture varies with the frame."""
+    ll, details = wavedec2(analyse_lowpass(x, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
+    d3, d2 = (level.transpose(-4, -3).contiguous() for level in details)
+    return ll, d3, d2
 
 
 def waverec2(

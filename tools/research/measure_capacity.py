@@ -21,10 +21,11 @@ from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.levels import COARSE_TEXELS, STATIC_LEVELS
 from mua.recording import Recording
 from mua.student.descend import set_means
 from mua.student.factorize import Factors, separable_blendshapes
-from mua.student.model import STATIC_LEVELS, Bands, Branch, lowpass_texels
+from mua.student.model import Bands, Branch, lowpass_texels
 from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BestCoefficients, factorize_channel
@@ -102,7 +103,9 @@ def load(recording: Recording, count: int) -> tuple[Textures, Textures]:
     rows = torch.arange(count) * recording.count() // count
     parts = []
     for part in BRANCHES.values():
-        branch = Branch(part.stop - part.start, Ranks(1, 1, 1), recording.rig.texels.size // 16, inputs=1, hidden=1)
+        branch = Branch(
+            part.stop - part.start, Ranks(1, 1, 1), recording.rig.texels.size // COARSE_TEXELS, inputs=1, hidden=1
+        )
 
         def source(channels: slice, some: Tensor, start: int = part.start) -> Bands:
             return Bands(*recording.subbands(slice(start + channels.start, start + channels.stop), rows[some]))

@@ -19,6 +19,7 @@ from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
+from mua.levels import COARSE_TEXELS
 from mua.recording import Recording
 from mua.student.distil import prepare
 from mua.student.local import Parts
@@ -66,7 +67,7 @@ def main(
 
 def weighted_samples(bands: Bands, parts: Parts) -> tuple[Tensor, Tensor, Tensor]:
     """Every STRIDE-th sample [F, S] in units of its channel's spread, its part [S] and its channel [S]."""
-    texels = (16 * bands.ll.shape[-1]) ** 2
+    texels = (COARSE_TEXELS * bands.ll.shape[-1]) ** 2
     centred = [band - band.mean(0) for band in bands]
     energy = sum(band.square().movedim(-3, 0).flatten(1).sum(1) for band in centred) / (len(bands.ll) * texels)
     assert isinstance(energy, Tensor)

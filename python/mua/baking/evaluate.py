@@ -19,17 +19,16 @@ from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
 from mua.student.branches import thread_share
-from mua.student.model import STATIC_LEVELS, Bands, Student
+from mua.student.model import Bands, Student
 from mua.student.train import BestCoefficients
 from mua.texture.fill import Fill
 from mua.threads import in_order
-from mua.wavelets import analyse_lowpass, wavedec2
+from mua.wavelets import dynamic_subbands
 
 TRAINING = "training"
 MESH = "mesh"  # the canonical vertices, beside the attributes of the texture
 BATCH = 2  # frames whose images are held at once, by each thread
 THREADS = 4  # at most: each holds some hundred megabytes
-DYNAMIC_LEVELS = 2  # D3 and D2
 PICTURES = ("mean", "bands", "best", "student")
 
 # what an RMS error of 1 in raw channels means to a person
@@ -158,9 +157,7 @@ class _Judge:
     def _closest(self, frames: Sequence[WholeFrame]) -> tuple[Array, Array]:
         """Textures [F, N, 23] whose D1 and D0 are at their mean, and those of the best coefficients."""
         images = torch.stack([self.fill(torch.from_numpy(frame.texture)) for frame in frames])
-        wavelet = self.student.wavelet
-        ll, (d3, d2) = wavedec2(analyse_lowpass(images, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
-        bands = Bands(ll, d3.transpose(1, 2), d2.transpose(1, 2))
+        bands = Bands(*dynamic_subbands(images, self.student.wavelet))
         alphas = [best(bands.of(channels)) for best, channels in self.best]
         best = self.student.synthesize((alphas[0], alphas[1]))
         return self.student.texture(bands).numpy(), self.student.texture(best).numpy()

@@ -14,12 +14,13 @@ from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
 from mua.files import missing_directory
 from mua.inputs import require_file, require_motion
+from mua.levels import COARSE_TEXELS
 from mua.motion.mapping import read_mapping
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings, preset, with_recipe
 
 SUFFIX = ".muaavatar"
-STEP, LEAST_TEXELS = 16, 32  # a texture is halved four times, and something must be left
+LEAST_TEXELS = 2 * COARSE_TEXELS  # something must be left of a texture that is halved so many times
 
 
 def read_order(
@@ -104,8 +105,8 @@ def check_settings(name: str, recipe: str, *, seed: int, frames: int | None, tex
     settings = with_recipe(replace(preset(name), seed=seed), recipe)
     if frames is not None and whole_number(frames, "frames") < 1:
         raise InputError(f"--frames {frames}: expected at least 1")
-    if texels is not None and (whole_number(texels, "texels") < LEAST_TEXELS or texels % STEP):
-        raise InputError(f"--texels {texels}: expected a multiple of {STEP} from {LEAST_TEXELS} on")
+    if texels is not None and (whole_number(texels, "texels") < LEAST_TEXELS or texels % COARSE_TEXELS):
+        raise InputError(f"--texels {texels}: expected a multiple of {COARSE_TEXELS} from {LEAST_TEXELS} on")
     if whole_number(seed, "seed") < 0:
         raise InputError(f"--seed {seed}: expected 0 or more")
     settings = replace(settings, frames=settings.frames if frames is None else frames)

@@ -13,6 +13,7 @@ import pywt
 from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.levels import LEVELS
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.pose.clip import Clip
 from mua.pose.encoding import Normalization, PoseEncoding
@@ -27,7 +28,7 @@ HEIGHT, RADIUS = 1.7, 0.18  # metres
 RINGS, SPOKES = 102, 54  # 5,508 vertices; the template of the paper's family has 5,514
 JOINTS = 54  # all of them encoded, as in the family's released character
 VALID = 300_000 / 768**2  # of the texels (paper, Animatable Coarse Geometry)
-WAVELET, LEVELS = "bior4.4", 4
+WAVELET = "bior4.4"
 ENCODING = PoseEncoding(joints=tuple(range(1, JOINTS)), rate=25.0)
 FRAMES = 50  # of the clip
 SWING = 0.02  # radians of one joint; 53 of them bend the tube by at most 60 degrees

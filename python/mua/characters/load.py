@@ -9,10 +9,10 @@ from mua.characters.figure_size import LEAST, MOST, FigureSize
 from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.extras import naming_extras
+from mua.levels import COARSE_TEXELS
 from mua.rig.build import build_rig
 from mua.rig.rig import Rig
 
-STEP = 16  # a texture is halved four times
 PICTURE = 64  # texels of the atlas along a side: a rig has no colours
 
 
@@ -40,8 +40,8 @@ def load_rig(
         with mua.TeacherWriter("recordings/hero", rig, rate=30) as writer: ...
     """
     path, size = as_path(character, "character"), whole_number(texels, "texels")
-    if size <= 0 or size % STEP:
-        raise InputError(f"texels is {size}, expected a multiple of {STEP}")
+    if size <= 0 or size % COARSE_TEXELS:
+        raise InputError(f"texels is {size}, expected a multiple of {COARSE_TEXELS}")
     wanted = None if vertices is None else whole_number(vertices, "vertices")
     if wanted is not None and wanted < 3:
         raise InputError(f"vertices is {wanted}, expected at least 3")

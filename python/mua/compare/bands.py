@@ -19,9 +19,10 @@ from mua.compare.maps import CHANNELS as MAP_CHANNELS
 from mua.compare.maps import SurfaceMaps
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
+from mua.levels import COARSE_TEXELS, DYNAMIC_LEVELS, LEVELS
 from mua.student.descend import start_from_noise
 from mua.student.finetune import subband_loss
-from mua.student.model import STATIC_LEVELS, Bands, Branch, lowpass_texels
+from mua.student.model import Bands, Branch, lowpass_texels
 from mua.student.optimise import Run
 from mua.student.settings import Ranks
 from mua.student.train import start_branch
@@ -132,7 +133,7 @@ class BandNetwork(Network):
         ] = (),  # of D3 and D2, each with networks from maps to [F, 3 C, n, n]
     ) -> None:
         super().__init__(sizes)
-        side, settings = sizes.settings.texels // 16, sizes.settings
+        side, settings = sizes.settings.texels // COARSE_TEXELS, sizes.settings
         self.branches = tuple(
             Branch(part.stop - part.start, rank, side, inputs=self.inputs, hidden=settings.hidden)
             for part, rank in zip(PARTS.values(), ranks, strict=False)
@@ -198,7 +199,7 @@ class BandNetwork(Network):
         """Networks, blendshapes, synthesis and the mean; making the maps is part of posing, as for every system."""
         side = self.maps[0].size
         taps = filters(self.sizes.wavelet).rec_len
-        total = synthesis(CHANNELS, side, 4 - STATIC_LEVELS, 4, taps=taps) + self.mean_texture.numel()
+        total = synthesis(CHANNELS, side, DYNAMIC_LEVELS, LEVELS, taps=taps) + self.mean_texture.numel()
         total += sum(branch_flops(branch) for branch in self.branches)
         total += self.ll.flops(side) if self.ll is not None else 0
         return total + sum(n.flops(side << i) for i, level in enumerate(self.details) for n in level)
@@ -228,7 +229,7 @@ def conv_blendshapes(sizes: Sizes) -> Network:
 def blendshapes_conv1d(sizes: Sizes) -> Network:
     """Our LL, details by 1D convolutions (paper, Ablations, 2D Blendshapes (LL) + 1D Conv)."""
     ranks = [Ranks(own.ll, 0, 0) for own in (sizes.settings.geometry, sizes.settings.appearance)]
-    side = sizes.settings.texels // 16
+    side = sizes.settings.texels // COARSE_TEXELS
     return BandNetwork(sizes, ranks=ranks, details=[[Lines(side << level)] for level in range(2)])
 
 

@@ -10,11 +10,12 @@ from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.compare.descend import Groups
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
+from mua.levels import FINE_TEXELS, STATIC_LEVELS
 from mua.student.conditioned import Conditioned
 from mua.student.descend import BASIS_START, start_mlp
 from mua.student.factorize import separable_blendshapes
-from mua.student.local import D2_TEXELS, Locality, sample_locality, texture_locality
-from mua.student.model import STATIC_LEVELS, Branch, build_mlp
+from mua.student.local import Locality, sample_locality, texture_locality
+from mua.student.model import Branch, build_mlp
 from mua.student.optimise import Run
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Ranks
@@ -211,7 +212,9 @@ def start_from_quarter(
     local = None
     if frames.parts is not None:
         fine = frames.parts.fine
-        parts = replace(frames.parts, coarse=finer(fine, D2_TEXELS >> STATIC_LEVELS), fine=finer(fine, D2_TEXELS >> 1))
+        parts = replace(
+            frames.parts, coarse=finer(fine, FINE_TEXELS >> STATIC_LEVELS), fine=finer(fine, FINE_TEXELS >> 1)
+        )
         local = texture_locality(parts, stand_in, targets, unit, fade=settings.generalisation.fade)
     part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, locality=local, normalize=normalize, run=run)
 

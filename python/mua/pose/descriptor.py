@@ -90,10 +90,8 @@ def units_of(
     size: float,  # of the figure over that of a person
 ) -> Array:
     """How much of each column [k D] of a descriptor is as much as 1 on a person: lengths grow with the figure."""
-    turns = np.ones(6 + 6 * len(encoding.joints))
-    return np.tile(
-        np.concatenate([np.full(3, size), turns, np.full(3 * len(encoding.translated), size)]), encoding.window
-    )
+    units = [size if part.lengths else 1.0 for part in encoding.parts for _ in range(part.width)]
+    return np.tile(units, encoding.window)
 
 
 def heading_of(turn: Array) -> Array:

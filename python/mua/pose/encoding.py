@@ -1,8 +1,17 @@
 """How a pose window becomes the motion descriptor that the coefficient MLPs read (paper, Sec. Data Assumption)."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from mua.arrays import Array
+
+
+class Part(NamedTuple):
+    """Numbers of a descriptor that belong together."""
+
+    joint: int | None  # None: the root
+    width: int
+    lengths: bool  # metres, not entries of a rotation
 
 
 @dataclass(frozen=True)
@@ -22,9 +31,16 @@ class PoseEncoding:
     translated: tuple[int, ...] = ()  # joints whose translation is encoded, ascending, root excluded
 
     @property
+    def parts(self) -> tuple[Part, ...]:
+        """What stands for one frame, in order."""
+        turns = (Part(joint, 6, lengths=False) for joint in (None, *self.joints))
+        moves = (Part(joint, 3, lengths=True) for joint in self.translated)
+        return Part(None, 3, lengths=True), *turns, *moves
+
+    @property
     def width(self) -> int:
         """k x D, the length of a descriptor."""
-        return self.window * (9 + 6 * len(self.joints) + 3 * len(self.translated))
+        return self.window * sum(part.width for part in self.parts)
 
     def frames(self, index: int) -> list[int]:
         """The frames of the window that ends at `index`, newest first; before its first frame, a clip is held still."""

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from mua import wavelets
 from mua.arrays import Array
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.errors import InputError
 from mua.files import replacing
-from mua.recording.layout import DYNAMIC_LEVELS, STATIC_LEVELS, Header
+from mua.recording.layout import Header
 from mua.recording.npz import read_npz
 from mua.texture.fill import Fill
-from mua.wavelets import analyse_lowpass, wavedec2
 
 TENSOR = "; a tensor goes in as tensor.detach().cpu().numpy()"
 HALF_MAX = float(np.finfo(np.float16).max)
@@ -50,9 +50,7 @@ def dynamic_subbands(
     wavelet: str,
 ) -> Dynamic:
     """Fill the empty texels and transform."""
-    image = fill(torch.from_numpy(texture))
-    ll, (d3, d2) = wavedec2(analyse_lowpass(image, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
-    return Dynamic(ll.numpy(), d3.transpose(0, 1).contiguous().numpy(), d2.transpose(0, 1).contiguous().numpy())
+    return Dynamic(*(band.numpy() for band in wavelets.dynamic_subbands(fill(torch.from_numpy(texture)), wavelet)))
 
 
 def align_rotations(

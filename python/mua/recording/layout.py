@@ -13,6 +13,7 @@ from mua.arrays import Array
 from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.files import write_bytes
+from mua.levels import COARSE_TEXELS
 from mua.recording.rig_file import rig_hash
 from mua.rig.rig import Rig
 
@@ -20,9 +21,7 @@ VERSION = 2
 WAVELET = "bior4.4"  # unless a writer is told another
 HEADER, RIG, REFERENCE, SHARDS = "recording.json", "rig.npz", "reference.npz", "shards"
 INDEX, SUM = "index.json", "sum.npy"
-DYNAMIC_LEVELS, STATIC_LEVELS = 2, 2  # D3 and D2 vary with the frame, D1 and D0 are means (paper, Methodology)
 BLOCK = 1 << 20  # bytes of a file at once
-STEP = 2 ** (DYNAMIC_LEVELS + STATIC_LEVELS)
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class Header:
 
     def shapes(self, poses: int, frames: int) -> dict[str, tuple[tuple[int, ...], str]]:
         """Shape and element type of a shard's arrays that hold a row per pose or per frame; none where no row is."""
-        n = self.texels // STEP
+        n = self.texels // COARSE_TEXELS
         shapes: dict[str, tuple[tuple[int, ...], str]] = {}
         if poses:
             shapes["rotations"] = ((poses, self.joints, 4), "<f8")
@@ -115,8 +114,8 @@ def read_header(directory: Path) -> Header:
         value = getattr(header, field.name)
         if not isinstance(value, field.type):  # type: ignore[arg-type]
             raise InputError(f"{path}: {field.name} is {value!r}, expected {field.type}")
-    if header.texels <= 0 or header.texels % STEP:
-        raise InputError(f"{path}: texels is {header.texels}, expected a multiple of {STEP}")
+    if header.texels <= 0 or header.texels % COARSE_TEXELS:
+        raise InputError(f"{path}: texels is {header.texels}, expected a multiple of {COARSE_TEXELS}")
     return header
 
 

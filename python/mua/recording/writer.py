@@ -12,6 +12,7 @@ from mua.arguments import PathLike, as_path, told, whole_number
 from mua.arrays import Array
 from mua.channels import CHANNELS
 from mua.errors import InputError
+from mua.levels import COARSE_TEXELS
 from mua.locks import DirectoryLock
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE
 from mua.pose.skeleton import Pose
@@ -32,7 +33,6 @@ from mua.recording.layout import (
     REFERENCE,
     RIG,
     SHARDS,
-    STEP,
     SUM,
     WAVELET,
     Header,
@@ -98,8 +98,10 @@ class TeacherWriter:
             if whole_number(count, name) < 1:
                 raise InputError(f"recording {directory}: {name} is {count}, expected at least 1")
         filters(wavelet)
-        if rig.texels.size % STEP:
-            raise InputError(f"recording {directory}: texture size {rig.texels.size}, expected a multiple of {STEP}")
+        if rig.texels.size % COARSE_TEXELS:
+            raise InputError(
+                f"recording {directory}: texture size {rig.texels.size}, expected a multiple of {COARSE_TEXELS}"
+            )
         if not isinstance(rate, int | float | np.number) or not LEAST_RATE <= rate <= LARGEST_RATE:
             expected = f"{LEAST_RATE:g} to {LARGEST_RATE:g} frames per second"
             raise InputError(f"recording {directory}: rate is {rate}, expected {expected}")

@@ -10,6 +10,7 @@ import math
 import torch
 from torch import Tensor, nn
 
+from mua.levels import COARSE_TEXELS
 from mua.processes import ALONE, Processes, Share
 from mua.student.coarse import set_pca
 from mua.student.finetune import draw_frames, finetune, weighted
@@ -106,7 +107,7 @@ def set_means(branch: Branch, source: Source, *, frames: int, processes: Process
         energy.append(spread.to(branch.ll_mean))
     for channel, spread in enumerate(energy):
         processes.agree(*branch.channel(channel), spread, source=processes.owner(channel))
-    texels = (16 * branch.ll_mean.shape[-1]) ** 2
+    texels = (COARSE_TEXELS * branch.ll_mean.shape[-1]) ** 2
     return torch.stack(energy) / (frames * texels)
 
 

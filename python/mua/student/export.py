@@ -9,11 +9,11 @@ from torch import Tensor
 from mua import model
 from mua.arrays import Array
 from mua.channels import APPEARANCE, GEOMETRY
+from mua.levels import LEVELS
 from mua.pose.encoding import Normalization
 from mua.student.model import Branch, Coarse, Detail, Student, linear_layers
 from mua.wavelets import filters
 
-LEVELS = 4
 LARGEST_ROW = 1024.0  # of a last layer: larger weights are exchanged for larger blendshapes
 
 

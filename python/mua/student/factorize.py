@@ -43,18 +43,13 @@ def truncated_svd(
     generator: torch.Generator,
 ) -> tuple[Tensor, Tensor, Tensor]:
     """The leading K = min(rank, F, P) singular triplets u [F, K], s [K], v [K, P], by subspace iteration."""
-    probe = draw_probe(len(x), x.shape[1], rank, generator=generator).to(x)
+    probe = torch.randn(x.shape[1], min(rank + OVERSAMPLING, *x.shape), generator=generator).to(x)
     span = torch.linalg.qr(x @ probe).Q
     for _ in range(POWER_ITERATIONS):
         span = torch.linalg.qr(x @ torch.linalg.qr(x.T @ span).Q).Q
     u, s, v = torch.linalg.svd(span.T @ x, full_matrices=False)
     keep = min(rank, *x.shape)
     return span @ u[:, :keep], s[:keep], v[:keep]
-
-
-def draw_probe(frames: int, samples: int, rank: int, *, generator: torch.Generator) -> Tensor:
-    """What `truncated_svd` of [F, P] samples draws: the random directions [P, K] that its iteration starts from."""
-    return torch.randn(samples, min(rank + OVERSAMPLING, frames, samples), generator=generator)
 
 
 def blendshapes(

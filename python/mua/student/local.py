@@ -13,14 +13,12 @@ from scipy.ndimage import distance_transform_edt
 from torch import Tensor
 
 from mua.arrays import Array
+from mua.levels import COARSE_TEXELS, FINE_TEXELS
 from mua.pose.encoding import PoseEncoding
 from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
 from mua.student.model import Branch
 from mua.student.targets import Targets
-
-LL_TEXELS = 16  # along a side of a sample of LL and D3
-D2_TEXELS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +39,8 @@ class Parts:
         texels: Tensor,  # [N] int64, row * size + col
     ) -> Tensor:
         """The part [N] of texels."""
-        size = D2_TEXELS * len(self.fine)
-        return self.fine.to(texels.device)[texels // size // D2_TEXELS, texels % size // D2_TEXELS]
+        size = FINE_TEXELS * len(self.fine)
+        return self.fine.to(texels.device)[texels // size // FINE_TEXELS, texels % size // FINE_TEXELS]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +65,13 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     image: Array = np.zeros((texels.size**2, len(seen)))
     image[texels.texels] = np.einsum("nvp,nv->np", corners, texels.barycentrics)
     image = image.reshape(texels.size, texels.size, -1)
-    width = [0] * 9 + [seen.index(j) for j in encoding.joints for _ in range(6)]
-    width += [seen.index(j) for j in encoding.translated for _ in range(3)]
+    columns = [
+        0 if part.joint is None else seen.index(part.joint) for part in encoding.parts for _ in range(part.width)
+    ]
     return Parts(
-        steps=torch.from_numpy(steps[:, width * encoding.window]),
-        coarse=torch.from_numpy(sample_owners(image, LL_TEXELS)),
-        fine=torch.from_numpy(sample_owners(image, D2_TEXELS)),
+        steps=torch.from_numpy(steps[:, columns * encoding.window]),
+        coarse=torch.from_numpy(sample_owners(image, COARSE_TEXELS)),
+        fine=torch.from_numpy(sample_owners(image, FINE_TEXELS)),
         vertices=torch.from_numpy(weights.argmax(1)),
     )
 

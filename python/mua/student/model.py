@@ -7,11 +7,11 @@ import torch
 from torch import Tensor, nn
 
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.levels import COARSE_TEXELS, STATIC_LEVELS
 from mua.pose.encoding import PoseEncoding
 from mua.student.settings import Ranks, Settings
 from mua.wavelets import synthesise_lowpass, waverec2
 
-STATIC_LEVELS = 2  # the two finest levels are the mean over training frames
 HIDDEN_LAYERS = 2
 
 
@@ -158,7 +158,7 @@ class Student(nn.Module):
         self.size = settings.texels
         self.encoding = encoding
         self.wavelet = wavelet
-        inputs, width, coarsest = encoding.width, settings.hidden, settings.texels // 16
+        inputs, width, coarsest = encoding.width, settings.hidden, settings.texels // COARSE_TEXELS
         self.register_buffer("mean", torch.zeros(inputs))
         self.register_buffer("scale", torch.ones(inputs))
         self.register_buffer("texels", texels.long())

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
+from mua.levels import LOWPASS_TEXELS
 from mua.processes import ALONE, Processes
 from mua.student.model import Bands
 
@@ -31,7 +32,7 @@ def hold(
     Each of several processes holds its own frames and reads others. The values are the same wherever they come from.
     """
     own = processes.held(frames)
-    values = (size // 4) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
+    values = (size // LOWPASS_TEXELS) ** 2  # LL, D3 and D2 together have the samples of the low-pass quarter-size image
     held: Bands | None = None
     if len(own) * values * (channels.stop - channels.start) * 4 <= room(device) // together:
         held = _read(subbands, channels, torch.tensor(own), device=device)

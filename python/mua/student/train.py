@@ -16,7 +16,7 @@ from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
 from mua.student.conditioned import fold
 from mua.student.descend import descend_branch, descend_coarse
-from mua.student.factorize import blendshapes, draw_probe, separable_blendshapes
+from mua.student.factorize import blendshapes, separable_blendshapes
 from mua.student.finetune import finetune
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
@@ -235,39 +235,24 @@ def factorize_branch(
     kept = run.checkpoints.load(stage)
     if kept is not None:
         branch.load_state_dict(kept["branch"])
-        run.generator.set_state(kept["generator"])
         return kept["flat"].to(run.device), kept["variance"].to(run.device)
-    started = time.monotonic()
-    columns, variance = [], []
+    started, owned = time.monotonic(), run.processes.channels(branch.channels)
+    ranks, room = branch.ranks, partial(torch.empty, device=run.device)
+    alphas = Alphas(*(room(frames, branch.channels, rank) for rank in (ranks.ll, ranks.d3, ranks.d2)))
+    energy = room(branch.channels)
+    for done, channel in enumerate(owned, start=1):
+        bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
+        generator = run.alone(f"{stage} {channel}").generator  # whoever solves for it draws the same numbers
+        solved, energy[channel] = factorize_channel(branch, channel, bands, sweeps=settings.sweeps, generator=generator)
+        for level, own in zip(alphas, solved, strict=True):
+            level[:, channel] = own
+        run.report(Progress(stage, done, len(owned), None, done / (time.monotonic() - started)))
     for channel in range(branch.channels):
-        if channel not in run.processes.channels(branch.channels):
-            alphas, energy = pass_over_channel(branch, frames, generator=run.generator, device=run.device)
-        else:
-            bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
-            alphas, energy = factorize_channel(branch, channel, bands, sweeps=settings.sweeps, generator=run.generator)
-        columns.append(alphas)
-        variance.append(energy)
-        done = channel + 1
-        run.report(Progress(stage, done, branch.channels, None, done / (time.monotonic() - started)))
-    for channel, (alphas, energy) in enumerate(zip(columns, variance, strict=True)):
-        solved = (*branch.channel(channel), *alphas, energy)
-        run.processes.agree(*solved, source=run.processes.owner(channel))
-    flat = Alphas(*(torch.stack(level, dim=1) for level in zip(*columns, strict=True))).flat()
-    spread = torch.stack(variance) / (frames * settings.texels**2)
-    state = {"branch": branch.state_dict(), "generator": run.generator.get_state(), "flat": flat, "variance": spread}
-    run.checkpoints.save(stage, state)
+        found = (*branch.channel(channel), *(level[:, channel] for level in alphas), energy[channel])
+        run.processes.agree(*found, source=run.processes.owner(channel))
+    flat, spread = alphas.flat(), energy / (frames * settings.texels**2)
+    run.checkpoints.save(stage, {"branch": branch.state_dict(), "flat": flat, "variance": spread})
     return flat, spread
-
-
-def pass_over_channel(
-    branch: Branch, frames: int, *, generator: torch.Generator, device: torch.device
-) -> tuple[Alphas, Tensor]:
-    """Room for a channel that another process solves for; draws what `factorize_channel` does: all stay alike."""
-    ranks, n = branch.ranks, branch.ll_mean.shape[-1]
-    for rank, samples in ((ranks.ll, n * n), (2 * ranks.d3, 3 * n * n), (2 * ranks.d2, 12 * n * n)):
-        draw_probe(frames, samples, rank, generator=generator)
-    room = (torch.empty(frames, rank, device=device) for rank in (ranks.ll, ranks.d3, ranks.d2))
-    return Alphas(*room), torch.empty((), device=device)
 
 
 def factorize_channel(

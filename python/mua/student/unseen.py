@@ -7,9 +7,10 @@ weights that grow without bound as its texels shrink.
 import torch
 from torch import Tensor
 
+from mua.levels import COARSE_TEXELS, FINE_TEXELS
 from mua.student.model import Branch
 
-LEVEL_GAINS = (16.0, 16.0, 8.0)  # of LL, D3, D2 over the texels that they stand for: a level doubles a constant
+LEVEL_GAINS = (COARSE_TEXELS, COARSE_TEXELS, FINE_TEXELS)  # of LL, D3, D2 over texels: a level doubles a constant
 
 
 @torch.no_grad()
