@@ -40,7 +40,7 @@ IMPORTED = (  # slow ones of those that tests import; none of this repository, w
     *("wgpu", "typer", "rich.table", "trimesh", "pygltflib", "pxr.Usd", "PIL.Image", "matplotlib.pyplot", "pywt"),
     *("moderngl", "xatlas", "imgui_bundle"),
 )
-BOUND = 60  # seconds of CPU that the tests of one fault may take
+BOUND = 40  # seconds of CPU that the tests of one fault may take
 T, R = TypeVar("T"), TypeVar("R")
 
 
@@ -75,13 +75,11 @@ class Checkout:
             ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
             cwd=source, capture_output=True, text=True, check=True,
         ).stdout.split("\0")  # fmt: skip
-        names = {name for name in listed if (source / name).is_file()}
-        for name in names:
+        self.close()  # its working directory goes
+        shutil.rmtree(self.root, ignore_errors=True)
+        for name in (name for name in listed if (source / name).is_file()):
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source / name, self.root / name)
-        for path in [path for path in self.root.rglob("*") if path.is_file() and "__pycache__" not in path.parts]:
-            if path.relative_to(self.root).as_posix() not in names:
-                path.unlink()
         (self.folder / "tmp").mkdir(exist_ok=True)
         beside = self.folder / "shared"
         if (source.parent / "shared").is_dir() and not beside.exists():
@@ -105,6 +103,7 @@ class Checkout:
     ) -> tuple[list[str] | None, str]:
         """Tests of some files that fail, None where the time was over, and what was printed."""
         printed = self.folder / "printed.txt"
+        printed.unlink(missing_ok=True)
         environment = {} if watch is None else self._watching(watch)
         order = {"files": [*files], "tests": [*tests], "seconds": int(seconds), "environment": environment}
         stdin, stdout = self._worker.stdin, self._worker.stdout

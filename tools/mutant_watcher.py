@@ -4,15 +4,13 @@ Lines of context, path and, in Python, function; each once in a context, which i
 nothing while modules are imported. A line without a path tells seconds of CPU time, or a fixture that a test is given.
 """
 
-import functools
 import os
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
-from weakref import WeakSet
 
 SUFFIXES = (".cs", ".hlsl", ".compute", ".shader")
 
@@ -25,25 +23,10 @@ class Watcher:
         self._out = os.open(out, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
         self._context = os.environ.setdefault("MUTANTS_CONTEXT", "")  # child processes go on in that of their parent
         self._seen: dict[object, object] = {}
-        self._caches = WeakSet[Any]()
         self._told = 0.0  # seconds
-        functools.lru_cache = self._noted(functools.lru_cache)
         sys.addaudithook(self._opened)
         sys.settrace(self._entered)
         threading.settrace(self._entered)
-
-    def _noted(self, make: Callable[..., Any]) -> Callable[..., Any]:
-        """Of what makes caches one that notes those of this repository."""
-
-        def kept(made: Any) -> Any:
-            if not hasattr(made, "cache_clear"):  # but a decorator
-                return lambda function: kept(made(function))
-            code = getattr(made.__wrapped__, "__code__", None)
-            if code and code.co_filename.startswith(self._root):
-                self._caches.add(made)
-            return made
-
-        return lambda *given, **named: kept(make(*given, **named))
 
     def _note(self, *words: str) -> None:
         os.write(self._out, ("\t".join((self._context, *words)) + "\n").encode())
@@ -66,14 +49,13 @@ class Watcher:
 
     @contextmanager
     def within(self, context: str, *given: str) -> Iterator[None]:
-        outer, start = self._context, _seconds() - self._told
-        for cache in self._caches:
-            cache.cache_clear()  # or only the first of several tests would be seen to need what it holds
+        """What is met meanwhile belongs to `context`, which is given those fixtures."""
+        outer, start = self._context, sum(os.times()[:4]) - self._told
         self._enter(context)
         for fixture in given:
             self._note("", fixture)
         yield
-        seconds = _seconds() - self._told - start
+        seconds = sum(os.times()[:4]) - self._told - start
         self._told += seconds
         self._note("", f"{seconds:.2f}")
         self._enter(outer)
@@ -81,7 +63,3 @@ class Watcher:
     def _enter(self, context: str) -> None:
         self._context = os.environ["MUTANTS_CONTEXT"] = context
         self._seen.clear()
-
-
-def _seconds() -> float:
-    return sum(os.times()[:4])

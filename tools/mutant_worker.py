@@ -29,16 +29,12 @@ class Chosen:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        if self._tests:
-            items[:] = [item for item in items if item.nodeid in self._tests]
+        items[:] = [item for item in items if not self._tests or item.nodeid in self._tests]
 
-    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if report.failed:
-            self.failed.append(report.nodeid)
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        self.failed += [report.nodeid] if report.failed else []
 
-    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
-        if report.failed:
-            self.failed.append(report.nodeid)
+    pytest_collectreport = pytest_runtest_logreport
 
 
 class Watched:
@@ -61,15 +57,15 @@ class Watched:
 
 
 def run(order: dict[str, Any]) -> list[str]:
-    """Tests that fail, the first few files by themselves so that what is found there spares reading the rest."""
+    """Tests that fail; the first file by itself, then ever more at once, so that most faults need no more than one."""
+    os.environ.update(order["environment"])
     plugins: list[object] = [chosen := Chosen(order["tests"])]
-    if order["watch"]:
-        plugins.append(Watched())
+    plugins += [Watched()] if order["watch"] else []
     words = WORDS if order["watch"] else (*WORDS, "-x")
     files, size = order["files"], 1
     while files and not chosen.failed:
         status = pytest.main([*words, *files[:size]], plugins=plugins)
-        if status not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.NO_TESTS_COLLECTED):
+        if status not in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED) and not chosen.failed:
             chosen.failed.append(f"exit status {int(status)}")
         files, size = files[size:], 2 * size
     return chosen.failed
@@ -83,38 +79,26 @@ def answer(order: dict[str, Any]) -> dict[str, Any]:
     if child == 0:
         os.setsid()
         _limit(order["seconds"])
-        printed = os.open(order["printed"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-        os.dup2(printed, 1)
-        os.dup2(printed, 2)
-        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-        os.environ.update(order["environment"])
+        for descriptor in (1, 2):
+            os.dup2(os.open(order["printed"], os.O_WRONLY | os.O_CREAT | os.O_APPEND), descriptor)
         result.write_text(json.dumps(run(order)))
         os._exit(0)
-    signal.alarm(order["seconds"])
-    over = False
     try:
-        os.waitpid(child, 0)
-    except TimeoutError:
-        over = True
+        _, status = os.waitpid(child, 0)
     finally:
-        signal.alarm(0)
         with suppress(ProcessLookupError):
             os.killpg(child, signal.SIGKILL)  # what a test leaves running too
-    if over:
-        os.waitpid(child, 0)
+    over = os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGXCPU)
     return {"over": over, "failed": json.loads(result.read_text()) if result.is_file() else ["no test ended"]}
 
 
 def _limit(seconds: int) -> None:
     """Let a fault that never ends, or asks for ever more memory, harm nobody."""
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    signal.alarm(seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))  # of children too
     resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")
-
-
-def _ring(*_: object) -> None:
-    raise TimeoutError
 
 
 def main() -> None:
@@ -122,7 +106,6 @@ def main() -> None:
         with suppress(ImportError):
             importlib.import_module(name)
     sys.path[0] = str(Path.cwd())  # as `python -m pytest` has it
-    signal.signal(signal.SIGALRM, _ring)
     for line in sys.stdin:
         print(json.dumps(answer(json.loads(line))), flush=True)
 
