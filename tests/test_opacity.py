@@ -104,6 +104,18 @@ def test_triangles_clear_all_over_are_left_out_and_no_others(
         assert not is_kept[far].any()
 
 
+@pytest.mark.parametrize("texel", [(0, 0), (63, 63), (20, 41)])
+def test_triangles_stay_that_interpolation_gives_a_share_of_a_solid_texel(texel: tuple[int, int]) -> None:
+    size = 64
+    picture = np.zeros((size, size, 4), np.uint8)
+    picture[texel] = 255
+    left = without_unseen(surfaces_of(patch(size, at=0, uv=WHOLE), images=(picture,)))
+    places = np.floor(left.vertices[left.faces].mean(axis=1)[:, 1::-1] * size).astype(int)  # row, column
+    away = {(int(row), int(column)) for row, column in (places - texel + size // 2) % size - size // 2}
+    assert away >= {(row, column) for row in (-1, 0, 1) for column in (-1, 0, 1)}
+    assert np.abs(list(away)).max() <= 2  # those that touch a neighbour
+
+
 @pytest.mark.parametrize("size", [16, 64, 512])
 @pytest.mark.parametrize("mode", ["mask", "blend"])
 def test_a_cut_out_keeps_its_outline_and_takes_no_colour_from_what_is_clear(size: int, mode: AlphaMode) -> None:

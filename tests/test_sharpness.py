@@ -52,8 +52,10 @@ def test_surfels_are_long_along_stripes(degrees: float) -> None:
     assert np.degrees(np.arccos(np.minimum(aligned, 1))).max() < 3
 
 
-def test_what_lets_light_through_has_surfels_that_are_all_alike() -> None:
-    found = wanted_by(stripes(30), alpha=128)
+@pytest.mark.parametrize("alpha", [128, 253])
+def test_what_lets_light_through_has_surfels_that_are_all_alike(alpha: int) -> None:
+    assert wanted_by(stripes(30), alpha=254).longer.any()  # as good as solid
+    found = wanted_by(stripes(30), alpha=alpha)
     assert np.all(found.spreads == SPREAD)
     assert not found.longer.any()
 
