@@ -320,6 +320,10 @@ def test_a_view_costs_nothing_until_it_is_wanted(scene: Scene) -> None:
     assert scene.said["made"][0] == scene.said["again"][0] == 6  # ring, its starts, two of indices, rest, strokes
 
 
+def test_an_editor_that_does_not_play_shows_the_geometry_at_once(scene: Scene) -> None:
+    assert scene.said["still"] == [1]
+
+
 def test_frames_allocate_nothing_and_leave_nothing_behind(scene: Scene) -> None:
     assert scene.said["allocated"] == [0]
     assert scene.said["alive"] == [0]

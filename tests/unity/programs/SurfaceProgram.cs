@@ -99,6 +99,13 @@ namespace Mua
             Say("made", Recorder.Made - made, Recorder.Made);
             Run(surface);
             Say("again", Recorder.Made - made);
+            Machine.Playing(false);
+            using (var still = new AvatarSurface(resources, frame))
+            {
+                Collect(still, AvatarViews.Geometry);
+                Say("still", Draws.Count);
+            }
+            Machine.Playing(true);
             Recorder.Pause();
             long before = 0;
             for (int i = -WarmUp; i < Frames; i++)
