@@ -6,6 +6,7 @@ Of Python the functions that were entered are kept, in child processes too; of C
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -207,14 +208,17 @@ def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str
         chosen = [test for test in tests if within + mutant.scope in test.places]
         chosen = chosen or [test for test in tests if any(p.startswith(within) and p[-1] != ">" for p in test.places)]
         chosen = chosen or [test for test in tests if f"{within}<module>" in test.places]
-    stem, folder = Path(mutant.path).stem, folder_of(mutant)
-    family = stem.split("_")[0]
+    own, folder = _words(mutant.path), folder_of(mutant)
 
-    def rank(test: SeenTest) -> tuple[bool, bool, int, float]:
-        own = Path(test.file).stem
-        return stem not in own, family not in own, -caught.get((folder, test.function), 0), test.seconds
+    def rank(test: SeenTest) -> tuple[float, int, float]:
+        words = _words(test.file)
+        return -len(own & words) / len(own | words), -caught.get((folder, test.function), 0), test.seconds
 
     return sorted(chosen, key=rank)
+
+
+def _words(path: str) -> set[str]:
+    return {word.lower() for word in re.findall(r"[A-Z]?[a-z0-9]+|[A-Z]+", Path(path).stem)}
 
 
 def afforded(tests: list[SeenTest]) -> tuple[list[SeenTest], float]:
