@@ -28,10 +28,10 @@ namespace Mua
             Mesh = MeshOf(avatar.Coarse);
             Geometry = BranchOf(avatar.Geometry, "geometry");
             Appearance = BranchOf(avatar.Appearance, "appearance");
-            recLo = Add(new Upload("wavelet.rec_lo", Floats(avatar.Wavelet.RecLo), sizeof(float)));
-            recHi = Add(new Upload("wavelet.rec_hi", Floats(avatar.Wavelet.RecHi), sizeof(float)));
+            recLo = Add(new Upload("wavelet.rec_lo", Array.ConvertAll(avatar.Wavelet.RecLo, tap => (float)tap), sizeof(float)));
+            recHi = Add(new Upload("wavelet.rec_hi", Array.ConvertAll(avatar.Wavelet.RecHi, tap => (float)tap), sizeof(float)));
             skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
-            skinWeights = Add(new Upload("template.skin_weights", Floats(avatar.Template.SkinWeights), sizeof(float)));
+            skinWeights = Add(new Upload("template.skin_weights", avatar.Template.SkinWeights.ToFloats(), sizeof(float)));
             faces = Add(Stored(avatar.Template.Faces, "template.faces"));
             var held = new TexelTiles(avatar.Texels.Indices.Integers.ToArray(), avatar.Texels.Size);
             tiles = Add(new Upload("texels.texels", held.Tiles, sizeof(int)));
@@ -193,27 +193,10 @@ namespace Mua
             return upload;
         }
 
-        private static float[] Floats(Tensor tensor)
-        {
-            var values = new float[tensor.Count];
-            tensor.CopyTo(values);
-            return values;
-        }
-
-        private static float[] Floats(double[] values)
-        {
-            var rounded = new float[values.Length];
-            for (int i = 0; i < values.Length; i++)
-            {
-                rounded[i] = (float)values[i];
-            }
-            return rounded;
-        }
-
         private static Vector2[] Pairs(Tensor tensor)
         {
             var pairs = new Vector2[tensor.Shape[0]];
-            Floats(tensor).AsSpan().CopyTo(MemoryMarshal.Cast<Vector2, float>(pairs.AsSpan()));
+            tensor.ToFloats().AsSpan().CopyTo(MemoryMarshal.Cast<Vector2, float>(pairs.AsSpan()));
             return pairs;
         }
     }

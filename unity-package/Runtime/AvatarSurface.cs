@@ -144,9 +144,7 @@ namespace Mua
         {
             if (meshIndices == null)
             {
-                Tensor faces = frame.Avatar.Avatar.Template.Faces;
-                var corners = new int[faces.Count];
-                faces.CopyTo(corners);
+                int[] corners = frame.Avatar.Avatar.Template.Faces.Integers.ToArray();
                 GraphicsBuffer indices = buffers.Indices("mesh_indices", corners.Length);
                 indices.SetData(corners);
                 meshIndices = indices;

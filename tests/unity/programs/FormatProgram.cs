@@ -265,16 +265,8 @@ internal static class FormatProgram
 
     private static void Print(string name, Tensor tensor)
     {
-        if (tensor.Type == ElementType.I32)
-        {
-            var integers = new int[tensor.Count];
-            tensor.CopyTo(integers);
-            Print(name, integers);
-            return;
-        }
-        var values = new float[tensor.Count];
-        tensor.CopyTo(values);
-        Print(name, values);
+        bool isWhole = tensor.Type == ElementType.I32;
+        Print(name, isWhole ? (Array)tensor.Integers.ToArray() : tensor.ToFloats());
     }
 
     private static void Print(string name, Array values)

@@ -1,5 +1,4 @@
 using System;
-using System.Runtime.InteropServices;
 
 namespace Mua.Format
 {
@@ -11,17 +10,10 @@ namespace Mua.Format
     {
         private const long Any = Tensors.Any;
         private const int MaxWindow = 16;
-        private const int MaxLevels = 8;
-        private const int MaxTaps = 40;
-        private const double LargestTap = 16; // those of PyWavelets' wavelets stay below 5
         private const float LeastRate = 1, LargestRate = 1000; // frames per second
         private const int MaxFrames = 1 << 20; // of a clip at the encoding's rate: 9 hours at 30 frames per second
         private const int MaxAdded = 1 << 24; // joints in all frames that clips gain at the encoding's rate
         private const float LeastScale = 1e-6f; // of a descriptor's number, of a figure 2 mm high
-        private const int GeometryChannels = 11;
-        private const int AppearanceChannels = 12;
-        private const int Bands = 3;
-        private const int MaxShift = 32; // a longer side than any tensor's
 
         private static readonly byte[] PngSignature = { 0x89, (byte)'P', (byte)'N', (byte)'G', 0x0D, 0x0A, 0x1A, 0x0A };
 
@@ -37,21 +29,22 @@ namespace Mua.Format
         public AvatarFile Decode(Table tree)
         {
             var rig = new RigDecoder(tensors);
+            var model = new ModelDecoder(tensors, content);
             var avatar = new AvatarFile { Content = content };
             avatar.Name = tree.Text("name");
             avatar.Producer = tree.Text("producer");
             avatar.Notes = tree.Text("notes");
             avatar.Skeleton = rig.Skeleton(tree.Child("skeleton"));
             avatar.Encoding = Encoding(tree.Child("encoding"), avatar.Skeleton, rig);
-            avatar.Wavelet = Wavelet(tree.Child("wavelet"));
+            avatar.Wavelet = model.Wavelet(tree.Child("wavelet"));
             int width = avatar.Encoding.Width, levels = avatar.Wavelet.Levels;
-            avatar.Coarse = Coarse(tree.Child("coarse"), width);
+            avatar.Coarse = model.Coarse(tree.Child("coarse"), width);
             int vertices = avatar.Coarse.Mean.Shape[0];
             avatar.Template = rig.Template(tree.Child("template"), vertices, avatar.Skeleton.JointCount);
             avatar.Texels = rig.Texels(tree.Child("texels"), avatar.Template.Faces.Shape[0]);
             int size = avatar.Texels.Size, count = avatar.Texels.Count, side = size >> levels;
-            avatar.Geometry = Branch(tree.Child("geometry"), "geometry", GeometryChannels, count, width, side);
-            avatar.Appearance = Branch(tree.Child("appearance"), "appearance", AppearanceChannels, count, width, side);
+            avatar.Geometry = model.Geometry(tree.Child("geometry"), count, width, side);
+            avatar.Appearance = model.Appearance(tree.Child("appearance"), count, width, side);
             if (size % (1 << levels) != 0)
             {
                 throw Refusal.Of("texels.size", "{0} does not halve {1} times", size, levels);
@@ -88,7 +81,7 @@ namespace Mua.Format
             encoding.Window = (int)window;
             encoding.Rate = Rate(tree, "encoding.rate");
             encoding.Heading = tree.Number("heading") != 0;
-            encoding.Scale = Floats(tensors.Reals(tree.Child("scale"), "encoding.scale", encoding.Width));
+            encoding.Scale = tensors.Reals(tree.Child("scale"), "encoding.scale", encoding.Width).ToFloats();
             foreach (float scale in encoding.Scale)
             {
                 if (scale < LeastScale)
@@ -96,7 +89,7 @@ namespace Mua.Format
                     throw Refusal.Of("encoding.scale", "{0}, expected {1} or more", scale, LeastScale);
                 }
             }
-            encoding.Mean = Floats(tensors.Reals(tree.Child("mean"), "encoding.mean", encoding.Width));
+            encoding.Mean = tensors.Reals(tree.Child("mean"), "encoding.mean", encoding.Width).ToFloats();
             return encoding;
         }
 
@@ -108,100 +101,6 @@ namespace Mua.Format
                 throw Refusal.Of(path, "{0} frames per second, expected {1} to {2}", rate, LeastRate, LargestRate);
             }
             return rate;
-        }
-
-        private Wavelet Wavelet(Table tree)
-        {
-            double[] low = Doubles(tree.Block("rec_lo")), high = Doubles(tree.Block("rec_hi"));
-            long levels = tree.Number("levels");
-            if (levels < 1 || levels > MaxLevels)
-            {
-                throw Refusal.Of("wavelet.levels", "{0}, expected 1 to {1}", levels, MaxLevels);
-            }
-            if (low.Length != high.Length || low.Length % 2 != 0 || low.Length < 2 || low.Length > MaxTaps)
-            {
-                throw Refusal.Of(
-                    "wavelet.rec_lo", "{0} and {1} taps, expected an even number of each, 2 to {2}",
-                    low.Length, high.Length, MaxTaps);
-            }
-            for (int i = 0; i < low.Length; i++)
-            {
-                if (!IsFinite(low[i]) || !IsFinite(high[i]))
-                {
-                    throw new AvatarFormatException("finite", "wavelet.rec_lo", "a value is not finite");
-                }
-            }
-            for (int i = 0; i < low.Length; i++)
-            {
-                if (Math.Max(Math.Abs(low[i]), Math.Abs(high[i])) > LargestTap)
-                {
-                    throw Refusal.Of(
-                        "wavelet.rec_lo", "a tap of {0:g4} or {1:g4}, expected {2} to {3}", low[i], high[i],
-                        -LargestTap, LargestTap);
-                }
-            }
-            return new Wavelet { Name = tree.Text("name"), Levels = (int)levels, RecLo = low, RecHi = high };
-        }
-
-        private Coarse Coarse(Table tree, int width)
-        {
-            Tensor mean = tensors.Reals(tree.Child("mean"), "coarse.mean", Any, 3);
-            Tensor basis = tensors.Reals(tree.Child("basis"), "coarse.basis", Any, mean.Shape[0], 3);
-            Layer[] mlp = Mlp(tree.Children("mlp"), "coarse.mlp", width, basis.Shape[0]);
-            return new Coarse { Mlp = mlp, Mean = mean, Basis = basis };
-        }
-
-        private Layer[] Mlp(Table[] tree, string path, long width, long outputs)
-        {
-            var layers = new Layer[tree.Length];
-            for (int i = 0; i < layers.Length; i++)
-            {
-                string layer = path + "[" + i + "]";
-                Tensor weight = tensors.Reals(tree[i].Child("weight"), layer + ".weight", Any, width);
-                width = weight.Shape[0];
-                Tensor bias = tensors.Reals(tree[i].Child("bias"), layer + ".bias", width);
-                layers[i] = new Layer { Weight = weight, Bias = bias };
-            }
-            if (layers.Length == 0 || width != outputs)
-            {
-                throw new AvatarFormatException(
-                    "shape", path, layers.Length + " layers with " + width + " outputs, expected " + outputs);
-            }
-            return layers;
-        }
-
-        /// <summary>One branch over `count` texels with an LL of `side`, driven by descriptors of `width`.</summary>
-        private Branch Branch(Table tree, string path, int channels, int count, int width, int side)
-        {
-            Tensor basis = tensors.Reals(tree.Child("ll_basis"), path + ".ll_basis", channels, Any, side, side);
-            Table[] bands = tree.Children("details");
-            var details = new DetailBand[bands.Length];
-            long ranks = basis.Shape[1];
-            for (int i = 0; i < details.Length; i++)
-            {
-                long size = (long)side << Math.Min(i, MaxShift);
-                details[i] = Detail(bands[i], path + ".details[" + i + "]", channels, size);
-                ranks += details[i].Rank;
-            }
-            return new Branch
-            {
-                Mlp = Mlp(tree.Children("mlp"), path + ".mlp", width, channels * ranks),
-                LlMean = tensors.Reals(tree.Child("ll_mean"), path + ".ll_mean", channels, side, side),
-                LlBasis = basis,
-                Details = details,
-                StaticOffset = tensors.Reals(tree.Child("static_offset"), path + ".static_offset", channels, count),
-            };
-        }
-
-        private DetailBand Detail(Table tree, string path, int channels, long size)
-        {
-            Tensor h = tensors.Reals(tree.Child("h"), path + ".h", Bands, channels, Any, size);
-            return new DetailBand
-            {
-                H = h,
-                Mean = tensors.Reals(tree.Child("mean"), path + ".mean", Bands, channels, size, size),
-                W = tensors.Reals(tree.Child("w"), path + ".w", Bands, channels, h.Shape[2], size),
-            };
         }
 
         private Clip[] Clips(Table[] tree, Skeleton skeleton, double encodingRate)
@@ -262,7 +161,7 @@ namespace Mua.Format
 
         private float[] Bounds(Table tree)
         {
-            float[] bounds = Floats(tensors.Reals(tree, "bounds", 2, 3));
+            float[] bounds = tensors.Reals(tree, "bounds", 2, 3).ToFloats();
             for (int axis = 0; axis < 3; axis++)
             {
                 if (bounds[axis] > bounds[3 + axis])
@@ -283,23 +182,6 @@ namespace Mua.Format
                 throw Refusal.Of("thumbnail", "the content is no PNG");
             }
             return new ArraySegment<byte>(content, block.Offset, block.Count);
-        }
-
-        private double[] Doubles(Block block)
-        {
-            return MemoryMarshal.Cast<byte, double>(new ReadOnlySpan<byte>(content, block.Offset, 8 * block.Count)).ToArray();
-        }
-
-        private static float[] Floats(Tensor tensor)
-        {
-            var values = new float[tensor.Count];
-            tensor.CopyTo(values);
-            return values;
-        }
-
-        private static bool IsFinite(double value)
-        {
-            return !double.IsNaN(value) && !double.IsInfinity(value);
         }
     }
 }

@@ -3,85 +3,57 @@ using System.Runtime.InteropServices;
 
 namespace Mua.Format
 {
-    /// <summary>Whether a tensor's values are finite and within bounds, eight bytes at a step.</summary>
+    /// <summary>Whether a tensor's values are finite and within bounds.</summary>
     internal static class Finite
     {
-        // An exponent of all ones is an infinity or a NaN: adding its lowest bit to the exponent alone carries into the
-        // sign bit then, and only then; the lanes of a word do not touch each other.
-        private const ulong Exponents32 = 0x7F8000007F800000, Lowest32 = 0x0080000000800000, Signs32 = 0x8000000080000000;
-        private const ulong Exponents16 = 0x7C007C007C007C00, Lowest16 = 0x0400040004000400, Signs16 = 0x8000800080008000;
-
-        // Likewise, what is to be added to a magnitude above Largest, and to no smaller one, to reach the sign bit.
-        private const ulong Magnitudes32 = 0x7FFFFFFF7FFFFFFF, Beyond32 = 0x38801FFF38801FFF;
-
-        private const float LargestFactor = float.MaxValue / 128; // times any i8 stays finite
-
         /// <summary>Of any real: f16's largest, so that what is decoded from a file is finite too.</summary>
         public const float Largest = 65504;
 
-        public static bool All(Tensor tensor)
-        {
-            switch (tensor.Type)
-            {
-                case ElementType.F32:
-                    return All(tensor.Bytes, Exponents32, Lowest32, Signs32);
-                case ElementType.F16:
-                    return All(tensor.Bytes, Exponents16, Lowest16, Signs16);
-                default:
-                    return AllScaled(tensor);
-            }
-        }
+        // What is to be added to a magnitude above Largest, to an infinity or a NaN, and to no other number, to reach the sign
+        // bit; the numbers of a word do not touch each other.
+        private const ulong Magnitudes32 = 0x7FFFFFFF7FFFFFFF, Beyond32 = 0x38801FFF38801FFF;
+        private const ulong Magnitudes16 = 0x7FFF7FFF7FFF7FFF, Beyond16 = 0x0400040004000400;
 
-        /// <summary>Whether finite values are at most Largest in magnitude.</summary>
+        /// <summary>Whether all values are finite and at most Largest in magnitude; f32 and f16 eight bytes at a step.</summary>
         public static bool Within(Tensor tensor)
         {
             switch (tensor.Type)
             {
                 case ElementType.F32:
-                    return All(tensor.Bytes, Magnitudes32, Beyond32, Signs32);
+                    return Within(tensor.Bytes, Magnitudes32, Beyond32);
                 case ElementType.F16:
-                    return true;
+                    return Within(tensor.Bytes, Magnitudes16, Beyond16);
                 default:
                     return WithinScaled(tensor);
             }
         }
 
-        private static bool All(ReadOnlySpan<byte> bytes, ulong exponents, ulong lowest, ulong signs)
+        /// <summary>Whether all values and their scales are finite, one by one.</summary>
+        public static bool All(Tensor tensor)
+        {
+            bool isFinite = tensor.Scale == null || Array.TrueForAll(tensor.Scale, IsFinite);
+            for (int i = 0; isFinite && i < tensor.Count; i++)
+            {
+                isFinite = IsFinite(tensor.Read(i));
+            }
+            return isFinite;
+        }
+
+        private static bool Within(ReadOnlySpan<byte> bytes, ulong magnitudes, ulong beyond)
         {
             ReadOnlySpan<ulong> words = MemoryMarshal.Cast<byte, ulong>(bytes);
             ulong found = 0;
             for (int i = 0; i < words.Length; i++)
             {
-                found |= (words[i] & exponents) + lowest;
+                found |= (words[i] & magnitudes) + beyond;
             }
             ulong last = 0;
             for (int i = 8 * words.Length; i < bytes.Length; i++)
             {
                 last |= (ulong)bytes[i] << 8 * (i % 8);
             }
-            found |= (last & exponents) + lowest;
-            return (found & signs) == 0;
-        }
-
-        private static bool AllScaled(Tensor tensor)
-        {
-            int row = tensor.Count / tensor.Scale.Length;
-            for (int i = 0; i < tensor.Scale.Length; i++)
-            {
-                float scale = tensor.Scale[i];
-                if (float.IsNaN(scale) || float.IsInfinity(scale))
-                {
-                    return false;
-                }
-                for (int at = i * row; Math.Abs(scale) > LargestFactor && at < (i + 1) * row; at++)
-                {
-                    if (float.IsInfinity((float)((sbyte)tensor.Bytes[at] * scale)))
-                    {
-                        return false;
-                    }
-                }
-            }
-            return true;
+            found |= (last & magnitudes) + beyond;
+            return (found & ~magnitudes) == 0;
         }
 
         private static bool WithinScaled(Tensor tensor)
@@ -90,6 +62,10 @@ namespace Mua.Format
             for (int i = 0; i < tensor.Scale.Length; i++)
             {
                 float scale = Math.Abs(tensor.Scale[i]);
+                if (!IsFinite(scale))
+                {
+                    return false;
+                }
                 for (int at = i * row; scale > Largest / 128 && at < (i + 1) * row; at++)
                 {
                     if (Math.Abs((float)((sbyte)tensor.Bytes[at] * scale)) > Largest)
@@ -99,6 +75,11 @@ namespace Mua.Format
                 }
             }
             return true;
+        }
+
+        private static bool IsFinite(float value)
+        {
+            return !float.IsNaN(value) && !float.IsInfinity(value);
         }
     }
 }

@@ -197,12 +197,7 @@ namespace Mua.Format
 
         private static double[] Doubles(Tensor tensor)
         {
-            var values = new double[tensor.Count];
-            for (int i = 0; i < values.Length; i++)
-            {
-                values[i] = tensor.Read(i);
-            }
-            return values;
+            return Array.ConvertAll(tensor.ToFloats(), value => (double)value);
         }
     }
 }

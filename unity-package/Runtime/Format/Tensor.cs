@@ -69,19 +69,15 @@ namespace Mua.Format
             }
         }
 
-        /// <summary>All elements as floats into the first Count of `target`.</summary>
-        public void CopyTo(float[] target)
+        /// <summary>All elements as floats.</summary>
+        public float[] ToFloats()
         {
+            var values = new float[Count];
             for (int i = 0; i < Count; i++)
             {
-                target[i] = Read(i);
+                values[i] = Read(i);
             }
-        }
-
-        /// <summary>The integers of a tensor of type I32 into the first Count of `target`.</summary>
-        public void CopyTo(int[] target)
-        {
-            Integers.CopyTo(target);
+            return values;
         }
     }
 }

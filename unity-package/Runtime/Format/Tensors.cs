@@ -46,15 +46,13 @@ namespace Mua.Format
             {
                 throw Fault("type", path, "element type I32, expected F32, F16 or I8");
             }
-            if (!Finite.All(tensor))
+            if (Finite.Within(tensor))
             {
-                throw Fault("finite", path, "a value is not finite");
+                return tensor;
             }
-            if (!Finite.Within(tensor))
-            {
-                throw Fault("value", path, "a value lies outside -" + Finite.Largest + " to " + Finite.Largest);
-            }
-            return tensor;
+            throw Finite.All(tensor)
+                ? Fault("value", path, "a value lies outside -" + Finite.Largest + " to " + Finite.Largest)
+                : Fault("finite", path, "a value is not finite");
         }
 
         /// <summary>A tensor whose shape, bytes and scales agree.</summary>
