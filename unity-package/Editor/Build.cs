@@ -65,7 +65,7 @@ namespace Mua.Editor
         private static ProjectOutcome Try(BuildTarget target, string[] words)
         {
             BuildArguments arguments = BuildArguments.Parse(words);
-            BuildOutput output = BuildOutput.Of(target, arguments.Output);
+            var output = new BuildOutput(target, arguments.Output);
             Require(ProjectSetup.Unable(target));
             output.Prepare();
             ProjectOutcome brought = Bring();

@@ -7,32 +7,35 @@ using UnityEditor.Build;
 namespace Mua.Editor
 {
     /// <summary>
-    /// Where a build goes: made in a folder beside it, and moved under its own name only when it is whole. Nothing older is
-    /// left from Prepare on, so that what is there is always this build's.
+    /// Where a build goes, an APK or a folder for Windows: made in a folder beside it, and moved under its own name only when
+    /// it is whole. Nothing older is left from Prepare on, so that what is there is always this build's.
     /// </summary>
-    internal abstract class BuildOutput
+    internal sealed class BuildOutput
     {
         private const string Extension = ".apk";
         private const string Program = "mua-player.exe";
 
-        private BuildOutput(string path)
+        private readonly bool isFile;
+
+        /// <summary>Errors: BuildFailedException where the path is none for the platform.</summary>
+        public BuildOutput(BuildTarget target, string path)
         {
             Path = path;
+            isFile = target == BuildTarget.Android;
+            string fault = isFile ? FileFault() : FolderFault();
+            if (fault != null)
+            {
+                throw new BuildFailedException($"-muaOutput is {path}, {fault}");
+            }
         }
 
-        /// <summary>Of the whole build; a folder on Windows.</summary>
+        /// <summary>Of the whole build.</summary>
         public string Path { get; }
 
         /// <summary>What Unity is to write; other files that it leaves beside it go with Discard.</summary>
-        public abstract string Unfinished { get; }
+        public string Unfinished => System.IO.Path.Combine(Part, isFile ? System.IO.Path.GetFileName(Path) : Program);
 
-        protected string Part => Path + ".part";
-
-        /// <summary>Errors: BuildFailedException where the path is none for the platform.</summary>
-        public static BuildOutput Of(BuildTarget target, string path)
-        {
-            return target == BuildTarget.Android ? (BuildOutput)new Apk(path) : new Folder(path);
-        }
+        private string Part => Path + ".part";
 
         /// <summary>Removes what is older and tries that it can be written. Errors: BuildFailedException.</summary>
         public void Prepare()
@@ -54,7 +57,17 @@ namespace Mua.Editor
         }
 
         /// <summary>Gives the build its name.</summary>
-        public abstract void Finish();
+        public void Finish()
+        {
+            if (isFile)
+            {
+                File.Move(Unfinished, Path);
+            }
+            else
+            {
+                Directory.Move(Part, Path);
+            }
+        }
 
         /// <summary>Removes what is not whole.</summary>
         public void Discard()
@@ -63,7 +76,30 @@ namespace Mua.Editor
         }
 
         /// <summary>Bytes of the whole build.</summary>
-        public abstract long Size();
+        public long Size()
+        {
+            return isFile
+                ? new FileInfo(Path).Length
+                : new DirectoryInfo(Path).EnumerateFiles("*", SearchOption.AllDirectories).Sum(file => file.Length);
+        }
+
+        private string FileFault()
+        {
+            if (!Path.EndsWith(Extension, StringComparison.Ordinal))
+            {
+                return $"expected a file name that ends in {Extension}";
+            }
+            return Directory.Exists(Path) ? "which is a folder, expected a file name" : null;
+        }
+
+        private string FolderFault()
+        {
+            bool isOther = Directory.Exists(Path) && Directory.EnumerateFileSystemEntries(Path).Any()
+                && !File.Exists(System.IO.Path.Combine(Path, Program));
+            return isOther || File.Exists(Path)
+                ? "which holds something else than the player, expected a new folder's name"
+                : null;
+        }
 
         private static void Remove(string path)
         {
@@ -74,59 +110,6 @@ namespace Mua.Editor
             else
             {
                 File.Delete(path);
-            }
-        }
-
-        private sealed class Apk : BuildOutput
-        {
-            public Apk(string path) : base(path)
-            {
-                if (!path.EndsWith(Extension, StringComparison.Ordinal))
-                {
-                    throw new BuildFailedException($"-muaOutput is {path}, expected a file name that ends in {Extension}");
-                }
-                if (Directory.Exists(path))
-                {
-                    throw new BuildFailedException($"-muaOutput is {path}, which is a folder, expected a file name");
-                }
-            }
-
-            public override string Unfinished => System.IO.Path.Combine(Part, System.IO.Path.GetFileName(Path));
-
-            public override void Finish()
-            {
-                File.Move(Unfinished, Path);
-            }
-
-            public override long Size()
-            {
-                return new FileInfo(Path).Length;
-            }
-        }
-
-        private sealed class Folder : BuildOutput
-        {
-            public Folder(string path) : base(path)
-            {
-                bool isOther = Directory.Exists(path) && Directory.EnumerateFileSystemEntries(path).Any()
-                    && !File.Exists(System.IO.Path.Combine(path, Program));
-                if (isOther || File.Exists(path))
-                {
-                    throw new BuildFailedException(
-                        $"-muaOutput is {path}, which holds something else than the player, expected a new folder's name");
-                }
-            }
-
-            public override string Unfinished => System.IO.Path.Combine(Part, Program);
-
-            public override void Finish()
-            {
-                Directory.Move(Part, Path);
-            }
-
-            public override long Size()
-            {
-                return new DirectoryInfo(Path).EnumerateFiles("*", SearchOption.AllDirectories).Sum(file => file.Length);
             }
         }
     }

@@ -1,10 +1,13 @@
 using System;
+using System.Globalization;
 
 namespace Mua.Samples.VrPlayer
 {
     /// <summary>Text that is built again and again in one buffer; what does not fit is left out.</summary>
     internal sealed class PanelText
     {
+        private static readonly string[] Formats = { "F0", "F1", "F2" }; // by digits
+
         private readonly char[] characters = new char[2048];
         private int length;
 
@@ -41,42 +44,21 @@ namespace Mua.Samples.VrPlayer
 
         public PanelText Add(int value)
         {
-            if (value < 0)
-            {
-                Add('-');
-            }
-            long rest = Math.Abs((long)value), unit = 1;
-            while (rest / unit >= 10)
-            {
-                unit *= 10;
-            }
-            for (; unit > 0; unit /= 10)
-            {
-                Add((char)('0' + rest / unit % 10));
-            }
+            value.TryFormat(new Span<char>(characters, length, characters.Length - length), out int written);
+            length += written;
             return this;
         }
 
         /// <summary>A number that is not negative, with so many digits behind the point; a dash where it is NaN.</summary>
         public PanelText Add(double value, int digits)
         {
-            int scale = 1;
-            for (int i = 0; i < digits; i++)
-            {
-                scale *= 10;
-            }
-            double rounded = Math.Round(value * scale);
-            if (!(rounded >= 0 && rounded < int.MaxValue))
+            if (!(value >= 0 && value < int.MaxValue))
             {
                 return Add("-");
             }
-            int whole = (int)rounded;
-            Add(whole / scale);
-            for (int unit = scale / 10; unit > 0; unit /= 10)
-            {
-                Add(unit == scale / 10 ? "." : "");
-                Add((char)('0' + whole / unit % 10));
-            }
+            Span<char> rest = new Span<char>(characters, length, characters.Length - length);
+            value.TryFormat(rest, out int written, Formats[digits], CultureInfo.InvariantCulture);
+            length += written;
             return this;
         }
 

@@ -19,6 +19,28 @@ namespace Mua.Samples.VrPlayer.Editor
         private const int LetterPixels = 64;
         private const float UnitsOfPixel = 0.1f; // TextMesh draws a font of n pixels n * 0.1 * characterSize high
 
+        private const string Help = // what the buttons do; the sample's README.md has the same as a table
+            "CONTROLLERS\n"
+            + "left stick   walk\n"
+            + "right stick   turn the avatar, zoom\n"
+            + "right grip + stick   scrub\n"
+            + "A   play, pause        B   next clip\n"
+            + "right, left trigger   next, previous frame\n"
+            + "Y, X   next, previous avatar\n"
+            + "left grip + A B X Y right trigger\n"
+            + "     splats geometry mesh skeleton shadow\n"
+            + "left grip + left trigger   previous clip\n"
+            + "right stick pressed   back to the start\n"
+            + "menu, left stick pressed   hide this\n\n"
+            + "KEYBOARD AND MOUSE\n"
+            + "W A S D   walk        R F   up, down\n"
+            + "right mouse button   look\n"
+            + "Q E   turn        wheel, up, down   zoom\n"
+            + "left, right   scrub        space   play, pause\n"
+            + ". ,   frame     ] [   clip     page down, up   avatar\n"
+            + "1 2 3 4 5   splats geometry mesh skeleton shadow\n"
+            + "backspace   back to the start     H   hide this";
+
         private static readonly Color Background = new Color(0.16f, 0.17f, 0.19f);
         private static readonly Color Ground = new Color(0.45f, 0.45f, 0.45f);
 
@@ -83,7 +105,7 @@ namespace Mua.Samples.VrPlayer.Editor
             head.transform.localPosition = new Vector3(0, EyeHeight, 0);
             AddCamera(head);
             TextMesh panel = AddText("Panel", "", new Vector3(-1.6f, 1.9f, 0.2f), -30);
-            TextMesh help = AddText("Help", HelpPage.Text, new Vector3(0.7f, 1.9f, 0.2f), 30);
+            TextMesh help = AddText("Help", Help, new Vector3(0.7f, 1.9f, 0.2f), 30);
             user.AddComponent<VrPlayer>().Connect(avatar, head.AddComponent<HeadPose>(), panel, help.gameObject, FindAvatars());
         }
 
