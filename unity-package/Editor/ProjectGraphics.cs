@@ -103,24 +103,21 @@ namespace Mua.Editor
 
         private static IEnumerable<ProjectSetting> QuestSettings(UniversalRenderPipelineAsset asset)
         {
-            yield return Of(asset, "HDR", false, () => asset.supportsHDR, value => asset.supportsHDR = value);
-            yield return Of(asset, "MSAA", 1, () => asset.msaaSampleCount, value => asset.msaaSampleCount = value);
+            yield return Of(asset, "HDR", false, found => found.supportsHDR, (found, value) => found.supportsHDR = value);
+            yield return Of(asset, "MSAA", 1, found => found.msaaSampleCount, (found, value) => found.msaaSampleCount = value);
             yield return Of(
-                asset, "Opaque texture", false, () => asset.supportsCameraOpaqueTexture,
-                value => asset.supportsCameraOpaqueTexture = value);
+                asset, "Opaque texture", false, found => found.supportsCameraOpaqueTexture,
+                (found, value) => found.supportsCameraOpaqueTexture = value);
             yield return Of(
-                asset, "Depth texture", false, () => asset.supportsCameraDepthTexture,
-                value => asset.supportsCameraDepthTexture = value);
+                asset, "Depth texture", false, found => found.supportsCameraDepthTexture,
+                (found, value) => found.supportsCameraDepthTexture = value);
         }
 
         private static ProjectSetting Of<T>(
-            Object asset, string name, T wanted, System.Func<T> read, System.Action<T> write)
+            UniversalRenderPipelineAsset asset, string name, T wanted, System.Func<UniversalRenderPipelineAsset, T> read,
+            System.Action<UniversalRenderPipelineAsset, T> write)
         {
-            return ProjectSetting.Of($"{asset.name} > {name}", wanted, read, value =>
-            {
-                write(value);
-                EditorUtility.SetDirty(asset);
-            });
+            return ProjectSetting.In($"{asset.name} > {name}", wanted, () => asset, read, write);
         }
 #else
         private static void TakePipeline()

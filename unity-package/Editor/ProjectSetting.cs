@@ -1,11 +1,14 @@
 using System;
 using System.Linq;
+using UnityEditor;
 
 namespace Mua.Editor
 {
     /// <summary>One setting of a project: what it is, what it should be, and how to make it so.</summary>
     internal sealed class ProjectSetting
     {
+        public const string Absent = "absent";
+
         private readonly Func<string> read;
         private readonly Func<bool> isRight;
         private readonly Action write;
@@ -36,6 +39,31 @@ namespace Mua.Editor
         {
             return new ProjectSetting(
                 name, Text(wanted), () => Text(read()), () => isRight(read()), () => write(wanted));
+        }
+
+        /// <summary>
+        /// A setting of an object of the project that `find` gives. Where there is none it is absent, and `prepare` may make
+        /// the object before it is written.
+        /// </summary>
+        public static ProjectSetting In<TObject, T>(
+            string name, T wanted, Func<TObject> find, Func<TObject, T> read, Action<TObject, T> write, Action prepare = null)
+            where TObject : UnityEngine.Object
+        {
+            Func<string> found = () =>
+            {
+                TObject holder = find();
+                return holder == null ? Absent : Text(read(holder));
+            };
+            return new ProjectSetting(name, Text(wanted), found, () => found() == Text(wanted), () =>
+            {
+                prepare?.Invoke();
+                TObject holder = find();
+                if (holder != null)
+                {
+                    write(holder, wanted);
+                    EditorUtility.SetDirty(holder);
+                }
+            });
         }
 
         /// <summary>Makes it right and says what was changed; null where nothing had to be, or could be.</summary>

@@ -7,35 +7,97 @@ using UnityEngine;
 #if MUA_XR_MANAGEMENT && MUA_OPENXR
 using UnityEditor.XR.Management;
 using UnityEditor.XR.Management.Metadata;
+using UnityEditor.XR.OpenXR.Features;
+using UnityEngine.Rendering;
 using UnityEngine.XR.Management;
+using UnityEngine.XR.OpenXR;
+using UnityEngine.XR.OpenXR.Features;
 #endif
 
 namespace Mua.Editor
 {
     /// <summary>
-    /// OpenXR as the one way to a headset, started with the player; ProjectOpenXr has what it does there. Where its packages
-    /// are absent there is nothing to set, and ProjectPackages says so.
+    /// OpenXR as the one way to a headset, started with the player: both eyes in one pass, controllers, and on a Quest coarser
+    /// pixels at the edges of the view. Where its packages are absent there is nothing to set, and ProjectPackages says so.
     /// </summary>
     internal static class ProjectXr
     {
 #if MUA_XR_MANAGEMENT && MUA_OPENXR
         private const string Loader = "UnityEngine.XR.OpenXR.OpenXRLoader";
         private const string SettingsPath = "Assets/XR/XRGeneralSettingsPerBuildTarget.asset"; // the plug-in's own place
-        private const string Absent = "absent";
+        private const string MetaQuest = "com.unity.openxr.feature.metaquest";
+        private const string Foveation = "com.unity.openxr.feature.foveatedrendering";
+        private const string Touch = "com.unity.openxr.feature.input.oculustouch";
+        private const string TouchPlus = "com.unity.openxr.feature.input.metaquestplus";
+        private const string DisplayRate = "com.unity.openxr.feature.meta-display-utilities"; // of com.unity.xr.meta-openxr
+        private const string LateLatching = "lateLatchingMode"; // of MetaQuest; it has no public name
 
         public static IEnumerable<ProjectSetting> Settings(BuildTarget target)
         {
             BuildTargetGroup group = BuildPipeline.GetBuildTargetGroup(target);
+            bool isQuest = target == BuildTarget.Android;
             yield return new ProjectSetting(
                 $"XR > Loader for {group}", Loader, () => FirstLoader(group), () => FirstLoader(group) == Loader,
                 () => Assign(group));
-            yield return new ProjectSetting(
-                $"XR > Initialize XR on startup for {group}", "on", () => Startup(group), () => Startup(group) == "on",
-                () => Start(group));
-            foreach (ProjectSetting setting in ProjectOpenXr.Settings(target == BuildTarget.Android, group))
+            yield return ProjectSetting.In(
+                $"XR > Initialize XR on startup for {group}", true, () => General(group),
+                general => general.InitManagerOnStart, (general, value) => general.InitManagerOnStart = value);
+            yield return OpenXr(
+                group, "Render mode", OpenXRSettings.RenderMode.SinglePassInstanced, // which is multiview on a Quest
+                settings => settings.renderMode, (settings, value) => settings.renderMode = value);
+            foreach (string id in isQuest ? new[] { MetaQuest, Foveation, Touch, TouchPlus } : new[] { Touch, TouchPlus })
             {
-                yield return setting;
+                yield return Enabled(group, id);
             }
+            if (isQuest && Feature(group, DisplayRate) != null)
+            {
+                yield return Enabled(group, DisplayRate);
+            }
+            if (isQuest && GraphicsSettings.defaultRenderPipeline != null) // the built-in one knows the legacy way only
+            {
+                yield return OpenXr(
+                    group, "Foveated rendering API", OpenXRSettings.BackendFovationApi.SRPFoveation,
+                    settings => settings.foveatedRenderingApi, (settings, value) => settings.foveatedRenderingApi = value);
+            }
+            if (isQuest) // it moves the eyes after splats were sorted and projected for them
+            {
+                yield return ProjectSetting.Of(
+                    $"OpenXR > Late latching for {group}", false, () => IsLatched(group), value => Latch(group, value));
+            }
+        }
+
+        private static ProjectSetting OpenXr<T>(
+            BuildTargetGroup group, string name, T wanted, Func<OpenXRSettings, T> read, Action<OpenXRSettings, T> write)
+        {
+            return ProjectSetting.In(
+                $"OpenXR > {name} for {group}", wanted, () => OpenXRSettings.GetSettingsForBuildTargetGroup(group), read, write,
+                () => FeatureHelpers.RefreshFeatures(group));
+        }
+
+        private static ProjectSetting Enabled(BuildTargetGroup group, string id)
+        {
+            return ProjectSetting.In(
+                $"OpenXR > {id} for {group}", true, () => Feature(group, id), feature => feature.enabled,
+                (feature, value) => feature.enabled = value, () => FeatureHelpers.RefreshFeatures(group));
+        }
+
+        private static OpenXRFeature Feature(BuildTargetGroup group, string id)
+        {
+            return FeatureHelpers.GetFeatureWithIdForBuildTarget(group, id);
+        }
+
+        private static bool IsLatched(BuildTargetGroup group)
+        {
+            OpenXRFeature quest = Feature(group, MetaQuest);
+            SerializedProperty field = quest == null ? null : new SerializedObject(quest).FindProperty(LateLatching);
+            return field != null && field.boolValue;
+        }
+
+        private static void Latch(BuildTargetGroup group, bool value)
+        {
+            var quest = new SerializedObject(Feature(group, MetaQuest));
+            quest.FindProperty(LateLatching).boolValue = value;
+            quest.ApplyModifiedPropertiesWithoutUndo();
         }
 
         // The asset is the project's own, though the editor may have lost sight of it.
@@ -63,7 +125,7 @@ namespace Mua.Editor
         {
             XRManagerSettings manager = Manager(group);
             XRLoader first = manager == null ? null : manager.activeLoaders.FirstOrDefault(each => each != null);
-            return first == null ? Absent : first.GetType().FullName;
+            return first == null ? ProjectSetting.Absent : first.GetType().FullName;
         }
 
         private static void Assign(BuildTargetGroup group)
@@ -94,18 +156,10 @@ namespace Mua.Editor
             return settings;
         }
 
-        private static string Startup(BuildTargetGroup group)
+        private static XRGeneralSettings General(BuildTargetGroup group)
         {
             XRGeneralSettingsPerBuildTarget settings = Find();
-            XRGeneralSettings general = settings == null ? null : settings.SettingsForBuildTarget(group);
-            return general == null ? Absent : general.InitManagerOnStart ? "on" : "off";
-        }
-
-        private static void Start(BuildTargetGroup group)
-        {
-            XRGeneralSettings general = Find().SettingsForBuildTarget(group);
-            general.InitManagerOnStart = true;
-            EditorUtility.SetDirty(general);
+            return settings == null ? null : settings.SettingsForBuildTarget(group);
         }
 #else
         public static IEnumerable<ProjectSetting> Settings(BuildTarget target)
