@@ -126,10 +126,6 @@ def test_views_are_drawn_in_their_order(story: Story) -> None:
     assert told["log"] == []
 
 
-def test_an_editor_that_does_not_play_draws_every_view_in_its_first_picture(story: Story) -> None:
-    assert story("ShowsViewsInEditor", "first")["together"] == ["4 0"]  # lights wait for the first pose
-
-
 def test_an_avatar_of_two_texels_has_no_geometry_and_shows_the_rest(story: Story, folder: Path) -> None:
     avatar = synthetic_avatar(1)
     texels = avatar.rig.texels

@@ -120,14 +120,6 @@ namespace Mua
             Say("nothing", Rendered());
         }
 
-        /// <summary>The editor may draw one picture and no other: whatever it shows has to be there at once.</summary>
-        private static void ShowsViewsInEditor()
-        {
-            Machine.Playing(false);
-            Show(files[0]).Views = (AvatarViews)31;
-            Say("together", Rendered(1));
-        }
-
         /// <summary>What is drawn of an avatar between whose texels there is no triangle.</summary>
         private static void ShowsSparse()
         {
@@ -143,10 +135,10 @@ namespace Mua
             }
         }
 
-        /// <summary>Draws of cameras and of lights in one frame, that one from now on.</summary>
-        private static string Rendered(int frame = 3)
+        /// <summary>Draws of cameras and of lights in a frame.</summary>
+        private static string Rendered()
         {
-            Frames(frame - 1);
+            Frames(2);
             int draws = Recorder.Draws, renders = Recorder.Renders;
             Frames(1);
             return (Recorder.Draws - draws) + " " + (Recorder.Renders - renders);

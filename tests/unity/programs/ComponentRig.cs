@@ -134,8 +134,8 @@ namespace Mua
             Turn(rig, joints, pose, now + 8 * frame, seen);
             Say("window", Indices(pose, seen));
             var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
-            Say("before", clip.FrameCount - AvatarPose.Position(clip, -0.5 * frame));
-            Say("before", clip.FrameCount - AvatarPose.Position(clip, -(clip.FrameCount + 1) * frame));
+            Say("before", clip.FrameCount - clip.Position(-0.5 * frame));
+            Say("before", clip.FrameCount - clip.Position(-(clip.FrameCount + 1) * frame));
         }
 
         private static void Turn(Transform[] rig, AvatarJoints joints, AvatarPose pose, double seconds, List<double[]> seen)
