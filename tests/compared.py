@@ -29,8 +29,8 @@ SETTINGS = Settings(
     components=4,
     hidden=24,
     sweeps=3,
-    regression=Schedule(steps=120, batch=64, rate=1e-2),
-    finetune=Schedule(steps=10, batch=16, rate=1e-4),
+    regression=Schedule(steps=120, batch=64, lr=1e-2),
+    finetune=Schedule(steps=10, batch=16, lr=1e-4),
 )
 TRAINING, HELD_OUT = 40, 9
 LEARNT = 0.5  # of the variance, at the least, within STEPS

@@ -29,8 +29,8 @@ SETTINGS = Settings(
     components=4,
     hidden=32,
     sweeps=4,
-    regression=Schedule(steps=150, batch=64, rate=5e-3),
-    finetune=Schedule(steps=20, batch=16, rate=3e-4),
+    regression=Schedule(steps=150, batch=64, lr=5e-3),
+    finetune=Schedule(steps=20, batch=16, lr=3e-4),
 )
 
 

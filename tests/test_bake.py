@@ -44,8 +44,8 @@ SMALL = dataclasses.replace(
     components=4,
     hidden=16,
     sweeps=1,
-    regression=Schedule(steps=10, batch=8, rate=1e-3),
-    finetune=Schedule(steps=2, batch=4, rate=1e-4),
+    regression=Schedule(steps=10, batch=8, lr=1e-3),
+    finetune=Schedule(steps=2, batch=4, lr=1e-4),
 )
 
 

@@ -12,7 +12,7 @@ from bvh_files import BVH
 from PIL import Image
 from silent import Silent
 from test_bake import SMALL
-from test_likeness import column_file
+from test_fidelity import column_file
 from typer.testing import CliRunner
 
 from mua.baking.contact_sheet import CAPTION, CELL
@@ -43,8 +43,8 @@ def test_leaves_a_picture_a_mapping_and_figures_and_no_avatar(tmp_path: Path) ->
         assert np.asarray(picture).std() > 0
     assert read_mapping(output.parent / "a_mapping.json") == {name: name for name in ("hips", "spine", "head")}
     told = json.loads(figures.read_text())
-    assert 0.9 < told["likeness"]["iou"] < 1
-    assert told["likeness"]["psnr"] > 30
+    assert 0.9 < told["fidelity"]["iou"] < 1
+    assert told["fidelity"]["psnr"] > 30
     assert [motion["name"] for motion in told["motion"]] == ["bend"]
     assert told["motion"][0]["limb_degrees"] == pytest.approx(0, abs=1e-3)
     assert {"facing_degrees", "feet_height", "slide"} <= told["motion"][0].keys()
@@ -90,7 +90,7 @@ def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -
     assert not list(tmp_path.iterdir())
 
 
-def test_a_bake_tells_the_likeness_and_its_contact_sheet_begins_with_it(tmp_path: Path) -> None:
+def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path: Path) -> None:
     told: list[str] = []
 
     class Hearing(Silent):
@@ -99,7 +99,7 @@ def test_a_bake_tells_the_likeness_and_its_contact_sheet_begins_with_it(tmp_path
 
     order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
     baked = bake(order, Hearing())
-    assert any(sentence.startswith("Splats beside the source: silhouettes overlap by") for sentence in told)
+    assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in told)
     with Image.open(baked.sheet) as sheet:
         strip = CELL[1] + CAPTION
         assert sheet.height % strip == 0

@@ -9,7 +9,7 @@ import pytest
 from mua.arrays import Array
 from mua.compare import plots
 from mua.compare.entries import Picture
-from mua.compare.judge import Result
+from mua.compare.scores import Result
 
 CELL = plots.CELL
 DARK, BRIGHT = 16, 180  # of 255: the ends of the map's colours

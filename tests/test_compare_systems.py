@@ -8,8 +8,8 @@ import torch
 from compared import LEARNT, STEPS, explained, few, trained
 from torch import Tensor
 
-from mua.compare.descend import descend
 from mua.compare.network import NetworkSystem
+from mua.compare.optimise import optimise
 from mua.compare.system import Budget, TrainingFrames
 from mua.compare.systems import SYSTEMS
 from mua.errors import InputError
@@ -91,7 +91,7 @@ def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
     def loss(_: Tensor) -> Tensor:
         return -place.sum()
 
-    descend(
+    optimise(
         loss,
         [{"params": [place], "lr": 1.0}],
         frames=4,

@@ -20,11 +20,11 @@ from torch import Tensor
 from mua.arrays import Array
 from mua.asset.write import write
 from mua.cli import eval as command
-from mua.compare import entries, judge, plots, report
+from mua.compare import entries, plots, report, scores
 from mua.compare.entries import Cost, Entry, Picture, avatar_entries, mean_entry, sentence
 from mua.compare.images import Studio
-from mua.compare.judge import Result, Sample, choose_frames
 from mua.compare.metrics import Scores
+from mua.compare.scores import Result, Sample, choose_frames
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames
 from mua.decode import pose_splats
 from mua.errors import InputError
@@ -178,7 +178,7 @@ def test_a_file_of_the_teacher_is_a_perfect_student(
     device: Device, studio: Studio, recording: Recording, frames: list[WholeFrame], tmp_path: Path
 ) -> None:
     rows = [mean_entry(recording), *avatar_entries(device, saved(tmp_path), recording.rig, size=SIZE, played=True)]
-    mean, common, own = judge.judge(studio, frames, rows)
+    mean, common, own = scores.score(studio, frames, rows)
     assert [r.entry.name for r in (mean, common, own)] == ["mean texture", "played", "played, own mesh"]
     for held_out in (False, True):
         assert common.of(held_out).psnr > LEAST_PSNR  # what is left is the recording's half precision
@@ -207,7 +207,7 @@ def test_a_file_of_another_rig_is_refused(device: Device, recording: Recording, 
 def test_what_one_entry_stumbles_over_leaves_the_others(studio: Studio, frames: list[WholeFrame]) -> None:
     rows = [Entry("broken", broken), Entry("never", None, failure="it was never trained"), Entry("exact", truth)]
     done: list[tuple[int, int]] = []
-    failed, never, exact = judge.judge(studio, frames, rows, progress=lambda *at: done.append(at))
+    failed, never, exact = scores.score(studio, frames, rows, progress=lambda *at: done.append(at))
     assert failed.failure == "ValueError: no texture for this frame"
     assert [(s.clip, s.frame, s.view) for s in failed.samples] == [("walk", 1, 0), ("walk", 1, 1)]
     assert (never.failure, never.samples) == ("it was never trained", [])
@@ -246,7 +246,7 @@ class Fake:
 def faked(monkeypatch: pytest.MonkeyPatch) -> None:
     systems = {name: lambda sizes, name=name: Fake(name, sizes) for name in ("good", "bad")}
     monkeypatch.setattr(entries, "SYSTEMS", systems)
-    quick = replace(presets.PRESETS["tiny"], regression=Schedule(steps=5, batch=8, rate=1e-3), components=3)
+    quick = replace(presets.PRESETS["tiny"], regression=Schedule(steps=5, batch=8, lr=1e-3), components=3)
     monkeypatch.setitem(presets.PRESETS, "tiny", quick)
 
 
@@ -307,7 +307,7 @@ def test_a_trained_system_is_not_trained_again(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Fake, "fit", counted)
-    monkeypatch.setattr(judge, "judge", interrupted)
+    monkeypatch.setattr(scores, "score", interrupted)
     for seed, steps in ((0, None), (0, None), (1, None), (1, 7)):
         with pytest.raises(KeyboardInterrupt):
             command.evaluate(

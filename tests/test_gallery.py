@@ -7,7 +7,7 @@ from typing import Any
 import gallery
 import pytest
 from gallery import Entry, find, good, look_at, read_manifest, sheet, table
-from test_likeness import column_file
+from test_fidelity import column_file
 
 ENTRIES = read_manifest()
 FOLDER = os.environ.get("GALLERY", "")

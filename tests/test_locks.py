@@ -22,7 +22,7 @@ import sys, time
 from pathlib import Path
 from mua import locks
 from mua.locks import DirectoryLock
-locks.PATIENCE = 600
+locks.TIMEOUT = 600
 directory = Path(sys.argv[1])
 for _ in range(10):
     with DirectoryLock(directory, name="it"):
@@ -39,7 +39,7 @@ def program(code: str, *arguments: object) -> "subprocess.Popen[str]":
 
 @pytest.fixture(autouse=True)
 def _impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(locks, "PATIENCE", 0.1)
+    monkeypatch.setattr(locks, "TIMEOUT", 0.1)
 
 
 def test_a_second_process_is_refused_until_the_first_is_killed(tmp_path: Path) -> None:

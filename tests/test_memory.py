@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mua.memory import give_back
+from mua.memory import release_memory
 
 BLOCKS, BYTES = 400, 100_000  # below what the C library gives back by itself
 
@@ -23,6 +23,6 @@ def test_freed_blocks_below_one_in_use_are_given_back() -> None:
     last = np.ones(BYTES, np.uint8)  # above them in memory: the C library alone gives back no more than the top
     before = used()
     blocks.clear()
-    give_back()
+    release_memory()
     assert before - used() > BLOCKS * BYTES / 2
     assert last.all()

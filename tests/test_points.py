@@ -70,7 +70,7 @@ def test_a_share_of_the_points_exchanges_parts(share: float, expected: int) -> N
 def test_an_mlp_taught_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:
     inputs, shown = two_limbs(300, seed=3, together=True)
     unseen, truth = two_limbs(200, seed=4, together=False)
-    schedule = Schedule(steps=600, batch=64, rate=3e-3)
+    schedule = Schedule(steps=600, batch=64, lr=3e-3)
     errors = []
     for share in (0.0, 0.75):
         run = Run(seeded(), Checkpoints(tmp_path / f"{share}", "k"), lambda _: None, torch.device("cpu"))

@@ -73,7 +73,7 @@ def test_each_stage_improves_on_the_one_before(tmp_path: Path) -> None:
         predicted = trained(tmp_path / name, settings).predict(descriptors)
         return torch.tensor([explained(found, band) for found, band in zip(predicted, truth, strict=True)])
 
-    nothing = Schedule(steps=1, batch=1, rate=1e-12)
+    nothing = Schedule(steps=1, batch=1, lr=1e-12)
     bases = gains("bases", replace(SETTINGS, regression=nothing, finetune=nothing))
     regressed = gains("regressed", replace(SETTINGS, finetune=nothing))
     tuned = gains("tuned", SETTINGS)
@@ -285,20 +285,20 @@ def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
 
 
 def test_a_rate_rises_then_falls_to_zero() -> None:
-    schedule = Schedule(steps=100, batch=1, rate=2.0, rises=0.1)
-    rates = [schedule.rate_at(step) for step in range(100)]
+    schedule = Schedule(steps=100, batch=1, lr=2.0, warm_up=0.1)
+    rates = [schedule.lr_at(step) for step in range(100)]
     assert rates[:10] == sorted(rates[:10])
     assert rates[0] == pytest.approx(0.2)
     assert max(rates) == pytest.approx(2.0, rel=0.05)
     assert rates[10:] == sorted(rates[10:], reverse=True)
     assert rates[-1] < 0.001
-    assert {replace(schedule, rises=0.0, falls=False).rate_at(step) for step in (0, 50, 99)} == {2.0}
+    assert {replace(schedule, warm_up=0.0, cosine=False).lr_at(step) for step in (0, 50, 99)} == {2.0}
 
 
 def test_few_frames_get_fewer_steps() -> None:
-    schedule = Schedule(steps=100, batch=8, rate=1.0, passes=20)
+    schedule = Schedule(steps=100, batch=8, lr=1.0, epochs=20)
     assert [schedule.over(frames).steps for frames in (0, 1, 20, 40, 1000)] == [1, 3, 50, 100, 100]
-    assert replace(schedule, passes=math.inf).over(1).steps == 100
+    assert replace(schedule, epochs=math.inf).over(1).steps == 100
 
 
 def test_what_tells_frames_apart_is_kept() -> None:

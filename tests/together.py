@@ -32,8 +32,8 @@ from mua.student.train import train
 PAPER = replace(
     quick(),
     start="random",
-    regression=Schedule(steps=12, batch=3, rate=1e-3, falls=False),
-    finetune=Schedule(steps=12, batch=1, rate=1e-3, falls=False),
+    regression=Schedule(steps=12, batch=3, lr=1e-3, cosine=False),
+    finetune=Schedule(steps=12, batch=1, lr=1e-3, cosine=False),
 )
 RECIPES: dict[str, Settings] = {
     "closed form": replace(SETTINGS, regression=replace(SETTINGS.regression, steps=20, batch=65)),

@@ -18,8 +18,8 @@ SMALL = replace(
     components=4,
     hidden=16,
     sweeps=1,
-    regression=Schedule(steps=40, batch=8, rate=1e-3),
-    finetune=Schedule(steps=20, batch=4, rate=1e-4),
+    regression=Schedule(steps=40, batch=8, lr=1e-3),
+    finetune=Schedule(steps=20, batch=4, lr=1e-4),
 )
 STAGE_NAMES = (
     "coarse mesh",

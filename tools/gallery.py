@@ -111,11 +111,11 @@ def look_at(entry: Entry, folder: Path, out: Path, *, bake: bool) -> dict[str, A
 
 def checked(figures: dict[str, Any]) -> dict[str, Any]:
     """What of a check's figures goes into the table."""
-    likeness, motion = figures["likeness"] or {}, figures["motion"]
+    fidelity, motion = figures["fidelity"] or {}, figures["motion"]
     facing = [m["facing_degrees"] for m in motion if m["facing_degrees"] is not None]
     return {
-        "iou": likeness.get("iou"),
-        "psnr": likeness.get("psnr"),
+        "iou": fidelity.get("iou"),
+        "psnr": fidelity.get("psnr"),
         "clips": len(motion),
         "limb_degrees": max((m["limb_degrees"] for m in motion), default=None),
         "facing_degrees": max(facing, default=None),

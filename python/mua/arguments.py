@@ -21,7 +21,7 @@ def as_path(path: PathLike, name: str) -> Path:
     """The path that argument `name` gives; raises InputError for anything but a str or os.PathLike."""
     if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str) and "\0" not in text:
         return Path(text)
-    raise InputError(f"{name} is {told(path)}; expected a path, as a str or an os.PathLike")
+    raise InputError(f"{name} is {describe(path)}; expected a path, as a str or an os.PathLike")
 
 
 def as_paths(paths: PathLike | Sequence[PathLike], name: str) -> tuple[Path, ...]:
@@ -34,7 +34,7 @@ def as_names(names: str | Sequence[str], name: str) -> tuple[str, ...]:
     """One name or several; raises InputError for anything but texts."""
     given = (names,) if isinstance(names, str) else names
     if not isinstance(given, Sequence) or not all(isinstance(one, str) for one in given):
-        raise InputError(f"{name} is {told(names)}; expected a name or several")
+        raise InputError(f"{name} is {describe(names)}; expected a name or several")
     return tuple(given)
 
 
@@ -42,7 +42,7 @@ def one_of(value: T, name: str, choices: Iterable[T]) -> T:
     """One of the choices; raises InputError that lists them for anything else."""
     listed = tuple(choices)
     if value not in listed:
-        raise InputError(f"{name} is {told(value)}; expected {' or '.join(map(str, listed))}")
+        raise InputError(f"{name} is {describe(value)}; expected {' or '.join(map(str, listed))}")
     return value
 
 
@@ -53,7 +53,7 @@ def whole_number(value: Any, name: str) -> int:
             return operator.index(value)
     except TypeError:
         pass
-    raise InputError(f"{name} is {told(value)}; expected a whole number")
+    raise InputError(f"{name} is {describe(value)}; expected a whole number")
 
 
 def float_type(dtype: npt.DTypeLike, name: str) -> np.dtype[Any]:
@@ -63,7 +63,7 @@ def float_type(dtype: npt.DTypeLike, name: str) -> np.dtype[Any]:
     except (TypeError, ValueError):
         found = np.dtype(object)
     if found not in (np.dtype(np.float32), np.dtype(np.float64)):
-        raise InputError(f"{name} is {told(dtype)}; expected float32 or float64")
+        raise InputError(f"{name} is {describe(dtype)}; expected float32 or float64")
     return found
 
 
@@ -91,7 +91,7 @@ def unit_quaternions(values: Any, name: str, shape: tuple[int | None, ...]) -> A
     return quaternions
 
 
-def told(value: object) -> str:
+def describe(value: object) -> str:
     """A value in a sentence, with its type where the value does not show it."""
     shown = repr(value)
     shown = shown if len(shown) <= 60 and "\n" not in shown else "a value"

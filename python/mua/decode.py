@@ -1,4 +1,4 @@
-"""From an avatar and a window of poses to posed splats, by the reference kernels (design: kernels, in frame order)."""
+"""From an avatar and a window of poses to posed splats, by the reference kernels."""
 
 from dataclasses import dataclass
 

@@ -12,7 +12,7 @@ from mua.errors import InputError
 from mua.files import refused
 
 NAME = ".lock"  # holds the id of the process at work, for the sentence that others are refused with
-PATIENCE = 2.0  # seconds: those that a killed process has started take a moment to end
+TIMEOUT = 2.0  # seconds: those that a killed process has started take a moment to end
 PAUSE = 0.02  # seconds
 WITHOUT_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS)  # what some network file systems say
 
@@ -32,7 +32,7 @@ class DirectoryLock:
         """Raises InputError where any process holds the directory, this one too, or nothing can be written in it."""
         self._file: int | None = None
         self._path = directory / NAME
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + TIMEOUT
         while not self._acquire(name):
             if time.monotonic() > end:
                 raise InputError(

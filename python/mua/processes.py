@@ -1,4 +1,4 @@
-"""The processes that train one student together: who holds which frames, and how they come to agree.
+"""The processes that train one student together: which frames each one holds, and what they exchange.
 
 Data-parallel training as in Li et al. 2020, https://arxiv.org/abs/2006.15704, through torch's own
 DistributedDataParallel; `torchrun` starts the processes and says through the environment which one each is.
@@ -20,7 +20,7 @@ from torch.nn.parallel import DistributedDataParallel
 from mua.errors import InputError
 
 TIMEOUT = timedelta(minutes=10)  # longer than any process computes between two exchanges
-PATIENCE = timedelta(days=7)  # for others to record their part; a process that ends is noticed at once
+BARRIER_TIMEOUT = timedelta(days=7)  # for others to record their part; a process that ends is noticed at once
 HALVES = 2  # that a process alone computes a batch in: as two processes do, so that both add up the same numbers
 # What the errors of gloo and NCCL say of a process that is gone or silent, and of nothing else.
 LOST = (
@@ -117,8 +117,8 @@ class Processes:
             return DistributedDataParallel(module, broadcast_buffers=False)
 
     @torch.no_grad()
-    def agree(self, *tensors: Tensor, source: int = 0) -> None:
-        """Give all processes what the one of rank `source` holds in `tensors`, of one shape everywhere, in place."""
+    def broadcast(self, *tensors: Tensor, source: int = 0) -> None:
+        """Copy `tensors` of the process of rank `source` to all processes, in place; shapes are the same everywhere."""
         if self.count == 1:
             return
         for tensor in tensors:
@@ -126,24 +126,24 @@ class Processes:
             dist.broadcast(sent, src=source)
             tensor.copy_(sent)
 
-    def told(self, value: T) -> T:
-        """What the first process holds in `value`, anything that pickles."""
+    def broadcast_object(self, value: T) -> T:
+        """Send `value` of the first process, anything that pickles, to all processes."""
         if self.count == 1:
             return value
         kept = [value]
         dist.broadcast_object_list(kept, src=0, device=torch.device("cpu"))
         return kept[0]
 
-    def meeting(self) -> Callable[[], None]:
-        """A place to wait for each other for as long as it takes: a function that returns when all have called it."""
+    def barrier(self) -> Callable[[], None]:
+        """A function that returns when all processes have called it, however long that takes."""
         if self.count == 1:
             return lambda: None
-        patient = dist.new_group(backend="gloo", timeout=PATIENCE)
+        group = dist.new_group(backend="gloo", timeout=BARRIER_TIMEOUT)
 
-        def meet() -> None:
-            dist.barrier(patient)
+        def wait() -> None:
+            dist.barrier(group)
 
-        return meet
+        return wait
 
     def mean(self, value: Tensor) -> float:
         """The average of a scalar over all processes."""
@@ -161,8 +161,8 @@ ALONE = Processes(0, 1)
 def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
     """The processes that torchrun started together with this one; ALONE where it did not.
 
-    Within the block, a process that ends or falls silent for `timeout` raises an InputError in all others; every
-    InputError says which process it is of.
+    Within the block, a process that ends or does not answer for `timeout` raises an InputError in all others; every
+    InputError names its process.
     """
     count = int(os.environ.get("WORLD_SIZE", "1")) if "RANK" in os.environ else 1
     if count == 1:
@@ -180,8 +180,8 @@ def joined(timeout: timedelta = TIMEOUT) -> Iterator[Processes]:
         if not another_ended(error):
             raise
         raise InputError(
-            f"process {rank + 1} of {count}: another has ended or said nothing for {timeout.total_seconds():.0f} s; "
-            "start all again to go on from the last checkpoint"
+            f"process {rank + 1} of {count}: another process has ended or not answered for "
+            f"{timeout.total_seconds():.0f} s; start all again to resume from the last checkpoint"
         ) from error
 
 

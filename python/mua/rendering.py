@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageColor
 
-from mua.arguments import finite_array, told, whole_number
+from mua.arguments import describe, finite_array, whole_number
 from mua.arrays import Array
 from mua.camera import Camera, orbit
 from mua.decode import Splats, box_of
@@ -57,11 +57,11 @@ def render(
         mua.render(splats, size=(480, 720), azimuth=25).save("avatar.png")
     """
     if not isinstance(splats, Splats):
-        raise InputError(f"splats is {told(splats)}; expected what Avatar.decode returns")
+        raise InputError(f"splats is {describe(splats)}; expected what Avatar.decode returns")
     if camera is None:
         camera = _orbit(splats, size, azimuth, elevation)
     elif not isinstance(camera, Camera):
-        raise InputError(f"camera is {told(camera)}; expected a mua.Camera")
+        raise InputError(f"camera is {describe(camera)}; expected a mua.Camera")
     elif (size, azimuth, elevation) != (SIZE, 0, 0):
         raise InputError("camera comes with a size, an azimuth or an elevation; expected it alone")
     return Image.fromarray(to_bytes(render_over(splats, camera, background=parse_color(background))))
@@ -115,7 +115,7 @@ def parse_color(text: str) -> tuple[float, float, float]:
     try:
         red, green, blue = ImageColor.getrgb(text)[:3]
     except (AttributeError, TypeError, ValueError) as error:
-        raise InputError(f"background is {told(text)}; expected a colour name or #rrggbb") from error
+        raise InputError(f"background is {describe(text)}; expected a colour name or #rrggbb") from error
     return red / 255, green / 255, blue / 255
 
 
@@ -127,9 +127,9 @@ def to_bytes(image: Array) -> Array:
 def _orbit(splats: Splats, size: tuple[int, int], azimuth: float, elevation: float) -> Camera:
     """A camera that frames the splats, from angles in degrees."""
     if not isinstance(size, Sequence) or len(size) != 2:
-        raise InputError(f"size is {told(size)}; expected width and height in pixels")
+        raise InputError(f"size is {describe(size)}; expected width and height in pixels")
     width, height = (whole_number(side, "size") for side in size)
     if not (0 < width <= LARGEST and 0 < height <= LARGEST):
-        raise InputError(f"size is {told(size)}; expected sides of 1 to {LARGEST} pixels")
+        raise InputError(f"size is {describe(size)}; expected sides of 1 to {LARGEST} pixels")
     turn, tilt = (np.radians(finite_array(*angle, ())) for angle in ((azimuth, "azimuth"), (elevation, "elevation")))
     return orbit(frame_bounds(splats), screen=(width, height), azimuth=float(turn), elevation=float(tilt))

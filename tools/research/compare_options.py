@@ -3,8 +3,8 @@
     python tools/research/compare_options.py RECORDING --preset tiny -o build/options
     python tools/research/compare_options.py RECORDING --leave 01_06 --leave 01_12 --leave 02_06 -o build/options_left
 
-The second form leaves training clips out and judges by them, so that the held-out clips need not choose what they are
-to measure. Each option changes the default in one place. The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus
+The second form leaves training clips out and measures errors on them, so that options are not chosen by the held-out
+clips. Each option changes the default in one place. The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus
 appearance, in units of each attribute's spread) over all recorded frames; the shares are of the unseen frames' variance
 about the training mean that the student explains. All options share the bases, which are not timed. Rows that
 OUTPUT/options.csv holds are kept, so that a comparison can be cut short and extended. Writes options.csv and
@@ -30,11 +30,11 @@ from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
 from mua.files import replacing
 from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints, run_key
-from mua.student.descend import set_means
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
 from mua.student.model import Bands, Student
 from mua.student.optimise import Progress
+from mua.student.paper_recipe import set_means
 from mua.student.settings import Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BRANCHES, Samples, train
@@ -67,7 +67,7 @@ def main(
     recording: Annotated[Path, typer.Argument(help="Recording with held-out clips.")],
     preset_name: Annotated[str, typer.Option("--preset", help="Of the student.")] = "tiny",
     only: Annotated[list[str], typer.Option(help="Option to measure, may be repeated; all if left out.")] = [],  # noqa: B006
-    leave: Annotated[list[str], typer.Option(help="Training clip to judge by instead, may be repeated.")] = [],  # noqa: B006
+    leave: Annotated[list[str], typer.Option(help="Training clip to measure errors on instead; may be repeated.")] = [],  # noqa: B006
     output: Annotated[Path, typer.Option("--output", "-o", help="Directory of the tables.")] = Path("build/options"),
 ) -> None:
     """Measure what helps on motion that was not trained on."""
@@ -99,7 +99,7 @@ def vary(settings: Settings, change: dict[str, float]) -> Settings:
         finetune=replace(
             fine,
             steps=int(longer * fine.steps),
-            passes=longer * fine.passes,
+            epochs=longer * fine.epochs,
             rate=change.get("rate", fine.rate),
         ),
     )
@@ -121,7 +121,7 @@ def loss_weights(recording: Recording, settings: Settings) -> Tensor:
 def measure(
     recording: Recording, settings: Settings, weights: Tensor, *, leave: list[str], bases: Checkpoints
 ) -> list[float]:
-    """Train and judge one option: the figures of a row, without its name."""
+    """Train one option and score it: the figures of a row, without its name."""
     student, samples = prepare(recording, settings)
     samples, unseen = part(recording, student, samples, leave=leave)
     with tempfile.TemporaryDirectory() as directory:
@@ -132,11 +132,11 @@ def measure(
         started = time.perf_counter()
         train(student, samples, settings=settings, checkpoints=checkpoints, device=CPU, report=_silent)
         seconds = time.perf_counter() - started
-    return [*judge(student, samples, unseen, weights), seconds]
+    return [*score(student, samples, unseen, weights), seconds]
 
 
 def part(recording: Recording, student: Student, samples: Samples, *, leave: list[str]) -> tuple[Samples, Samples]:
-    """The frames to train on and those to judge by: the clips that are left out, or else those held out."""
+    """The frames to train on and those to score it on: the clips that are left out, or else those held out."""
     if not leave:
         descriptors = torch.from_numpy(describe_frames(recording, student.encoding, held_out=True)).float()
         held = replace(
@@ -163,7 +163,7 @@ def lend_bases(owner: Checkpoints, borrower: Checkpoints) -> None:
 
 
 @torch.no_grad()
-def judge(student: Student, samples: Samples, unseen: Samples, weights: Tensor) -> list[float]:
+def score(student: Student, samples: Samples, unseen: Samples, weights: Tensor) -> list[float]:
     """Losses over all training and unseen frames; explained shares of the latter by attribute, then of the mesh."""
     scale = weights[:, None, None]
     mean = [torch.cat([branch.ll_mean for branch in student.branches])]

@@ -29,11 +29,11 @@ from mua.channels import APPEARANCE, GEOMETRY
 from mua.files import replacing
 from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints
-from mua.student.descend import descend_branch, set_means
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
 from mua.student.model import Bands, Branch
 from mua.student.optimise import Progress, Run
+from mua.student.paper_recipe import fit_branch_from_noise, set_means
 from mua.student.settings import RECIPES, Settings, preset, with_recipe
 from mua.student.source import Source, hold
 from mua.student.targets import channel_weights
@@ -149,7 +149,7 @@ def follow(task: Task, recording: Recording, settings: Settings, add: Callable[[
 
     with tempfile.TemporaryDirectory() as directory:
         run = Run(torch.Generator().manual_seed(settings.seed), Checkpoints(Path(directory), "compare"), report, CPU)
-        fit: Callable[..., None] = descend_branch if descends else partial(fit_branch, parts=samples.parts)
+        fit: Callable[..., None] = fit_branch_from_noise if descends else partial(fit_branch, parts=samples.parts)
         frames = task.kinds["training"]
         own = run.alone(task.name)  # as train() has it
         fit(branch, frames.inputs, frames.source, channels=task.channels, settings=settings, name=task.name, run=own)

@@ -1,4 +1,4 @@
-"""Training clips that a measurement leaves out to judge by, so that the held-out clips stay unseen."""
+"""Training clips that a measurement leaves out to measure errors on, so that the held-out clips stay unseen."""
 
 from dataclasses import replace
 

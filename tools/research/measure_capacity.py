@@ -23,9 +23,9 @@ import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.levels import COARSE_TEXELS, STATIC_LEVELS
 from mua.recording import Recording
-from mua.student.descend import set_means
 from mua.student.factorize import Factors, separable_blendshapes
 from mua.student.model import Bands, Branch, lowpass_texels
+from mua.student.paper_recipe import set_means
 from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BestCoefficients, factorize_channel

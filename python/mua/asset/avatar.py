@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from mua.arguments import finite_array, float_type, told, unit_quaternions, whole_number
+from mua.arguments import describe, finite_array, float_type, unit_quaternions, whole_number
 from mua.decode import Splats, decode, decode_clip_frame
 from mua.errors import InputError
 from mua.model import Model
@@ -71,7 +71,7 @@ class Avatar(Model):
             if clip.name == name:
                 return clip
         held = ", ".join(repr(clip.name) for clip in self.clips) or "no clips"
-        raise InputError(f"clip is {told(name)}; the avatar holds {held}")
+        raise InputError(f"clip is {describe(name)}; the avatar holds {held}")
 
     def __repr__(self) -> str:
         texels, joints = self.rig.texels, len(self.rig.skeleton.names)
@@ -94,7 +94,7 @@ class Avatar(Model):
     def _window(self, poses: Sequence[Pose]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Rotations [k, J, 4] and translations [k, J, 3]."""
         if not isinstance(poses, Sequence) or not all(isinstance(pose, Pose) for pose in poses):
-            raise InputError(f"clip is {told(poses)}; expected a clip's name, a Clip or poses, newest first")
+            raise InputError(f"clip is {describe(poses)}; expected a clip's name, a Clip or poses, newest first")
         if len(poses) != self.encoding.window:
             raise InputError(f"the window has {len(poses)} poses; expected {self.encoding.window}, newest first")
         joints = len(self.rig.skeleton.names)

@@ -6,7 +6,7 @@ from typing import get_args
 
 import numpy as np
 
-from mua.arguments import PathLike, as_path, one_of, told
+from mua.arguments import PathLike, as_path, describe, one_of
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import VERSION, Tree, build, parse
@@ -38,7 +38,7 @@ def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
     """
     path = as_path(path, "path")
     if not isinstance(avatar, Avatar):
-        raise InputError(f"avatar is {told(avatar)}; expected a mua.Avatar")
+        raise InputError(f"avatar is {describe(avatar)}; expected a mua.Avatar")
     one_of(storage, "storage", get_args(Storage))
     try:
         content = encode(avatar, storage=storage)

@@ -11,7 +11,7 @@ from mua.asset.avatar import Avatar
 from mua.baking.playback import typical_frame
 from mua.baking.portrait import portrait
 from mua.decode import decode_clip_frame
-from mua.likeness.background import background_for, over
+from mua.fidelity.background import background_for, over
 from mua.pose.clip import Clip
 from mua.pose.encoding import PoseEncoding
 from mua.rendering import render_premultiplied, to_bytes

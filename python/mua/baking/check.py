@@ -12,10 +12,10 @@ from mua.baking.listener import Listener
 from mua.baking.order import Order
 from mua.baking.sources import RATE, ordered_character
 from mua.errors import InputError
+from mua.fidelity import report
+from mua.fidelity.compare import Fidelity, compare
+from mua.fidelity.sheet import fidelity_sheet
 from mua.files import replacing, require_writable, write_bytes
-from mua.likeness import told
-from mua.likeness.compare import Likeness, compare
-from mua.likeness.sheet import likeness_sheet
 from mua.motion.load import LoadedMotion, counted, load_motions
 from mua.motion.mapping import write_mapping
 from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs, unmatched_target
@@ -31,7 +31,7 @@ WITHOUT_FILE = "the procedural character has no file, so there is nothing to com
 class Check:
     """What was found."""
 
-    likeness: Likeness | None  # None where there is nothing to compare or to draw with
+    fidelity: Fidelity | None  # None where there is nothing to compare or to draw with
     motions: tuple[MotionQuality, ...]
     matched: tuple[JointPair, ...]
     unmatched: tuple[str, ...]  # joints with skin that no motion moves
@@ -41,7 +41,7 @@ class Check:
 
 
 def check(order: Order, listener: Listener) -> Check:
-    """Measure likeness and motion, and leave a picture and a mapping file to start from beside the output.
+    """Measure fidelity and motion, and leave a picture and a mapping file to start from beside the output.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
     """
@@ -51,19 +51,19 @@ def check(order: Order, listener: Listener) -> Check:
     listener.stage("motion")
     loaded = _loaded(order, character)
     qualities = tuple(_quality(order, character, motion) for motion in loaded)
-    listener.stage("likeness")
+    listener.stage("comparison with source")
     clips = [m.clip for m in loaded]
-    likeness, warnings = likeness_of(character, clips, texels=order.settings.texels)
+    fidelity, warnings = fidelity_of(character, clips, texels=order.settings.texels)
     pairs, unmatched = _matched(character, loaded) if order.motions else ((), ())
     written = []
-    if likeness is not None:
+    if fidelity is not None:
         written.append(order.beside("_check.png"))
-        write_sheet(written[0], likeness)
+        write_sheet(written[0], fidelity)
     if pairs or unmatched:
         written.append(order.beside("_mapping.json"))
         write_mapping(written[-1], pairs, unmatched)
     return Check(
-        likeness=likeness,
+        fidelity=fidelity,
         motions=qualities,
         matched=pairs,
         unmatched=unmatched,
@@ -77,21 +77,21 @@ def check(order: Order, listener: Listener) -> Check:
     )
 
 
-def likeness_of(character: Character, clips: Sequence[Clip], *, texels: int) -> tuple[Likeness | None, tuple[str, ...]]:
+def fidelity_of(character: Character, clips: Sequence[Clip], *, texels: int) -> tuple[Fidelity | None, tuple[str, ...]]:
     """How much the splats look like the character, and a sentence for what is poor; None where it cannot be said."""
     if character.source is None:
         return None, (WITHOUT_FILE,)
     try:
-        likeness = compare(character, clips, texels=texels, source=character.source)
+        fidelity = compare(character, clips, texels=texels, source=character.source)
     except InputError as error:
         return None, (f"The splats were not compared with the source: {error}.",)
-    return likeness, told.sentences(likeness)
+    return fidelity, report.sentences(fidelity)
 
 
-def write_sheet(path: Path, likeness: Likeness) -> None:
+def write_sheet(path: Path, fidelity: Fidelity) -> None:
     """Write the picture of source beside splats."""
     with replacing(path) as temporary:
-        likeness_sheet(likeness).save(temporary)
+        fidelity_sheet(fidelity).save(temporary)
 
 
 def as_json(order: Order, found: Check) -> str:
@@ -99,7 +99,7 @@ def as_json(order: Order, found: Check) -> str:
     content: dict[str, Any] = {
         "character": None if order.character is None else str(order.character),
         "texels": order.settings.texels,
-        "likeness": None if found.likeness is None else told.as_dict(found.likeness),
+        "fidelity": None if found.fidelity is None else report.as_dict(found.fidelity),
         "motion": [_without_flaws(quality) for quality in found.motions],
         "matched": [asdict(pair) for pair in found.matched],
         "unmatched": found.unmatched,

@@ -9,9 +9,9 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.baking.portrait import portrait
 from mua.decode import decode_clip_frame, pose_splats
-from mua.likeness.background import background_for, over
-from mua.likeness.compare import Likeness
-from mua.likeness.sheet import worst_strips
+from mua.fidelity.background import background_for, over
+from mua.fidelity.compare import Fidelity
+from mua.fidelity.sheet import worst_strips
 from mua.recording import WholeFrame
 from mua.rendering import render_premultiplied, to_bytes
 
@@ -22,9 +22,9 @@ COLUMNS = 2  # frames beside each other
 TITLES = ("teacher", "student", f"difference x{GAIN}")
 
 
-def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, likeness: Likeness | None = None) -> Image.Image:
+def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, fidelity: Fidelity | None = None) -> Image.Image:
     """One picture with three cells for each frame, below those of the source beside the splats where there are any."""
-    strips = [] if likeness is None else worst_strips(likeness, CELL)
+    strips = [] if fidelity is None else worst_strips(fidelity, CELL)
     strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
     strips += [_strip(avatar, frame) for frame in frames]
     blank = np.full_like(strips[0], 255)

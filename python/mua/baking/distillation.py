@@ -20,9 +20,9 @@ from mua.baking.evaluate import Errors, evaluate
 from mua.baking.listener import Listener
 from mua.baking.order import ALL, DeviceName
 from mua.errors import InputError
+from mua.fidelity.compare import Fidelity
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
-from mua.likeness.compare import Likeness
-from mua.memory import give_back
+from mua.memory import release_memory
 from mua.pose.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -46,7 +46,7 @@ class Distillation:
     clips: tuple[Clip, ...] | None = None  # of the character, whole; None: those of the recording, their ends joined
     playback: tuple[str, ...] = (ALL,)  # which of them the file holds, as `choose` reads it
     storage: Storage = "f16"
-    likeness: Likeness | None = None  # of the character, for the contact sheet
+    fidelity: Fidelity | None = None  # of the character, for the contact sheet
     processes: Processes = ALONE  # that train together; the first of them writes
 
     @property
@@ -116,7 +116,7 @@ def teach_stage(order: Distillation, stage: StageName, recording: Recording, lis
 
 def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
     """Write the avatar, read it back, measure it and picture it."""
-    give_back()
+    release_memory()
     listener.stage("avatar")
     clips = playback.whole_clips(recording.clips) if order.clips is None else order.clips
     starts = playback.held_out(recording.clips)
@@ -140,7 +140,7 @@ def finish(order: Distillation, student: Student, recording: Recording, listener
         return Baked({}, order.output, stored, order.teacher)
     errors = evaluate(recording, student, avatar=avatar, progress=listener.step)
     sheet, figures = order.beside("_contact_sheet.png"), order.beside("_errors.md")
-    _picture(sheet, avatar, recording, order.likeness)
+    _picture(sheet, avatar, recording, order.fidelity)
     write_bytes(figures, report.markdown(errors, teacher=order.teacher).encode())
     told = report.as_json(errors, teacher=order.teacher, held_out=starts)
     write_bytes(order.beside("_errors.json"), told.encode())
@@ -164,11 +164,11 @@ def _within_memory(order: Distillation) -> Iterator[None]:
         ) from error
 
 
-def _picture(path: Path, avatar: Avatar, recording: Recording, likeness: Likeness | None) -> None:
+def _picture(path: Path, avatar: Avatar, recording: Recording, fidelity: Fidelity | None) -> None:
     """Write the contact sheet, of held-out frames where there are any."""
     unseen = sum(1 for _ in recording.whole_frames(held_out=True))
     step = max((unseen or recording.whole_count) // SHEET_FRAMES, 1)
     frames = recording.whole_frames(held_out=unseen > 0)  # one at a time: hundreds would not fit into memory
     chosen = itertools.islice(frames, step // 2, step // 2 + step * SHEET_FRAMES, step)
     with replacing(path) as temporary:
-        contact_sheet(avatar, chosen, likeness=likeness).save(temporary)
+        contact_sheet(avatar, chosen, fidelity=fidelity).save(temporary)

@@ -101,15 +101,15 @@ def evaluate(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, Errors]:
     """Errors by group: all training frames together, then each held-out clip by its name."""
-    judge = _Judge(recording, student, avatar)
+    comparer = _Comparer(recording, student, avatar)
     groups: dict[str, Errors] = {}
     frames = recording.whole_frames()
     batches = iter(lambda: list(itertools.islice(frames, BATCH)), [])
     threads = min(torch.get_num_threads(), THREADS)
     done = 0
     with thread_share(threads):
-        for batch, judged in in_order(lambda batch: (batch, judge.errors(batch)), batches, threads=threads):
-            for frame, own in zip(batch, judged, strict=True):
+        for batch, errors_of_batch in in_order(lambda batch: (batch, comparer.errors(batch)), batches, threads=threads):
+            for frame, own in zip(batch, errors_of_batch, strict=True):
                 group = frame.clip.name if frame.clip.held_out else TRAINING
                 groups[group] = groups.get(group, Errors()) + own
                 done += 1
@@ -123,7 +123,7 @@ def held_out_errors(groups: Mapping[str, Errors]) -> Errors | None:
     return sum(held[1:], start=held[0]) if held else None
 
 
-class _Judge:
+class _Comparer:
     """Holds what every frame is compared with."""
 
     def __init__(self, recording: Recording, student: Student, avatar: Avatar) -> None:

@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw, ImageFont
 from mua.arrays import Array
 from mua.baking.portrait import portrait
 from mua.decode import pose_splats
-from mua.likeness.background import background_for, over
+from mua.fidelity.background import background_for, over
 from mua.recording import WholeFrame
 from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.rig import Rig

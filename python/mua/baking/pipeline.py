@@ -8,7 +8,7 @@ import torch
 
 from mua import __version__
 from mua.atlas.texel_density import describe_texels
-from mua.baking.check import likeness_of
+from mua.baking.check import fidelity_of
 from mua.baking.distillation import Baked, Distillation, choose_device, finish, teach
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
@@ -17,11 +17,11 @@ from mua.baking.plan import plan, split
 from mua.baking.playback import choose
 from mua.baking.report import STAND_IN
 from mua.baking.sources import RATE, load_clips, ordered_character
+from mua.fidelity import report
+from mua.fidelity.compare import Fidelity
 from mua.files import require_writable
-from mua.likeness import told
-from mua.likeness.compare import Likeness
 from mua.locks import DirectoryLock
-from mua.memory import give_back
+from mua.memory import release_memory
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
@@ -54,11 +54,11 @@ def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
     choose(clips, order.clips)  # before hours of work
 
     require_writable(order.output)
-    likeness = _likeness(character, clips, order.settings.texels, listener)
+    fidelity = _fidelity(character, clips, order.settings.texels, listener)
     character = replace(character, source=None)  # its textures may be large
-    give_back()
+    release_memory()
     recording = _record(order, character, planned, listener)
-    give_back()
+    release_memory()
     distillation = Distillation(
         output=order.output,
         work=order.work,
@@ -69,21 +69,21 @@ def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
         clips=tuple(clips),
         playback=order.clips,
         storage=order.storage,
-        likeness=likeness,
+        fidelity=fidelity,
     )
     student = teach(distillation, recording, listener)
     return finish(distillation, student, recording, listener)
 
 
-def _likeness(character: Character, clips: list[Clip], texels: int, listener: Listener) -> Likeness | None:
-    """The source beside the splats, told in a sentence; None where there is no source or nothing to draw with."""
+def _fidelity(character: Character, clips: list[Clip], texels: int, listener: Listener) -> Fidelity | None:
+    """Compare splats and source and note the result; None if there is no source or no OpenGL."""
     if character.source is None:
         return None
-    listener.stage("likeness")
-    likeness, warnings = likeness_of(character, clips, texels=texels)
-    for sentence in (*([] if likeness is None else [told.summary(likeness)]), *warnings):
+    listener.stage("comparison with source")
+    fidelity, warnings = fidelity_of(character, clips, texels=texels)
+    for sentence in (*([] if fidelity is None else [report.summary(fidelity)]), *warnings):
         listener.note(sentence)
-    return likeness
+    return fidelity
 
 
 def _record(order: Order, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:

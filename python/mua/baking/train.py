@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
-from mua.arguments import PathLike, as_path, one_of, told
+from mua.arguments import PathLike, as_path, describe, one_of
 from mua.asset.tensors import Storage
 from mua.baking.listener import Listener, Log, Nobody
 from mua.baking.options import check_settings, clip_names, work_directory
@@ -96,7 +96,7 @@ def _distil(recording: "Path | Recording", order: _Order, listener: Listener) ->
     with joined() as processes:
         opened = Recording(recording) if isinstance(recording, Path) else recording
         if not isinstance(opened, Recording):
-            raise InputError(f"recording is {told(recording)}; expected a directory or a mua.Recording")
+            raise InputError(f"recording is {describe(recording)}; expected a directory or a mua.Recording")
         choose(whole_clips(opened.clips), order.clips)  # before hours of work
         distillation = Distillation(
             output=order.output,

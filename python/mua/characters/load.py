@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import get_args
 
-from mua.arguments import PathLike, as_path, told, whole_number
+from mua.arguments import PathLike, as_path, describe, whole_number
 from mua.atlas.uv import UvMode
 from mua.characters.figure_size import LEAST, MOST, FigureSize
 from mua.characters.read import read_character
@@ -46,9 +46,9 @@ def load_rig(
     if wanted is not None and wanted < 3:
         raise InputError(f"vertices is {wanted}, expected at least 3")
     if uv not in get_args(UvMode):
-        raise InputError(f"uv is {told(uv)}; expected {', '.join(get_args(UvMode))}")
+        raise InputError(f"uv is {describe(uv)}; expected {', '.join(get_args(UvMode))}")
     if height is not None and not LEAST <= height <= MOST:
-        raise InputError(f"height is {told(height)}; expected {LEAST:g} to {MOST:g} metres")
+        raise InputError(f"height is {describe(height)}; expected {LEAST:g} to {MOST:g} metres")
     figure = FigureSize(height=height)
     with naming_extras("mua.load_rig"):
         read = read_character(path, uv=uv, atlas_size=PICTURE, size=figure, leave_out=leave_out)

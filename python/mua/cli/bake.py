@@ -9,9 +9,9 @@ from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode
 from mua.baking.options import read_order
 from mua.baking.order import DeviceName
+from mua.cli.choice import choice
 from mua.cli.console import printer
-from mua.cli.failure import refusing
-from mua.cli.offered import offered
+from mua.cli.failure import run_command
 from mua.errors import InputError
 from mua.motion.planted_feet import Feet
 from mua.student.settings import PRESETS, RECIPES
@@ -33,7 +33,7 @@ def main(
     ] = [],  # noqa: B006 typer copies it
     output: Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")] = Path("avatar.muaavatar"),
     preset_name: Annotated[
-        str, offered(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
+        str, choice(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
     ] = "preview",
     frames: Annotated[
         int | None,
@@ -90,7 +90,7 @@ def main(
     height: Annotated[float | None, typer.Option(help="Height to scale the character to, in metres.")] = None,
     recipe: Annotated[
         str,
-        offered(
+        choice(
             RECIPES,
             "--recipe",
             help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
@@ -158,4 +158,4 @@ def main(
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(main)
+    run_command(main)

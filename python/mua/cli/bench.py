@@ -15,10 +15,10 @@ from mua import files
 from mua.asset.write import write
 from mua.bench.work import Work
 from mua.camera import EYE_DISTANCE
+from mua.cli.choice import choice
 from mua.cli.choices import parse_screen
 from mua.cli.console import printer
-from mua.cli.failure import refusing
-from mua.cli.offered import offered
+from mua.cli.failure import run_command
 from mua.errors import InputError
 from mua.inputs import require_file
 from mua.student.settings import PRESETS, preset
@@ -33,7 +33,7 @@ def bench(
     file: Annotated[Path | None, typer.Argument(help="Avatar file (.muaavatar).")] = None,
     preset_name: Annotated[
         str | None,
-        offered(tuple(PRESETS), "--preset", help="Measure an avatar of random numbers with this preset's sizes."),
+        choice(tuple(PRESETS), "--preset", help="Measure an avatar of random numbers with this preset's sizes."),
     ] = None,
     device: Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")] = None,
     frames: Annotated[int, typer.Option(min=1, help="Number of frames to measure.")] = 20,
@@ -69,7 +69,7 @@ def bench(
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(bench)
+    run_command(bench)
 
 
 def _table(measured: "Measured") -> Table:

@@ -9,8 +9,8 @@ from mua.baking.check import Check, check, write_json
 from mua.baking.order import Order
 from mua.cli.console import printer
 from mua.cli.display import Display
+from mua.fidelity.compare import Fidelity
 from mua.files import require_writable
-from mua.likeness.compare import Likeness
 from mua.motion.quality import MotionQuality
 
 
@@ -30,8 +30,8 @@ def check_and_show(order: Order, json: Path | None) -> None:
 
 def show(console: Console, found: Check) -> None:
     """Print the tables, then notes and warnings, then the files written."""
-    if found.likeness is not None:
-        console.print(_likeness_table(found.likeness))
+    if found.fidelity is not None:
+        console.print(_fidelity_table(found.fidelity))
     if any(motion.limbs for motion in found.motions):
         console.print(_motion_table(found.motions))
     elif found.motions:
@@ -56,9 +56,9 @@ def show(console: Console, found: Check) -> None:
         _say(console, str(path))
 
 
-def _likeness_table(likeness: Likeness) -> Table:
+def _fidelity_table(fidelity: Fidelity) -> Table:
     table = Table("pose", "overlap", "inside", "worst at", "seen from", title="Splats compared with the source, unlit")
-    for pose in likeness.poses:
+    for pose in fidelity.poses:
         seen, worst = pose.agreement, pose.worst
         table.add_row(pose.pose, f"{100 * seen.iou:.1f} %", f"{seen.psnr:.1f} dB", worst.joint, worst.view)
     return table

@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mua.baking.frames_picture import frames_picture
-from mua.baking.understood import Understood, understand
+from mua.baking.recording_check import RecordingCheck, check
 from mua.cli.console import printer
 from mua.errors import InputError
 from mua.files import replacing, require_writable
@@ -20,7 +20,7 @@ def check_recording(recording: Recording, picture: Path) -> None:
     """
     require_writable(picture)
     console = printer()
-    found = understand(recording)
+    found = check(recording)
     console.print(_clips(recording.clips))
     _print(console, found)
     if found.pictured:
@@ -41,7 +41,7 @@ def _clips(clips: tuple[RecordedClip, ...]) -> Table:
     return table
 
 
-def _print(console: Console, found: Understood) -> None:
+def _print(console: Console, found: RecordingCheck) -> None:
     for name, told in found.figures.items():
         _say(console, f"{name:<8} {told}")
     for finding in found.findings:

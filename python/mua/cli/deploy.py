@@ -11,7 +11,7 @@ from rich.table import Table
 
 from mua import files
 from mua.cli.console import printer
-from mua.cli.failure import refusing
+from mua.cli.failure import run_command
 from mua.deploy.steady import RATES
 from mua.deploy.unity import find, project_version
 from mua.errors import InputError
@@ -84,7 +84,7 @@ def deploy(
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(deploy)
+    run_command(deploy)
 
 
 def _require_sense(

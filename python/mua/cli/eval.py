@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from mua.cli.failure import refusing
-from mua.cli.offered import offered
+from mua.cli.choice import choice
+from mua.cli.failure import run_command
 from mua.compare.names import ALL, SYSTEM_NAMES
 from mua.inputs import require_file, require_recording
 from mua.student.settings import PRESETS, preset
@@ -17,7 +17,7 @@ def evaluate(
     avatars: Annotated[list[Path] | None, typer.Argument(help="Avatar files trained on it.")] = None,
     system: Annotated[
         list[str] | None,
-        offered((ALL, *SYSTEM_NAMES), "--system", help="System to train and compare; may be repeated", several=True),
+        choice((ALL, *SYSTEM_NAMES), "--system", help="System to train and compare; may be repeated", several=True),
     ] = None,
     seconds: Annotated[float, typer.Option(min=0.0, help="Training time of each system, in seconds.")] = 60.0,
     steps: Annotated[
@@ -25,7 +25,7 @@ def evaluate(
         typer.Option(min=1, help="Training steps of each system, instead of --seconds; makes the result reproducible."),
     ] = None,
     preset_name: Annotated[
-        str, offered(tuple(PRESETS), "--preset", help="Preset that sets the sizes of the systems.")
+        str, choice(tuple(PRESETS), "--preset", help="Preset that sets the sizes of the systems.")
     ] = "preview",
     frames: Annotated[
         int | None,
@@ -80,4 +80,4 @@ def evaluate(
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(evaluate)
+    run_command(evaluate)

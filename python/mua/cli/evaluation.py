@@ -8,7 +8,7 @@ import torch
 
 from mua.cli.console import printer
 from mua.cli.display import Display
-from mua.compare import entries, judge, plots, report
+from mua.compare import entries, plots, report, scores
 from mua.compare.images import Studio
 from mua.compare.metrics import Lpips
 from mua.compare.names import ALL
@@ -46,7 +46,7 @@ class EvaluationOrder:
 def compare(order: EvaluationOrder) -> None:
     """Carry out an order, and write and print what comes of it."""
     recording = Recording(order.recording)
-    chosen = judge.choose_frames(recording, order.frames)
+    chosen = scores.choose_frames(recording, order.frames)
     if not chosen:
         raise InputError(f"recording {order.recording}: no frame is kept whole, expected at least one to compare with")
     names = list(entries.SYSTEMS) if ALL in order.systems else list(dict.fromkeys(order.systems))
@@ -64,11 +64,11 @@ def compare(order: EvaluationOrder) -> None:
             with DirectoryLock(output / "work", name=f"-o {output}"):
                 rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
         display.stage("pictures")
-        results = judge.judge(studio, chosen, rows, lpips=lpips, progress=display.step)
+        results = scores.score(studio, chosen, rows, lpips=lpips, progress=display.step)
         setting = report.Setting(
             recording=order.recording.name,
             device=str(opened.adapter),
-            frames={kind: sum(f.clip.held_out == held for f in chosen) for kind, held in judge.KINDS.items()},
+            frames={kind: sum(f.clip.held_out == held for f in chosen) for kind, held in scores.KINDS.items()},
             views=order.views,
             size=size,
             seconds=budget.seconds,
@@ -79,7 +79,7 @@ def compare(order: EvaluationOrder) -> None:
         )
         written = _write(output, results, setting)
         display.stage("contact sheets")
-        for kind, held_out in judge.KINDS.items():
+        for kind, held_out in scores.KINDS.items():
             picked = plots.sheet_frames(chosen, results, held_out=held_out)
             if picked:
                 written.append(f"{kind.replace(' ', '_')}.png")
@@ -123,7 +123,7 @@ def _systems(
     return rows
 
 
-def _write(output: Path, results: list[judge.Result], setting: report.Setting) -> list[str]:
+def _write(output: Path, results: list[scores.Result], setting: report.Setting) -> list[str]:
     """All figures, each file whole or as it was; the names of the files."""
     contents = {
         "results.md": report.markdown(results, setting).encode(),

@@ -11,7 +11,7 @@ from mua.errors import InputError
 from mua.extras import missing_package
 
 
-def refusing(command: Callable[..., None]) -> None:
+def run_command(command: Callable[..., None]) -> None:
     """Run a command with the arguments of its command line.
 
     An InputError, or a package that is not installed, ends it with one sentence.

@@ -11,7 +11,7 @@ from rich.table import Table
 from mua.asset.read import decode_tree, load
 from mua.asset.summary import summary
 from mua.cli.console import printer
-from mua.cli.failure import refusing
+from mua.cli.failure import run_command
 from mua.errors import InputError
 from mua.inputs import require_file
 
@@ -42,7 +42,7 @@ def inspect(
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(inspect)
+    run_command(inspect)
 
 
 def _whole(held: dict[str, Any]) -> Table:

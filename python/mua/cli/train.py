@@ -9,10 +9,10 @@ import typer
 from mua.asset.tensors import Storage
 from mua.baking.order import DeviceName
 from mua.baking.train import train
+from mua.cli.choice import choice
 from mua.cli.console import printer
 from mua.cli.display import Display, show
-from mua.cli.failure import refusing
-from mua.cli.offered import offered
+from mua.cli.failure import run_command
 from mua.inputs import require_recording
 from mua.student.settings import PRESETS, RECIPES, StageName
 
@@ -21,11 +21,11 @@ def main(
     recording: Annotated[Path, typer.Argument(help="Directory of a recording, as a TeacherWriter writes it.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")] = Path("avatar.muaavatar"),
     preset_name: Annotated[
-        str, offered(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
+        str, choice(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
     ] = "preview",
     recipe: Annotated[
         str,
-        offered(
+        choice(
             RECIPES,
             "--recipe",
             help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
@@ -87,7 +87,7 @@ def _check(recording: Path, output: Path) -> None:
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(main)
+    run_command(main)
 
 
 if __name__ == "__main__":  # for torchrun -m

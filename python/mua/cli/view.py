@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from mua.camera import EYE_DISTANCE
-from mua.cli.failure import refusing
+from mua.cli.failure import run_command
 from mua.cli.view_options import CLOSE_UP, IN_FILES, IN_WINDOW, Asked, check_fitting, check_inputs, kind_of, look_of
 from mua.errors import InputError
 from mua.files import require_writable
@@ -145,4 +145,4 @@ def view(
 
 def run() -> None:
     """Entry point of the command."""
-    refusing(view)
+    run_command(view)

@@ -14,16 +14,16 @@ from torch import Tensor, nn
 
 from mua.asset.count import synthesis
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
-from mua.compare.descend import Groups
 from mua.compare.maps import CHANNELS as MAP_CHANNELS
 from mua.compare.maps import SurfaceMaps
 from mua.compare.network import Network, mlp_flops, parameter_groups
+from mua.compare.optimise import Groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
 from mua.levels import COARSE_TEXELS, DYNAMIC_LEVELS, LEVELS
-from mua.student.descend import start_from_noise
 from mua.student.finetune import subband_loss
 from mua.student.model import Bands, Branch, lowpass_texels
 from mua.student.optimise import Run
+from mua.student.paper_recipe import start_from_noise
 from mua.student.settings import Ranks
 from mua.student.train import start_branch
 from mua.wavelets import filters
@@ -166,7 +166,7 @@ class BandNetwork(Network):
         groups: Groups = [{"params": list(self.convolutions.parameters()), "lr": rate}]
         mlps, bases = [b.mlp for b in self.branches], [p for b in self.branches for p in bases_of(b)]
         if closed_form:
-            return groups + parameter_groups(mlps, bases, rate=frames.sizes.settings.finetune.rate)
+            return groups + parameter_groups(mlps, bases, rate=frames.sizes.settings.finetune.lr)
         return groups + parameter_groups(mlps, bases, rate=rate, basis_rate=1.0)
 
     def loss(self, frames: TrainingFrames, rows: Tensor) -> Tensor:

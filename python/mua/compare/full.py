@@ -7,16 +7,16 @@ import torch
 from torch import Tensor, nn
 
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
-from mua.compare.descend import Groups
 from mua.compare.network import Network, mlp_flops, parameter_groups
+from mua.compare.optimise import Groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
 from mua.levels import FINE_TEXELS, STATIC_LEVELS
 from mua.student.conditioned import Conditioned
-from mua.student.descend import BASIS_START, start_mlp
 from mua.student.factorize import separable_blendshapes
 from mua.student.local import Locality, sample_locality, texture_locality
 from mua.student.model import Branch, build_mlp
 from mua.student.optimise import Run
+from mua.student.paper_recipe import BASIS_START, start_mlp
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Ranks
 from mua.student.targets import joint_targets
@@ -72,7 +72,7 @@ class Blendshapes(FullNetwork):
                 basis.shapes.data.copy_(noise)
         mlps, shapes = [basis.mlp for basis in self.bases], [basis.shapes for basis in self.bases]
         if closed_form:
-            return parameter_groups(mlps, shapes, rate=frames.sizes.settings.finetune.rate)
+            return parameter_groups(mlps, shapes, rate=frames.sizes.settings.finetune.lr)
         return parameter_groups(mlps, shapes, rate=rate, basis_rate=1.0)
 
     def deviations(self, motion: Motion) -> Tensor:
@@ -148,7 +148,7 @@ class SingleLevel(FullNetwork):
                     factor.data.copy_(BASIS_START**0.5 * torch.randn(factor.shape, generator=run.generator))
         mlps, factors = [part.mlp for part in self.parts], [f for part in self.parts for f in (part.h, part.w)]
         if closed_form:
-            return parameter_groups(mlps, factors, rate=frames.sizes.settings.finetune.rate)
+            return parameter_groups(mlps, factors, rate=frames.sizes.settings.finetune.lr)
         return parameter_groups(mlps, factors, rate=rate, basis_rate=1.0)
 
     def deviations(self, motion: Motion) -> Tensor:
@@ -251,7 +251,7 @@ class LinearMap(FullNetwork):
     def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
         if closed_form:
             self._solve(frames, run)
-            rate = frames.sizes.settings.finetune.rate
+            rate = frames.sizes.settings.finetune.lr
         else:
             start_mlp(nn.Sequential(self.code), run.generator)
             noise = BASIS_START * torch.randn(self.grid.weight.shape, generator=run.generator)

@@ -14,7 +14,7 @@ import torch
 from torch import Tensor, nn
 
 from mua.channels import CHANNELS
-from mua.compare.descend import Groups, descend
+from mua.compare.optimise import Groups, optimise
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames, coarse_flops, coarse_parameters
 from mua.student.checkpoint import Checkpoints
 from mua.student.conditioned import fold
@@ -113,7 +113,7 @@ class NetworkSystem:
         size = figure_scale(frames.rig.mesh.vertices)
         run = Run(generator, Forgetful(Path(), ""), told, frames.device, size=size)
         groups = network.start(frames, closed_form=budget.closed_form, rate=budget.rate, run=run)
-        self.steps = descend(
+        self.steps = optimise(
             lambda rows: network.loss(frames, rows),
             groups,
             frames=len(frames),

@@ -14,8 +14,8 @@ from scipy.ndimage import uniform_filter
 
 from mua.arrays import Array
 from mua.compare.images import Studio
-from mua.compare.judge import KINDS, Result
 from mua.compare.metrics import compare
+from mua.compare.scores import KINDS, Result
 from mua.recording import WholeFrame
 from mua.rendering import to_bytes
 

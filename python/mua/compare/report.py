@@ -13,8 +13,8 @@ from rich.table import Table
 from rich.text import Text
 
 from mua.compare.entries import MEAN
-from mua.compare.judge import KINDS, Result
 from mua.compare.metrics import METRICS, Scores
+from mua.compare.scores import KINDS, Result
 
 HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "ms_ssim": "MS-SSIM", "flip": "FLIP", "lpips": "LPIPS"}
 DIGITS = {"psnr": 2, "ssim": 4, "ms_ssim": 4, "flip": 4, "lpips": 2}

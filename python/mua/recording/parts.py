@@ -92,7 +92,7 @@ def record_together(
     `TeacherWriter`, `record` and `join_parts` do.
     """
     directory = as_path(directory, "directory")
-    meet = processes.meeting()
+    meet = processes.barrier()
     record_share(teacher, plan, directory, rank=processes.rank, count=processes.count, rate=rate, progress=progress)
     meet()
     if processes.first:

@@ -8,7 +8,7 @@ from types import TracebackType
 
 import numpy as np
 
-from mua.arguments import PathLike, as_path, told, whole_number
+from mua.arguments import PathLike, as_path, describe, whole_number
 from mua.arrays import Array
 from mua.channels import CHANNELS
 from mua.errors import InputError
@@ -93,7 +93,7 @@ class TeacherWriter:
         """
         self.directory = directory = as_path(directory, "directory")
         if not isinstance(rig, Rig):
-            raise InputError(f"rig is {told(rig)}; expected a mua.rig.rig.Rig")
+            raise InputError(f"rig is {describe(rig)}; expected a mua.rig.rig.Rig")
         for name, count in (("whole_every", whole_every), ("shard_frames", shard_frames)):
             if whole_number(count, name) < 1:
                 raise InputError(f"recording {directory}: {name} is {count}, expected at least 1")
@@ -149,7 +149,7 @@ class TeacherWriter:
         evaluation and stay out of the mean. Raises InputError for a complete clip or another `held_out` than before.
         """
         if not isinstance(name, str) or not name:
-            raise InputError(f"recording {self.directory}: the clip's name is {told(name)}; expected a text")
+            raise InputError(f"recording {self.directory}: the clip's name is {describe(name)}; expected a text")
         if name == self._clip:
             return
         state = self._clips.get(name, _ClipState(held_out))
@@ -283,7 +283,7 @@ class TeacherWriter:
 
     def _check_pose(self, pose: Pose) -> tuple[Array, Array]:
         if not isinstance(pose, Pose):
-            raise InputError(f"pose is {told(pose)}; expected a mua.Pose")
+            raise InputError(f"pose is {describe(pose)}; expected a mua.Pose")
         rotations = _checked("pose rotations", pose.rotations, (self._header.joints, 4), np.float64)
         translations = _checked("pose translations", pose.translations, (self._header.joints, 3), np.float64)
         lengths = np.linalg.norm(rotations, axis=1)

@@ -39,7 +39,7 @@ class Checkpoints:
 
     def load(self, stage: str) -> dict[str, Any] | None:
         """What was kept of `stage`; None where there is nothing, or it is damaged or of another run."""
-        return self.processes.told(self._read(stage) if self.processes.first else None)
+        return self.processes.broadcast_object(self._read(stage) if self.processes.first else None)
 
     def _read(self, stage: str) -> dict[str, Any] | None:
         try:

@@ -1,4 +1,4 @@
-"""Local coefficients: what a body part shows follows the joints near it more than those far off (design, section 8.7).
+"""Local coefficients: what a body part shows follows the joints near it more than those far off.
 
 The parts are the joints that the descriptor encodes, each with the samples of subbands and mesh that hang on it most.
 For the samples of a part, the descriptor's entries count the less the more joints lie between. Only the function that

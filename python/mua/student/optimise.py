@@ -54,7 +54,7 @@ class Run:
         kept = self.checkpoints.load(stage)
         if kept is None:
             tensors = solve()
-            self.processes.agree(*tensors.values())
+            self.processes.broadcast(*tensors.values())
             self.checkpoints.save(stage, {"tensors": tensors, "generator": self.generator.get_state()})
             return tensors
         self.generator.set_state(kept["generator"])
@@ -75,13 +75,13 @@ def optimise(
     After a kill, a resumed run ends in the same bytes: model, optimiser and generator continue from the same state.
     """
     relative = [float(group.pop("lr", 1.0)) for group in parameters]  # type: ignore[arg-type]
-    optimizer = torch.optim.AdamW(parameters, lr=schedule.rate, fused=True)  # one pass over the weights
+    optimizer = torch.optim.AdamW(parameters, lr=schedule.lr, fused=True)  # one pass over the weights
     first = _restore(module, optimizer, stage=stage, run=run)
     model = run.processes.wrap(module)
     started = time.monotonic()
     for step in range(first, schedule.steps):
         for group, factor in zip(optimizer.param_groups, relative, strict=True):
-            group["lr"] = schedule.rate_at(step) * factor
+            group["lr"] = schedule.lr_at(step) * factor
         optimizer.zero_grad()
         value = loss(model)
         value.backward()

@@ -1,4 +1,4 @@
-"""What a distillation may vary: three presets, each a point between minutes on a laptop and the paper's own setting."""
+"""The settings of a training, and three presets: from minutes on a laptop to the sizes of the paper."""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ STAGES: tuple[StageName, ...] = get_args(StageName)
 
 @dataclass(frozen=True)
 class Ranks:
-    """Blendshapes per channel of the three dynamic levels (paper, Methodology; design, section 3)."""
+    """Blendshapes per channel of the three dynamic levels (paper, Methodology)."""
 
     ll: int
     d3: int
@@ -29,32 +29,32 @@ class Schedule:
 
     steps: int
     batch: int  # frames per step
-    rate: float  # learning rate at its highest
-    falls: bool = True  # to zero along a cosine, or stays
-    rises: float = 0.0  # share of the steps in which the rate rises from zero: Adam's first steps are its boldest
-    passes: float = math.inf  # over all frames; fewer steps where these are fewer: a handful is soon learnt
+    lr: float  # learning rate at its highest
+    cosine: bool = True  # whether the learning rate decays to zero along a cosine; else it is constant
+    warm_up: float = 0.0  # share of the steps in which the learning rate rises from zero
+    epochs: float = math.inf  # at most; with few frames they end the training before `steps`
 
     def over(self, frames: int) -> "Schedule":
-        """The run that so many frames get."""
-        if math.isinf(self.passes):
+        """The schedule for a number of training frames."""
+        if math.isinf(self.epochs):
             return self
-        return replace(self, steps=min(self.steps, max(math.ceil(self.passes * frames / self.batch), 1)))
+        return replace(self, steps=min(self.steps, max(math.ceil(self.epochs * frames / self.batch), 1)))
 
-    def rate_at(self, step: int) -> float:
+    def lr_at(self, step: int) -> float:
         """The learning rate of a step, counted from 0."""
         done = step / self.steps
-        rise = min((done + 1 / self.steps) / self.rises, 1.0) if self.rises else 1.0
-        return self.rate * rise * (fall(done) if self.falls else 1.0)
+        warm_up = min((done + 1 / self.steps) / self.warm_up, 1.0) if self.warm_up else 1.0
+        return self.lr * warm_up * (cosine_decay(done) if self.cosine else 1.0)
 
 
-def fall(done: float) -> float:
-    """What a learning rate is multiplied by when a share of a run is done: from one to zero along a cosine."""
+def cosine_decay(done: float) -> float:
+    """The factor of the learning rate when a share of a run is done: from one to zero along a cosine."""
     return 0.5 * (1 + math.cos(math.pi * done))
 
 
 @dataclass(frozen=True)
 class Generalisation:
-    """What carries over to unseen motion, as docs/research/unseen_motion.md measures."""
+    """Options that improve unseen motion, measured in docs/research/unseen_motion.md."""
 
     fade: float = 0.6  # what a joint counts for in a body part's texels, for each joint that lies between; 1: all alike
     noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction
@@ -91,8 +91,8 @@ PRESETS = {
         components=24,
         hidden=128,
         sweeps=10,
-        regression=Schedule(steps=4000, batch=256, rate=3e-3, passes=2000),
-        finetune=Schedule(steps=2000, batch=16, rate=5e-4, rises=0.1, passes=20),
+        regression=Schedule(steps=4000, batch=256, lr=3e-3, epochs=2000),
+        finetune=Schedule(steps=2000, batch=16, lr=5e-4, warm_up=0.1, epochs=20),
     ),
     "preview": Settings(
         texels=384,
@@ -102,8 +102,8 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=15,
-        regression=Schedule(steps=4000, batch=512, rate=2e-3, passes=3000),
-        finetune=Schedule(steps=1000, batch=16, rate=5e-4, rises=0.1, passes=20),
+        regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
+        finetune=Schedule(steps=1000, batch=16, lr=5e-4, warm_up=0.1, epochs=20),
     ),
     "paper": Settings(
         texels=768,
@@ -113,8 +113,8 @@ PRESETS = {
         components=128,
         hidden=384,
         sweeps=20,
-        regression=Schedule(steps=20000, batch=512, rate=2e-3, passes=3000),
-        finetune=Schedule(steps=5000, batch=64, rate=5e-4, rises=0.1, passes=20),
+        regression=Schedule(steps=20000, batch=512, lr=2e-3, epochs=3000),
+        finetune=Schedule(steps=5000, batch=64, lr=5e-4, warm_up=0.1, epochs=20),
     ),
 }
 
@@ -141,6 +141,6 @@ def with_recipe(settings: Settings, name: str) -> Settings:
     return replace(
         settings,
         start="random",
-        regression=Schedule(steps=2_000_000, batch=8, rate=1e-4, falls=False),
-        finetune=Schedule(steps=1_000_000, batch=1, rate=1e-4, falls=False),
+        regression=Schedule(steps=2_000_000, batch=8, lr=1e-4, cosine=False),
+        finetune=Schedule(steps=1_000_000, batch=1, lr=1e-4, cosine=False),
     )

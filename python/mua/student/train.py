@@ -9,23 +9,23 @@ from torch import Tensor
 
 from mua.channels import APPEARANCE, GEOMETRY
 from mua.errors import InputError
-from mua.memory import give_back
+from mua.memory import release_memory
 from mua.processes import ALONE, Processes
 from mua.student.branches import each_branch, side_by_side
 from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
 from mua.student.conditioned import fold
-from mua.student.descend import descend_branch, descend_coarse
 from mua.student.factorize import blendshapes, separable_blendshapes
 from mua.student.finetune import finetune
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Bands, Branch, Student, outer_products
+from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
+from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
-from mua.student.unseen import hold_still, leave_unseen
 from mua.teachers.bones import figure_scale
 
 BRANCHES = ("geometry", "appearance")
@@ -72,11 +72,11 @@ def train(
     student.to(device)
     inputs = student.normalize(samples.descriptors.to(device))
     random = settings.start == "random"
-    start = descend_coarse if random else partial(fit_coarse, parts=samples.parts)
-    fit = descend_branch if random else partial(fit_branch, parts=samples.parts, until=only)
+    start = fit_coarse_from_noise if random else partial(fit_coarse, parts=samples.parts)
+    fit = fit_branch_from_noise if random else partial(fit_branch, parts=samples.parts, until=only)
     if only in (None, "coarse"):
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
-    give_back()
+    release_memory()
     if only == "coarse":
         return
 
@@ -154,7 +154,7 @@ def fit_branch(
     )
     if until in ("bases", "regression"):
         return
-    give_back()
+    release_memory()
     stage = f"{name} fine-tuning"
     finetune(
         branch,
@@ -189,12 +189,12 @@ def start_branch(
     flat, variance = factorize_branch(
         branch, source, frames=len(inputs), settings=settings, stage=stage, run=run.alone(stage)
     )
-    give_back()
+    release_memory()
     weights = channel_weights(variance, channels, size=run.size)
     if until == "bases":
         return weights
-    hold_still(branch, flat, still_channels(variance, channels, size=run.size))
-    leave_unseen(branch, flat, least_spread(channels, size=run.size).to(flat))
+    freeze_channels(branch, flat, still_channels(variance, channels, size=run.size))
+    drop_negligible(branch, flat, least_spread(channels, size=run.size).to(flat))
     rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
     stage = f"{name} coefficients"
     own = run.alone(stage)
@@ -249,7 +249,7 @@ def factorize_branch(
         run.report(Progress(stage, done, len(owned), None, done / (time.monotonic() - started)))
     for channel in range(branch.channels):
         found = (*branch.channel(channel), *(level[:, channel] for level in alphas), energy[channel])
-        run.processes.agree(*found, source=run.processes.owner(channel))
+        run.processes.broadcast(*found, source=run.processes.owner(channel))
     flat, spread = alphas.flat(), energy / (frames * settings.texels**2)
     run.checkpoints.save(stage, {"branch": branch.state_dict(), "flat": flat, "variance": spread})
     return flat, spread

@@ -1,4 +1,4 @@
-"""Two pictures of one pose: how far their silhouettes and colours agree, and where they agree least."""
+"""Compares two pictures of one pose: overlap of the silhouettes, PSNR of the colours, and the worst place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -8,9 +8,9 @@ import numpy as np
 from mua.arrays import Array
 from mua.camera import Camera
 from mua.decode import Splats
+from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.kernels.splat_draw import MOST_ALPHA
 from mua.kernels.splat_project import half_lengths
-from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.rendering import projected
 
 SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part

@@ -6,7 +6,7 @@ from typing import Any
 import typer
 
 
-def offered(names: Sequence[str], *flags: str, help: str, several: bool = False) -> Any:
+def choice(names: Sequence[str], *flags: str, help: str, several: bool = False) -> Any:
     """An option whose value is one of `names`; where it may come several times, its help lists them."""
     listing = f"{help}: {', '.join(names)}." if several else help
     metavar = "NAME" if several else f"<{'|'.join(names)}>"

@@ -11,7 +11,7 @@ from mua.arrays import Array
 from mua.atlas.filtering import bled
 from mua.atlas.opacity import EDGE, cut_out
 from mua.camera import Camera
-from mua.likeness.canvas import LAID_OVER, Canvas, draw, set_uniform
+from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.scene import Material, Part
 
 SAMPLES = 3  # along a side of a pixel; an odd number, so that no coverage is exactly one half

@@ -1,11 +1,11 @@
-"""The pictures of a likeness in one: source, splats and their difference side by side."""
+"""One picture of the comparison: source, splats and their difference side by side."""
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mua.arrays import Array
-from mua.likeness.background import background_for, over
-from mua.likeness.compare import SCREEN, Likeness, PoseLikeness, Shot
+from mua.fidelity.background import background_for, over
+from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot
 from mua.rendering import to_bytes
 
 GAIN = 4  # the difference is shown this many times as strong
@@ -14,28 +14,28 @@ COLUMNS = 2  # views beside each other
 MARK = 14  # pixels from the middle of the worst place to the frame around it
 
 
-def likeness_sheet(likeness: Likeness) -> Image.Image:
+def fidelity_sheet(fidelity: Fidelity) -> Image.Image:
     """Three cells for every view of every pose; a frame marks the worst place of each view."""
-    background = _background(likeness)
-    rows = [_strip(pose, shot, background=background) for pose in likeness.poses for shot in pose.shots]
+    background = _background(fidelity)
+    rows = [_strip(pose, shot, background=background) for pose in fidelity.poses for shot in pose.shots]
     rows += [np.full_like(rows[0], 255)] * (-len(rows) % COLUMNS)
     return Image.fromarray(np.vstack([np.hstack(rows[i : i + COLUMNS]) for i in range(0, len(rows), COLUMNS)]))
 
 
 def worst_strips(
-    likeness: Likeness,
+    fidelity: Fidelity,
     cell: tuple[int, int],  # width, height, pixels
 ) -> list[Array]:
     """For each pose its worst view: source, splats and difference [h, 3 w, 3] uint8 under a caption."""
-    background = _background(likeness)
-    return [_strip(pose, pose.worst, cell, background=background) for pose in likeness.poses]
+    background = _background(fidelity)
+    return [_strip(pose, pose.worst, cell, background=background) for pose in fidelity.poses]
 
 
-def _background(likeness: Likeness) -> float:
-    return background_for(shot.source for pose in likeness.poses for shot in pose.shots)
+def _background(fidelity: Fidelity) -> float:
+    return background_for(shot.source for pose in fidelity.poses for shot in pose.shots)
 
 
-def _strip(pose: PoseLikeness, shot: Shot, cell: tuple[int, int] = SCREEN, *, background: float) -> Array:
+def _strip(pose: PoseFidelity, shot: Shot, cell: tuple[int, int] = SCREEN, *, background: float) -> Array:
     scale = min(cell[0] / SCREEN[0], cell[1] / SCREEN[1])
     shown = [_fitted(image, cell, scale, background) for image in (shot.source, shot.splats)]
     difference = 1 - GAIN * np.abs(shown[0] - shown[1])

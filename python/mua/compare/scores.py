@@ -1,4 +1,4 @@
-"""The comparison itself: every entry drawn beside the teacher, frame by frame, and scored."""
+"""Draws every entry and the teacher, frame by frame, and scores the pictures."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -50,7 +50,7 @@ def choose_frames(recording: Recording, most: int | None) -> list[WholeFrame]:
     return chosen
 
 
-def judge(
+def score(
     studio: Studio,
     frames: Sequence[WholeFrame],
     entries: Sequence[Entry],

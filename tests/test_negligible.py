@@ -16,16 +16,16 @@ from mua.rig.build import build_rig
 from mua.student.distil import distil
 from mua.student.export import export_branches
 from mua.student.model import Student
+from mua.student.negligible import LEVEL_GAINS, drop_negligible
 from mua.student.settings import PRESETS, Schedule
-from mua.student.unseen import LEVEL_GAINS, leave_unseen
 
 TEXELS = 128
 QUICK = replace(
     PRESETS["tiny"],
     texels=TEXELS,
     sweeps=2,
-    regression=Schedule(steps=200, batch=64, rate=3e-3),
-    finetune=Schedule(steps=40, batch=16, rate=5e-4),
+    regression=Schedule(steps=200, batch=64, lr=3e-3),
+    finetune=Schedule(steps=40, batch=16, lr=5e-4),
 )
 COLOUR = slice(11, 14)  # the constant term of the spherical harmonics
 
@@ -97,7 +97,7 @@ def test_a_blendshape_is_kept_if_some_texel_of_some_frame_shows_it(level: int, f
             detail = (branch.d3, branch.d2)[level - 1]
             detail.h[:, 4, 2] = peak
             detail.w[:, 4, 2] = torch.nn.functional.one_hot(torch.tensor(1), detail.w.shape[-1]).float()
-    leave_unseen(branch, frames, least)
+    drop_negligible(branch, frames, least)
     shape = basis[4, 2] if level == 0 else basis[:, 4, 2]
     assert bool(shape.any()) == kept
     assert bool(branch.split(frames)[level][1, 4, 2] != 0) == kept

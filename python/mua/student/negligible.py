@@ -1,7 +1,7 @@
-"""What no one sees vary is taken from a branch: whole channels, and single blendshapes of the others.
+"""Removes from a branch what does not visibly vary: whole channels, and single blendshapes of the others.
 
-A blendshape below what is visible is rounding of the recording. Its coefficient would be taught like any other, with
-weights that grow without bound as its texels shrink.
+A blendshape below what is visible is rounding of the recording. Training its coefficient like any other would let the
+MLP's weights grow without bound as its texels shrink.
 """
 
 import torch
@@ -14,29 +14,29 @@ LEVEL_GAINS = (COARSE_TEXELS, COARSE_TEXELS, FINE_TEXELS)  # of LL, D3, D2 over 
 
 
 @torch.no_grad()
-def hold_still(
+def freeze_channels(
     branch: Branch,
     flat: Tensor,  # [F, M] coefficients, changed in place
     still: Tensor,  # [C] bool
 ) -> None:
-    """Take blendshapes and coefficients from channels; no gradient reaches either then, and they stay at their mean."""
+    """Set blendshapes and coefficients of channels to zero; they get no gradient then, and stay at their mean."""
     branch.silence(still)
     for level in branch.split(flat):
         level[:, still] = 0
 
 
 @torch.no_grad()
-def leave_unseen(
+def drop_negligible(
     branch: Branch,
     flat: Tensor,  # [F, M] coefficients, changed in place
     least: Tensor,  # [C] that a channel has to vary by to be seen
 ) -> None:
-    """Take the blendshapes that change no texel of any frame visibly, and their coefficients."""
+    """Set to zero the blendshapes that visibly change no texel of any frame, and their coefficients."""
     for level, peak, gain, basis in zip(branch.split(flat), _peaks(branch), LEVEL_GAINS, _bases(branch), strict=True):
-        unseen = level.abs().amax(0) * peak < gain * least[:, None]  # [C, R]
-        level[:, unseen] = 0
+        negligible = level.abs().amax(0) * peak < gain * least[:, None]  # [C, R]
+        level[:, negligible] = 0
         for own in basis:
-            own[unseen] = 0
+            own[negligible] = 0
 
 
 def _peaks(branch: Branch) -> tuple[Tensor, ...]:

@@ -18,8 +18,8 @@ CPU = torch.device("cpu")
 RANDOM = replace(
     SETTINGS,
     start="random",
-    regression=Schedule(steps=300, batch=8, rate=1e-3, falls=False),
-    finetune=Schedule(steps=1200, batch=1, rate=3e-3, falls=False),
+    regression=Schedule(steps=300, batch=8, lr=1e-3, cosine=False),
+    finetune=Schedule(steps=1200, batch=1, lr=3e-3, cosine=False),
 )
 
 
@@ -69,9 +69,9 @@ def test_a_killed_descent_ends_in_the_same_bytes(tmp_path: Path, stage: str, ste
 
 def test_the_paper_recipe_is_the_papers() -> None:
     settings = with_recipe(PRESETS["paper"], "paper")
-    assert (settings.finetune.steps, settings.finetune.batch, settings.finetune.rate) == (1_000_000, 1, 1e-4)
-    assert (settings.regression.steps, settings.regression.batch, settings.regression.rate) == (2_000_000, 8, 1e-4)
-    assert not settings.finetune.falls
+    assert (settings.finetune.steps, settings.finetune.batch, settings.finetune.lr) == (1_000_000, 1, 1e-4)
+    assert (settings.regression.steps, settings.regression.batch, settings.regression.lr) == (2_000_000, 8, 1e-4)
+    assert not settings.finetune.cosine
     assert with_recipe(PRESETS["tiny"], "closed-form") == PRESETS["tiny"]
     with pytest.raises(InputError, match="recipe: 'fast' is unknown"):
         with_recipe(PRESETS["tiny"], "fast")

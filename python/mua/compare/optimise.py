@@ -1,4 +1,4 @@
-"""Adam within a budget: the same loop, loss and fall of the learning rate for every compared system."""
+"""Adam within a budget: the same loop, loss and learning-rate schedule for every compared system."""
 
 import time
 from collections.abc import Callable
@@ -9,14 +9,14 @@ from torch import Tensor
 from mua.compare.system import Budget
 from mua.errors import InputError
 from mua.student.optimise import Progress, Report
-from mua.student.settings import fall
+from mua.student.settings import cosine_decay
 
-RISES = 0.1  # share of the steps in which the rates rise
+WARM_UP = 0.1  # share of the steps in which the learning rates rise
 
 Groups = list[dict[str, object]]  # of parameters, each with the learning rate `lr` that it starts from
 
 
-def descend(
+def optimise(
     loss: Callable[[Tensor], Tensor],  # of the rows of a batch
     groups: Groups,
     *,
@@ -29,7 +29,7 @@ def descend(
 ) -> int:
     """Run AdamW until the budget is spent; returns the steps taken.
 
-    The rates rise over the first tenth of what a closed-form start has left of it, and fall to zero along a cosine.
+    The learning rates warm up over the first tenth of the remaining budget and decay to zero along a cosine.
     Raises InputError for a budget without an end.
     """
     if budget.seconds is None and budget.steps is None:
@@ -40,7 +40,7 @@ def descend(
     before = _spent(budget, step, started)
     while (spent := _spent(budget, step, started)) < 1:
         done = (spent - before) / (1 - before)
-        course = min(done / RISES, 1.0) * fall(done)
+        course = min(done / WARM_UP, 1.0) * cosine_decay(done)
         for group, rate in zip(optimizer.param_groups, rates, strict=True):
             group["lr"] = rate * course
         optimizer.zero_grad()

@@ -1,4 +1,4 @@
-"""What a recording holds, before anything is trained: figures in words, likely mistakes, and three of its frames."""
+"""Checks a recording before training: its figures as sentences, likely mistakes, and three of its frames."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,24 +15,24 @@ from mua.recording.plausible import Finding, Plausible, rig_findings
 
 PICTURED = 3  # frames
 MESHES = 64  # that are looked at, beside those of whole frames
-SHORTEST = 12  # frames of a clip whose order can be judged
+SHORTEST = 12  # frames of a clip whose order can be checked
 MOVES = np.radians(3)  # the mean turn of joints between any two frames of a clip that moves
 IN_ORDER = 0.6  # of that: the most that neighbouring frames differ by
 UPRIGHT, MOSTLY = 0.5, 0.9  # cosine of the lean, and the share of frames that lean further, of a figure that lies
-STILL = 1e-4  # standard deviation of a channel's samples that no one sees
+STILL = 1e-4  # standard deviation of a channel's samples that is invisible
 
 
 @dataclass(frozen=True)
-class Understood:
-    """What a person is told of a recording."""
+class RecordingCheck:
+    """The result of checking a recording."""
 
     figures: dict[str, str]
     findings: tuple[Finding, ...]  # one for each cause
     pictured: tuple[WholeFrame, ...]  # the first, one in the middle and the last of those kept whole
 
 
-def understand(recording: Recording) -> Understood:
-    """Look at the rig, every pose, and as many meshes and textures as seconds allow."""
+def check(recording: Recording) -> RecordingCheck:
+    """Check the rig, every pose, and a sample of meshes and textures."""
     frames = list(_pictured(recording))
     findings = [
         *(Finding(f"rig: {found.sentence}", found.certain) for found in rig_findings(recording.rig)),
@@ -40,7 +40,7 @@ def understand(recording: Recording) -> Understood:
         *_motion(recording),
         *_variety(recording),
     ]
-    return Understood(_figures(recording, frames), _one_for_each_cause(findings), tuple(frames))
+    return RecordingCheck(_figures(recording, frames), _one_for_each_cause(findings), tuple(frames))
 
 
 def _pictured(recording: Recording) -> Iterator[WholeFrame]:
@@ -108,7 +108,7 @@ def _lean(skeleton: Skeleton, clip: Clip) -> Array:
 
 
 def _variety(recording: Recording) -> Iterator[Finding]:
-    """What a student could not learn, or no one could judge."""
+    """What a student could not learn, or what could not be measured."""
     if not recording.count():
         yield Finding("no training frame has a mesh and a texture: there is nothing to learn", certain=True)
         return

@@ -1,4 +1,4 @@
-"""The source character and its splats in the same poses and views, drawn, measured and told."""
+"""Draws the source character and its splats in the same poses and views, and compares the pictures."""
 
 import itertools
 from collections.abc import Sequence
@@ -10,11 +10,11 @@ import numpy as np
 from mua.arrays import Array
 from mua.camera import Camera, orbit
 from mua.decode import pose_splats
-from mua.likeness.canvas import opened
-from mua.likeness.measure import Agreement, agreement, together, worst_place
-from mua.likeness.painter import Painter
-from mua.likeness.posing import Moment, Poser, carriers, skinned
-from mua.likeness.splats import SplatPainter
+from mua.fidelity.canvas import opened
+from mua.fidelity.measure import Agreement, agreement, together, worst_place
+from mua.fidelity.painter import Painter
+from mua.fidelity.posing import Moment, Poser, carriers, skinned
+from mua.fidelity.splats import SplatPainter
 from mua.pose.clip import Clip
 from mua.rig.character import Character
 from mua.scene import Source
@@ -42,7 +42,7 @@ class Shot:
 
 
 @dataclass(frozen=True)
-class PoseLikeness:
+class PoseFidelity:
     """One pose from all its sides."""
 
     pose: str
@@ -58,10 +58,10 @@ class PoseLikeness:
 
 
 @dataclass(frozen=True)
-class Likeness:
+class Fidelity:
     """All poses."""
 
-    poses: tuple[PoseLikeness, ...]
+    poses: tuple[PoseFidelity, ...]
 
     @property
     def iou(self) -> float:
@@ -74,11 +74,11 @@ class Likeness:
         return min(pose.agreement.psnr for pose in self.poses)
 
     @property
-    def worst(self) -> PoseLikeness:
+    def worst(self) -> PoseFidelity:
         return max(self.poses, key=lambda pose: pose.worst.difference)
 
 
-def compare(character: Character, clips: Sequence[Clip], *, texels: int, source: Source) -> Likeness:
+def compare(character: Character, clips: Sequence[Clip], *, texels: int, source: Source) -> Fidelity:
     """Draw a character's source and its splats as the file stands and in frames spread over `clips`.
 
     Raises InputError where this machine has no OpenGL.
@@ -89,7 +89,7 @@ def compare(character: Character, clips: Sequence[Clip], *, texels: int, source:
     with opened() as context:
         studio = _Studio(context, source, poser)
         views = [ROUND, *({side: degrees} for side, degrees in itertools.islice(itertools.cycle(IN_MOTION), POSED))]
-        return Likeness(tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False)))
+        return Fidelity(tuple(studio.pictured(teacher, m, v) for m, v in zip(moments, views, strict=False)))
 
 
 def spread(clips: Sequence[Clip], count: int) -> list[tuple[Clip, int]]:
@@ -108,7 +108,7 @@ class _Studio:
         self._paint_splats = SplatPainter(context, SCREEN)
         self._carriers = np.concatenate([carriers(source.scene, part) for part in source.scene.parts])
 
-    def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseLikeness:
+    def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseFidelity:
         """One pose, drawn from all `views`."""
         places = [skinned(self._scene, part, moment.nodes) for part in self._scene.parts]
         used = [at[np.unique(part.faces)] for at, part in zip(places, self._scene.parts, strict=True)]
@@ -124,7 +124,7 @@ class _Studio:
             column, row, difference = worst_place(source, splats)
             joint = self._joint_at(np.concatenate(places), camera, (column, row))
             shots.append(Shot(view, source, splats, agreement(source, splats), (column, row), joint, difference))
-        return PoseLikeness(moment.name, tuple(shots))
+        return PoseFidelity(moment.name, tuple(shots))
 
     def _joint_at(self, points: Array, camera: Camera, place: tuple[int, int]) -> str:
         """The name of the node that carries what is seen at a place: the nearest to the eye of the points about it."""

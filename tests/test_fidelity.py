@@ -13,19 +13,19 @@ from tube import tube
 
 from mua import rotation
 from mua.arrays import Array
-from mua.baking.check import WITHOUT_FILE, likeness_of
+from mua.baking.check import WITHOUT_FILE, fidelity_of
 from mua.camera import Camera, orbit
 from mua.characters.read import read_character
+from mua.fidelity import report
+from mua.fidelity import splats as splat_painting
+from mua.fidelity.canvas import opened
+from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot, spread
+from mua.fidelity.measure import MOST_DECIBELS, Agreement, agreement, worst_place
+from mua.fidelity.painter import Painter
+from mua.fidelity.posing import Poser, skinned
+from mua.fidelity.sheet import fidelity_sheet
+from mua.fidelity.splats import SplatPainter
 from mua.kernels.splat_project import LEAST_OPACITY
-from mua.likeness import splats as splat_painting
-from mua.likeness import told
-from mua.likeness.canvas import opened
-from mua.likeness.compare import SCREEN, Likeness, PoseLikeness, Shot, spread
-from mua.likeness.measure import MOST_DECIBELS, Agreement, agreement, worst_place
-from mua.likeness.painter import Painter
-from mua.likeness.posing import Poser, skinned
-from mua.likeness.sheet import likeness_sheet
-from mua.likeness.splats import SplatPainter
 from mua.rendering import frame_bounds, render_premultiplied
 from mua.rig.character import Character
 from mua.scene import Material, Part, Source
@@ -190,34 +190,34 @@ def test_a_body_that_turns_on_a_still_root_is_seen_from_its_own_front(tmp_path: 
 def test_a_poor_silhouette_is_told_with_its_pose_and_place() -> None:
     image = np.zeros((2, 2, 4))
     shot = Shot("front", image, image, Agreement(90, 5, 5, 0.0), (0, 0), "Spine", 0.1)
-    (sentence,) = told.sentences(Likeness((PoseLikeness("bow", (shot,)),)))
-    assert "overlaps the character's by 90.0 % in the pose 'bow'" in sentence
+    (sentence,) = report.sentences(Fidelity((PoseFidelity("bow", (shot,)),)))
+    assert "overlap by only 90.0 % in the pose 'bow'" in sentence
     assert sentence.endswith("worst at Spine, seen from front.")
 
 
 def test_splats_look_like_the_character_that_they_are_of(tmp_path: Path) -> None:
     character = column(tmp_path)
-    likeness, warnings = likeness_of(character, character.clips, texels=TEXELS)
-    assert likeness is not None
-    assert len(likeness.poses) == 4
+    fidelity, warnings = fidelity_of(character, character.clips, texels=TEXELS)
+    assert fidelity is not None
+    assert len(fidelity.poses) == 4
     # Splats of 8 mm reach a few millimetres beyond the edges of a column 40 cm wide.
-    assert likeness.poses[0].agreement.iou > 0.96
-    assert likeness.iou > 0.93  # bent by dual quaternions here, by a linear blend there
-    assert likeness.psnr > 40
+    assert fidelity.poses[0].agreement.iou > 0.96
+    assert fidelity.iou > 0.93  # bent by dual quaternions here, by a linear blend there
+    assert fidelity.psnr > 40
     assert not any("colours" in sentence for sentence in warnings)
-    sheet = likeness_sheet(likeness)
+    sheet = fidelity_sheet(fidelity)
     assert sheet.width == 2 * 3 * SCREEN[0]
 
 
 @pytest.mark.parametrize("pale", [True, False])
 def test_a_figure_stands_out_from_the_background_of_its_sheet(tmp_path: Path, pale: bool) -> None:
     character = column(tmp_path)  # which is white
-    likeness, _ = likeness_of(character, (), texels=TEXELS)
-    assert likeness is not None
+    fidelity, _ = fidelity_of(character, (), texels=TEXELS)
+    assert fidelity is not None
     if not pale:
-        shots = tuple(replace(shot, source=shot.source * [0.2, 0.2, 0.2, 1]) for shot in likeness.poses[0].shots)
-        likeness = Likeness((replace(likeness.poses[0], shots=shots),))
-    picture = np.asarray(likeness_sheet(likeness), int)[-SCREEN[1] :, : SCREEN[0]]
+        shots = tuple(replace(shot, source=shot.source * [0.2, 0.2, 0.2, 1]) for shot in fidelity.poses[0].shots)
+        fidelity = Fidelity((replace(fidelity.poses[0], shots=shots),))
+    picture = np.asarray(fidelity_sheet(fidelity), int)[-SCREEN[1] :, : SCREEN[0]]
     background, figure = picture[-1, -1], picture[SCREEN[1] // 2, SCREEN[0] // 2]
     assert (abs(figure - background) > 80).all()
     assert (background == 255).all() == (not pale)
@@ -226,28 +226,28 @@ def test_a_figure_stands_out_from_the_background_of_its_sheet(tmp_path: Path, pa
 def test_wrong_colours_are_measured_and_told(tmp_path: Path) -> None:
     character = column(tmp_path)
     dark = replace(character, base_color=character.base_color // np.array([2, 2, 2, 1], np.uint8))
-    likeness, warnings = likeness_of(dark, (), texels=TEXELS)
-    assert likeness is not None
-    assert likeness.psnr == pytest.approx(20 * np.log10(255 / 128), abs=0.1)  # white, drawn as 127
-    assert any("colours differ" in sentence for sentence in warnings)
+    fidelity, warnings = fidelity_of(dark, (), texels=TEXELS)
+    assert fidelity is not None
+    assert fidelity.psnr == pytest.approx(20 * np.log10(255 / 128), abs=0.1)  # white, drawn as 127
+    assert any("The colours of splats and character" in sentence for sentence in warnings)
 
 
 def test_a_missing_part_is_measured_and_the_joint_named(tmp_path: Path) -> None:
     character = column(tmp_path)
     top = character.mesh.vertices[character.mesh.faces][:, :, 1].min(axis=1) >= 1.0 - 1e-6
     mesh = replace(character.mesh, faces=character.mesh.faces[~top], uv_faces=character.mesh.uv_faces[~top])
-    likeness, warnings = likeness_of(replace(character, mesh=mesh), (), texels=TEXELS)
-    assert likeness is not None
-    assert 0.55 < likeness.iou < 0.75  # a third is missing
-    found = likeness.poses[0].agreement
+    fidelity, warnings = fidelity_of(replace(character, mesh=mesh), (), texels=TEXELS)
+    assert fidelity is not None
+    assert 0.55 < fidelity.iou < 0.75  # a third is missing
+    found = fidelity.poses[0].agreement
     assert found.missing > 5 * found.beyond
-    assert likeness.worst.worst.joint == "head"
+    assert fidelity.worst.worst.joint == "head"
     assert "head" in warnings[0]
-    assert told.as_dict(likeness)["iou"] == likeness.iou
+    assert report.as_dict(fidelity)["iou"] == fidelity.iou
 
 
 def test_a_character_without_a_file_is_not_compared() -> None:
-    assert likeness_of(tube(), (), texels=TEXELS) == (None, (WITHOUT_FILE,))
+    assert fidelity_of(tube(), (), texels=TEXELS) == (None, (WITHOUT_FILE,))
 
 
 def test_frames_are_spread_over_all_clips(tmp_path: Path) -> None:

@@ -1,8 +1,8 @@
-"""The paper's own recipe: a random start, then Adam on the loss alone. It is the yardstick for the closed-form start.
+"""The paper's own recipe, to compare with: random weights, then Adam on the loss.
 
 The paper gives the optimiser, its rate, batch and steps (Implementation Details), not the start: here bases begin as
 noise of a tenth of their channel's spread, MLPs as torch makes them. Channels are weighted as in the other recipe, so
-that both descend the same loss.
+that both minimise the same loss.
 """
 
 import math
@@ -23,7 +23,7 @@ from mua.student.targets import channel_weights, still_channels
 BASIS_START = 0.1  # of a channel's spread
 
 
-def descend_coarse(
+def fit_coarse_from_noise(
     coarse: Coarse,
     inputs: Tensor,  # [F, k D] normalised descriptors
     meshes: Tensor,  # [F, V, 3] canonical vertices, metres
@@ -46,7 +46,7 @@ def descend_coarse(
     optimise(coarse.mlp, loss, schedule=settings.regression, parameters=groups, stage="coarse mesh", run=run)
 
 
-def descend_branch(
+def fit_branch_from_noise(
     branch: Branch,
     inputs: Tensor,  # [F, k D] normalised descriptors
     source: Source,  # of the branch's channels, counted from 0
@@ -106,7 +106,7 @@ def set_means(branch: Branch, source: Source, *, frames: int, processes: Process
         spread = torch.stack([(band - band.mean(0)).square().sum() for band in (ll, d3, d2)]).sum()
         energy.append(spread.to(branch.ll_mean))
     for channel, spread in enumerate(energy):
-        processes.agree(*branch.channel(channel), spread, source=processes.owner(channel))
+        processes.broadcast(*branch.channel(channel), spread, source=processes.owner(channel))
     texels = (COARSE_TEXELS * branch.ll_mean.shape[-1]) ** 2
     return torch.stack(energy) / (frames * texels)
 

@@ -1,0 +1,71 @@
+"""The comparison of splats with their source as sentences and numbers."""
+
+from typing import Any
+
+from mua.fidelity.compare import Fidelity, PoseFidelity, Shot
+
+GOOD_IOU = 0.97
+GOOD_PSNR = 30.0  # decibels
+
+
+def summary(fidelity: Fidelity) -> str:
+    """The figures in a sentence."""
+    return (
+        f"Splats compared with the source: silhouettes overlap by {100 * fidelity.iou:.1f} %, the colours inside have "
+        f"a PSNR of {fidelity.psnr:.1f} dB, in the worst of {len(fidelity.poses)} poses."
+    )
+
+
+def sentences(fidelity: Fidelity) -> tuple[str, ...]:
+    """A sentence for each poor figure; none if all are good."""
+    found = []
+    least = min(fidelity.poses, key=lambda pose: pose.agreement.iou)
+    if least.agreement.iou < GOOD_IOU:
+        found.append(
+            f"The silhouettes of splats and character overlap by only {100 * least.agreement.iou:.1f} % in the pose "
+            f"{least.pose!r}: {_excess(least)}; worst at {_where(least.worst)}."
+        )
+    least = min(fidelity.poses, key=lambda pose: pose.agreement.psnr)
+    if least.agreement.psnr < GOOD_PSNR:
+        found.append(
+            f"The colours of splats and character have a PSNR of only {least.agreement.psnr:.1f} dB in the pose "
+            f"{least.pose!r} (from {GOOD_PSNR:.0f} dB on they look alike); worst at {_where(least.worst)}."
+        )
+    return tuple(found)
+
+
+def as_dict(fidelity: Fidelity) -> dict[str, Any]:
+    """Every figure, for a JSON file."""
+    worst = fidelity.worst
+    return {
+        "iou": fidelity.iou,
+        "psnr": fidelity.psnr,
+        "worst": {"pose": worst.pose, **_place(worst.worst)},
+        "poses": [
+            {
+                "pose": pose.pose,
+                "iou": pose.agreement.iou,
+                "psnr": pose.agreement.psnr,
+                "views": [
+                    {"iou": shot.agreement.iou, "psnr": shot.agreement.psnr, **_place(shot)} for shot in pose.shots
+                ],
+            }
+            for pose in fidelity.poses
+        ],
+    }
+
+
+def _place(shot: Shot) -> dict[str, Any]:
+    column, row = shot.place
+    return {"view": shot.view, "joint": shot.joint, "column": column, "row": row, "difference": shot.difference}
+
+
+def _where(shot: Shot) -> str:
+    return f"{shot.joint}, seen from {shot.view}"
+
+
+def _excess(pose: PoseFidelity) -> str:
+    """How much of the area sticks out, and how much is missing."""
+    seen = pose.agreement
+    missing, beyond = (100 * n / max(seen.common + seen.missing, 1) for n in (seen.missing, seen.beyond))
+    return f"{beyond:.1f} % of its area stick out and {missing:.1f} % are missing"
