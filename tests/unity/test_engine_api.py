@@ -81,6 +81,22 @@ def test_what_an_engine_has_otherwise_is_found(used: dict[str, Used], tmp_path: 
     assert outcomes[member] == outcome
 
 
+@pytest.mark.usefixtures("csharp")
+def test_the_command_tells_what_is_gone_and_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, text, other, member, outcome = FAULTS["a member that is gone"]
+    (tmp_path / file).write_text((ENGINE / file).read_text().replace(text, other))
+    monkeypatch.setattr("sys.argv", ["check_engine_api.py", str(tmp_path)])
+    assert check_engine_api.main() == 1
+    printed = capsys.readouterr().out
+    assert f"{outcome}: {member}" in printed
+    assert "same: " not in printed
+    monkeypatch.setattr("sys.argv", ["check_engine_api.py", "--all", "--engine", OLDEST, str(ENGINE)])
+    assert check_engine_api.main() == 0
+    assert f"same: {member}" in capsys.readouterr().out
+
+
 def test_members_that_only_a_newer_engine_has_are_used_there(csharp: CSharp) -> None:
     before, after = (
         {str(member) for member in check_engine_api.used_members(csharp, engine)} for engine in (OLDEST, "6000.3")
