@@ -1,14 +1,19 @@
 """Options of mua-bake are refused in one sentence, before anything is loaded."""
 
 import errno
+import inspect
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
+import mua
 from mua.baking.options import check_inputs, check_jobs, check_output, check_settings
+from mua.cli import bake, train
 from mua.errors import InputError
 
 HEAVY = {"torch", "warp", "pxr"}
@@ -102,3 +107,10 @@ def test_a_work_directory_that_exists_is_asked_itself(
         return
     with pytest.raises(InputError, match=r"--work .*work: nothing can be written in .*work \(Read-only file system\)"):
         check_output(tmp_path / "a.muaavatar", volume / "work")
+
+
+@pytest.mark.parametrize(("function", "command"), [(mua.bake, bake), (mua.train, train)], ids=["bake", "train"])
+def test_every_argument_of_the_function_is_an_option_of_the_command(
+    function: Callable[..., object], command: ModuleType
+) -> None:
+    assert set(command.OPTIONS) == set(inspect.signature(function).parameters) - {"listener"}

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from mua.compare.names import SYSTEM_NAMES
+from mua.compare.order import SYSTEM_NAMES
 from mua.compare.systems import SYSTEMS
 from mua.student.settings import PRESETS, RECIPES
 

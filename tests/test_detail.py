@@ -171,4 +171,4 @@ def test_refuses_what_is_no_detail(texts: list[str], uv: str, sentence: str) -> 
 
 def test_a_bad_detail_is_refused_before_anything_is_read() -> None:
     with pytest.raises(InputError, match="--detail nose=2"):
-        main(Path("missing.glb"), detail=["nose=2"])
+        main(character=Path("missing.glb"), detail=["nose=2"])

@@ -256,8 +256,8 @@ def test_the_command_writes_tables_plots_and_sheets(
     output = tmp_path / "out"
     files = [saved(tmp_path, storage, storage) for storage in ("f32", "i8")]
     command.evaluate(
-        recording.directory, files, system=["all"], seconds=1, preset_name="tiny", frames=1, views=1, size=SIZE,
-        own_mesh=False, lpips_weights=None, seed=0, device=None, output=output,
+        recording=recording.directory, avatars=files, system=["all"], seconds=1, preset="tiny", frames=1, views=1,
+        size=SIZE, output=output,
     )  # fmt: skip
     pictures = ("error_by_frame", "rate_distortion", "training", "held_out")
     names = [f"{name}.png" for name in pictures] + ["results.csv", "results.json", "results.md", "work"]
@@ -311,8 +311,8 @@ def test_a_trained_system_is_not_trained_again(
     for seed, steps in ((0, None), (0, None), (1, None), (1, 7)):
         with pytest.raises(KeyboardInterrupt):
             command.evaluate(
-                recording.directory, system=["good", "bad"], seconds=1.0, steps=steps, preset_name="tiny", frames=1,
-                views=1, size=SIZE, seed=seed, output=tmp_path,
+                recording=recording.directory, system=["good", "bad"], seconds=1.0, steps=steps, preset="tiny",
+                frames=1, views=1, size=SIZE, seed=seed, output=tmp_path,
             )  # fmt: skip
     assert trained == ["good", "bad", "bad", "good", "bad", "good", "bad"]
     assert budgets == [(1.0, None)] * 5 + [(None, 7)] * 2
@@ -320,7 +320,7 @@ def test_a_trained_system_is_not_trained_again(
 
 def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--system nerf: expected one of pca-only, "):
-        command.evaluate(recording.directory, system=["nerf"], output=tmp_path / "out")
+        command.evaluate(recording=recording.directory, system=["nerf"], output=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 

@@ -58,29 +58,8 @@ def bake(
         baked = mua.bake("hero.glb", motion="walks", preset="tiny", output="hero.muaavatar")
         baked.errors["training"].explained("SH")
     """
-    order = read_order(
-        character,
-        motion=motion,
-        output=output,
-        preset=preset,
-        frames=frames,
-        texels=texels,
-        hold_out=hold_out,
-        clips=clips,
-        leave_out=leave_out,
-        mapping=mapping,
-        feet=feet,
-        uv=uv,
-        detail=detail,
-        scale=scale,
-        height=height,
-        recipe=recipe,
-        storage=storage,
-        seed=seed,
-        device=device,
-        jobs=jobs,
-        work=work,
-    )
+    options = {name: value for name, value in locals().items() if name != "listener"}
+    order = read_order(options)
     with naming_extras("mua.bake"):
         from mua.baking import pipeline  # seconds of loading: only once the options are known to be good
 

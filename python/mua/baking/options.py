@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 from mua.arguments import PathLike, as_names, as_path, as_paths, finite_array, one_of, whole_number
 from mua.asset.tensors import Storage
@@ -23,49 +23,32 @@ SUFFIX = ".muaavatar"
 LEAST_TEXELS = 2 * COARSE_TEXELS  # something must be left of a texture that is halved so many times
 
 
-def read_order(
-    character: PathLike | None,
-    *,
-    motion: PathLike | Sequence[PathLike],
-    output: PathLike,
-    preset: str,
-    frames: int | None,
-    texels: int | None,
-    hold_out: str | Sequence[str],
-    clips: str | int | Sequence[str],
-    leave_out: str | Sequence[str],
-    mapping: PathLike | Mapping[str, str] | None,
-    feet: Feet,
-    uv: UvMode,
-    detail: Mapping[str, float] | Sequence[str],
-    scale: float | None,
-    height: float | None,
-    recipe: str,
-    storage: Storage,
-    seed: int,
-    device: DeviceName,
-    jobs: int | None,
-    work: PathLike | None,
-) -> Order:
-    """The order that these options make; raises InputError for one that no bake can have."""
-    written = as_path(output, "output")
+def read_order(options: Mapping[str, Any]) -> Order:
+    """The order of the options of `mua.bake`, all of them by name; raises InputError for what no bake can have."""
+    written, uv = as_path(options["output"], "output"), one_of(options["uv"], "uv", get_args(UvMode))
     order = Order(
         output=written,
-        work=work_directory(written, work),
-        settings=check_settings(preset, recipe, seed=seed, frames=frames, texels=texels),
-        device=one_of(device, "device", get_args(DeviceName)),
-        character=None if character is None else as_path(character, "character"),
-        motions=as_paths(motion, "motion"),
-        hold_out=as_names(hold_out, "hold_out"),
-        mapping=_joints(mapping),
-        feet=one_of(feet, "feet", get_args(Feet)),
-        leave_out=as_names(leave_out, "leave_out"),
-        uv=one_of(uv, "uv", get_args(UvMode)),
-        detail=read_detail(_written(detail), uv=uv),
-        size=FigureSize(scale=_number(scale, "scale"), height=_number(height, "height")),
-        storage=one_of(storage, "storage", get_args(Storage)),
-        jobs=check_jobs(jobs),
-        clips=clip_names(clips),
+        work=work_directory(written, options["work"]),
+        settings=check_settings(
+            options["preset"],
+            options["recipe"],
+            seed=options["seed"],
+            frames=options["frames"],
+            texels=options["texels"],
+        ),
+        device=one_of(options["device"], "device", get_args(DeviceName)),
+        character=None if options["character"] is None else as_path(options["character"], "character"),
+        motions=as_paths(options["motion"], "motion"),
+        hold_out=as_names(options["hold_out"], "hold_out"),
+        mapping=_joints(options["mapping"]),
+        feet=one_of(options["feet"], "feet", get_args(Feet)),
+        leave_out=as_names(options["leave_out"], "leave_out"),
+        uv=uv,
+        detail=read_detail(_written(options["detail"]), uv=uv),
+        size=FigureSize(scale=_number(options["scale"], "scale"), height=_number(options["height"], "height")),
+        storage=one_of(options["storage"], "storage", get_args(Storage)),
+        jobs=check_jobs(options["jobs"]),
+        clips=clip_names(options["clips"]),
     )
     check_inputs(order.character, order.motions)
     check_output(order.output, order.work)

@@ -1,115 +1,118 @@
 """mua-bake: a rigged character and its motion become a verified `.muaavatar`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode
+from mua.baking.bake import bake as mua_bake
 from mua.baking.options import read_order
 from mua.baking.order import DeviceName
 from mua.cli.choice import choice
 from mua.cli.console import printer
 from mua.cli.failure import run_command
+from mua.cli.options import lent_by
 from mua.errors import InputError
 from mua.motion.planted_feet import Feet
 from mua.student.settings import PRESETS, RECIPES
 
-
-def main(
-    character: Annotated[
+# Of each argument of mua.bake what a terminal takes, and its help; names and defaults are those of mua.bake.
+OPTIONS = {
+    "character": Annotated[
         Path | None,
         typer.Argument(
             help="Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz.",
             show_default="a built-in procedural character",
         ),
-    ] = None,
-    motion: Annotated[
+    ],
+    "motion": Annotated[
         list[Path],
         typer.Option(
             help="Motion file, or directory of motion files; may be repeated.", show_default="the character's own clips"
         ),
-    ] = [],  # noqa: B006 typer copies it
-    output: Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")] = Path("avatar.muaavatar"),
-    preset_name: Annotated[
-        str, choice(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")
-    ] = "preview",
-    frames: Annotated[
+    ],
+    "output": Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")],
+    "preset": Annotated[str, choice(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")],
+    "frames": Annotated[
         int | None,
         typer.Option(
             help="Number of training frames to record; a quarter as many held-out frames are added.",
             show_default="set by the preset",
         ),
-    ] = None,
-    texels: Annotated[
+    ],
+    "texels": Annotated[
         int | None,
         typer.Option(help="Width and height of the texture, in texels.", show_default="set by the preset"),
-    ] = None,
-    hold_out: Annotated[
+    ],
+    "hold_out": Annotated[
         list[str],
         typer.Option(
             help="Clip to keep out of training, to measure errors on; may be repeated.",
             show_default="the end of every clip",
         ),
-    ] = [],  # noqa: B006 typer copies it
-    clips: Annotated[
+    ],
+    "clips": Annotated[
         list[str],
         typer.Option(help="Clip to store for playback; may be repeated. Also: all, none, or a number of clips."),
-    ] = ["all"],  # noqa: B006 typer copies it
-    leave_out: Annotated[
+    ],
+    "leave_out": Annotated[
         list[str],
         typer.Option(help="Mesh, node or material of the character file to leave out; may be repeated."),
-    ] = [],  # noqa: B006 typer copies it
-    mapping: Annotated[
+    ],
+    "mapping": Annotated[
         Path | None,
         typer.Option(
             help="JSON or TOML file that gives, for joints of the character, the joint of the motion.",
             show_default="matched by name",
         ),
-    ] = None,
-    feet: Annotated[
+    ],
+    "feet": Annotated[
         Feet,
         typer.Option(
             help="Whether standing feet are held in place: auto (if they would slide), keep (never) or plant (always)."
         ),
-    ] = "auto",
-    uv: Annotated[
-        UvMode, typer.Option(help="Keep the character's UVs, unwrap new ones, or choose automatically.")
-    ] = "auto",
-    detail: Annotated[
+    ],
+    "uv": Annotated[UvMode, typer.Option(help="Keep the character's UVs, unwrap new ones, or choose automatically.")],
+    "detail": Annotated[
         list[str],
         typer.Option(
             help="Resolution of a body part relative to the others, such as head=2; may be repeated. "
             "Parts: head, hands, arms, body, legs, feet."
         ),
-    ] = [],  # noqa: B006 typer copies it
-    scale: Annotated[
-        float | None, typer.Option(help="Factor by which to multiply the size in the character file.")
-    ] = None,
-    height: Annotated[float | None, typer.Option(help="Height to scale the character to, in metres.")] = None,
-    recipe: Annotated[
+    ],
+    "scale": Annotated[float | None, typer.Option(help="Factor by which to multiply the size in the character file.")],
+    "height": Annotated[float | None, typer.Option(help="Height to scale the character to, in metres.")],
+    "recipe": Annotated[
         str,
         choice(
             RECIPES,
             "--recipe",
             help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
         ),
-    ] = "closed-form",
-    storage: Annotated[Storage, typer.Option(help="Number type of the stored bases and weights.")] = "f16",
-    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
-    device: Annotated[DeviceName, typer.Option(help="Where to train the student.")] = "auto",
-    jobs: Annotated[
+    ],
+    "storage": Annotated[Storage, typer.Option(help="Number type of the stored bases and weights.")],
+    "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
+    "device": Annotated[DeviceName, typer.Option(help="Where to train the student.")],
+    "jobs": Annotated[
         int | None, typer.Option(help="Number of processes that record.", show_default="one per CPU core")
-    ] = None,
-    work: Annotated[
+    ],
+    "work": Annotated[
         Path | None,
         typer.Option(help="Directory for the recording and checkpoints.", show_default="beside the output"),
-    ] = None,
+    ],
+}
+
+
+@lent_by(mua_bake, OPTIONS)
+def main(
+    *,
     check: Annotated[
         bool, typer.Option("--check", help="Train nothing; in seconds, compare splats and motion with their sources.")
     ] = False,
     json: Annotated[Path | None, typer.Option(help="With --check: JSON file to write all figures to.")] = None,
+    **options: Any,
 ) -> None:
     """Bake a rigged character and its motion into a .muaavatar file.
 
@@ -118,29 +121,7 @@ def main(
     """
     if json is not None and not check:
         raise InputError("--json: only --check writes it; expected --check too")
-    order = read_order(
-        character,
-        motion=motion,
-        output=output,
-        preset=preset_name,
-        frames=frames,
-        texels=texels,
-        hold_out=hold_out,
-        clips=clips,
-        leave_out=leave_out,
-        mapping=mapping,
-        feet=feet,
-        uv=uv,
-        detail=detail,
-        scale=scale,
-        height=height,
-        recipe=recipe,
-        storage=storage,
-        seed=seed,
-        device=device,
-        jobs=jobs,
-        work=work,
-    )
+    order = read_order(options)
     if check:
         from mua.cli.check import check_and_show
 

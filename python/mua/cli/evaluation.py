@@ -1,7 +1,8 @@
 """The comparison that mua-eval makes, once its options are known to be good."""
 
+from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -11,7 +12,7 @@ from mua.cli.display import Display
 from mua.compare import entries, plots, report, scores
 from mua.compare.images import Studio
 from mua.compare.metrics import Lpips
-from mua.compare.names import ALL
+from mua.compare.order import ALL, EvaluationOrder
 from mua.compare.system import Budget
 from mua.errors import InputError
 from mua.files import replacing, write_bytes
@@ -23,33 +24,13 @@ from mua.student.optimise import Progress, Run
 from mua.student.settings import Settings, preset
 
 
-@dataclass(frozen=True)
-class EvaluationOrder:
-    """What a user asks to have compared."""
-
-    recording: Path
-    avatars: list[Path]
-    systems: list[str]  # those of the paper's tables, or all
-    seconds: float  # of training of each system, unless there are steps
-    steps: int | None
-    preset: str  # whose sizes the systems have
-    frames: int | None  # of each kind; None: all that are kept whole
-    views: int
-    size: int  # pixels along a side
-    own_mesh: bool
-    lpips_weights: Path | None
-    seed: int
-    device: str | None
-    output: Path
-
-
 def compare(order: EvaluationOrder) -> None:
     """Carry out an order, and write and print what comes of it."""
     recording = Recording(order.recording)
     chosen = scores.choose_frames(recording, order.frames)
     if not chosen:
         raise InputError(f"recording {order.recording}: no frame is kept whole, expected at least one to compare with")
-    names = list(entries.SYSTEMS) if ALL in order.systems else list(dict.fromkeys(order.systems))
+    names = list(entries.SYSTEMS) if ALL in order.system else list(dict.fromkeys(order.system))
     entries.check_systems(names)
     settings = replace(preset(order.preset), texels=recording.rig.texels.size, seed=order.seed)
     budget = Budget(seconds=order.seconds) if order.steps is None else Budget(steps=order.steps)
@@ -90,7 +71,7 @@ def compare(order: EvaluationOrder) -> None:
 
 
 def _avatars(
-    device: Device, paths: list[Path], recording: Recording, *, size: int, own_mesh: bool, display: Display
+    device: Device, paths: Sequence[Path], recording: Recording, *, size: int, own_mesh: bool, display: Display
 ) -> list[entries.Entry]:
     """The rows of the files; what is wrong with one ends the command, before anything is trained."""
     rows: list[entries.Entry] = []

@@ -1,13 +1,13 @@
-"""The two options that every command has: --version and --quiet."""
+"""The two options that every command has, --version and --quiet, and options that are a function's arguments."""
 
 import functools
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
@@ -51,6 +51,43 @@ def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
     run.__signature__ = own.replace(parameters=[*own.parameters.values(), *added])  # type: ignore[attr-defined]
     run.__annotations__ = {**command.__annotations__, "version": Version, "quiet": Quiet}
     return run
+
+
+def lent_by(
+    function: Callable[..., object],
+    kinds: Mapping[str, Any],  # of each argument that is an option: a terminal's type, with its help
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command the arguments of a function, by the names and defaults that they have there."""
+    arguments = inspect.signature(function).parameters
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    lent = [
+        inspect.Parameter(name, keyword, default=_for_terminal(arguments[name].default, kind), annotation=kind)
+        for name, kind in kinds.items()
+    ]
+
+    def lend(command: Callable[..., None]) -> Callable[..., None]:
+        signature = inspect.signature(command, eval_str=True)
+        own = [each.replace(kind=keyword) for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
+
+        @functools.wraps(command)
+        def run(**given: Any) -> None:
+            bound = joined.bind(**given)
+            bound.apply_defaults()
+            command(**bound.arguments)
+
+        joined = inspect.Signature([*lent, *own])
+        run.__signature__ = joined  # type: ignore[attr-defined]
+        run.__annotations__ = {each.name: each.annotation for each in joined.parameters.values()}
+        return run
+
+    return lend
+
+
+def _for_terminal(default: Any, kind: Any) -> Any:
+    """A default as typer takes it: that of an option which may be repeated is a list."""
+    if get_origin(get_args(kind)[0]) is not list or default is inspect.Parameter.empty:
+        return default
+    return [default] if isinstance(default, str) else list(default)
 
 
 @contextmanager
