@@ -1,7 +1,6 @@
 """Start Warp on the processor without its greeting, and without what it says of a GPU that is not there."""
 
 import os
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,13 +25,11 @@ def _without(told: bytes) -> Iterator[None]:
     except OSError:  # there is no standard error
         yield
         return
-    sys.stderr.flush()
     with tempfile.TemporaryFile() as caught:
         os.dup2(caught.fileno(), 2)
         try:
             yield
         finally:
-            sys.stderr.flush()
             os.dup2(kept, 2)
             os.close(kept)
             caught.seek(0)
