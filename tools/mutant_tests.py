@@ -199,7 +199,7 @@ def _digest(path: Path) -> str:
 def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str], int]) -> list[SeenTest]:
     """The tests that can notice a fault, those that are likely to first.
 
-    That is those named after the file, then those that `caught` most in its folder, then the fastest.
+    That is those named after the file, then, slow ones last, those that `caught` most in its folder, then the fastest.
     """
     if not mutant.path.endswith(".py"):
         chosen = [test for test in tests if mutant.path in test.places]
@@ -210,9 +210,10 @@ def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str
         chosen = chosen or [test for test in tests if f"{within}<module>" in test.places]
     own, folder = _words(mutant.path), folder_of(mutant)
 
-    def rank(test: SeenTest) -> tuple[float, int, float]:
-        words = _words(test.file)
-        return -len(own & words) / len(own | words), -caught.get((folder, test.function), 0), test.seconds
+    def rank(test: SeenTest) -> tuple[float, bool, int, float]:
+        words, seconds = _words(test.file), test.seconds + sum(test.fixtures.values())
+        alike = len(own & words) / len(own | words)
+        return -alike, seconds > BOUND / 4, -caught.get((folder, test.function), 0), seconds
 
     return sorted(chosen, key=rank)
 
