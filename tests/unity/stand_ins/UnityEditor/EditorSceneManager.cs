@@ -18,7 +18,6 @@ namespace UnityEditor.SceneManagement
             return inProject;
         }
         public static bool SaveCurrentModifiedScenesIfUserWantsTo() { return true; }
-        public static bool MarkSceneDirty(Scene scene) { return true; }
     }
 }
 

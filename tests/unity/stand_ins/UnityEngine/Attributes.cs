@@ -25,7 +25,6 @@ namespace UnityEngine
     public sealed class CreateAssetMenuAttribute : Attribute
     {
         public string menuName { get; set; }
-        public string fileName { get; set; }
         public int order { get; set; }
     }
 

@@ -47,7 +47,6 @@ namespace UnityEngine
         public bool allowMSAA { get; set; }
         public CameraType cameraType { get; set; }
         public bool stereoEnabled { get { return StandIns.Eyes.IsWorn && cameraType == CameraType.Game; } }
-        public MonoOrStereoscopicEye stereoActiveEye { get { return MonoOrStereoscopicEye.Mono; } }
         public Matrix4x4 worldToCameraMatrix
         {
             get { return view ?? Matrix4x4.Scale(new Vector3(1, 1, -1)) * transform.worldToLocalMatrix; }

@@ -41,7 +41,6 @@ namespace UnityEngine.Rendering
         private int count, used;
 
         public string name { get; set; }
-        public int sizeInBytes { get { return count; } }
 
         public void Dispose() { Clear(); }
         public void Release() { Dispose(); }
@@ -68,12 +67,6 @@ namespace UnityEngine.Rendering
             for (int i = 0; i < 4; i++)
                 StandIns.Bytes.Put(val[i], payload, used - 16 + 4 * i);
         }
-        public void SetComputeMatrixParam(ComputeShader computeShader, int nameID, Matrix4x4 val)
-        {
-            Constant(computeShader, nameID, StandIns.Kinds.Matrix, Reserve(64));
-            for (int i = 0; i < 16; i++)
-                StandIns.Bytes.Put(val[i], payload, used - 64 + 4 * i);
-        }
         public void SetComputeIntParams(ComputeShader computeShader, int nameID, params int[] values)
         {
             Constant(computeShader, nameID, StandIns.Kinds.Int, Reserve(4 * values.Length));
@@ -89,12 +82,6 @@ namespace UnityEngine.Rendering
             Constant(computeShader, nameID, StandIns.Kinds.Matrix, Reserve(64 * values.Length));
             for (int i = 0; i < 16 * values.Length; i++)
                 StandIns.Bytes.Put(values[i / 16][i % 16], payload, used - 64 * values.Length + 4 * i);
-        }
-        public void SetComputeVectorArrayParam(ComputeShader computeShader, int nameID, Vector4[] values)
-        {
-            Constant(computeShader, nameID, StandIns.Kinds.Vector, Reserve(16 * values.Length));
-            for (int i = 0; i < 4 * values.Length; i++)
-                StandIns.Bytes.Put(values[i / 4][i % 4], payload, used - 16 * values.Length + 4 * i);
         }
         public void SetComputeBufferParam(ComputeShader computeShader, int kernelIndex, int nameID, GraphicsBuffer buffer)
         {

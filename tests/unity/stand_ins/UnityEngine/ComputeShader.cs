@@ -44,13 +44,6 @@ namespace UnityEngine
         }
         public bool HasKernel(string name) { return Kernels.Contains(name); }
         public bool IsSupported(int kernelIndex) { return SystemInfo.supportsComputeShaders; }
-        public void GetKernelThreadGroupSizes(int kernelIndex, out uint x, out uint y, out uint z)
-        {
-            uint[] size = sizes[Kernels[kernelIndex]];
-            x = size[0];
-            y = size[1];
-            z = size[2];
-        }
         public void SetInt(int nameID, int val) { Constants.Set(nameID, val); }
         public void SetFloat(int nameID, float val) { Constants.Set(nameID, val); }
         public void SetVector(int nameID, Vector4 val) { Constants.Set(nameID, val); }

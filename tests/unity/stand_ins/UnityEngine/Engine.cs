@@ -9,8 +9,6 @@ namespace UnityEngine
 
     public static class Debug
     {
-        public static bool isDebugBuild { get { return true; } }
-
         public static void Log(object message) { StandIns.Console.Write(LogType.Log, message, null); }
         public static void Log(object message, Object context) { StandIns.Console.Write(LogType.Log, message, context); }
         public static void LogWarning(object message) { StandIns.Console.Write(LogType.Warning, message, null); }
@@ -54,9 +52,7 @@ namespace UnityEngine
         public static string dataPath { get; internal set; }
         public static string unityVersion { get { return "6000.0.0f1"; } }
         public static string version { get { return "0"; } }
-        public static string productName { get { return "stand-in"; } }
         public static string identifier { get { return "org.mua.player"; } }
-        public static int targetFrameRate { get; set; }
         public static void Quit() { Quit(0); }
         public static void Quit(int exitCode) { StandIns.Machine.ExitCode = exitCode; }
 
@@ -79,11 +75,8 @@ namespace UnityEngine
         public static float unscaledDeltaTime { get { return deltaTime; } }
         public static float time { get; private set; }
         public static double timeAsDouble { get { return time; } }
-        public static float unscaledTime { get { return time; } }
         public static float realtimeSinceStartup { get { return time; } }
-        public static double realtimeSinceStartupAsDouble { get { return time; } }
         public static int frameCount { get; private set; }
-        public static float timeScale { get { return 1; } }
 
         internal static void Advance(float seconds)
         {
@@ -115,19 +108,11 @@ namespace UnityEngine
         public static bool supportsIndirectArgumentsBuffer { get; internal set; }
         public static bool supportsGpuRecorder { get; internal set; }
         public static bool supportsMultiview { get; internal set; }
-        public static bool usesReversedZBuffer { get { return true; } }
-        public static bool graphicsUVStartsAtTop { get { return true; } }
         public static int maxComputeBufferInputsCompute { get; internal set; }
         public static int maxComputeBufferInputsVertex { get; internal set; }
-        public static int maxComputeBufferInputsFragment { get { return 8; } }
         public static int maxComputeWorkGroupSize { get { return 1024; } }
-        public static int maxComputeWorkGroupSizeX { get { return 1024; } }
-        public static int maxComputeWorkGroupSizeY { get { return 1024; } }
-        public static int maxComputeWorkGroupSizeZ { get { return 64; } }
         public static int computeSubGroupSize { get { return 64; } }
         public static long maxGraphicsBufferSize { get; internal set; }
-        public static int maxConstantBufferSize { get { return 65536; } }
-        public static int constantBufferOffsetAlignment { get { return 64; } }
         public static int graphicsMemorySize { get { return 4096; } }
         public static Rendering.GraphicsDeviceType graphicsDeviceType { get; internal set; }
         public static string graphicsDeviceName { get { return "stand-in"; } }
@@ -198,6 +183,5 @@ namespace StandIns
         public static void BufferSize(long most) { SystemInfo.maxGraphicsBufferSize = most; }
         public static void GpuRecorder(bool supported) { SystemInfo.supportsGpuRecorder = supported; }
         public static void Multiview(bool supported) { SystemInfo.supportsMultiview = supported; }
-        public static void GraphicsDevice(UnityEngine.Rendering.GraphicsDeviceType type) { SystemInfo.graphicsDeviceType = type; }
     }
 }

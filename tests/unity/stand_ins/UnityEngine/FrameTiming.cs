@@ -9,7 +9,6 @@ namespace UnityEngine
 
     public static class FrameTimingManager
     {
-        public static bool IsFeatureEnabled() { return StandIns.Timings.Gpu > 0; }
         public static void CaptureFrameTimings() { }
         public static uint GetLatestTimings(uint numFrames, FrameTiming[] timings)
         {

@@ -85,8 +85,6 @@ namespace UnityEngine
     {
         internal readonly List<Coroutine> Coroutines = new List<Coroutine>();
 
-        public bool useGUILayout { get; set; }
-
         public Coroutine StartCoroutine(IEnumerator routine)
         {
             if (!isActiveAndEnabled)
@@ -97,8 +95,6 @@ namespace UnityEngine
             Step(started);
             return started;
         }
-        public void StopCoroutine(Coroutine routine) { Coroutines.Remove(routine); }
-        public void StopAllCoroutines() { Coroutines.Clear(); }
         public void Invoke(string methodName, float time) { StandIns.Messages.Send(this, methodName); }
         public static void print(object message) { Debug.Log(message); }
 
@@ -160,7 +156,6 @@ namespace UnityEngine
         public Transform transform { get; private set; }
         public int layer { get; set; }
         public string tag { get; set; }
-        public bool isStatic { get; set; }
         public bool activeSelf { get { return active; } }
         public bool activeInHierarchy
         {
@@ -271,12 +266,10 @@ namespace UnityEngine
         public Vector3 localPosition { get; set; }
         public Quaternion localRotation { get; set; }
         public Vector3 localScale { get; set; }
-        public Vector3 localEulerAngles { get { return localRotation.eulerAngles; } set { localRotation = Quaternion.Euler(value); } }
         public Vector3 eulerAngles { get { return rotation.eulerAngles; } set { rotation = Quaternion.Euler(value); } }
         public Transform parent { get; private set; }
         public Transform root { get { return parent == null ? this : parent.root; } }
         public int childCount { get { return children.Count; } }
-        public bool hasChanged { get; set; }
         public Matrix4x4 localToWorldMatrix
         {
             get
@@ -346,15 +339,8 @@ namespace UnityEngine
             position = this.position;
             rotation = this.rotation;
         }
-        public void GetLocalPositionAndRotation(out Vector3 localPosition, out Quaternion localRotation)
-        {
-            localPosition = this.localPosition;
-            localRotation = this.localRotation;
-        }
         public Vector3 TransformPoint(Vector3 p) { return localToWorldMatrix.MultiplyPoint3x4(p); }
         public Vector3 InverseTransformPoint(Vector3 p) { return worldToLocalMatrix.MultiplyPoint3x4(p); }
-        public Vector3 TransformDirection(Vector3 d) { return rotation * d; }
-        public Vector3 InverseTransformDirection(Vector3 d) { return Quaternion.Inverse(rotation) * d; }
         public void Rotate(float x, float y, float z) { localRotation = localRotation * Quaternion.Euler(x, y, z); }
         public void Rotate(Vector3 axis, float angle) { localRotation = localRotation * Quaternion.AngleAxis(angle, axis); }
         public void RotateAround(Vector3 point, Vector3 axis, float angle)

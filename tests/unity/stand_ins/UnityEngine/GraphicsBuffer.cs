@@ -20,10 +20,7 @@ namespace UnityEngine
         public struct IndirectDrawArgs
         {
             public const int size = 16;
-            public uint vertexCountPerInstance { get; set; }
             public uint instanceCount { get; set; }
-            public uint startVertex { get; set; }
-            public uint startInstance { get; set; }
         }
 
         private const Target Computed = Target.Structured | Target.Raw | Target.Append | Target.Counter | Target.IndirectArguments;

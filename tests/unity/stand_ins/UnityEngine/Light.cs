@@ -8,7 +8,6 @@ namespace UnityEngine
     {
         public LightType type { get; set; }
         public LightShadows shadows { get; set; }
-        public float intensity { get; set; }
         public Color color { get; set; }
     }
 }

@@ -24,11 +24,8 @@ namespace UnityEngine
         public static float Exp(float power) { return (float)Math.Exp(power); }
         public static float Log(float f) { return (float)Math.Log(f); }
         public static float Floor(float f) { return (float)Math.Floor(f); }
-        public static float Ceil(float f) { return (float)Math.Ceiling(f); }
         public static float Round(float f) { return (float)Math.Round(f); }
-        public static int FloorToInt(float f) { return (int)Math.Floor(f); }
         public static int CeilToInt(float f) { return (int)Math.Ceiling(f); }
-        public static int RoundToInt(float f) { return (int)Math.Round(f); }
         public static float Sign(float f) { return f >= 0 ? 1 : -1; }
         public static float Min(float a, float b) { return a < b ? a : b; }
         public static int Min(int a, int b) { return a < b ? a : b; }
@@ -38,15 +35,5 @@ namespace UnityEngine
         public static int Clamp(int value, int min, int max) { return value < min ? min : value > max ? max : value; }
         public static float Clamp01(float value) { return Clamp(value, 0, 1); }
         public static float Lerp(float a, float b, float t) { return a + (b - a) * Clamp01(t); }
-        public static float InverseLerp(float a, float b, float value) { return a != b ? Clamp01((value - a) / (b - a)) : 0; }
-        public static float Repeat(float t, float length) { return Clamp(t - Floor(t / length) * length, 0, length); }
-        public static bool Approximately(float a, float b)
-        {
-            return Abs(b - a) < Max(1e-6f * Max(Abs(a), Abs(b)), Epsilon * 8);
-        }
-        public static float MoveTowards(float current, float target, float maxDelta)
-        {
-            return Abs(target - current) <= maxDelta ? target : current + Sign(target - current) * maxDelta;
-        }
     }
 }

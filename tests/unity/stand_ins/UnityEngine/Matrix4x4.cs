@@ -18,7 +18,6 @@ namespace UnityEngine
         public static Matrix4x4 zero { get { return new Matrix4x4(); } }
         public static Matrix4x4 identity { get { return Scale(Vector3.one); } }
         public Matrix4x4 inverse { get { return Inverse(this); } }
-        public Matrix4x4 transpose { get { return Transpose(this); } }
         public float determinant { get { double[] unused; return (float)Invert(this, out unused); } }
         public Vector3 lossyScale
         {
@@ -96,7 +95,6 @@ namespace UnityEngine
 
         public Vector4 GetColumn(int i) { return new Vector4(this[0, i], this[1, i], this[2, i], this[3, i]); }
         public Vector4 GetRow(int i) { return new Vector4(this[i, 0], this[i, 1], this[i, 2], this[i, 3]); }
-        public Vector3 GetPosition() { return new Vector3(m03, m13, m23); }
         public void SetColumn(int i, Vector4 v)
         {
             for (int row = 0; row < 4; row++)
@@ -108,13 +106,7 @@ namespace UnityEngine
                 this[i, column] = v[column];
         }
 
-        public Vector3 MultiplyPoint(Vector3 p)
-        {
-            Vector4 moved = this * new Vector4(p.x, p.y, p.z, 1);
-            return new Vector3(moved.x / moved.w, moved.y / moved.w, moved.z / moved.w);
-        }
         public Vector3 MultiplyPoint3x4(Vector3 p) { return this * new Vector4(p.x, p.y, p.z, 1); }
-        public Vector3 MultiplyVector(Vector3 v) { return this * new Vector4(v.x, v.y, v.z, 0); }
 
         public static Matrix4x4 Scale(Vector3 s)
         {
@@ -152,10 +144,6 @@ namespace UnityEngine
         public static Matrix4x4 LookAt(Vector3 from, Vector3 to, Vector3 up)
         {
             return TRS(from, Quaternion.LookRotation(to - from, up), Vector3.one);
-        }
-        public static Matrix4x4 Transpose(Matrix4x4 m)
-        {
-            return new Matrix4x4(m.GetRow(0), m.GetRow(1), m.GetRow(2), m.GetRow(3));
         }
         public static Matrix4x4 Inverse(Matrix4x4 m)
         {

@@ -28,7 +28,6 @@ namespace UnityEngine
 
         public Object() { name = ""; }
 
-        public int GetInstanceID() { return id; }
         public override string ToString() { return name + " (" + GetType().FullName + ")"; }
         public override bool Equals(object other) { return Same(this, other as Object); }
         public override int GetHashCode() { return id; }
@@ -48,7 +47,6 @@ namespace UnityEngine
         }
         public static void DestroyImmediate(Object obj, bool allowDestroyingAssets) { DestroyImmediate(obj); }
         public static void DontDestroyOnLoad(Object target) { }
-        public static T Instantiate<T>(T original) where T : Object { return (T)original.MemberwiseClone(); }
         public static T FindAnyObjectByType<T>() where T : Object
         {
             T[] found = Find<T>();

@@ -9,7 +9,6 @@ namespace UnityEngine
     {
         public int width { get; set; }
         public int height { get; set; }
-        public int msaaSamples { get; set; }
         public bool useDynamicScale { get; set; }
     }
 
@@ -34,7 +33,6 @@ namespace UnityEngine.Rendering
     public struct ScriptableRenderContext
     {
         public void ExecuteCommandBuffer(CommandBuffer commandBuffer) { Graphics.ExecuteCommandBuffer(commandBuffer); }
-        public void Submit() { }
     }
 
     public static class RenderPipelineManager
@@ -99,11 +97,6 @@ namespace StandIns
             IsWorn = UnityEngine.XR.XRSettings.isDeviceActive = true;
             UnityEngine.XR.XRSettings.stereoRenderingMode = mode;
             Machine.Multiview(mode == UnityEngine.XR.XRSettings.StereoRenderingMode.SinglePassMultiview);
-        }
-
-        public static void TakeOff()
-        {
-            IsWorn = UnityEngine.XR.XRSettings.isDeviceActive = false;
         }
 
         public static void Resolution(int width, int height)

@@ -7,7 +7,6 @@ namespace Unity.Profiling
     public struct ProfilerCategory
     {
         public static ProfilerCategory Render { get { return new ProfilerCategory(); } }
-        public static ProfilerCategory Scripts { get { return new ProfilerCategory(); } }
     }
 
     [Flags]

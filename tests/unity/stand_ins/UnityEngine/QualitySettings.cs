@@ -10,13 +10,9 @@ namespace UnityEngine
         private static readonly RenderPipelineAsset[] pipelines = new RenderPipelineAsset[samples.Length];
         private static int level = 1;
 
-        public static ColorSpace activeColorSpace { get { return ColorSpace.Linear; } }
-        public static int vSyncCount { get; set; }
         public static int count { get { return samples.Length; } }
         public static int antiAliasing { get { return samples[level]; } set { samples[level] = value; } }
-        public static RenderPipelineAsset renderPipeline { get { return pipelines[level]; } set { pipelines[level] = value; } }
         public static RenderPipelineAsset GetRenderPipelineAssetAt(int index) { return pipelines[index]; }
-        public static int GetQualityLevel() { return level; }
         public static void ForEach(Action callback)
         {
             int before = level;

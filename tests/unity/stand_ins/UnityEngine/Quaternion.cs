@@ -38,29 +38,10 @@ namespace UnityEngine
         }
         public static Quaternion Inverse(Quaternion q) { return new Quaternion(-q.x, -q.y, -q.z, q.w); }
         public static float Dot(Quaternion a, Quaternion b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
-        public static float Angle(Quaternion a, Quaternion b)
-        {
-            return (float)(Math.Acos(Math.Min(Math.Abs(Dot(a, b)), 1)) * 360 / Math.PI);
-        }
         public static Quaternion Normalize(Quaternion q)
         {
             float length = (float)Math.Sqrt(Dot(q, q));
             return length < 1e-15f ? identity : new Quaternion(q.x / length, q.y / length, q.z / length, q.w / length);
-        }
-        public static Quaternion Slerp(Quaternion a, Quaternion b, float t)
-        {
-            t = Mathf.Clamp01(t);
-            float dot = Dot(a, b);
-            if (dot < 0)
-            {
-                b = new Quaternion(-b.x, -b.y, -b.z, -b.w);
-                dot = -dot;
-            }
-            double angle = Math.Acos(Math.Min(dot, 1)), sine = Math.Sin(angle);
-            double wa = sine < 1e-6 ? 1 - t : Math.Sin((1 - t) * angle) / sine;
-            double wb = sine < 1e-6 ? t : Math.Sin(t * angle) / sine;
-            return Normalize(new Quaternion((float)(wa * a.x + wb * b.x), (float)(wa * a.y + wb * b.y),
-                                            (float)(wa * a.z + wb * b.z), (float)(wa * a.w + wb * b.w)));
         }
         public static Quaternion LookRotation(Vector3 forward) { return LookRotation(forward, Vector3.up); }
         public static Quaternion LookRotation(Vector3 forward, Vector3 upwards)

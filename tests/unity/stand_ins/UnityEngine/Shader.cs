@@ -29,7 +29,6 @@ namespace UnityEngine
     {
         internal readonly StandIns.Bindings Constants = new StandIns.Bindings();
         internal readonly Dictionary<int, GraphicsBuffer> Buffers = new Dictionary<int, GraphicsBuffer>();
-        private readonly HashSet<string> keywords = new HashSet<string>();
 
         public Material(Shader shader)
         {
@@ -40,12 +39,8 @@ namespace UnityEngine
         }
 
         public Shader shader { get; set; }
-        public int renderQueue { get; set; }
-        public bool enableInstancing { get; set; }
         public Color color { get; set; }
         public Texture mainTexture { get; set; }
-        public int passCount { get { return 1; } }
-        public int FindPass(string passName) { return 0; }
         public void SetInt(int nameID, int value) { Constants.Set(nameID, value); }
         public void SetInteger(int nameID, int value) { Constants.Set(nameID, value); }
         public void SetFloat(int nameID, float value) { Constants.Set(nameID, value); }
@@ -55,9 +50,6 @@ namespace UnityEngine
         public void SetMatrixArray(int nameID, Matrix4x4[] values) { Constants.Set(nameID, values); }
         public void SetVectorArray(int nameID, Vector4[] values) { Constants.Set(nameID, values); }
         public void SetBuffer(int nameID, GraphicsBuffer value) { Buffers[nameID] = value; }
-        public void EnableKeyword(string keyword) { keywords.Add(keyword); }
-        public void DisableKeyword(string keyword) { keywords.Remove(keyword); }
-        public bool IsKeywordEnabled(string keyword) { return keywords.Contains(keyword); }
     }
 
     public sealed class MaterialPropertyBlock
@@ -65,7 +57,6 @@ namespace UnityEngine
         internal readonly StandIns.Bindings Constants = new StandIns.Bindings();
         internal readonly Dictionary<int, GraphicsBuffer> Buffers = new Dictionary<int, GraphicsBuffer>();
 
-        public bool isEmpty { get { return Buffers.Count == 0; } }
         public void Clear() { Buffers.Clear(); }
         public void SetInt(int nameID, int value) { Constants.Set(nameID, value); }
         public void SetInteger(int nameID, int value) { Constants.Set(nameID, value); }

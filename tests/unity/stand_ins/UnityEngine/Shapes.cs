@@ -20,7 +20,6 @@ namespace UnityEngine
         }
         public void Encapsulate(Vector3 point) { SetMinMax(Vector3.Min(min, point), Vector3.Max(max, point)); }
         public void Encapsulate(Bounds bounds) { Encapsulate(bounds.min); Encapsulate(bounds.max); }
-        public void Expand(float amount) { extents += new Vector3(amount, amount, amount) * 0.5f; }
         public bool Contains(Vector3 p)
         {
             Vector3 low = min, high = max;
@@ -35,12 +34,6 @@ namespace UnityEngine
         public Color(float r, float g, float b, float a) { this.r = r; this.g = g; this.b = b; this.a = a; }
         public Color(float r, float g, float b) { this.r = r; this.g = g; this.b = b; a = 1; }
 
-        public static Color white { get { return new Color(1, 1, 1, 1); } }
-        public static Color black { get { return new Color(0, 0, 0, 1); } }
-        public static Color clear { get { return new Color(0, 0, 0, 0); } }
-        public static Color gray { get { return new Color(0.5f, 0.5f, 0.5f, 1); } }
-        public static Color red { get { return new Color(1, 0, 0, 1); } }
-        public static Color yellow { get { return new Color(1, 235f / 255, 4f / 255, 1); } }
         public static implicit operator Vector4(Color c) { return new Vector4(c.r, c.g, c.b, c.a); }
         public static implicit operator Color(Vector4 v) { return new Color(v.x, v.y, v.z, v.w); }
         public static Color operator *(Color a, float b) { return new Color(a.r * b, a.g * b, a.b * b, a.a * b); }

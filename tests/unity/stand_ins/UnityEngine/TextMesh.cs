@@ -27,7 +27,6 @@ namespace UnityEngine
         public int fontSize { get; set; }
         public TextAnchor anchor { get; set; }
         public float characterSize { get; set; }
-        public float lineSpacing { get; set; }
         public Color color { get; set; }
     }
 }

@@ -50,7 +50,6 @@ namespace UnityEngine
         public static Vector3 zero { get { return new Vector3(0, 0, 0); } }
         public static Vector3 one { get { return new Vector3(1, 1, 1); } }
         public static Vector3 up { get { return new Vector3(0, 1, 0); } }
-        public static Vector3 down { get { return new Vector3(0, -1, 0); } }
         public static Vector3 right { get { return new Vector3(1, 0, 0); } }
         public static Vector3 left { get { return new Vector3(-1, 0, 0); } }
         public static Vector3 forward { get { return new Vector3(0, 0, 1); } }
@@ -83,7 +82,6 @@ namespace UnityEngine
         {
             return new Vector3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
         }
-        public static float Distance(Vector3 a, Vector3 b) { return (a - b).magnitude; }
         public static Vector3 Normalize(Vector3 v)
         {
             float length = v.magnitude;

@@ -35,7 +35,6 @@ namespace UnityEngine.Networking
         public string error { get; private set; }
         public Result result { get { return isDone ? outcome : Result.InProgress; } }
         public DownloadHandler downloadHandler { get; private set; }
-        public float downloadProgress { get { return isDone ? 1 : 0; } }
 
         public bool isDone
         {

@@ -28,7 +28,6 @@ namespace UnityEngine.XR
     {
         internal Dictionary<string, object> Values;
 
-        public bool isValid { get { return Values != null && Values.Count > 0; } }
         public bool TryGetFeatureValue(InputFeatureUsage<bool> usage, out bool value) { return Get(usage.name, out value); }
         public bool TryGetFeatureValue(InputFeatureUsage<float> usage, out float value) { return Get(usage.name, out value); }
         public bool TryGetFeatureValue(InputFeatureUsage<Vector2> usage, out Vector2 value) { return Get(usage.name, out value); }

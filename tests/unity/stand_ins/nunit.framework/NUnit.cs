@@ -33,7 +33,6 @@ namespace NUnit.Framework
         public static void AreNotEqual(object expected, object actual) { Require(!Equals(expected, actual), "" + actual); }
         public static void IsTrue(bool condition, string message) { Require(condition, message); }
         public static void IsEmpty(string aString) { Require(aString.Length == 0, aString); }
-        public static void Fail(string message) { Require(false, message); }
         public static void Ignore(string message) { throw new IgnoreException(message); }
 
         private static void Require(bool isRight, string message)
