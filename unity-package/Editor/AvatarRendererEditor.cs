@@ -1,4 +1,6 @@
+using System;
 using System.Collections.Generic;
+using System.Linq;
 using UnityEditor;
 using UnityEngine;
 
@@ -9,7 +11,6 @@ namespace Mua.Editor
     internal sealed class AvatarRendererEditor : UnityEditor.Editor
     {
         private SerializedProperty clip;
-        private string[] clips = new string[0];
 
         private void OnEnable()
         {
@@ -45,15 +46,8 @@ namespace Mua.Editor
 
         private void ChooseClip(IReadOnlyList<string> names)
         {
-            if (clips.Length != names.Count)
-            {
-                clips = new List<string>(names).ToArray();
-            }
-            for (int i = 0; i < clips.Length; i++)
-            {
-                clips[i] = names[i];
-            }
-            int present = Mathf.Max(0, System.Array.IndexOf(clips, clip.stringValue));
+            string[] clips = names.ToArray();
+            int present = Mathf.Max(0, Array.IndexOf(clips, clip.stringValue));
             EditorGUI.BeginChangeCheck();
             int chosen = EditorGUILayout.Popup("Clip", present, clips);
             if (EditorGUI.EndChangeCheck())

@@ -56,7 +56,7 @@ namespace Mua.Format
             avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, avatar.Encoding.Rate);
             avatar.Bounds = Bounds(tree.Child("bounds"));
             avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
-            avatar.Surface = SurfaceDecoder.Decode(tree.Child("surface"), tensors, content, avatar.Texels);
+            avatar.Surface = rig.Surface(tree.Child("surface"), content, avatar.Texels);
             return avatar;
         }
 

@@ -2,7 +2,7 @@ using System;
 
 namespace Mua.Format
 {
-    /// <summary>Skeleton, template and texels of a parsed tree, checked as in python/mua/asset/read.py.</summary>
+    /// <summary>Skeleton, template, texels and surface of a parsed tree, checked as in python/mua/asset/read.py.</summary>
     internal sealed class RigDecoder
     {
         private const double UnitBound = 2e-3; // a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
@@ -126,6 +126,21 @@ namespace Mua.Format
             };
         }
 
+        /// <summary>Null where the file holds none.</summary>
+        public Surface Surface(Table tree, byte[] content, Texels texels)
+        {
+            if (tree == null)
+            {
+                return null;
+            }
+            Block block = tree.Block("runs");
+            var runs = new ArraySegment<byte>(content, block.Offset, block.Count);
+            RequireCodes(runs, texels);
+            Tensor strips = tensors.Indices(
+                tree.Child("strips"), "surface.strips", Format.Surface.End, 2L * texels.Count, Any);
+            return new Surface { Runs = runs, Strips = strips };
+        }
+
         /// <summary>Refuses quaternions that storage alone cannot have brought off unit length.</summary>
         public static void RequireUnit(Tensor quaternions, string path)
         {
@@ -192,6 +207,35 @@ namespace Mua.Format
                 {
                     throw Refusal.Of("texels.barycentrics", "{0:g3}, expected 0 to 1", least);
                 }
+            }
+        }
+
+        /// <summary>Refuses another number of codes than of blocks, or a triangle at a corner that is no texel.</summary>
+        private static void RequireCodes(ArraySegment<byte> runs, Texels texels)
+        {
+            var blocks = new BlockWalk(texels);
+            long codes = 0, count = 0;
+            bool isSound = true;
+            foreach (byte run in runs.AsSpan())
+            {
+                for (int left = run >> Format.Surface.RunShift; left >= 0 && blocks.Next(); left--)
+                {
+                    isSound &= blocks.Holds(run & Format.Surface.CodeMask);
+                    count++;
+                }
+                codes += (run >> Format.Surface.RunShift) + 1;
+            }
+            while (blocks.Next())
+            {
+                count++;
+            }
+            if (codes != count)
+            {
+                throw new AvatarFormatException("shape", "surface.runs", codes + " codes, expected " + count);
+            }
+            if (!isSound)
+            {
+                throw Refusal.Of("surface.runs", "a triangle has a corner that is no valid texel");
             }
         }
 

@@ -39,6 +39,7 @@ namespace Mua.Samples.VrPlayer
         /// <summary>Adds what keyboard and mouse ask for; nothing where there are none.</summary>
         public void Read(ref PlayerIntents intents)
         {
+#if MUA_NEW_INPUT || ENABLE_LEGACY_INPUT_MANAGER
             for (int i = 0; i < Keys.Length; i++)
             {
                 intents.Pressed |= WentDown(Keys[i]) ? Actions[i] : PlayerAction.None;
@@ -49,6 +50,7 @@ namespace Mua.Samples.VrPlayer
             intents.Scrub += Between(KeyName.LeftArrow, KeyName.RightArrow);
             intents.Zoom += Between(KeyName.DownArrow, KeyName.UpArrow) + ZoomOfNotch * Notches();
             intents.Look += DegreesPerPixel * Drag();
+#endif
         }
 
         private static float Between(KeyName less, KeyName more)
@@ -102,26 +104,6 @@ namespace Mua.Samples.VrPlayer
         private static Vector2 Drag()
         {
             return Input.GetMouseButton(1) ? (Vector2)Input.mousePositionDelta : Vector2.zero;
-        }
-#else
-        private static bool WentDown(KeyName key)
-        {
-            return false;
-        }
-
-        private static bool IsDown(KeyName key)
-        {
-            return false;
-        }
-
-        private static float Notches()
-        {
-            return 0;
-        }
-
-        private static Vector2 Drag()
-        {
-            return Vector2.zero;
         }
 #endif
     }

@@ -9,24 +9,11 @@ namespace UnityEngine
     [AttributeUsage(AttributeTargets.Field)] public sealed class TooltipAttribute : PropertyAttribute { public TooltipAttribute(string tooltip) { } }
     [AttributeUsage(AttributeTargets.Field)] public sealed class RangeAttribute : PropertyAttribute { public RangeAttribute(float min, float max) { } }
     [AttributeUsage(AttributeTargets.Field)] public sealed class MinAttribute : PropertyAttribute { public MinAttribute(float min) { } }
-    [AttributeUsage(AttributeTargets.Field)] public sealed class HeaderAttribute : PropertyAttribute { public HeaderAttribute(string header) { } }
-    [AttributeUsage(AttributeTargets.Field)] public sealed class SpaceAttribute : PropertyAttribute { public SpaceAttribute() { } }
-    [AttributeUsage(AttributeTargets.Field)] public sealed class TextAreaAttribute : PropertyAttribute { public TextAreaAttribute() { } }
     [AttributeUsage(AttributeTargets.Class)] public sealed class ExecuteAlways : Attribute { }
     [AttributeUsage(AttributeTargets.Class)] public sealed class DisallowMultipleComponent : Attribute { }
-    [AttributeUsage(AttributeTargets.Class)] public sealed class PreferBinarySerialization : Attribute { }
     [AttributeUsage(AttributeTargets.Class)] public sealed class AddComponentMenu : Attribute { public AddComponentMenu(string menuName) { } }
     [AttributeUsage(AttributeTargets.Class)] public sealed class DefaultExecutionOrder : Attribute { public DefaultExecutionOrder(int order) { } }
-    [AttributeUsage(AttributeTargets.Class)] public sealed class HelpURLAttribute : Attribute { public HelpURLAttribute(string url) { } }
     [AttributeUsage(AttributeTargets.Class, AllowMultiple = true)] public sealed class RequireComponent : Attribute { public RequireComponent(Type requiredComponent) { } }
-    [AttributeUsage(AttributeTargets.Method)] public sealed class ContextMenu : Attribute { public ContextMenu(string itemName) { } }
-
-    [AttributeUsage(AttributeTargets.Class)]
-    public sealed class CreateAssetMenuAttribute : Attribute
-    {
-        public string menuName { get; set; }
-        public int order { get; set; }
-    }
 
     public enum RuntimeInitializeLoadType { AfterSceneLoad, BeforeSceneLoad, AfterAssembliesLoaded, BeforeSplashScreen, SubsystemRegistration }
 
@@ -40,13 +27,7 @@ namespace UnityEngine
     }
 }
 
-namespace UnityEngine.Serialization
-{
-    [AttributeUsage(AttributeTargets.Field)] public sealed class FormerlySerializedAsAttribute : Attribute { public FormerlySerializedAsAttribute(string oldName) { } }
-}
-
 namespace UnityEngine.Scripting
 {
     [AttributeUsage(AttributeTargets.Assembly)] public class AlwaysLinkAssemblyAttribute : Attribute { }
-    [AttributeUsage(AttributeTargets.All)] public sealed class PreserveAttribute : Attribute { }
 }

@@ -110,5 +110,4 @@ namespace UnityEngine
     public sealed class MeshFilter : Component { public Mesh sharedMesh { get; set; } }
     public class Renderer : Component { public Material sharedMaterial { get; set; } public bool enabled { get; set; } }
     public sealed class MeshRenderer : Renderer { }
-    public class Animator : Behaviour { }
 }

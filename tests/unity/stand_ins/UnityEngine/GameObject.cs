@@ -76,8 +76,6 @@ namespace UnityEngine
     }
 
     public class YieldInstruction { }
-    public sealed class WaitForEndOfFrame : YieldInstruction { }
-    public sealed class WaitForSeconds : YieldInstruction { public WaitForSeconds(float seconds) { } }
     public class AsyncOperation : YieldInstruction { public virtual bool isDone { get { return true; } } public float progress { get { return 1; } } }
     public sealed class Coroutine : YieldInstruction { internal Stack<IEnumerator> Calls = new Stack<IEnumerator>(); }
 

@@ -94,16 +94,6 @@ namespace UnityEngine
             StandIns.Messages.Send(this, "OnDestroy");
         }
     }
-
-    public class TextAsset : Object
-    {
-        private readonly byte[] content;
-
-        public TextAsset(string text) { content = System.Text.Encoding.UTF8.GetBytes(text); }
-
-        public byte[] bytes { get { return (byte[])content.Clone(); } }
-        public string text { get { return System.Text.Encoding.UTF8.GetString(content); } }
-    }
 }
 
 namespace UnityEngine

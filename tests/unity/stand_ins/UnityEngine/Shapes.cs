@@ -39,13 +39,6 @@ namespace UnityEngine
         public static Color operator *(Color a, float b) { return new Color(a.r * b, a.g * b, a.b * b, a.a * b); }
     }
 
-    public struct Color32
-    {
-        public byte r, g, b, a;
-
-        public Color32(byte r, byte g, byte b, byte a) { this.r = r; this.g = g; this.b = b; this.a = a; }
-    }
-
     public struct Rect
     {
         public float x { get; set; }

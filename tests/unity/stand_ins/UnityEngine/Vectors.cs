@@ -26,20 +26,6 @@ namespace UnityEngine
         public override int GetHashCode() { return x.GetHashCode() ^ (y.GetHashCode() << 2); }
     }
 
-    public struct Vector2Int : IEquatable<Vector2Int>
-    {
-        public int x { get; set; }
-        public int y { get; set; }
-
-        public Vector2Int(int x, int y) : this() { this.x = x; this.y = y; }
-
-        public static bool operator ==(Vector2Int a, Vector2Int b) { return a.Equals(b); }
-        public static bool operator !=(Vector2Int a, Vector2Int b) { return !a.Equals(b); }
-        public bool Equals(Vector2Int other) { return x == other.x && y == other.y; }
-        public override bool Equals(object other) { return other is Vector2Int && Equals((Vector2Int)other); }
-        public override int GetHashCode() { return x * 73856093 ^ y * 83492791; }
-    }
-
     public struct Vector3 : IEquatable<Vector3>
     {
         public float x, y, z;
