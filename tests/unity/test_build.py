@@ -122,7 +122,7 @@ def test_brings_the_sample_and_packages_in_one_run(program: ProjectProgram, tmp_
 @pytest.mark.parametrize(
     ("state", "sentence"),
     [
-        ("absent", "package com.mua.avatar has no sample 'VR Player': install it anew"),
+        ("absent", "package com.mua.avatar has no sample 'VR Player': reinstall the package"),
         (
             "imported",
             "the sample 'VR Player' in Assets/Samples/MUA Avatar/0.1.0/VR Player has no "

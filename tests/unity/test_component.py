@@ -144,7 +144,7 @@ def test_a_file_without_a_surface_is_told_once_and_shows_the_rest(story: Story, 
     write(folder / "bare.muaavatar", synthetic_avatar(1), storage="f16")
     told = story("ShowsSparse", "bare")
     assert told["order"] == ["Hidden/MUA/Surface 1", "Hidden/MUA/Splat 0", "Hidden/MUA/Surface 2"]
-    sentence = "synthetic: Geometry: the file holds no surface; bake or train it again to see one"
+    sentence = "synthetic cannot show its Geometry: the file holds no surface to show; bake it again."
     assert [line.rpartition("MUA: ")[2] for line in told["log"]] == [sentence]
 
 
@@ -152,7 +152,7 @@ def test_splats_are_drawn_where_surfaces_cannot_be(story: Story) -> None:
     told = story("LacksSurface", "first")
     assert told["together"] == ["1 0"]
     assert len(told["log"]) == 1
-    assert "Shadow: the surface shader is missing" in told["log"][0]
+    assert "cannot show its Shadow: the surface shader is missing" in told["log"][0]
 
 
 def test_avatars_come_and_go(story: Story) -> None:
@@ -208,8 +208,8 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
         ("LacksKernel", "first", "splat_sort.compute"),
         ("LacksResources", "first", "MuaAvatarResources"),
         ("LacksCompute", "first", "compute shaders"),
-        ("LacksBuffers", "first", "4 buffers to a kernel"),
-        ("LacksVertexBuffers", "first", "4 buffers to a vertex shader"),
+        ("LacksBuffers", "first", "4 buffers in a compute kernel"),
+        ("LacksVertexBuffers", "first", "4 buffers in a vertex shader"),
         ("LacksMemory", "first", "4096"),
     ],
 )
@@ -298,4 +298,4 @@ def test_a_scale_is_refused_once(story: Story) -> None:
     told = story("IsScaled", "first")
     assert told["state"] == ["Ready"]
     assert len(told["log"]) == 1
-    assert "size in metres" in told["log"][0]
+    assert "avatars ignore" in told["log"][0]

@@ -76,7 +76,7 @@ def test_edit_mode_tests_say_that_the_golden_files_are_missing(story: Story, tmp
     for package in ("-", tmp_path):
         found = outcomes(story("EditMode", package=package))
         assert list(found) == ["GoldenFilesArePresent"]
-        assert "came without golden files" in found["GoldenFilesArePresent"]
+        assert "without the self-test's files" in found["GoldenFilesArePresent"]
 
 
 def test_edit_mode_tests_say_why_they_are_skipped(story: Story) -> None:
@@ -95,11 +95,11 @@ def test_the_menu_says_how_many_cases_passed(story: Story, answered: Callable[[S
     told = answered(story, "Menu")
     assert told["dialog"] == [f"{CASES} of {CASES} cases passed on stand-in."]
     assert told["Log"][-1] == f"MUA-SELFTEST editor PASS {CASES}/{CASES}"
-    assert story("Menu")["dialog"] == [f"0 of {CASES} cases passed on stand-in; the console says what failed."]
+    assert story("Menu")["dialog"] == [f"0 of {CASES} cases passed on stand-in; the console lists the others."]
 
 
 def test_the_menu_says_that_the_golden_files_are_missing(story: Story) -> None:
-    assert "came without golden files" in story("Menu", package="-")["dialog"][0]
+    assert "without the self-test's files" in story("Menu", package="-")["dialog"][0]
 
 
 def test_builds_of_the_player_hold_the_golden_files(story: Story, tmp_path: Path) -> None:
@@ -115,4 +115,4 @@ def test_builds_of_the_player_hold_the_golden_files(story: Story, tmp_path: Path
 def test_a_build_without_golden_files_says_so(story: Story) -> None:
     told = story("Builds", package="-")
     assert "of the player" not in told
-    assert "came without golden files" in told["Warning"][0]
+    assert "without the self-test's files" in told["Warning"][0]

@@ -163,7 +163,7 @@ def test_a_buffer_that_cannot_be_read_fails_its_case(story: Story) -> None:
 
 
 def test_a_device_without_compute_fails_once(story: Story) -> None:
-    assert story("LacksCompute").failed == {"device/compute": "stand-in (Vulkan) has no compute shaders"}
+    assert story("LacksCompute").failed == {"device/compute": "stand-in (Vulkan) does not support compute shaders"}
 
 
 def test_a_package_without_resources_fails_once(story: Story) -> None:

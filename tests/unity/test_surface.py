@@ -82,7 +82,7 @@ def test_triangles_and_those_about_each_texel_are_the_desktop_players(
 
 def test_a_file_without_a_surface_is_told_in_a_sentence(csharp: CSharp, surface_program: Path, tmp_path: Path) -> None:
     said = csharp.run(surface_program, "grid", ROOT / "tests" / "golden" / "synthetic.muaavatar", tmp_path / "grid")
-    assert said.strip() == "the file holds no surface; bake or train it again to see one"
+    assert said.strip() == "the file holds no surface to show; bake it again."
 
 
 @dataclass(frozen=True)

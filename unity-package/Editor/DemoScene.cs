@@ -39,7 +39,7 @@ namespace Mua.Editor
             Selection.activeObject = Fill(asset);
             if (!EditorSceneManager.SaveScene(scene, Location))
             {
-                Debug.LogError("MUA: " + Location + ": the demo scene could not be saved there.");
+                Debug.LogError("MUA: the demo scene could not be saved as " + Location + ".");
             }
         }
 

@@ -27,7 +27,7 @@ namespace Mua.Editor
             Sample[] found = Sample.FindByPackage(Package, "").Where(each => each.displayName == Name).ToArray();
             if (found.Length == 0)
             {
-                throw new BuildFailedException($"package {Package} has no sample '{Name}': install it anew");
+                throw new BuildFailedException($"package {Package} has no sample '{Name}': reinstall the package");
             }
             if (found[0].isImported)
             {

@@ -66,7 +66,8 @@ namespace Mua.Editor
         /// <summary>Adds packages where the user agrees; set-up for `target` goes on once they are there.</summary>
         public static ProjectOutcome Ask(IReadOnlyList<string> names, BuildTarget target)
         {
-            string question = $"A headset needs packages that this project lacks:\n\n{string.Join("\n", names)}\n\nAdd them?";
+            string list = string.Join("\n", names);
+            string question = $"The headset needs packages that are not in this project:\n\n{list}\n\nAdd them?";
             if (!EditorUtility.DisplayDialog("MUA", question, "Add", "Cancel"))
             {
                 foreach (string name in names)

@@ -94,7 +94,7 @@ namespace Mua.Editor
         {
             if (EditorApplication.isPlayingOrWillChangePlaymode)
             {
-                Debug.LogError("MUA: a project cannot be set up while it plays: leave play mode first.");
+                Debug.LogError("MUA: leave play mode before setting up the project.");
                 return ProjectOutcome.Failed;
             }
             IReadOnlyList<string> missing = ProjectPackages.Missing();

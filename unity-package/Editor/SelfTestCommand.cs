@@ -27,7 +27,7 @@ namespace Mua.Editor
             {
             }
             string sentence = test.Passed + " of " + test.Total + " cases passed on " + SystemInfo.graphicsDeviceName;
-            EditorUtility.DisplayDialog(Title, sentence + (test.HasPassed ? "." : "; the console says what failed."), "OK");
+            EditorUtility.DisplayDialog(Title, sentence + (test.HasPassed ? "." : "; the console lists the others."), "OK");
         }
     }
 
@@ -45,7 +45,7 @@ namespace Mua.Editor
             string folder = GoldenFolder.Find(GoldenFile.Stems[0] + Endings[0]);
             if (folder == null)
             {
-                Debug.LogWarning("MUA: the player cannot test its kernels: " + GoldenFolder.Missing);
+                Debug.LogWarning("MUA: the build cannot run the self-test: " + GoldenFolder.Missing);
                 return;
             }
             foreach (string stem in GoldenFile.Stems)

@@ -72,7 +72,7 @@ namespace Mua
         {
             if (refusal != null)
             {
-                Fail(Name + " beside the other avatars: " + refusal);
+                Fail(Name + " does not fit beside the other avatars: " + refusal);
             }
             if (State != AvatarState.Loading)
             {
@@ -99,11 +99,11 @@ namespace Mua
             if (!isScaleReported && !AvatarSpace.IsRigid(owner.transform.lossyScale))
             {
                 isScaleReported = true;
-                Warn("the GameObject is scaled by " + owner.transform.lossyScale + "; an avatar keeps its size in metres.");
+                Warn("the GameObject has the scale " + owner.transform.lossyScale + ", which avatars ignore; set it to 1.");
             }
             if (motion.LosesRig())
             {
-                Warn("the transforms of its pose were destroyed.");
+                Warn("the rig that posed the avatar was destroyed; a clip plays in its place.");
             }
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
             Surface.CastShadow(Views, Bounds, Layer);
@@ -206,7 +206,7 @@ namespace Mua
             chosen = owner.Clip;
             if (!Playback.Choose(chosen) && !string.IsNullOrEmpty(chosen))
             {
-                Warn("the avatar has no clip " + chosen + "; it has " + string.Join(", ", Playback.Names) + ".");
+                Warn("the avatar has no clip " + chosen + "; its clips are " + string.Join(", ", Playback.Names) + ".");
             }
         }
 

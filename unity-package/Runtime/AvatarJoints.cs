@@ -38,8 +38,8 @@ namespace Mua
             if (found == 0 || joints[skeleton.Root] == null)
             {
                 throw new InvalidOperationException(
-                    "no transform below " + root.name + " is named " + skeleton.Names[skeleton.Root]
-                    + ", the avatar's root joint; give the root of the rig that the avatar was made from.");
+                    "no active GameObject below " + root.name + " is named " + skeleton.Names[skeleton.Root]
+                    + ", the avatar's root joint; assign the root of the rig that the avatar was baked from.");
             }
             Missing = found == joints.Length ? "" : DescribeMissing(joints.Length - found);
         }
@@ -107,8 +107,8 @@ namespace Mua
                     names.Add(skeleton.Names[joint]);
                 }
             }
-            return "below " + root.name + " " + count + " of " + joints.Length + " joints have no transform and keep their bind pose: "
-                + string.Join(", ", names) + (count > names.Count ? ", ..." : "");
+            return "the rig " + root.name + " lacks " + count + " of the avatar's " + joints.Length
+                + " joints, which keep their bind pose: " + string.Join(", ", names) + (count > names.Count ? ", ..." : "");
         }
     }
 }

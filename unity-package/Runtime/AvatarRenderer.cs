@@ -52,7 +52,8 @@ namespace Mua
         [SerializeField, Tooltip("The imported avatar to show.")]
         private AvatarAsset avatar = null;
 
-        [SerializeField, Tooltip("Path of a .muaavatar file to load at run time if Avatar is empty: a full path, or one in persistentDataPath or StreamingAssets.")]
+        [SerializeField]
+        [Tooltip("If Avatar is empty, a .muaavatar file: a full path, or one in persistentDataPath or StreamingAssets.")]
         private string file = "";
 
         [SerializeField, Tooltip("Root of a rig whose transforms pose the avatar; if empty, a clip of the avatar plays.")]
@@ -64,7 +65,7 @@ namespace Mua
         [SerializeField, Tooltip("Playback speed; 1 plays the clip at its recorded speed.")]
         private float speed = 1;
 
-        [SerializeField]
+        [SerializeField, Tooltip("What is drawn: splats, their surface as geometry, the coarse mesh, its bones, its shadow.")]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
 
         private AvatarInstance shown; // null while there is nothing to show
@@ -80,10 +81,10 @@ namespace Mua
         /// <summary>Why there is nothing to see, or what is wrong with the pose; empty where all is well.</summary>
         public string Message => shown == null ? "" : shown.Message;
 
-        /// <summary>Of loading, from 0 to 1.</summary>
+        /// <summary>How much is loaded, from 0 to 1.</summary>
         public float Progress => shown == null ? 0 : shown.Progress;
 
-        /// <summary>The file's name for the avatar; empty until it is ready.</summary>
+        /// <summary>Name that the file gives the avatar; empty until it is ready.</summary>
         public string AvatarName => shown == null ? "" : shown.Name;
 
         /// <summary>Names of the avatar's clips.</summary>
@@ -96,7 +97,7 @@ namespace Mua
             set => Playback.Index = value;
         }
 
-        /// <summary>Whether the clip goes on by itself.</summary>
+        /// <summary>Whether the clip plays; if not, it stays at Seconds.</summary>
         public bool IsPlaying { get; set; } = true;
 
         /// <summary>Playback speed; 1 plays at the recorded speed.</summary>
@@ -123,7 +124,7 @@ namespace Mua
         /// <summary>Frames of the clip at the avatar's rate.</summary>
         public int FrameCount => Playback.FrameCount;
 
-        /// <summary>Transforms that give the pose, or null where a clip does.</summary>
+        /// <summary>Root of a rig whose transforms pose the avatar; null if a clip does.</summary>
         public Transform Rig
         {
             get => rig;
@@ -134,6 +135,7 @@ namespace Mua
             }
         }
 
+        /// <summary>What is drawn of the avatar.</summary>
         public AvatarViews Views
         {
             get => views;

@@ -66,16 +66,16 @@ namespace Mua
             string missing = null;
             if (!SystemInfo.supportsComputeShaders)
             {
-                missing = "has no compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";
+                missing = "does not support compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";
             }
             else if (SystemInfo.maxComputeBufferInputsCompute < BuffersOfKernel)
             {
-                missing = "binds " + SystemInfo.maxComputeBufferInputsCompute + " buffers to a kernel; MUA needs "
+                missing = "allows " + SystemInfo.maxComputeBufferInputsCompute + " buffers in a compute kernel; MUA needs "
                     + BuffersOfKernel + ".";
             }
             else if (SystemInfo.maxComputeBufferInputsVertex < BuffersOfVertex)
             {
-                missing = "binds " + SystemInfo.maxComputeBufferInputsVertex + " buffers to a vertex shader; MUA needs "
+                missing = "allows " + SystemInfo.maxComputeBufferInputsVertex + " buffers in a vertex shader; MUA needs "
                     + BuffersOfVertex + ".";
             }
             if (missing != null)

@@ -102,7 +102,7 @@ namespace Mua
             {
                 refused |= view;
                 AvatarWorld.Report(
-                    frame.Avatar.Avatar.Name + ": " + view + ": " + error.GetBaseException().Message, null);
+                    frame.Avatar.Avatar.Name + " cannot show its " + view + ": " + error.GetBaseException().Message, null);
                 return false;
             }
         }

@@ -40,7 +40,7 @@ namespace Mua
         /// <summary>Splats that are sorted together.</summary>
         public int SplatCount => splats == null ? 0 : splats.SplatCount;
 
-        /// <summary>Takes an avatar whose buffers are on the device. InvalidOperationException says what the package lacks.</summary>
+        /// <summary>Takes an avatar whose buffers are on the device. InvalidOperationException: the package lacks a shader.</summary>
         public static void Add(AvatarInstance avatar, AvatarResources resources)
         {
             if (Current == null)
@@ -52,7 +52,8 @@ namespace Mua
             RenderPipelineAsset pipeline = GraphicsSettings.currentRenderPipeline;
             if (pipeline != null && pipeline.GetType().Name != Universal)
             {
-                Report(pipeline.GetType().Name + " draws no avatars; URP and the built-in render pipeline do.", pipeline);
+                Report(
+                    pipeline.GetType().Name + " cannot draw avatars; use URP or the built-in render pipeline.", pipeline);
             }
         }
 

@@ -55,7 +55,7 @@ namespace Mua
             {
                 throw new InvalidOperationException(
                     "the buffer " + name + " needs " + bytes + " bytes; " + SystemInfo.graphicsDeviceName
-                    + " holds at most " + most + " in one.");
+                    + " allows at most " + most + " in a buffer.");
             }
             var buffer = new GraphicsBuffer(target, (int)held, stride) { name = "MUA " + name };
             buffers.Add(buffer);

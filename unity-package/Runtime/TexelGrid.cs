@@ -31,7 +31,7 @@ namespace Mua
         {
             if (avatar.Surface == null)
             {
-                throw new InvalidOperationException("the file holds no surface; bake or train it again to see one");
+                throw new InvalidOperationException("the file holds no surface to show; bake it again.");
             }
             return new TexelGrid(avatar.Surface.Triangles(avatar.Texels), avatar.Texels.Count);
         }

@@ -17,7 +17,7 @@ namespace Mua.SelfTest
 #if UNITY_EDITOR
         /// <summary>What is wrong where Find finds nothing.</summary>
         public const string Missing =
-            "com.mua.avatar came without golden files; install it from its tarball or from a folder of the repository.";
+            "com.mua.avatar was installed without the self-test's files; install it from its tarball or from a clone.";
 
         /// <summary>In a tarball all lie together; in the repository, kernels' and avatars' lie apart.</summary>
         private static readonly string[] Places = { "Tests/Golden~", "../tests/parity/golden", "../tests/golden" };

@@ -110,7 +110,7 @@ namespace Mua.SelfTest
                 problems.Add(SystemInfo.supportsComputeShaders
                     ? "device/resources: Runtime/Resources/MuaAvatarResources of com.mua.avatar is missing"
                     : "device/compute: " + SystemInfo.graphicsDeviceName + " (" + SystemInfo.graphicsDeviceType
-                        + ") has no compute shaders");
+                        + ") does not support compute shaders");
             }
             return resources;
         }

@@ -9,7 +9,7 @@ namespace Mua.Samples.PosedByRig
     [RequireComponent(typeof(AvatarRenderer))]
     public sealed class PosedByRig : MonoBehaviour
     {
-        [SerializeField, Tooltip("Root of the character that the avatar was made from, with joints of the same names.")]
+        [SerializeField, Tooltip("Root of the rigged character that the avatar was baked from; joints are found by name.")]
         private Transform rig = null;
 
         private AvatarRenderer avatar;

@@ -70,7 +70,7 @@ namespace Mua.Samples.VrPlayer
 #if MUA_META_OPENXR && (UNITY_ANDROID || UNITY_EDITOR_WIN)
             if (!display.TryRequestDisplayRefreshRate(WantedRate))
             {
-                Debug.LogWarning("MUA: the headset does not take a display rate of " + WantedRate + " Hz; it keeps its own.");
+                Debug.LogWarning("MUA: the headset refused a display rate of " + WantedRate + " Hz and keeps its own.");
             }
 #endif
         }

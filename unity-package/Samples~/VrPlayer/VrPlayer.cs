@@ -16,13 +16,14 @@ namespace Mua.Samples.VrPlayer
         [SerializeField] private TextMesh panel = null;
         [SerializeField] private GameObject help = null;
 
-        [SerializeField, Tooltip("Imported avatars; they come after the files that the player finds.")]
+        [SerializeField, Tooltip("Imported avatars, listed after the files that the player finds.")]
         private AvatarAsset[] avatars = new AvatarAsset[0];
 
         [SerializeField, Tooltip("Display refresh rate of the headset in Hz: 72 or 90. Needs com.unity.xr.meta-openxr.")]
         private float displayRate = 72;
 
-        [SerializeField, Range(0, 1), Tooltip("Foveated rendering on a headset: 0 draws everything at full resolution, 1 saves the most.")]
+        [SerializeField, Range(0, 1)]
+        [Tooltip("Foveated rendering on a headset: 0 draws everything at full resolution, 1 saves the most.")]
         private float foveation = 0.5f;
 
         private readonly AvatarShelf shelf = new AvatarShelf();
