@@ -9,11 +9,16 @@ if workers := os.environ.get("PYTEST_XDIST_WORKER_COUNT"):  # before torch: each
     os.environ.setdefault("OMP_NUM_THREADS", str(max(1, (os.cpu_count() or 1) // int(workers))))
 
 import pytest
+from commands import Commands, Ended
 from shared_data import SharedData
+from synthetic_avatar import synthetic_avatar
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua.asset import write
 
 if TYPE_CHECKING:
+    from trainings import Training
+
     from mua.compare.system import TrainingFrames
     from mua.gpu import Device
     from mua.recording import Recording
@@ -39,6 +44,50 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("recordings") / "undisturbed"
     write(directory)
     return directory
+
+
+@pytest.fixture
+def avatar_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The synthetic avatar, a.muaavatar."""
+    path = tmp_path_factory.mktemp("avatar") / "a.muaavatar"
+    write(path, synthetic_avatar())
+    return path
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Commands:
+    """Runs commands in this process."""
+    return Commands(monkeypatch, capsys)
+
+
+@pytest.fixture
+def mua_train(command: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> "Training":
+    """mua-train with a small preset: of a recording, with options, to a.muaavatar if no other output is given."""
+    import trainings  # here, because few tests need torch
+
+    trainings.be_small(monkeypatch)
+
+    def train(recording: Path, *more: object, output: Path = tmp_path / "a.muaavatar") -> Ended:
+        return command("train", *trainings.arguments(recording, output), *more)
+
+    return train
+
+
+@pytest.fixture(scope="session")
+def trained(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The avatar that mua-train makes of `written`, its working files beside it; tests leave them as they are."""
+    import trainings
+
+    from mua.cli import train
+
+    output = tmp_path_factory.mktemp("trained") / "new" / "a.muaavatar"
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        trainings.be_small(monkeypatch)
+        monkeypatch.setattr("sys.argv", ["mua-train", *trainings.arguments(written, output)])
+        with pytest.raises(SystemExit) as ended:
+            train.run()
+    assert not ended.value.code
+    return output
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ import torch
 from recordings import FormulaTeacher, clip
 from rich.console import Console
 from synthetic_avatar import synthetic_rig
-from trainings import STAGE_NAMES, mua_train, sentence
+from trainings import STAGE_NAMES, Training
 
 from mua.asset import read
 from mua.baking.report import UNSAID
@@ -19,15 +19,6 @@ from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record
 from mua.student import distil, source
 from mua.student.settings import STAGES
-
-
-@pytest.fixture(scope="module")
-def trained(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The avatar of an undisturbed training."""
-    output = tmp_path_factory.mktemp("trained") / "new" / "a.muaavatar"
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        assert mua_train(monkeypatch, written, output) == 0
-    return output
 
 
 def test_leaves_an_avatar_of_the_recordings_texture_size(trained: Path) -> None:
@@ -46,10 +37,9 @@ def test_figures_claim_no_more_of_the_teacher_than_is_known(trained: Path) -> No
 
 
 def test_an_unknown_clip_to_store_is_named_before_anything_is_trained(
-    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    written: Path, tmp_path: Path, mua_train: Training
 ) -> None:
-    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar", "--clips", "jump") == 1
-    assert "--clips jump: there is no such clip, only walk" in sentence(capsys.readouterr().err)
+    assert "--clips jump: there is no such clip, only walk" in mua_train(written, "--clips", "jump").sentence
     assert list(tmp_path.iterdir()) == []
 
 
@@ -58,74 +48,52 @@ def test_leaves_nothing_half_written(trained: Path) -> None:
 
 
 def test_stages_one_by_one_end_in_the_same_bytes(
-    written: Path, trained: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    written: Path, trained: Path, tmp_path: Path, mua_train: Training
 ) -> None:
-    output = tmp_path / "a.muaavatar"
     for stage in reversed(STAGES):  # out of order: each but the coarse mesh needs the one before it
-        status = mua_train(monkeypatch, written, output, "--stage", stage)
-        assert status == (0 if stage in ("coarse", "bases") else 1), stage
-    assert mua_train(monkeypatch, written, output, "--stage", "fine-tuning") == 1  # bases alone are not enough
+        ended = mua_train(written, "--stage", stage)
+        if stage in ("coarse", "bases"):
+            assert ended.status == 0
+        else:
+            assert f"--stage {stage}" in ended.sentence
+            assert "'geometry bases'" in ended.sentence
+            assert "run --stage bases first" in ended.sentence
+    assert mua_train(written, "--stage", "fine-tuning").status == 1  # bases alone are not enough
     for stage in ("regression", "fine-tuning"):
-        assert mua_train(monkeypatch, written, output, "--stage", stage) == 0
-        assert not output.exists()
-    assert mua_train(monkeypatch, written, output) == 0
-    assert output.read_bytes() == trained.read_bytes()
+        assert mua_train(written, "--stage", stage).status == 0
+        assert not (tmp_path / "a.muaavatar").exists()
+    assert mua_train(written).status == 0
+    assert (tmp_path / "a.muaavatar").read_bytes() == trained.read_bytes()
 
 
-@pytest.mark.parametrize(("stage", "lacking"), [("regression", "bases"), ("fine-tuning", "bases")])
-def test_a_stage_names_what_it_needs(
-    written: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    stage: str,
-    lacking: str,
-) -> None:
-    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar", "--stage", stage) == 1
-    told = sentence(capsys.readouterr().err)
-    assert f"--stage {stage}" in told
-    assert f"'geometry {lacking}'" in told
-    assert f"run --stage {lacking} first" in told
+def test_the_papers_recipe_has_two_stages(written: Path, mua_train: Training) -> None:
+    refused = mua_train(written, "--recipe", "paper", "--stage", "bases")
+    assert "expected coarse or fine-tuning" in refused.sentence
 
 
-def test_the_papers_recipe_has_two_stages(
-    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    output = tmp_path / "a.muaavatar"
-    assert mua_train(monkeypatch, written, output, "--recipe", "paper", "--stage", "bases") == 1
-    assert "expected coarse or fine-tuning" in sentence(capsys.readouterr().err)
-
-
-def test_a_repeated_command_repeats_no_step(
-    written: Path, trained: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_repeated_command_repeats_no_step(written: Path, trained: Path, mua_train: Training) -> None:
     before = trained.read_bytes()
-    assert mua_train(monkeypatch, written, trained) == 0
-    told = capsys.readouterr().out.splitlines()
+    told = mua_train(written, output=trained).out.splitlines()
     assert "avatar" in told
     assert not set(told) & set(STAGE_NAMES)
     assert trained.read_bytes() == before
 
 
-def test_a_recording_without_whole_frames_gives_an_avatar_and_says_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_recording_without_whole_frames_gives_an_avatar_and_says_so(tmp_path: Path, mua_train: Training) -> None:
     rig = synthetic_rig()
     planned = PlannedClip(clip(rig, "walk", 6), held_out=False, wanted=frozenset(range(6)), whole=frozenset())
     with TeacherWriter(tmp_path / "recording", rig, rate=24.0) as writer:
         record(FormulaTeacher(rig), [planned], writer)
-    assert mua_train(monkeypatch, tmp_path / "recording", tmp_path / "a.muaavatar") == 0
-    assert "keeps no frame whole" in capsys.readouterr().out
+    assert "keeps no frame whole" in mua_train(tmp_path / "recording").out
     assert read(tmp_path / "a.muaavatar").thumbnail
     assert {path.name for path in tmp_path.iterdir()} == {"recording", "a.muaavatar", "a.work"}
 
 
 def test_a_gpu_that_is_not_there_is_named(
-    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training
 ) -> None:
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar", "--device", "cuda") == 1
-    assert "--device cuda" in sentence(capsys.readouterr().err)
+    assert "--device cuda" in mua_train(written, "--device", "cuda").sentence
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,27 +1,18 @@
 """Shells complete options and choices of every command, and help shows choices as choices."""
 
-import os
-import subprocess
-import sys
-
 import pytest
+from commands import process
 
 from mua.compare.order import SYSTEM_NAMES
 from mua.compare.systems import SYSTEMS
 from mua.student.settings import PRESETS, RECIPES
 
 
-def run(name: str, *arguments: str, **environment: str) -> str:
-    code = f"import sys; sys.argv[0] = 'mua-{name}'; from mua.cli.{name} import run; run()"
-    line = [sys.executable, "-c", code, *arguments]
-    return subprocess.run(line, capture_output=True, text=True, check=True, env={**os.environ, **environment}).stdout
-
-
 def completed(name: str, words: str) -> list[str]:
     """What bash offers for the last of some words."""
     variable = f"_MUA_{name.upper()}_COMPLETE"
     place = str(len(words.split()) - (not words.endswith(" ")))
-    return run(name, **{variable: "complete_bash", "COMP_WORDS": words, "COMP_CWORD": place}).split()
+    return process(name, **{variable: "complete_bash", "COMP_WORDS": words, "COMP_CWORD": place}).out.split()
 
 
 def test_a_shell_completes_options() -> None:
@@ -39,7 +30,7 @@ def test_a_shell_completes_options() -> None:
 )
 def test_choices_are_offered_and_shown(name: str, option: str, choices: tuple[str, ...]) -> None:
     assert completed(name, f"mua-{name} {option} ") == list(choices)
-    shown = run(name, "--help", COLUMNS="250")
+    shown = process(name, "--help", COLUMNS="250").out
     assert "|".join(choices) in shown or ", ".join(choices) in shown
 
 
@@ -48,4 +39,4 @@ def test_the_choices_are_those_that_there_are() -> None:
 
 
 def test_the_script_for_a_shell_is_printed() -> None:
-    assert "_MUA_INSPECT_COMPLETE" in run("inspect", "--show-completion", "zsh")
+    assert "_MUA_INSPECT_COMPLETE" in process("inspect", "--show-completion", "zsh").out

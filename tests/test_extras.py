@@ -2,18 +2,16 @@
 
 import ast
 import re
-import subprocess
 import sys
 import tomllib
 from functools import cache
 from pathlib import Path
 
 import pytest
+from commands import Ended, python
 from PIL import Image
-from synthetic_avatar import synthetic_avatar
 
 import mua
-from mua.asset import write
 from mua.extras import EXTRAS, OF_COMMAND, missing_package
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -98,31 +96,22 @@ def test_a_commands_extra_brings_all_that_it_may_import(name: str) -> None:
     assert reached(f"mua.cli.{name}") - BASE <= (brought(extra) if extra in EXTRAS else set()) | few
 
 
-def run_bare(code: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+def run_bare(code: str, *arguments: str | Path) -> Ended:
     """Python code in a process that finds no package of any extra."""
     absent = sorted(set().union(*EXTRAS.values()))
-    line = [sys.executable, "-c", f"import sys\nsys.modules |= dict.fromkeys({absent})\n{code}", *map(str, arguments)]
-    return subprocess.run(line, capture_output=True, text=True, check=False)
+    return python(f"sys.modules |= dict.fromkeys({absent})\n{code}", *arguments)
 
 
 @pytest.mark.parametrize("module", ["mua.asset", "mua.decode", "mua.rendering", "mua.cli.inspect"])
 def test_reading_and_picturing_on_the_cpu_need_no_extra(module: str) -> None:
-    ended = run_bare(f"import {module}")
-    assert (ended.returncode, ended.stderr) == (0, "")
-
-
-@pytest.fixture
-def avatar_file(tmp_path: Path) -> Path:
-    path = tmp_path / "a.muaavatar"
-    write(path, synthetic_avatar())
-    return path
+    assert run_bare(f"import {module}") == Ended(0, "", "")
 
 
 def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) -> None:
     picture = tmp_path / "a.png"
     code = "sys.argv[0] = 'mua-view'\nfrom mua.cli.view import run\nrun()"
     ended = run_bare(code, avatar_file, "--reference", "--size", "32", "-o", picture)
-    assert (ended.returncode, ended.stderr) == (0, "")
+    assert (ended.status, ended.err) == (0, "")
     with Image.open(picture) as image:
         assert image.size == (32, 32)
 
@@ -134,10 +123,10 @@ def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, writ
     ended = run_bare(code, *given.get(name, (avatar_file,)))
     told = re.fullmatch(
         r'error: mua-(\w+) needs the Python package (\w+), which is not here: pip install "mua\[(\w+)\]"\n',
-        ended.stderr,
+        f"{ended.sentence}\n",
     )
-    assert told, ended.stderr
-    assert (ended.returncode, ended.stdout) == (1, "")
+    assert told, ended
+    assert ended.out == ""
     assert (told[1], told[3]) == (name, OF_COMMAND.get(f"mua-{name}", name))
     assert told[2] in EXTRAS[told[3]]
 
@@ -156,7 +145,7 @@ def test_a_function_that_lacks_an_extra_names_it(call: str, extra: str, written:
     ended = run_bare(f"import mua\ntry:\n    {call}\nexcept ModuleNotFoundError as error:\n    print(error)", written)
     assert re.fullmatch(
         rf'{call.partition("(")[0]} needs the Python package \w+, which is not here: pip install "mua\[{extra}\]"\n',
-        ended.stdout,
+        ended.out,
     ), ended
 
 

@@ -1,65 +1,52 @@
 """mua-inspect prints what a file holds and refuses a broken one in a sentence."""
 
 import json
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from commands import Ended, process
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
 
 
-def inspect(*arguments: str, columns: str | None = "160") -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from mua.cli.inspect import run; run()", *arguments]
-    environment = {"PYTHONPATH": os.pathsep.join(sys.path)} | ({"COLUMNS": columns} if columns else {})
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-
-
-@pytest.fixture
-def avatar_file(tmp_path: Path) -> Path:
-    path = tmp_path / "a.muaavatar"
-    write(path, synthetic_avatar())
-    return path
+def inspect(*arguments: object, columns: str = "160") -> Ended:
+    return process("inspect", *arguments, COLUMNS=columns)
 
 
 def test_shows_skeleton_texels_ranks_costs_and_clips(avatar_file: Path) -> None:
-    shown = inspect(str(avatar_file))
-    assert shown.returncode == 0
+    shown = inspect(avatar_file)
+    assert shown.status == 0
     for text in ("3 joints, root root", "of 32 x 32", "4 3 2", "M parameters", "GFLOPs", "wave", "bior4.4"):
-        assert text in shown.stdout
+        assert text in shown.out
 
 
 def test_verify_accepts_a_sound_file(avatar_file: Path) -> None:
-    verified = inspect("--verify", str(avatar_file))
-    assert (verified.returncode, "sound" in verified.stdout) == (0, True)
+    verified = inspect("--verify", avatar_file)
+    assert (verified.status, "sound" in verified.out) == (0, True)
 
 
 def test_verify_refuses_a_damaged_file_in_one_sentence(avatar_file: Path) -> None:
     content = bytearray(avatar_file.read_bytes())
     content[-9] ^= 1
     avatar_file.write_bytes(content)
-    refused = inspect("--verify", str(avatar_file))
-    assert refused.returncode == 1
-    assert refused.stderr.startswith(f"error: {avatar_file}: ")
-    assert refused.stderr.count("\n") == 1
+    assert inspect("--verify", avatar_file).sentence.startswith(f"error: {avatar_file}: ")
 
 
-def test_is_printed_whole_into_a_pipe(tmp_path: Path) -> None:
+def test_is_printed_whole_into_a_pipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
     path = tmp_path / ("long_" * 20 + ".muaavatar")
     notes = "a sentence of a teacher [simulated] " * 12
     write(path, replace(synthetic_avatar(), notes=notes.strip()))
-    shown = inspect(str(path), columns=None).stdout
+    shown = process("inspect", path).out
     assert notes.strip() in shown
     assert str(path) in shown
     assert "…" not in shown
 
 
 def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(avatar_file: Path) -> None:
-    held = json.loads(inspect("--json", str(avatar_file)).stdout)
+    held = json.loads(inspect("--json", avatar_file).out)
     guide = (Path(__file__).parents[1] / "docs" / "inspect.md").read_text()
     table = "".join(line for line in guide.splitlines() if line.startswith("| `"))
     for name, value in held.items():
@@ -70,19 +57,19 @@ def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
     assert held["clips"] == [{"name": "wave", "frames": 7, "rate": 24.0, "seconds": 7 / 24}]
     assert (held["bytes"], held["file"]) == (avatar_file.stat().st_size, str(avatar_file))
     assert held["ranks"] == {"geometry": [4, 3, 2], "appearance": [4, 3, 2]}
-    shown = inspect(str(avatar_file)).stdout
+    shown = inspect(avatar_file).out
     for number in (*held["bytes_by_part"].values(), *held["parameters"].values()):
         assert f"{number:,}" in shown
 
 
 def test_json_and_verify_are_one_or_the_other(avatar_file: Path) -> None:
-    refused = inspect("--json", "--verify", str(avatar_file))
-    assert (refused.returncode, refused.stdout) == (1, "")
-    assert refused.stderr.startswith("error: --json and --verify are both given")
+    refused = inspect("--json", "--verify", avatar_file)
+    assert refused.sentence.startswith("error: --json and --verify are both given")
+    assert refused.out == ""
 
 
 def test_a_file_without_clips_says_so(tmp_path: Path) -> None:
     path = tmp_path / "still.muaavatar"
     write(path, replace(synthetic_avatar(), clips=()))
-    assert "It holds no clips." in inspect(str(path)).stdout
-    assert json.loads(inspect("--json", str(path)).stdout)["clips"] == []
+    assert "It holds no clips." in inspect(path).out
+    assert json.loads(inspect("--json", path).out)["clips"] == []

@@ -1,10 +1,8 @@
 """The pages keep their word: links lead somewhere, files that they name are there, commands take what they show."""
 
-import importlib
 import os
 import re
 import shlex
-import sys
 import tomllib
 from collections import Counter
 from functools import cache
@@ -12,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import typer.core
+from commands import Commands
 
 ROOT = Path(__file__).resolve().parents[1]
 SCRIPTS = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]["scripts"]
@@ -94,16 +93,14 @@ def test_tools_have_the_options_that_are_shown(path: str) -> None:
 
 @pytest.mark.parametrize(("name", "words", "path"), SHOWN, ids=[f"mua-{name}{words}" for name, words, _ in SHOWN])
 def test_commands_take_what_is_shown(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, words: str, path: str
+    monkeypatch: pytest.MonkeyPatch, command: Commands, name: str, words: str, path: str
 ) -> None:
     """Options exist and take such values; arguments and a last value may be left out, as in a sentence about one."""
-    module, function = SCRIPTS[f"mua-{name}"].split(":")
-    monkeypatch.setattr(sys, "argv", [f"mua-{name}", *shlex.split(words)])
+    assert SCRIPTS[f"mua-{name}"] == f"mua.cli.{name}:run"
     monkeypatch.setattr(typer.core.TyperCommand, "invoke", lambda *_: 0)  # what was understood is not done
-    with pytest.raises(SystemExit) as ended:
-        getattr(importlib.import_module(module), function)()
-    said = " ".join(capsys.readouterr().err.split())
-    enough = ended.value.code == 0 or "Missing " in said or "requires an argument" in said
+    ended = command(name, *shlex.split(words))
+    said = " ".join(ended.err.split())
+    enough = ended.status == 0 or "Missing " in said or "requires an argument" in said
     assert enough, f"{path}: mua-{name}{words}: {said}"
 
 

@@ -390,11 +390,6 @@ def test_holds_distance_and_elevation() -> None:
     np.testing.assert_allclose(framed.camera(screen).view, orbit(bounds, screen=screen).view, atol=1e-12)
 
 
-def test_loads_no_window_system_before_there_is_a_display() -> None:
-    code = "import sys, mua.player.window; sys.exit(bool({'imgui_bundle', 'glfw'} & set(sys.modules)))"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
 def test_says_that_there_is_no_display(files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("DISPLAY", raising=False)

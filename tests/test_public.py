@@ -1,8 +1,6 @@
 """The names of `import mua`: what they take, what they refuse, and what they load."""
 
 import ast
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import python
 from synthetic_avatar import synthetic_avatar
 
 import mua
@@ -296,7 +295,6 @@ def _is_record_of_arrays(node: ast.ClassDef) -> bool:
 
 
 ALONE = """
-import sys
 ALLOWED = {*sys.stdlib_module_names, "mua", "numpy", "flatbuffers", "PIL"}
 
 class Absent:
@@ -317,7 +315,6 @@ print(loaded)
 def test_reading_decoding_and_a_picture_need_three_packages_alone(tmp_path: Path) -> None:
     file, picture = tmp_path / "a.muaavatar", tmp_path / "a.png"
     mua.save(file, AVATAR)
-    told = subprocess.run([sys.executable, "-c", ALONE, file, picture], capture_output=True, text=True, check=False)
-    assert told.returncode == 0, told.stderr
+    ended = python(ALONE, file, picture)
+    assert (ended.status, ended.out.strip()) == (0, "[]"), f"importing mua loads what is not asked for\n{ended.err}"
     assert picture.is_file()
-    assert told.stdout.strip() == "[]", "importing mua loads what is not asked for"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from examples import load_example
 from PIL import Image
-from trainings import mua_train, sentence
+from trainings import Training
 
 from mua import rotation
 from mua.baking.frames_picture import CAPTION, CELL
@@ -43,11 +43,10 @@ def doubts(recording: Recording) -> list[str]:
 
 
 def test_says_what_is_there_and_leaves_a_picture_of_three_frames_and_nothing_else(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, mua_train: Training
 ) -> None:
     recorded(tmp_path / "recording")
-    assert mua_train(monkeypatch, tmp_path / "recording", tmp_path / "a.muaavatar", "--check") == 0
-    told = capsys.readouterr().out
+    told = mua_train(tmp_path / "recording", "--check").out
     for part in (
         *("wave", "again", "1.78 m high", "9 joints, the root is Hips", "792 vertices"),
         "25 at 30 per second (0.8 s); 3 recorded to train on, 1 held out, 4 of them whole",
@@ -85,28 +84,24 @@ def test_a_teacher_that_never_changes_is_doubted(tmp_path: Path) -> None:
     assert "is the same frame recorded every time?" in doubt
 
 
-def test_without_whole_frames_there_is_no_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_without_whole_frames_there_is_no_picture(tmp_path: Path, mua_train: Training) -> None:
     with TeacherWriter(tmp_path / "recording", RIG, rate=30) as writer:
         writer.start_clip("wave")
         writer.add(WAVE[0], *EXAMPLE.teacher(RIG, WAVE[0]), whole=False)
-    assert mua_train(monkeypatch, tmp_path / "recording", tmp_path / "a.muaavatar", "--check") == 0
-    told = capsys.readouterr().out
+    told = mua_train(tmp_path / "recording", "--check").out
     assert "no frame is kept whole" in told
     assert "no clip is held out" in told
     assert {path.name for path in tmp_path.iterdir()} == {"recording"}
 
 
 def test_a_mistake_that_was_recorded_all_the_same_ends_in_its_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training
 ) -> None:
     with monkeypatch.context() as before_there_were_checks:
         before_there_were_checks.setattr(TeacherWriter, "_judge", lambda *_: None)
         turned = [Pose(np.roll(pose.rotations, -1, axis=1), pose.translations) for pose in WAVE]
         recorded(tmp_path / "recording", turned, seen=lambda _: WAVE[3])
-    assert mua_train(monkeypatch, tmp_path / "recording", tmp_path / "a.muaavatar", "--check") == 1
-    told = capsys.readouterr()
-    assert "clip 'wave', frame 0: pose rotations turn half of all joints" in sentence(told.err)
-    assert told.out.count("xyzw: are they?") == 1
+    ended = mua_train(tmp_path / "recording", "--check")
+    assert "clip 'wave', frame 0: pose rotations turn half of all joints" in ended.sentence
+    assert ended.out.count("xyzw: are they?") == 1
     assert (tmp_path / "a_check.png").is_file()

@@ -1,24 +1,20 @@
 """Commands answer before they load what takes seconds, and all have --version and --quiet."""
 
 import importlib.metadata
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from synthetic_avatar import synthetic_avatar
+from commands import Ended, python
 
 import mua
 from mua import inputs
-from mua.asset import write
 from mua.recording import layout
 
 COMMANDS = ("bake", "bench", "deploy", "eval", "inspect", "train", "view")
 # What takes long to load, or is not there unless its extra was asked for.
 SLOW = ("torch", "warp", "wgpu", "pxr", "scipy", "matplotlib", "moderngl", "meshoptimizer", "xatlas", "adbutils")
 RUN = """
-import sys
-sys.argv = ["mua-{name}", *sys.argv[1:]]
+sys.argv[0] = "mua-{name}"
 try:
     from mua.cli.{name} import run
     run()
@@ -29,60 +25,48 @@ finally:
 """
 
 
-def started(name: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+def started(name: str, *arguments: str | Path) -> Ended:
     """A command in a process of its own; it prints what it loaded of all that is slow to load."""
-    code = RUN.format(name=name, slow=SLOW)
-    line = [sys.executable, "-c", code, *map(str, arguments)]
-    return subprocess.run(line, capture_output=True, text=True, check=False)
+    return python(RUN.format(name=name, slow=SLOW), *arguments)
 
 
-@pytest.fixture
-def avatar_file(tmp_path: Path) -> Path:
-    path = tmp_path / "a.muaavatar"
-    write(path, synthetic_avatar())
-    return path
+def refused(ended: Ended) -> str:
+    """The sentence of a command that printed nothing else and loaded nothing slow."""
+    assert ended.out == ""
+    return ended.sentence.removeprefix("error: ")
 
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_wrong_name_is_told_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
     absent = tmp_path / "absent.muaavatar"
-    ended = started(name, absent)
     kind = "directory" if name in ("eval", "train") else "file"
-    assert ended.stderr == f"error: {absent}: there is no such {kind}\n"
-    assert (ended.returncode, ended.stdout) == (1, "")
+    assert refused(started(name, absent)) == f"{absent}: there is no such {kind}"
 
 
 @pytest.mark.parametrize("name", ["bench", "deploy", "inspect", "view"])
 def test_a_directory_in_place_of_a_file_is_told_likewise(name: str, tmp_path: Path) -> None:
-    folder = tmp_path / "folder.muaavatar"
-    folder.mkdir()
-    ended = started(name, folder)
-    assert ended.stderr == f"error: {folder}: is a directory, expected a file\n"
-    assert ended.stdout == ""
+    assert refused(started(name, tmp_path)) == f"{tmp_path}: is a directory, expected a file"
 
 
 @pytest.mark.parametrize("name", ["eval", "train"])
 def test_what_is_no_recording_is_told_likewise(name: str, tmp_path: Path) -> None:
-    assert started(name, tmp_path).stderr == f"error: {tmp_path}: not a recording, it holds no {layout.HEADER}\n"
+    assert refused(started(name, tmp_path)) == f"{tmp_path}: not a recording, it holds no {layout.HEADER}"
     file = tmp_path / "file"
     file.touch()
-    ended = started(name, file)
-    assert ended.stderr == f"error: {file}: is a file, expected the directory of a recording\n"
-    assert ended.stdout == ""
+    assert refused(started(name, file)) == f"{file}: is a file, expected the directory of a recording"
     assert inputs.HEADER == layout.HEADER
 
 
 @pytest.mark.parametrize("name", ["bake", "view"])
 def test_absent_motion_is_told_likewise(name: str, tmp_path: Path, avatar_file: Path) -> None:
     absent = tmp_path / "walks"
-    ended = started(name, avatar_file, "--motion", absent)
-    assert ended.stderr == f"error: --motion {absent}: there is no such file or directory\n"
-    assert ended.stdout == ""
+    told = refused(started(name, avatar_file, "--motion", absent))
+    assert told == f"--motion {absent}: there is no such file or directory"
 
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_says_its_version_without_its_arguments(name: str) -> None:
-    assert started(name, "--version").stdout == f"mua-{name} {mua.__version__}\n"
+    assert started(name, "--version").out == f"mua-{name} {mua.__version__}\n"
 
 
 def test_the_version_is_that_of_the_installation() -> None:
@@ -92,23 +76,25 @@ def test_the_version_is_that_of_the_installation() -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_names_the_common_options_and_loads_nothing(name: str) -> None:
     ended = started(name, "--help")
-    assert ended.returncode == 0
-    assert "--version" in ended.stdout
-    assert "--quiet" in ended.stdout
-    assert "loaded:" not in ended.stdout
+    assert ended.status == 0
+    assert "--version" in ended.out
+    assert "--quiet" in ended.out
+    assert "loaded:" not in ended.out
 
 
-def test_quiet_prints_nothing_where_all_is_well(avatar_file: Path) -> None:
-    assert "metres" in started("inspect", avatar_file).stdout
-    quiet = started("inspect", "--quiet", avatar_file)
-    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
+def test_quiet_prints_nothing_but_errors(avatar_file: Path, tmp_path: Path) -> None:
+    assert "metres" in started("inspect", avatar_file).out
+    assert started("inspect", "--quiet", avatar_file) == Ended(0, "", "")
+    assert refused(started("inspect", "--quiet", tmp_path / "absent"))
 
 
-def test_quiet_still_prints_errors(tmp_path: Path) -> None:
-    quiet = started("inspect", "--quiet", tmp_path / "absent")
-    assert (quiet.returncode, quiet.stderr.count("\n")) == (1, 1)
-
-
-def test_importing_the_package_loads_nothing_slow() -> None:
-    code = f"import sys, mua; sys.exit(bool(set({SLOW}) & set(sys.modules)))"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+@pytest.mark.parametrize(
+    ("modules", "absent"),
+    [
+        ("mua", SLOW),
+        ("mua.cli.view, mua.player.window", ("torch", "imgui_bundle", "glfw")),
+        ("mua.cli.bake, mua.cli.check", ("torch",)),
+    ],
+)
+def test_importing_does_not_load_what_may_not_be_needed(modules: str, absent: tuple[str, ...]) -> None:
+    assert python(f"import {modules}; print(sorted(set({absent}) & set(sys.modules)))") == Ended(0, "[]\n", "")

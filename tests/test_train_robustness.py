@@ -18,29 +18,13 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from recordings import RATE, write
-from synthetic_avatar import synthetic_rig
-from trainings import STAGE_NAMES, mua_train, one_by_one, process, sentence
+from recordings import write
+from trainings import STAGE_NAMES, Training, one_by_one, process
 
 from mua.arrays import Array
-from mua.recording import TeacherWriter
 from mua.student.checkpoint import Checkpoints
 
 EARLIER = b"an earlier result"
-
-
-@pytest.fixture
-def recording(written: Path, tmp_path: Path) -> Path:
-    """A copy that may be damaged."""
-    return Path(shutil.copytree(written, tmp_path / "recording"))
-
-
-@pytest.fixture(scope="module")
-def undisturbed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    output = tmp_path_factory.mktemp("undisturbed") / "a.muaavatar"
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        assert mua_train(monkeypatch, written, output) == 0
-    return output
 
 
 def change(path: Path, how: Callable[[Array], None]) -> None:
@@ -61,29 +45,20 @@ def put(value: float, *at: int) -> Callable[[Array], None]:
     return change_one
 
 
-def without_shard(recording: Path) -> None:
-    shutil.rmtree(recording / "shards/00001")
+def saying(name: str, **fields: object) -> Callable[[Path], None]:
+    """Fields of a JSON file have other values."""
 
+    def change_fields(recording: Path) -> None:
+        path = recording / name
+        path.write_text(json.dumps(json.loads(path.read_text()) | fields))
 
-def cut(recording: Path) -> None:
-    path = recording / "shards/00001/d2.npy"
-    path.write_bytes(path.read_bytes()[:-2])
-
-
-def of_another_rig(recording: Path) -> None:
-    path = recording / "shards/00001/index.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"rig": "0" * 64}))
+    return change_fields
 
 
 def with_another_rig(recording: Path) -> None:
     rig = dict(np.load(recording / "rig.npz"))
     rig["vertices"] = rig["vertices"] + 1
     np.savez(recording / "rig.npz", **rig)
-
-
-def of_odd_size(recording: Path) -> None:
-    path = recording / "recording.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"texels": 40}))
 
 
 def with_nan(name: str, *at: int, value: float = np.nan) -> Callable[[Path], None]:
@@ -100,17 +75,14 @@ def with_a_bit_flipped(name: str) -> Callable[[Path], None]:
     return flip
 
 
-def no_recording(recording: Path) -> None:
-    (recording / "recording.json").unlink()
-
-
 DAMAGES = {
-    "missing shard": (without_shard, "shard 00001 is missing"),
-    "cut file": (cut, "d2.npy is damaged or cut short"),
-    "shard of another rig": (of_another_rig, "00001/index.json: holds frames of another rig"),
+    "missing shard": (lambda recording: shutil.rmtree(recording / "shards/00001"), "shard 00001 is missing"),
+    "shard of another rig": (
+        saying("shards/00001/index.json", rig="0" * 64),
+        "00001/index.json: holds frames of another",
+    ),
     "another rig": (with_another_rig, "rig.npz: is not the rig"),
-    "odd texture size": (of_odd_size, "texels is 40, expected a multiple of 16"),
-    "no recording": (no_recording, "not a recording"),
+    "odd texture size": (saying("recording.json", texels=40), "texels is 40, expected a multiple of 16"),
     "nan in a mesh": (with_nan("00000/meshes.npy", 1), "00000/meshes.npy: frame 2 of 'walk'"),
     "nan in LL": (with_nan("00001/ll.npy", 0), "00001/ll.npy: frame 8 of 'walk'"),
     "nan in D2's last channel": (with_nan("00001/d2.npy", 3, 2, 22), "00001/d2.npy: frame 14 of 'walk'"),
@@ -130,28 +102,16 @@ DAMAGES = {
 
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_damaged_recording_ends_in_a_sentence(
-    recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], damage: str
+    written: Path, tmp_path: Path, mua_train: Training, damage: str
 ) -> None:
     how, told = DAMAGES[damage]
+    recording, output = Path(shutil.copytree(written, tmp_path / "recording")), tmp_path / "a.muaavatar"
     how(recording)
-    output = recording.with_name("a.muaavatar")
     output.write_bytes(EARLIER)
-    assert mua_train(monkeypatch, recording, output) == 1
-    assert told in sentence(capsys.readouterr().err)
-    assert not list(recording.parent.rglob("*.part*"))
+    assert told in mua_train(recording).sentence
+    assert not list(tmp_path.rglob("*.part*"))
     if "whole" not in damage:  # a frame that was kept whole is read to measure the avatar that is there by then
         assert output.read_bytes() == EARLIER
-
-
-def test_a_recording_without_training_frames_ends_in_a_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    rig = synthetic_rig()
-    with TeacherWriter(tmp_path / "recording", rig, rate=RATE) as writer:
-        writer.start_clip("walk")
-        writer.add(rig.skeleton.bind_pose)
-    assert mua_train(monkeypatch, tmp_path / "recording", tmp_path / "a.muaavatar") == 1
-    assert "holds no training frame" in sentence(capsys.readouterr().err)
 
 
 def a_file(directory: Path) -> Path:
@@ -182,16 +142,15 @@ PLACES = {
 
 @pytest.mark.parametrize("place", PLACES)
 def test_an_output_that_cannot_be_is_named_before_any_training(
-    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], place: str
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training, place: str
 ) -> None:
     where, told = PLACES[place]
     output = where(tmp_path)
     if where is read_only and os.geteuid() == 0:  # who may write anywhere: what the system says to others
         monkeypatch.setattr(Path, "touch", refuse)
-    assert mua_train(monkeypatch, written, output) == 1
-    captured = capsys.readouterr()
-    assert f"{output}: {told.format(parent=output.parent)}" in sentence(captured.err)
-    assert not set(captured.out.splitlines()) & set(STAGE_NAMES)
+    ended = mua_train(written, output=output)
+    assert f"{output}: {told.format(parent=output.parent)}" in ended.sentence
+    assert not set(ended.out.splitlines()) & set(STAGE_NAMES)
 
 
 @contextmanager
@@ -207,15 +166,9 @@ def disk_of(size: int) -> Iterator[None]:
 
 @pytest.mark.parametrize("stage", ["coarse mesh", "geometry bases", "geometry fine-tuning"])
 def test_a_checkpoint_that_finds_no_room_costs_nothing_trained_before(
-    written: Path,
-    undisturbed: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    stage: str,
+    written: Path, trained: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training, stage: str
 ) -> None:
-    room = (undisturbed.with_suffix(".work") / f"student/{stage}.pt").stat().st_size - 1
-    output = tmp_path / "a.muaavatar"
+    room = (trained.with_suffix(".work") / f"student/{stage}.pt").stat().st_size - 1
     save = Checkpoints.save
 
     def save_on_small_disk(self: Checkpoints, name: str, state: dict[str, Any]) -> None:
@@ -225,36 +178,29 @@ def test_a_checkpoint_that_finds_no_room_costs_nothing_trained_before(
     monkeypatch.setattr("mua.student.branches.together", one_by_one)  # so that it is known which one finds no room
     with monkeypatch.context() as small:
         small.setattr(Checkpoints, "save", save_on_small_disk)
-        assert mua_train(monkeypatch, written, output) == 1
-    captured = capsys.readouterr()
-    assert f"{stage}.pt: cannot be written (File too large)" in sentence(captured.err)
-    begun = [name for name in STAGE_NAMES if name in captured.out.splitlines()]
+        ended = mua_train(written)
+    assert f"{stage}.pt: cannot be written (File too large)" in ended.sentence
+    begun = [name for name in STAGE_NAMES if name in ended.out.splitlines()]
     assert begun[-1] == stage
     assert {path.stem for path in tmp_path.rglob("*.pt")} & set(STAGE_NAMES) == set(begun[:-1])
-    assert mua_train(monkeypatch, written, output) == 0
-    repeated = set(capsys.readouterr().out.splitlines()) & set(STAGE_NAMES)
+    repeated = set(mua_train(written).out.splitlines()) & set(STAGE_NAMES)
     assert repeated == set(STAGE_NAMES[len(begun) - 1 :])
-    assert output.read_bytes() == undisturbed.read_bytes()
+    assert (tmp_path / "a.muaavatar").read_bytes() == trained.read_bytes()
 
 
 def test_an_avatar_that_finds_no_room_leaves_the_earlier_one_and_all_that_was_trained(
-    written: Path,
-    undisturbed: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    written: Path, trained: Path, tmp_path: Path, mua_train: Training
 ) -> None:
     output = tmp_path / "a.muaavatar"
-    shutil.copytree(undisturbed.with_suffix(".work"), tmp_path / "a.work")
+    shutil.copytree(trained.with_suffix(".work"), tmp_path / "a.work")
     output.write_bytes(EARLIER)
-    with disk_of(undisturbed.stat().st_size - 1):
-        assert mua_train(monkeypatch, written, output) == 1
-    assert f"{output}: cannot be written (File too large); what it held" in sentence(capsys.readouterr().err)
+    with disk_of(trained.stat().st_size - 1):
+        told = mua_train(written).sentence
+    assert f"{output}: cannot be written (File too large); what it held" in told
     assert output.read_bytes() == EARLIER
     assert not list(tmp_path.rglob("*.part*"))
-    assert mua_train(monkeypatch, written, output) == 0
-    assert not set(capsys.readouterr().out.splitlines()) & set(STAGE_NAMES)
-    assert output.read_bytes() == undisturbed.read_bytes()
+    assert not set(mua_train(written).out.splitlines()) & set(STAGE_NAMES)
+    assert output.read_bytes() == trained.read_bytes()
 
 
 def test_a_recording_that_finds_no_room_ends_in_a_sentence(written: Path, tmp_path: Path) -> None:
@@ -266,18 +212,17 @@ def test_a_recording_that_finds_no_room_ends_in_a_sentence(written: Path, tmp_pa
 
 
 def test_a_gpu_that_is_too_small_ends_in_a_sentence(
-    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    written: Path, monkeypatch: pytest.MonkeyPatch, mua_train: Training
 ) -> None:
     def fail(*_: object, **__: object) -> None:
         raise torch.cuda.OutOfMemoryError("CUDA out of memory. Tried to allocate 2.00 GiB. GPU 0 has ...")
 
     monkeypatch.setattr("mua.student.distil.train", fail)
-    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar") == 1
-    assert "its memory is too small (CUDA out of memory); what was" in sentence(capsys.readouterr().err)
+    assert "its memory is too small (CUDA out of memory); what was" in mua_train(written).sentence
 
 
 @pytest.mark.long
-def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, undisturbed: Path, tmp_path: Path) -> None:
+def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, trained: Path, tmp_path: Path) -> None:
     """kill -9, three times at a random moment after a stage was announced; then a run that nothing disturbs."""
     moment = random.Random(7)
     output = tmp_path / "a.muaavatar"
@@ -292,17 +237,17 @@ def test_killed_at_any_moment_it_ends_in_the_same_bytes(written: Path, undisturb
         killed.communicate()
         assert killed.returncode == -signal.SIGKILL  # it had not ended by itself
     subprocess.run(process(written, output), check=True, stdout=subprocess.DEVNULL)
-    assert output.read_bytes() == undisturbed.read_bytes()
+    assert output.read_bytes() == trained.read_bytes()
     assert not list(tmp_path.rglob("*.part*"))
 
 
 @pytest.mark.parametrize("left", ["a.work/student/.coarse mesh.{}.part.pt", ".a.{}.part.muaavatar"])
 def test_removes_what_a_killed_run_left(
-    written: Path, undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, left: str
+    written: Path, trained: Path, tmp_path: Path, mua_train: Training, left: str
 ) -> None:
     with subprocess.Popen(["true"]) as killed:
         left = left.format(killed.pid)
-    shutil.copytree(undisturbed.with_suffix(".work"), tmp_path / "a.work")
+    shutil.copytree(trained.with_suffix(".work"), tmp_path / "a.work")
     (tmp_path / left).write_bytes(b"half")
-    assert mua_train(monkeypatch, written, tmp_path / "a.muaavatar") == 0
+    assert mua_train(written).status == 0
     assert not (tmp_path / left).exists()

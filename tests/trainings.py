@@ -6,11 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from commands import Ended
 
-from mua.cli import train
 from mua.student import optimise
 from mua.student.settings import PRESETS, Ranks, Schedule
 
+Training = Callable[..., Ended]  # the fixture `mua_train`
 SMALL = replace(
     PRESETS["tiny"],
     geometry=Ranks(4, 3, 2),
@@ -41,22 +42,10 @@ def process(recording: Path, output: Path) -> list[str]:
     return [sys.executable, "-c", code, *arguments(recording, output)]
 
 
-def mua_train(monkeypatch: pytest.MonkeyPatch, recording: Path, output: Path, *more: str) -> int:
-    """Run the command in this process; its exit status."""
+def be_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Add the preset, and keep checkpoints often."""
     monkeypatch.setitem(PRESETS, "small", SMALL)
     monkeypatch.setattr(optimise, "CHECKPOINT_STEPS", 5)
-    monkeypatch.setattr(sys, "argv", ["mua-train", *arguments(recording, output), *more])
-    try:
-        train.run()
-    except SystemExit as ended:
-        return int(ended.code or 0)
-    return 0
-
-
-def sentence(captured: str) -> str:
-    """The one error that a command printed."""
-    (line,) = [line for line in captured.splitlines() if line.startswith("error: ")]
-    return line
 
 
 def one_by_one(tasks: Sequence[Callable[[], None]], *, stop: Callable[[], None]) -> None:
