@@ -2,12 +2,14 @@
 
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if workers := os.environ.get("PYTEST_XDIST_WORKER_COUNT"):  # before torch: each has its share of the cores
     os.environ.setdefault("OMP_NUM_THREADS", str(max(1, (os.cpu_count() or 1) // int(workers))))
 
+import numpy as np
 import pytest
 from commands import Commands, Ended
 from shared_data import SharedData
@@ -15,6 +17,7 @@ from synthetic_avatar import synthetic_avatar
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.asset import write
+from mua.pose.clip import Clip
 
 if TYPE_CHECKING:
     from trainings import Training
@@ -54,6 +57,18 @@ def avatar_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.fixture(scope="session")
+def avatar_files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
+    """Two avatars, the second with one clip more, and a broken one."""
+    directory, avatar = tmp_path_factory.mktemp("avatars"), synthetic_avatar(1)
+    clip = avatar.clips[0]
+    longer = Clip("twice", clip.rate, np.tile(clip.rotations, (2, 1, 1)), np.tile(clip.translations, (2, 1, 1)))
+    write(directory / "first.muaavatar", synthetic_avatar(0))
+    write(directory / "second.muaavatar", replace(avatar, clips=(clip, longer)))
+    (directory / "broken.muaavatar").write_bytes(b"not an avatar")
+    return tuple(directory / f"{name}.muaavatar" for name in ("first", "second", "broken"))
+
+
 @pytest.fixture
 def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Commands:
     """Runs commands in this process."""
@@ -71,6 +86,14 @@ def mua_train(command: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         return command("train", *trainings.arguments(recording, output), *more)
 
     return train
+
+
+@pytest.fixture
+def packages(tmp_path: Path) -> list[Path]:
+    """Two small UPM packages that keep every rule."""
+    import upm_files  # here, because few tests need the tools
+
+    return upm_files.write(tmp_path)
 
 
 @pytest.fixture(scope="session")

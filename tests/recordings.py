@@ -1,10 +1,12 @@
 """A small recording for tests, of a teacher that is a formula."""
 
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
 from synthetic_avatar import synthetic_rig
 
 from mua.arrays import Array
@@ -61,6 +63,25 @@ def plan(rig: Rig) -> list[PlannedClip]:
     ]
 
 
+def frames(count: int, *, name: str = "walk") -> list[TeacherFrame]:
+    """The first frames of a clip."""
+    rig = synthetic_rig()
+    teacher, played = FormulaTeacher(rig), clip(rig, name, count)
+    return [teacher.frame(played, index) for index in range(count)]
+
+
+def opened(directory: Path, **options: Any) -> TeacherWriter:
+    """A writer of frames of the synthetic rig."""
+    return TeacherWriter(directory, synthetic_rig(), **{"rate": RATE, **options})
+
+
+def add(writer: TeacherWriter, *frames: TeacherFrame, name: str = "walk") -> None:
+    """Begin a clip with some frames."""
+    writer.start_clip(name)
+    for frame in frames:
+        writer.add(frame.pose, frame.mesh, frame.texture)
+
+
 def write(directory: Path, *, whole_every: int = 5) -> FormulaTeacher:
     rig = synthetic_rig()
     teacher = FormulaTeacher(rig)
@@ -93,3 +114,25 @@ def truth(*, held_out: bool) -> list[TeacherFrame]:
 
 def content(directory: Path) -> dict[str, bytes]:
     return {str(p.relative_to(directory)): p.read_bytes() for p in sorted(directory.rglob("*")) if p.is_file()}
+
+
+class Killed(BaseException):
+    """Stands for the death of the process."""
+
+
+class Dying:
+    """Calls that change the disk, of which one is the last: the process dies before it."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *places: tuple[object, str]) -> None:
+        self.budget = 0  # calls to that one; 0 lives on
+        for owner, name in places:
+            monkeypatch.setattr(owner, name, self._counted(getattr(owner, name)))
+
+    def _counted(self, call: Callable[..., Any]) -> Callable[..., Any]:
+        def step(*args: Any, **kwargs: Any) -> Any:
+            self.budget -= 1
+            if self.budget == 0:
+                raise Killed
+            return call(*args, **kwargs)
+
+        return step

@@ -61,8 +61,12 @@ def with_surface(avatar: Avatar) -> Avatar:
 def sparse_avatar(seed: int) -> Avatar:
     """A synthetic avatar of which a fifth of the texels is not valid, with the surface over the others."""
     avatar = synthetic_avatar(seed)
+    return with_surface(with_texels(avatar, np.random.default_rng(seed).random(len(avatar.rig.texels.texels)) < 0.8))
+
+
+def with_texels(avatar: Avatar, kept: Array) -> Avatar:
+    """The same avatar, valid at some of its texels alone: [N] for each whether it is kept."""
     texels = avatar.rig.texels
-    kept = np.random.default_rng(seed).random(len(texels.texels)) < 0.8
     few = replace(
         texels,
         texels=texels.texels[kept],
@@ -70,8 +74,13 @@ def sparse_avatar(seed: int) -> Avatar:
         barycentrics=texels.barycentrics[kept],
     )
     branches = [replace(b, static=b.static[:, kept]) for b in (avatar.geometry, avatar.appearance)]
-    rig = replace(avatar.rig, texels=few)
-    return with_surface(replace(avatar, rig=rig, geometry=branches[0], appearance=branches[1]))
+    return replace(avatar, rig=replace(avatar.rig, texels=few), geometry=branches[0], appearance=branches[1])
+
+
+def empty_avatar() -> Avatar:
+    """A synthetic avatar without valid texels."""
+    avatar = synthetic_avatar()
+    return with_texels(avatar, np.zeros(len(avatar.rig.texels.texels), bool))
 
 
 def synthetic_rig() -> Rig:

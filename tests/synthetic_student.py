@@ -8,11 +8,12 @@ from torch import Tensor
 
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.pose.encoding import PoseEncoding
+from mua.processes import ALONE, Processes
 from mua.student.checkpoint import Checkpoints
 from mua.student.model import Bands, Student
-from mua.student.optimise import Progress, Run
+from mua.student.optimise import Progress, Report, Run
 from mua.student.settings import Ranks, Schedule, Settings
-from mua.student.train import Samples
+from mua.student.train import Samples, train
 
 SIZE = 48  # LL 3 x 3
 ENCODING = PoseEncoding(joints=(), rate=30.0, window=1)
@@ -89,6 +90,40 @@ def samples(frames: int = FRAMES) -> Samples:
         lambda channels, rows: Bands(*(band[rows] for band in bands.of(channels))),
         mean_texture,
     )
+
+
+def train_in(
+    directory: Path,
+    settings: Settings = SETTINGS,
+    report: Report = lambda _: None,
+    *,
+    data: Samples | None = None,
+    processes: Processes = ALONE,
+) -> Student:
+    """A student of `samples`, or of other data, trained with checkpoints in a directory."""
+    student, data = new_student(settings), data or samples()
+    student.mean.copy_(data.descriptors.mean(0))
+    student.scale.copy_(data.descriptors.std(0))
+    cpu, checkpoints = torch.device("cpu"), Checkpoints(directory, "key")
+    train(student, data, settings=settings, checkpoints=checkpoints, device=cpu, report=report, processes=processes)
+    return student
+
+
+def same(a: Student, b: Student) -> bool:
+    """Whether two students are the same to the byte."""
+    return all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
+
+
+class Killed(Exception):
+    """Stands for a kill at one moment of a run."""
+
+
+def kill_at(stage: str, step: int) -> Report:
+    def report(progress: Progress) -> None:
+        if (progress.stage, progress.step) == (stage, step):
+            raise Killed
+
+    return report
 
 
 def run_in(directory: Path, report: list[Progress] | None = None) -> Run:

@@ -1,5 +1,6 @@
 """The contact sheet of a comparison: each system's error where it is, on one scale."""
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,8 +9,9 @@ import pytest
 
 from mua.arrays import Array
 from mua.compare import plots
-from mua.compare.entries import Picture
-from mua.compare.scores import Result
+from mua.compare.entries import Entry, Picture
+from mua.compare.metrics import Scores
+from mua.compare.scores import Result, Sample
 
 CELL = plots.CELL
 DARK, BRIGHT = 16, 180  # of 255: the ends of the map's colours
@@ -68,3 +70,25 @@ def test_pictures_are_cut_to_the_figure_and_a_margin(strip: Array) -> None:
     rows, columns = plots._figure_box([figure(), np.zeros_like(figure())])
     assert (rows, columns) == (slice(31, 209), slice(31, 209))
     assert plots._figure_box([np.zeros((20, 30, 3))]) == (slice(0, 20), slice(0, 30))
+
+
+def test_the_worst_square_holds_the_largest_error() -> None:
+    error = np.zeros((120, 90))
+    error[100:104, 3:6] = 1
+    rows, columns = plots._worst_box(error)
+    assert (rows.stop - rows.start, columns.stop - columns.start) == (20, 20)
+    assert (error[rows, columns] > 0).sum() == 12
+    assert rows.stop <= 120
+    assert columns.start >= 0
+
+
+def test_sheets_show_the_worst_and_the_median_frame() -> None:
+    clips = [SimpleNamespace(name=name, held_out=held_out) for name, held_out in (("walk", False), ("turn", True))]
+    frames: list[Any] = [SimpleNamespace(clip=clip, index=index) for clip in clips for index in (1, 3, 5)]
+    quality = {1: 50.0, 3: 20.0, 5: 30.0}
+    samples = [
+        Sample(f.clip.name, f.index, f.clip.held_out, 0, 0.2, Scores(quality[f.index], 1, 1, 0, math.nan))
+        for f in frames
+    ]
+    picked = plots.sheet_frames(frames, [Result(Entry("x", None), samples)], held_out=True)
+    assert [(f.clip.name, f.index) for f in picked] == [("turn", 3), ("turn", 5)]

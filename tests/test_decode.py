@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 import pywt
-from synthetic_avatar import synthetic_avatar, synthetic_rig
+from synthetic_avatar import empty_avatar, synthetic_avatar, synthetic_rig
 
 from mua import rotation
 from mua.arrays import Array
@@ -98,19 +98,8 @@ def test_depth_is_keyed_over_the_files_box_about_the_root() -> None:
 
 
 def test_an_avatar_without_texels_decodes_to_no_splats() -> None:
-    avatar = synthetic_avatar()
-    texels = dataclasses.replace(
-        avatar.rig.texels,
-        texels=np.zeros(0, np.int32),
-        triangles=np.zeros(0, np.int32),
-        barycentrics=np.zeros((0, 3), np.float32),
-    )
-    bare = {
-        name: dataclasses.replace(branch, static=branch.static[:, :0])
-        for name, branch in (("geometry", avatar.geometry), ("appearance", avatar.appearance))
-    }
-    empty = dataclasses.replace(avatar, rig=dataclasses.replace(avatar.rig, texels=texels), **bare)
-    posed = decode_clip_frame(empty, avatar.clips[0], frame=0)
+    empty = empty_avatar()
+    posed = decode_clip_frame(empty, empty.clips[0], frame=0)
     assert posed.centres.shape == (0, 3)
     assert posed.texture.shape == (0, 23)
 

@@ -1,7 +1,6 @@
 """mua-eval: pictures are the player's, tables say what was measured, one system's failure is its own."""
 
 import csv
-import io
 import json
 import math
 from dataclasses import replace
@@ -13,18 +12,16 @@ import pytest
 import torch
 from PIL import Image
 from recordings import clip
-from rich.console import Console
 from synthetic_avatar import synthetic_avatar, synthetic_rig
 from torch import Tensor
 
 from mua.arrays import Array
 from mua.asset.write import write
 from mua.cli import eval as command
-from mua.compare import entries, plots, report, scores
-from mua.compare.entries import Cost, Entry, Picture, avatar_entries, mean_entry, sentence
+from mua.compare import entries, scores
+from mua.compare.entries import Entry, Picture, avatar_entries, mean_entry, sentence
 from mua.compare.images import Studio
-from mua.compare.metrics import Scores
-from mua.compare.scores import Result, Sample, choose_frames
+from mua.compare.scores import choose_frames
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames
 from mua.decode import pose_splats
 from mua.errors import InputError
@@ -322,87 +319,3 @@ def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> Non
     with pytest.raises(InputError, match="--system nerf: expected one of pca-only, "):
         command.evaluate(recording=recording.directory, system=["nerf"], output=tmp_path / "out")
     assert not (tmp_path / "out").exists()
-
-
-def result(name: str, psnr: float, cost: Cost, *, own_mesh: bool = False) -> Result:
-    scores = Scores(psnr, 0.9, 0.9, 0.1, math.nan)
-    samples = [Sample("a", 0, held_out, 0, 0.2, scores) for held_out in (False, True)]
-    return Result(Entry(name, truth, cost, own_mesh=own_mesh), samples)
-
-
-def test_storage_is_held_against_the_widest_file_of_the_same_avatar() -> None:
-    def stored(kind: str, size: int, parameters: int = 10) -> Cost:
-        return Cost(parameters=parameters, flops=1, bytes=size, storage=kind)
-
-    rows = [
-        result("small", 40.0, stored("i8", 2_000_000)),
-        result("other", 30.0, stored("f16", 5, parameters=11)),
-        result("exact", 40.125, stored("f32", 8_000_000)),
-        result("small, own mesh", 20.0, stored("i8", 2_000_000), own_mesh=True),
-        result("a system", 50.0, Cost(parameters=10, flops=1, bytes=40)),
-    ]
-    assert report.storage_costs(rows) == [
-        ("small", "i8", "2.00", "-0.125", "-0.125"),
-        ("exact", "f32", "8.00", "+0.000", "+0.000"),
-    ]
-
-
-def test_the_worst_square_holds_the_largest_error() -> None:
-    error = np.zeros((120, 90))
-    error[100:104, 3:6] = 1
-    rows, columns = plots._worst_box(error)
-    assert (rows.stop - rows.start, columns.stop - columns.start) == (20, 20)
-    assert (error[rows, columns] > 0).sum() == 12
-    assert rows.stop <= 120
-    assert columns.start >= 0
-
-
-def test_sheets_show_the_worst_and_the_median_frame(frames: list[WholeFrame]) -> None:
-    quality = {1: 50.0, 3: 20.0, 5: 30.0}
-    samples = [
-        Sample(f.clip.name, f.index, f.clip.held_out, 0, 0.2, Scores(quality[f.index], 1, 1, 0, math.nan))
-        for f in frames
-    ]
-    picked = plots.sheet_frames(frames, [Result(Entry("x", truth), samples)], held_out=True)
-    assert [(f.clip.name, f.index) for f in picked] == [("turn", 3), ("turn", 5)]
-
-
-def told(rows: list[Result], setting: report.Setting) -> str:
-    console = Console(file=io.StringIO(), width=80)
-    console.print(report.tables(rows, setting))
-    return console.file.getvalue()  # type: ignore[attr-defined]
-
-
-def row(entry: Entry, failure: str = "") -> Result:
-    scores = Scores(48.12, 0.9934, 0.9991, 0.0123, math.nan)
-    samples = [] if failure else [Sample("walk", 0, held, 0, 0.08, scores) for held in (False, True)]
-    return Result(entry, samples, failure)
-
-
-SETTING = report.Setting("rec", "a device", {"training": 1, "held out": 1}, 1, 512, 60.0, None, "tiny", None, 0.08)
-MEAN = row(Entry(entries.MEAN, truth, Cost(parameters=10, flops=0, bytes=40)))
-FILE = row(Entry("a_file_with_a_name_of_more_than_forty_letters", truth, Cost(10, 10, 10, 31.2, "f16")))
-
-
-def test_no_figure_is_cut_on_eighty_columns() -> None:
-    shown = told([MEAN, FILE], replace(SETTING, lpips="alex"))
-    assert "…" not in shown
-    assert shown.count("48.12") == 4
-    assert max(map(len, shown.splitlines())) <= 80
-
-
-def test_nothing_is_said_of_what_did_not_happen() -> None:
-    of_files = told([MEAN, FILE], replace(SETTING, frames={"training": 1, "held out": 0}))
-    for word in ("trained for", "own mesh", "held out", "│ LPIPS", "failed"):
-        assert word not in of_files
-    assert "FPS" in of_files
-    systems = told([MEAN, row(Entry("ours", truth, Cost(10, 10, 40)))], SETTING)
-    assert "trained for 60 s" in systems
-    assert "FPS" not in systems
-
-
-def test_what_holds_for_all_rows_is_said_once() -> None:
-    failing = row(Entry("linear", None, failure="no [place] left"), failure="no [place] left")
-    shown = told([MEAN, FILE, failing], SETTING)
-    assert shown.count("no weights given") == 1
-    assert shown.count("no [place] left") == 1

@@ -6,14 +6,7 @@ from pathlib import Path
 
 import gen_meta
 import lint_upm
-import pytest
-import upm_files
 from upm_files import put
-
-
-@pytest.fixture
-def packages(tmp_path: Path) -> list[Path]:
-    return upm_files.write(tmp_path)
 
 
 def test_packages_of_this_checkout_are_right() -> None:

@@ -5,16 +5,11 @@ from pathlib import Path
 
 import pytest
 import torch
-from synthetic_student import SETTINGS, bands_of_frames, new_student, samples
+from synthetic_student import SETTINGS, Killed, bands_of_frames, kill_at, same, samples, train_in
 
 from mua.errors import InputError
-from mua.student.checkpoint import Checkpoints
-from mua.student.model import Student
-from mua.student.optimise import Progress
 from mua.student.settings import PRESETS, Schedule, with_recipe
-from mua.student.train import train
 
-CPU = torch.device("cpu")
 RANDOM = replace(
     SETTINGS,
     start="random",
@@ -23,31 +18,18 @@ RANDOM = replace(
 )
 
 
-def descended(directory: Path, settings: object = RANDOM, report: object = lambda _: None) -> Student:
-    student, data = new_student(), samples()
-    student.mean.copy_(data.descriptors.mean(0))
-    student.scale.copy_(data.descriptors.std(0))
-    checkpoints = Checkpoints(directory, "key")
-    train(student, data, settings=settings, checkpoints=checkpoints, device=CPU, report=report)  # type: ignore[arg-type]
-    return student
-
-
 def test_noise_descends_to_the_training_frames(tmp_path: Path) -> None:
     descriptors, truth = bands_of_frames()
-    for found, band in zip(descended(tmp_path).predict(descriptors), truth, strict=True):
+    for found, band in zip(train_in(tmp_path, RANDOM).predict(descriptors), truth, strict=True):
         about_mean = (band - band.mean(0)).abs().sum()
         assert (found - band).abs().sum() < 0.6 * about_mean
 
 
 def test_means_are_those_of_the_training_frames(tmp_path: Path) -> None:
     steps = {"regression": replace(RANDOM.regression, steps=1), "finetune": replace(RANDOM.finetune, steps=1)}
-    student = descended(tmp_path, replace(RANDOM, **steps))  # type: ignore[arg-type]
+    student = train_in(tmp_path, replace(RANDOM, **steps))  # type: ignore[arg-type]
     mean = student.mean_lowpass() + student.static
     assert torch.allclose(mean, samples().mean_texture.T, atol=1e-5)
-
-
-class Killed(Exception):
-    """Stands for a kill at one moment of a run."""
 
 
 @pytest.mark.parametrize(
@@ -55,16 +37,9 @@ class Killed(Exception):
 )
 def test_a_killed_descent_ends_in_the_same_bytes(tmp_path: Path, stage: str, step: int) -> None:
     settings = replace(RANDOM, finetune=replace(RANDOM.finetune, steps=460))
-
-    def kill(progress: Progress) -> None:
-        if (progress.stage, progress.step) == (stage, step):
-            raise Killed
-
     with pytest.raises(Killed):
-        descended(tmp_path / "a", settings, kill)
-    resumed, whole = descended(tmp_path / "a", settings), descended(tmp_path / "b", settings)
-    pairs = zip(resumed.state_dict().values(), whole.state_dict().values(), strict=True)
-    assert all(torch.equal(x, y) for x, y in pairs)
+        train_in(tmp_path / "a", settings, kill_at(stage, step))
+    assert same(train_in(tmp_path / "a", settings), train_in(tmp_path / "b", settings))
 
 
 def test_the_paper_recipe_is_the_papers() -> None:

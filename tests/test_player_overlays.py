@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import rasterised
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, compare
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import empty_avatar, synthetic_avatar, with_surface
 
 from mua import rotation
 from mua.arrays import Array
@@ -254,20 +254,8 @@ def test_stands_the_ground_under_most_frames() -> None:
 
 
 def test_draws_an_avatar_without_texels(device: Device, tmp_path: Path) -> None:
-    avatar = synthetic_avatar()
-    texels = replace(
-        avatar.rig.texels,
-        texels=avatar.rig.texels.texels[:0],
-        triangles=avatar.rig.texels.triangles[:0],
-        barycentrics=avatar.rig.texels.barycentrics[:0],
-    )
-    empty = replace(
-        avatar,
-        rig=replace(avatar.rig, texels=texels),
-        geometry=replace(avatar.geometry, static=avatar.geometry.static[:, :0]),
-        appearance=replace(avatar.appearance, static=avatar.appearance.static[:, :0]),
-    )
-    write(tmp_path / "empty.muaavatar", empty)
+    avatar = empty_avatar()
+    write(tmp_path / "empty.muaavatar", avatar)
     scene = Scene(device, SplatFrame(device, [AvatarBuffers(device, tmp_path / "empty.muaavatar")]))
     camera = camera_at(avatar.rig.mesh.vertices)
     picture = draw_picture(device, scene, (camera,), Toggles(splats=False, geometry=True))

@@ -19,50 +19,29 @@ import numpy as np
 import pytest
 from PIL import ImageGrab
 from rendercanvas.offscreen import RenderCanvas
-from synthetic_avatar import synthetic_avatar
 
-from mua import rotation
 from mua.arrays import Array
-from mua.asset.write import write
-from mua.camera import orbit
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
-from mua.player.focus import find_focus
 from mua.player.panel import KEYS, WIDTH
 from mua.player.session import Session
 from mua.player.shot import Look
 from mua.player.source import Source
 from mua.player.toggles import Toggles
 from mua.player.viewer import Viewer
-from mua.player.viewpoint import FARTHEST, NEAREST, Viewpoint, framing
 from mua.player.window import show
-from mua.pose.clip import Clip
 
 SIZE = (640, 360)
-FRONT = np.zeros(1)
 LOOK = look_of(Asked(), None)
 COLOR = tuple(round(255 * c) for c in LOOK.background or ())
 DEADLINE = 120.0  # seconds for a window to open on a busy machine; it takes a few
 EMPTY = (slice(300, 350), slice(WIDTH + 20, WIDTH + 60))  # rows and columns beside panel and figure
 
 
-@pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
-    """Two avatars, the second with one clip more, and a broken one."""
-    directory = tmp_path_factory.mktemp("window")
-    avatar = synthetic_avatar(1)
-    clip = avatar.clips[0]
-    longer = Clip("twice", clip.rate, np.tile(clip.rotations, (2, 1, 1)), np.tile(clip.translations, (2, 1, 1)))
-    write(directory / "first.muaavatar", synthetic_avatar(0))
-    write(directory / "second.muaavatar", replace(avatar, clips=(clip, longer)))
-    (directory / "broken.muaavatar").write_bytes(b"not an avatar")
-    return tuple(directory / f"{name}.muaavatar" for name in ("first", "second", "broken"))
-
-
 @pytest.fixture
-def window(device: Device, files: tuple[Path, ...]) -> Iterator["Driven"]:
-    driven = Driven(device, files)
+def window(device: Device, avatar_files: tuple[Path, ...]) -> Iterator["Driven"]:
+    driven = Driven(device, avatar_files)
     yield driven
     driven.canvas.close()
 
@@ -70,9 +49,9 @@ def window(device: Device, files: tuple[Path, ...]) -> Iterator["Driven"]:
 class Driven:
     """A window on a canvas without a display, at rest."""
 
-    def __init__(self, device: Device, files: tuple[Path, ...], look: Look = LOOK) -> None:
+    def __init__(self, device: Device, avatar_files: tuple[Path, ...], look: Look = LOOK) -> None:
         self.canvas = RenderCanvas(size=SIZE)
-        self.viewer = Viewer(self.canvas, device, Source(files), look)
+        self.viewer = Viewer(self.canvas, device, Source(avatar_files), look)
         self.session: Session = self.viewer.session
         self.session.playing = False
         self.picture()  # frames the view
@@ -261,10 +240,6 @@ def test_draws_two_eyes_beside_each_other(window: Driven) -> None:
         assert (half != COLOR).any()
 
 
-def asked(**options: Any) -> Look:
-    return look_of(Asked(**options), None)
-
-
 @pytest.mark.parametrize(
     "options",
     [
@@ -276,126 +251,29 @@ def asked(**options: Any) -> Look:
         {"stereo": True},
     ],
 )
-def test_shows_what_the_options_ask_for(device: Device, files: tuple[Path, ...], options: dict[str, Any]) -> None:
+def test_shows_what_the_options_ask_for(
+    device: Device, avatar_files: tuple[Path, ...], options: dict[str, Any]
+) -> None:
     shown = []
-    for look in (LOOK, asked(**options)):
-        driven = Driven(device, files, look)
+    for look in (LOOK, look_of(Asked(**options), None)):
+        driven = Driven(device, avatar_files, look)
         shown.append(driven.picture()[:, WIDTH + 20 :])
         driven.canvas.close()
     assert (shown[0] != shown[1]).any()
 
 
-def test_has_the_background_asked_for(device: Device, files: tuple[Path, ...]) -> None:
-    driven = Driven(device, files, asked(background="#204060"))
+def test_has_the_background_asked_for(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    driven = Driven(device, avatar_files, look_of(Asked(background="#204060"), None))
     np.testing.assert_array_equal(driven.picture()[EMPTY][0, 0], [0x20, 0x40, 0x60])
     driven.canvas.close()
 
 
-def session(device: Device, source: Source, **options: Any) -> Session:
-    return Session(device, source, asked(**options), color_format="rgba8unorm")
-
-
-def test_opens_with_the_camera_asked_for(device: Device, files: tuple[Path, ...]) -> None:
-    plain, chosen = (
-        session(device, Source(files), **options)._framed((400, 300))
-        for options in ({}, {"azimuth": 30.0, "elevation": 20.0, "zoom": 2.5})
-    )
-    assert chosen.azimuth - plain.azimuth == pytest.approx(np.radians(30))
-    assert chosen.elevation == pytest.approx(np.radians(20))
-    assert chosen.framed / chosen.distance == pytest.approx(2.5)
-    assert session(device, Source(files), stereo=True, follow=False).stereo
-    assert not session(device, Source(files), stereo=True, follow=False).follow
-
-
-def test_goes_round_while_it_plays(device: Device, files: tuple[Path, ...]) -> None:
-    turning = session(device, Source(files), orbit=90.0)
-    turning.view = turning._framed((400, 300))
-    before = turning.view.azimuth
-    turning.advance(0.5)
-    assert turning.view.azimuth - before == pytest.approx(np.radians(45))
-    turning.playing = False
-    turning.advance(0.5)
-    assert turning.view.azimuth - before == pytest.approx(np.radians(45))
-
-
-def test_rests_at_the_frame_asked_for(device: Device, files: tuple[Path, ...]) -> None:
-    resting = session(device, Source(files, frame=3))
-    assert (resting.index, resting.playing) == (3, False)
-    with pytest.raises(InputError, match="--frame is 7; clip 'wave' has frames 0 to 6"):
-        session(device, Source(files, frame=7))
-
-
-def test_keeps_what_it_looks_at_in_the_middle(device: Device, files: tuple[Path, ...]) -> None:
-    looking = session(device, Source(files), look_at="tip")
-    places = find_focus(looking._stage.rig, "tip").places(
-        looking._stage.rig.skeleton, looking.clip.rotations, looking.clip.translations
-    )
-    for index in (0, 4):
-        looking.step(index - looking.index)
-        (camera,) = looking._cameras((400, 300))
-        x, y, _, w = camera.projection @ camera.view @ np.append(places[index], 1)
-        np.testing.assert_allclose([x / w, y / w], 0, atol=1e-9)
-    with pytest.raises(InputError, match="--look-at is 'tail'"):
-        session(device, Source(files), look_at="tail")
-
-
-def test_another_clip_is_seen_from_the_same_side(device: Device, files: tuple[Path, ...]) -> None:
-    watching = session(device, Source(files), azimuth=20.0)
-    clip, root = watching.clip, watching._stage.rig.skeleton.root
-    rotations = clip.rotations.copy()
-    half_turn = np.array([0.0, 0, 1, 0])  # about the vertical
-    rotations[:, root] = rotation.multiply(half_turn, rotations[:, root])
-    watching._cameras((400, 300))
-    assert watching.view is not None
-    before = watching.view
-    watching.choose_clip(replace(clip, rotations=rotations))
-    turned = watching.view.azimuth - before.azimuth
-    assert np.cos(turned) == pytest.approx(-1)
-    np.testing.assert_allclose(watching.view.target, before.target * [-1, 1, -1], atol=1e-9)
-
-
-def test_refuses_a_clip_that_is_not_there(device: Device, files: tuple[Path, ...]) -> None:
-    with pytest.raises(InputError, match="--clip is 'run'"):
-        Session(device, Source(files, clip="run"), LOOK, color_format="rgba8unorm")
-
-
-def test_keeps_what_is_panned_under_the_mouse() -> None:
-    screen = (400, 300)
-    view = Viewpoint(np.array([0.1, 1.0, -0.2]), 3.0, azimuth=0.7, elevation=0.3)
-    moved = view.panned(25, -40, height=screen[1]).camera(screen)
-    x, y, _, w = moved.projection @ moved.view @ np.append(view.target, 1)
-    at = (np.array([x, -y]) / w + 1) / 2 * screen
-    np.testing.assert_allclose(at, [200 + 25, 150 - 40])
-
-
-@pytest.mark.parametrize("size", [1.3e-3, 1.8, 40.0])
-def test_a_figure_of_any_size_is_framed_before_the_near_plane_and_can_be_come_close_to(size: float) -> None:
-    bounds = size * np.array([[-0.3, 0, -0.2], [0.3, 1, 0.2]])
-    view = framing(bounds, (300, 500), azimuths=FRONT)
-    assert 1 < view.distance / size < 5
-    for seen in (view, view.zoomed(10), view.zoomed(1000)):
-        camera = seen.camera((300, 500))
-        assert 0 < camera.near < 0.02 * seen.distance
-    assert view.zoomed(1000).distance < 0.05 * size
-    assert view.zoomed(-1000).distance > 20 * size
-
-
-def test_holds_distance_and_elevation() -> None:
-    view = Viewpoint(np.zeros(3), 3.0, framed=2.0)
-    assert view.zoomed(1000).distance == 2 * NEAREST
-    assert view.zoomed(-1000).distance == 2 * FARTHEST
-    assert view.turned(0, 1e6).elevation < np.pi / 2
-    bounds = np.array([[-0.5, 0, -0.3], [0.5, 1.8, 0.3]])
-    framed, screen = framing(bounds, (300, 500), azimuths=FRONT), (300, 500)
-    np.testing.assert_allclose(framed.camera(screen).view, orbit(bounds, screen=screen).view, atol=1e-12)
-
-
-def test_says_that_there_is_no_display(files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_says_that_there_is_no_display(avatar_files: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     with pytest.raises(InputError, match="a window needs a display and there is none; -o writes a picture"):
-        show(Source(files), LOOK)
+        show(Source(avatar_files), LOOK)
 
 
 @pytest.fixture
@@ -419,14 +297,14 @@ def display() -> Iterator[str]:
 
 
 @pytest.mark.parametrize("options", [[], ["--size", "760x600", "--background", "#204060"]])
-def test_opens_a_window_on_a_display(display: str, files: tuple[Path, ...], options: list[str]) -> None:
+def test_opens_a_window_on_a_display(display: str, avatar_files: tuple[Path, ...], options: list[str]) -> None:
     color = (0x20, 0x40, 0x60) if options else COLOR
     covered = 0.15 if options else 0.3  # of the screen, at least
     device = ["--device", os.environ["MUA_DEVICE"]] if "MUA_DEVICE" in os.environ else []
     code = "from mua.cli.view import run; run()"
     environment = {**os.environ, "DISPLAY": display}
     environment.pop("WAYLAND_DISPLAY", None)
-    child = subprocess.Popen([sys.executable, "-c", code, str(files[0]), *options, *device], env=environment)
+    child = subprocess.Popen([sys.executable, "-c", code, str(avatar_files[0]), *options, *device], env=environment)
     try:
         deadline = time.monotonic() + DEADLINE
         while True:

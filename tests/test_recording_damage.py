@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from recordings import RATE, FormulaTeacher, plan
+from recordings import RATE, FormulaTeacher, opened, plan
 from synthetic_avatar import synthetic_rig
 
 from mua.errors import InputError
-from mua.recording import PlannedClip, TeacherWriter, record
+from mua.recording import PlannedClip, record
 from mua.recording.damage import check
 
 
@@ -72,7 +72,7 @@ def test_a_recording_that_a_kill_cut_short_is_no_damage_but_not_whole(tmp_path: 
 
     with (
         suppress(KeyboardInterrupt),
-        TeacherWriter(tmp_path, teacher.rig, rate=RATE, shard_frames=4) as writer,
+        opened(tmp_path, shard_frames=4) as writer,
     ):
         record(teacher, plan(teacher.rig), writer, progress=die)
     check(tmp_path, plan(teacher.rig), rate=RATE, whole=False)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from recordings import RATE, FormulaTeacher, clip, content, plan
+from recordings import RATE, Dying, FormulaTeacher, Killed, clip, content, frames, opened, plan
 from synthetic_avatar import synthetic_rig
 from together import errors, start
 
@@ -85,40 +85,21 @@ def test_a_writer_goes_on_with_what_was_joined(tmp_path: Path) -> None:
     np.testing.assert_allclose(moved, last.texture, atol=2e-3)  # whole frames are half precision
 
 
-class Killed(BaseException):
-    """Stands for the death of the process."""
-
-
 def test_death_at_any_step_of_joining_leaves_the_parts_or_the_whole(
     whole: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     record_parts(tmp_path / "parts" / "joined", 2)
-    budget = [0]
-
-    def dying(call):  # type: ignore[no-untyped-def]
-        def step(*args, **kwargs):  # type: ignore[no-untyped-def]
-            budget[0] -= 1
-            if budget[0] == 0:
-                raise Killed
-            return call(*args, **kwargs)
-
-        return step
-
-    monkeypatch.setattr(os, "link", dying(os.link))
-    monkeypatch.setattr(np, "save", dying(np.save))
-    monkeypatch.setattr(shutil, "copyfile", dying(shutil.copyfile))
-    monkeypatch.setattr(shutil, "rmtree", dying(shutil.rmtree))
-    for method in ("rename", "write_bytes", "mkdir"):
-        monkeypatch.setattr(Path, method, dying(getattr(Path, method)))
+    of_path = [(Path, name) for name in ("rename", "write_bytes", "mkdir")]
+    dying = Dying(monkeypatch, (os, "link"), (np, "save"), (shutil, "copyfile"), (shutil, "rmtree"), *of_path)
     for step in range(1, 10_000, 13):
         directory = tmp_path / f"{step}" / "joined"
-        budget[0] = 0
+        dying.budget = 0
         shutil.copytree(tmp_path / "parts", directory.parent)
-        budget[0] = step
+        dying.budget = step
         try:
             join_parts(directory, plan(synthetic_rig()))
         except Killed:
-            budget[0] = 0
+            dying.budget = 0
             join_parts(directory, plan(synthetic_rig()))
             assert_same(Recording(directory), whole)
         else:
@@ -149,11 +130,11 @@ def test_refuses_a_part_that_is_missing_unfinished_or_of_another_teacher(tmp_pat
 
 
 def test_refuses_another_reference(tmp_path: Path) -> None:
-    teacher, walk = FormulaTeacher(synthetic_rig()), plan(synthetic_rig())[0].clip
-    with TeacherWriter(tmp_path, teacher.rig, rate=RATE) as writer:
-        writer.refer_to(teacher.frame(walk, 0).texture)
+    first, _, third = frames(3)
+    with opened(tmp_path) as writer:
+        writer.refer_to(first.texture)
         with pytest.raises(InputError, match=r"reference.npz: is another texture"):
-            writer.refer_to(teacher.frame(walk, 2).texture)
+            writer.refer_to(third.texture)
 
 
 def planned(lengths: list[int]) -> list[PlannedClip]:

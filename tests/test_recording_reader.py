@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import pywt
 import torch
-from recordings import RATE, FormulaTeacher, aligned, content, plan, truth, write
+from recordings import RATE, FormulaTeacher, aligned, content, opened, plan, truth, write
 from synthetic_avatar import synthetic_rig
 
 from mua.arrays import Array
 from mua.channels import GEOMETRY
 from mua.errors import InputError
-from mua.recording import Recording, TeacherWriter
+from mua.recording import Recording
 from mua.texture.fill import Fill
 
 HALF = 2.0**-11  # relative rounding error of half precision
@@ -149,14 +149,19 @@ def test_fingerprint_changes_with_content_only(written: Path, tmp_path: Path) ->
 
 
 def test_recording_without_frames_opens_but_has_no_mean(tmp_path: Path) -> None:
-    rig = synthetic_rig()
-    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+    with opened(tmp_path) as writer:
         writer.start_clip("walk")
-        writer.add(rig.skeleton.bind_pose)
+        writer.add(synthetic_rig().skeleton.bind_pose)
     recording = Recording(tmp_path)
     assert (recording.count(), len(recording.clips[0])) == (0, 1)
     with pytest.raises(InputError, match="holds no training frame"):
         recording.mean_texture()
+
+
+@pytest.fixture
+def copy(written: Path, tmp_path: Path) -> Path:
+    """A recording that may be damaged."""
+    return Path(shutil.copytree(written, tmp_path / "copy"))
 
 
 @pytest.mark.parametrize(
@@ -171,38 +176,33 @@ def test_recording_without_frames_opens_but_has_no_mean(tmp_path: Path) -> None:
         ("shards/00006/sum.npy", r"sum\.npy is missing"),
     ],
 )
-def test_names_a_missing_file(written: Path, tmp_path: Path, name: str, message: str) -> None:
-    shutil.copytree(written, tmp_path / "copy")
-    (tmp_path / "copy" / name).unlink()
+def test_names_a_missing_file(copy: Path, name: str, message: str) -> None:
+    (copy / name).unlink()
     with pytest.raises(InputError, match=message):
-        Recording(tmp_path / "copy")
+        Recording(copy)
 
 
-def test_names_a_missing_shard(written: Path, tmp_path: Path) -> None:
-    shutil.copytree(written, tmp_path / "copy")
-    shutil.rmtree(tmp_path / "copy/shards/00001")
-    with pytest.raises(InputError, match="shard 00001 is missing"):
-        Recording(tmp_path / "copy")
-    with pytest.raises(InputError, match="shard 00001 is missing"):
-        TeacherWriter(tmp_path / "copy", synthetic_rig(), rate=RATE)
+def test_names_a_missing_shard(copy: Path) -> None:
+    shutil.rmtree(copy / "shards/00001")
+    for use in (Recording, opened):
+        with pytest.raises(InputError, match="shard 00001 is missing"):
+            use(copy)
 
 
 @pytest.mark.parametrize(
     "name", ["recording.json", "rig.npz", "reference.npz", "shards/00001/index.json", "shards/00001/ll.npy"]
 )
-def test_names_a_file_cut_short(written: Path, tmp_path: Path, name: str) -> None:
-    shutil.copytree(written, tmp_path / "copy")
-    path = tmp_path / "copy" / name
+def test_names_a_file_cut_short(copy: Path, name: str) -> None:
+    path = copy / name
     whole = path.read_bytes()
     for kept in (0, 1, len(whole) // 3, len(whole) - 2):
         path.write_bytes(whole[:kept])
         with pytest.raises(InputError, match=path.name):
-            Recording(tmp_path / "copy")
+            Recording(copy)
 
 
-def test_refuses_a_newer_version(written: Path, tmp_path: Path) -> None:
-    shutil.copytree(written, tmp_path / "copy")
-    header = json.loads((written / "recording.json").read_text())
-    (tmp_path / "copy/recording.json").write_text(json.dumps(header | {"version": 3}))
+def test_refuses_a_newer_version(copy: Path) -> None:
+    header = json.loads((copy / "recording.json").read_text())
+    (copy / "recording.json").write_text(json.dumps(header | {"version": 3}))
     with pytest.raises(InputError, match="version is 3, this program reads 2"):
-        Recording(tmp_path / "copy")
+        Recording(copy)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recordings import RATE, FormulaTeacher, clip, content, plan, write
+from recordings import RATE, FormulaTeacher, clip, content, opened, plan, write
 from synthetic_avatar import synthetic_rig
 
 from mua.errors import InputError
@@ -96,15 +96,11 @@ def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:
 def test_refuses_another_plan(written: Path, tmp_path: Path) -> None:
     shutil.copytree(written, tmp_path / "copy")
     rig = synthetic_rig()
-    changed = [replace(plan(rig)[0], wanted=frozenset({0, 1}))]
-    with (
-        TeacherWriter(tmp_path / "copy", rig, rate=RATE) as writer,
-        pytest.raises(InputError, match="clip 'walk' holds other frames than are wanted now"),
+    changed = replace(plan(rig)[0], wanted=frozenset({0, 1}))
+    slow = PlannedClip(replace(clip(rig, "slow", 3), rate=12.0), held_out=False, wanted=frozenset({0}))
+    for planned, told in (
+        (changed, "clip 'walk' holds other frames than are wanted now"),
+        (slow, r"clip 'slow': rate is 12\.0 .* expected 24\.0"),
     ):
-        record(FormulaTeacher(rig), changed, writer)
-    slow = [PlannedClip(replace(clip(rig, "slow", 3), rate=12.0), held_out=False, wanted=frozenset({0}))]
-    with (
-        TeacherWriter(tmp_path / "copy", rig, rate=RATE) as writer,
-        pytest.raises(InputError, match=r"clip 'slow': rate is 12\.0 .* expected 24\.0"),
-    ):
-        record(FormulaTeacher(rig), slow, writer)
+        with opened(tmp_path / "copy") as writer, pytest.raises(InputError, match=told):
+            record(FormulaTeacher(rig), [planned], writer)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from recordings import RATE, FormulaTeacher, clip, content, write
+from recordings import RATE, Dying, Killed, add, content, frames, opened, write
 from synthetic_avatar import synthetic_rig
 
 from mua.arrays import Array
@@ -24,68 +24,44 @@ from mua.recording import Recording, TeacherWriter
 
 
 def test_full_images_are_taken_at_the_valid_texels(tmp_path: Path) -> None:
-    rig = synthetic_rig()
-    size = rig.texels.size
-    first = FormulaTeacher(rig).frame(clip(rig, "walk", 1), 0)
-    image = np.full((size * size, 23), np.nan, dtype=np.float32)
-    image[rig.texels.texels] = first.texture
-    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
-        writer.start_clip("walk")
-        writer.add(first.pose, first.mesh, image.reshape(size, size, 23))
+    texels = synthetic_rig().texels
+    (first,) = frames(1)
+    image = np.full((texels.size, texels.size, 23), np.nan, dtype=np.float32)
+    image.reshape(-1, 23)[texels.texels] = first.texture
+    with opened(tmp_path) as writer:
+        add(writer, replace(first, texture=image))
     np.testing.assert_array_equal(Recording(tmp_path).mean_texture(), first.texture)
 
 
 def test_a_buffer_that_the_caller_fills_anew_holds_each_frame(tmp_path: Path) -> None:
-    rig = synthetic_rig()
-    walk = clip(rig, "walk", 2)
-    frames = [FormulaTeacher(rig).frame(walk, index) for index in range(2)]
-    mesh, texture = np.zeros_like(frames[0].mesh), np.zeros_like(frames[0].texture)
-    with TeacherWriter(tmp_path / "reused", rig, rate=RATE) as writer:
+    two = frames(2)
+    mesh, texture = np.zeros_like(two[0].mesh), np.zeros_like(two[0].texture)
+    with opened(tmp_path / "reused") as writer:
         writer.start_clip("walk")
-        for frame in frames:
+        for frame in two:
             mesh[:], texture[:] = frame.mesh, frame.texture
             writer.add(frame.pose, mesh, texture)
-    with TeacherWriter(tmp_path / "own", rig, rate=RATE) as writer:
-        writer.start_clip("walk")
-        for frame in frames:
-            writer.add(frame.pose, frame.mesh, frame.texture)
+    with opened(tmp_path / "own") as writer:
+        add(writer, *two)
     assert content(tmp_path / "reused") == content(tmp_path / "own")
-
-
-class Killed(BaseException):
-    """Stands for the death of the process."""
 
 
 def test_death_at_any_step_of_a_write_loses_and_doubles_nothing(
     written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Die before the k-th of the calls that change the disk; then go on."""
-    budget = [0]
-
-    def dying(call):  # type: ignore[no-untyped-def]
-        def step(*args, **kwargs):  # type: ignore[no-untyped-def]
-            budget[0] -= 1
-            if budget[0] == 0:
-                raise Killed
-            return call(*args, **kwargs)
-
-        return step
-
+    of_path = [(Path, name) for name in ("rename", "unlink", "write_bytes", "replace")]
     with monkeypatch.context() as patch:
-        patch.setattr(np, "save", dying(np.save))
-        patch.setattr(np, "savez", dying(np.savez))
-        patch.setattr(os, "fsync", dying(os.fsync))
-        for method in ("rename", "unlink", "write_bytes", "replace"):
-            patch.setattr(Path, method, dying(getattr(Path, method)))
+        dying = Dying(patch, (np, "save"), (np, "savez"), (os, "fsync"), *of_path)
         for step in range(1, 10_000, 11):  # some of the steps of every shard; all would take minutes
             directory = tmp_path / str(step)
-            budget[0] = step
+            dying.budget = step
             try:
                 write(directory)
             except Killed:
                 if (directory / "recording.json").exists():
                     Recording(directory)
-                budget[0] = 0
+                dying.budget = 0
                 write(directory)
                 assert content(directory) == content(written)
                 shutil.rmtree(directory)
@@ -121,14 +97,10 @@ def test_kill_9_at_random_moments_loses_and_doubles_nothing(written: Path, tmp_p
 
 def test_interleaved_clips_stay_contiguous_after_a_kill(tmp_path: Path) -> None:
     """A clip that a killed run left is complete once another is started."""
-    rig = synthetic_rig()
-    teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 3)
-    with suppress(Killed), TeacherWriter(tmp_path, rig, rate=RATE, shard_frames=2) as killed:
-        killed.start_clip("walk")
-        for frame in (teacher.frame(walk, index) for index in range(3)):
-            killed.add(frame.pose, frame.mesh, frame.texture)
+    with suppress(Killed), opened(tmp_path, shard_frames=2) as killed:
+        add(killed, *frames(3))
         raise Killed
-    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+    with opened(tmp_path) as writer:
         writer.start_clip("turn")
         with pytest.raises(InputError, match="clip 'walk' is complete"):
             writer.start_clip("walk")
@@ -136,17 +108,12 @@ def test_interleaved_clips_stay_contiguous_after_a_kill(tmp_path: Path) -> None:
 
 
 def test_a_second_writer_is_refused_and_leaves_the_first_ones_frames(tmp_path: Path) -> None:
-    rig = synthetic_rig()
-    teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 3)
-    with TeacherWriter(tmp_path, rig, rate=RATE) as first:
-        first.start_clip("walk")
-        for index in range(3):
-            frame = teacher.frame(walk, index)
-            first.add(frame.pose, frame.mesh, frame.texture, whole=True)
+    with opened(tmp_path, whole_every=1) as first:
+        add(first, *frames(3))
         with pytest.raises(InputError, match=rf"process {os.getpid()} is at work there; wait until it has ended"):
-            TeacherWriter(tmp_path, rig, rate=RATE)
+            opened(tmp_path)
     assert [frame.index for frame in Recording(tmp_path).whole_frames()] == [0, 1, 2]
-    TeacherWriter(tmp_path, rig, rate=RATE)
+    opened(tmp_path)
 
 
 def test_every_file_of_a_shard_is_on_the_disk_before_the_shard_has_its_name(
@@ -231,13 +198,10 @@ def nan_at(array: Array, *where: int) -> Array:
     ],
 )
 def test_refuses_a_bad_frame_and_goes_on(tmp_path: Path, change, message: str) -> None:  # type: ignore[no-untyped-def]
-    rig = synthetic_rig()
-    teacher, walk = FormulaTeacher(rig), clip(rig, "walk", 2)
-    good, second = teacher.frame(walk, 0), teacher.frame(walk, 1)
+    good, second = frames(2)
     bad = change(second)
-    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
-        writer.start_clip("walk")
-        writer.add(good.pose, good.mesh, good.texture)
+    with opened(tmp_path) as writer:
+        add(writer, good)
         with pytest.raises(InputError, match=f"clip 'walk', frame 1: .*{message}"):
             writer.add(bad.pose, bad.mesh, bad.texture)
         writer.add(second.pose, second.mesh, second.texture)
@@ -245,26 +209,22 @@ def test_refuses_a_bad_frame_and_goes_on(tmp_path: Path, change, message: str) -
 
 
 def test_refuses_a_first_frame_that_is_not_finite(tmp_path: Path) -> None:
-    rig = synthetic_rig()
-    frame = FormulaTeacher(rig).frame(clip(rig, "walk", 1), 0)
-    writer = TeacherWriter(tmp_path, rig, rate=RATE)
-    writer.start_clip("walk")
-    with pytest.raises(InputError, match="is nan"):
-        writer.add(frame.pose, frame.mesh, nan_at(frame.texture, 3, 3))
+    (frame,) = frames(1)
+    with opened(tmp_path) as writer, pytest.raises(InputError, match="is nan"):
+        add(writer, replace(frame, texture=nan_at(frame.texture, 3, 3)))
     assert not (tmp_path / "reference.npz").exists()
 
 
 @pytest.mark.parametrize("rate", [0, -30, 0.5, 1001, float("nan")])
 def test_refuses_a_rate_that_no_file_can_hold(tmp_path: Path, rate: float) -> None:
     with pytest.raises(InputError, match=r"rate is .*, expected 1 to 1000 frames per second"):
-        TeacherWriter(tmp_path / "r", synthetic_rig(), rate=rate)
+        opened(tmp_path / "r", rate=rate)
     assert not (tmp_path / "r").exists()
 
 
 def test_refuses_a_frame_before_a_clip(tmp_path: Path) -> None:
-    rig = synthetic_rig()
     with pytest.raises(InputError, match="start_clip comes before"):
-        TeacherWriter(tmp_path, rig, rate=RATE).add(rig.skeleton.bind_pose)
+        opened(tmp_path).add(synthetic_rig().skeleton.bind_pose)
 
 
 def test_refuses_a_directory_of_another_rig_rate_or_wavelet(written: Path) -> None:
@@ -273,9 +233,9 @@ def test_refuses_a_directory_of_another_rig_rate_or_wavelet(written: Path) -> No
     with pytest.raises(InputError, match=r"rig is .* record into another directory"):
         TeacherWriter(written, other, rate=RATE)
     with pytest.raises(InputError, match=r"rate is 24\.0, expected 30\.0"):
-        TeacherWriter(written, rig, rate=30)
+        opened(written, rate=30)
     with pytest.raises(InputError, match=r"wavelet is 'bior4\.4', expected 'bior2\.2'"):
-        TeacherWriter(written, rig, rate=RATE, wavelet="bior2.2")
+        opened(written, wavelet="bior2.2")
 
 
 def test_refuses_a_texture_size_that_four_levels_do_not_halve(tmp_path: Path) -> None:

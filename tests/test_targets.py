@@ -5,8 +5,9 @@ import pytest
 import torch
 
 from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY
-from mua.student.targets import LEAST_SPREAD, channel_weights, still_channels
+from mua.student.targets import channel_weights, still_channels
 
+LEAST = {"offset": 1e-5, "rotation": 1e-4, "scale": 1e-4, "opacity": 1e-3, "SH": 1e-4}  # metres, logarithms, logits
 SPREADS = {"offset": 0.02, "rotation": 0.3, "scale": 0.5, "opacity": 4.0, "SH": 0.1}
 
 
@@ -35,7 +36,7 @@ def test_the_channels_of_an_attribute_share_the_weight_of_their_mean_variance() 
 @pytest.mark.parametrize("size", [1.0, 0.01, 50.0])
 def test_what_hardly_varies_is_still_and_not_stretched(size: float) -> None:
     """Offsets are lengths, which grow with the figure; angles and colours do not."""
-    least = {name: spread * (size if name == "offset" else 1) for name, spread in LEAST_SPREAD.items()}
+    least = {name: spread * (size if name == "offset" else 1) for name, spread in LEAST.items()}
     for factor, still in ((0.9, True), (1.1, False)):
         variance = variances({name: factor * spread for name, spread in least.items()})
         for part in (GEOMETRY, APPEARANCE):

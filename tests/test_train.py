@@ -2,7 +2,6 @@
 
 import math
 import threading
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,12 +11,15 @@ from synthetic_student import (
     FRAMES,
     INPUTS,
     SETTINGS,
+    Killed,
     bands_of_frames,
-    new_student,
+    kill_at,
     quick,
     random_student,
     run_in,
+    same,
     samples,
+    train_in,
 )
 from trainings import one_by_one
 
@@ -25,32 +27,15 @@ from mua.channels import APPEARANCE, GEOMETRY
 from mua.student import coarse, targets
 from mua.student import regress as regression
 from mua.student import source as sources
-from mua.student.checkpoint import Checkpoints
 from mua.student.conditioned import INPUT_FLOOR, Conditioned, Whitening, fold, whitening
 from mua.student.factorize import truncated_svd
-from mua.student.model import Bands, Branch, Student, build_mlp
+from mua.student.model import Bands, Branch, build_mlp
 from mua.student.optimise import Progress
 from mua.student.regress import leading, regress, squared_error
 from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
-from mua.student.targets import channel_weights, joint_targets, still_channels
-from mua.student.train import BestCoefficients, train
-
-CPU = torch.device("cpu")
-
-
-def trained(
-    directory: Path, settings: Settings = SETTINGS, report: Callable[[Progress], None] = lambda _: None
-) -> Student:
-    student, data = new_student(settings), samples()
-    student.mean.copy_(data.descriptors.mean(0))
-    student.scale.copy_(data.descriptors.std(0))
-    train(student, data, settings=settings, checkpoints=Checkpoints(directory, "key"), device=CPU, report=report)
-    return student
-
-
-def same(a: Student, b: Student) -> bool:
-    return all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
+from mua.student.targets import joint_targets
+from mua.student.train import BestCoefficients
 
 
 def explained(predicted: torch.Tensor, truth: torch.Tensor) -> float:
@@ -58,7 +43,7 @@ def explained(predicted: torch.Tensor, truth: torch.Tensor) -> float:
 
 
 def test_explains_its_training_frames(tmp_path: Path) -> None:
-    student = trained(tmp_path)
+    student = train_in(tmp_path)
     descriptors, truth = bands_of_frames()
     predicted = student.predict(descriptors)
     for found, band, least in zip(predicted, truth, (0.9, 0.8, 0.7), strict=True):
@@ -70,7 +55,7 @@ def test_each_stage_improves_on_the_one_before(tmp_path: Path) -> None:
     descriptors, truth = bands_of_frames()
 
     def gains(name: str, settings: Settings) -> torch.Tensor:
-        predicted = trained(tmp_path / name, settings).predict(descriptors)
+        predicted = train_in(tmp_path / name, settings).predict(descriptors)
         return torch.tensor([explained(found, band) for found, band in zip(predicted, truth, strict=True)])
 
     nothing = Schedule(steps=1, batch=1, lr=1e-12)
@@ -85,20 +70,16 @@ def test_each_stage_improves_on_the_one_before(tmp_path: Path) -> None:
 
 
 def test_mean_texture_is_kept_at_the_valid_texels(tmp_path: Path) -> None:
-    student = trained(tmp_path, quick())
+    student = train_in(tmp_path, quick())
     mean = student.mean_lowpass() + student.static
     assert torch.allclose(mean, samples().mean_texture.T, atol=1e-5)
 
 
 def test_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path: Path) -> None:
     settings = quick()
-    first, second = trained(tmp_path / "a", settings), trained(tmp_path / "b", settings)
+    first, second = train_in(tmp_path / "a", settings), train_in(tmp_path / "b", settings)
     assert same(first, second)
-    assert not same(first, trained(tmp_path / "c", replace(settings, seed=1)))
-
-
-class Killed(Exception):
-    """Stands for a kill at one moment of a run."""
+    assert not same(first, train_in(tmp_path / "c", replace(settings, seed=1)))
 
 
 STAGES = ("coarse mesh", "geometry bases", "geometry coefficients", "geometry fine-tuning", "appearance bases")
@@ -107,14 +88,9 @@ STAGES = ("coarse mesh", "geometry bases", "geometry coefficients", "geometry fi
 @pytest.mark.parametrize("stage", STAGES)
 def test_resumes_to_the_same_bytes_after_a_kill(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stage: str) -> None:
     monkeypatch.setattr("mua.student.optimise.CHECKPOINT_STEPS", 2)
-
-    def kill(progress: Progress) -> None:
-        if progress.stage == stage and progress.step == 3:
-            raise Killed
-
     with pytest.raises(Killed):
-        trained(tmp_path / "killed", quick(), kill)
-    assert same(trained(tmp_path / "killed", quick()), trained(tmp_path / "whole", quick()))
+        train_in(tmp_path / "killed", quick(), kill_at(stage, 3))
+    assert same(train_in(tmp_path / "killed", quick()), train_in(tmp_path / "whole", quick()))
 
 
 @pytest.mark.parametrize(
@@ -126,18 +102,13 @@ def test_goes_on_where_directions_come_out_the_other_way(
     """As on another machine or with another number of threads: nothing settles the sign of a singular vector."""
     monkeypatch.setattr("mua.student.optimise.CHECKPOINT_STEPS", 2)
     monkeypatch.setattr("mua.student.branches.together", one_by_one)  # so that what the kill finds is known
-    whole = trained(tmp_path / "whole", quick()).state_dict()
-
-    def kill(progress: Progress) -> None:
-        if progress.stage == stage and progress.step == 3:
-            raise Killed
-
+    whole = train_in(tmp_path / "whole", quick()).state_dict()
     with pytest.raises(Killed):
-        trained(tmp_path / "killed", quick(), kill)
+        train_in(tmp_path / "killed", quick(), kill_at(stage, 3))
     monkeypatch.setattr(coarse, "truncated_svd", turned)
     monkeypatch.setattr(targets, "truncated_svd", turned)
     monkeypatch.setattr(regression, "whitening", lambda inputs: Whitening(inputs.mean(0), -whitening(inputs).turn))
-    found = trained(tmp_path / "killed", quick()).state_dict()
+    found = train_in(tmp_path / "killed", quick()).state_dict()
     assert all(torch.equal(found[name], whole[name]) for name in whole if name.startswith(part))
     assert not torch.equal(found["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
 
@@ -145,9 +116,9 @@ def test_goes_on_where_directions_come_out_the_other_way(
 def test_branches_side_by_side_end_in_the_bytes_of_one_after_the_other(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    at_once = trained(tmp_path / "a", quick())
+    at_once = train_in(tmp_path / "a", quick())
     monkeypatch.setattr("mua.student.branches.together", one_by_one)
-    assert same(at_once, trained(tmp_path / "b", quick()))
+    assert same(at_once, train_in(tmp_path / "b", quick()))
 
 
 def test_where_one_branch_fails_the_other_ends_too(tmp_path: Path) -> None:
@@ -163,7 +134,7 @@ def test_where_one_branch_fails_the_other_ends_too(tmp_path: Path) -> None:
             assert failed.wait(60)
 
     with pytest.raises(Killed):
-        trained(tmp_path, quick(), fail)
+        train_in(tmp_path, quick(), fail)
     assert "appearance fine-tuning" not in stages
 
 
@@ -173,16 +144,16 @@ def turned(x: torch.Tensor, rank: int, *, generator: torch.Generator) -> tuple[t
 
 
 def test_a_finished_run_repeats_no_step(tmp_path: Path) -> None:
-    trained(tmp_path, quick())
+    train_in(tmp_path, quick())
     reports: list[Progress] = []
-    trained(tmp_path, quick(), reports.append)
+    train_in(tmp_path, quick(), reports.append)
     assert reports == []
 
 
 def test_reports_every_step_of_every_stage(tmp_path: Path) -> None:
     reports: list[Progress] = []
     settings = quick()
-    trained(tmp_path, settings, reports.append)
+    train_in(tmp_path, settings, reports.append)
     fine = [r.step for r in reports if r.stage == "appearance fine-tuning"]
     assert fine == list(range(1, settings.finetune.steps + 1))
     assert {r.stage for r in reports} >= set(STAGES)
@@ -232,35 +203,13 @@ def test_directions_below_the_rounding_of_a_recording_are_not_taught() -> None:
     assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-3)
 
 
-def test_attributes_count_alike_and_one_that_never_varies_is_not_raised() -> None:
-    variance = torch.tensor([1e-4] * 3 + [0.04] * 4 + [0.09] * 3 + [0.0])
-    weights = channel_weights(variance, GEOMETRY)
-    assert torch.allclose(weights[:10], torch.tensor([100.0] * 3 + [5.0] * 4 + [1 / 0.3] * 3))
-    assert float(weights[10]) == pytest.approx(1000)  # a thousandth of a logit is the least that counts
-    assert len(channel_weights(torch.ones(12), APPEARANCE)) == 12
-
-
-def test_a_small_figures_offsets_vary_as_much_as_a_persons() -> None:
-    """12 mm high, what moves by half a hundredth of a millimetre moves by as much as a millimetre of a person."""
-    variance = torch.tensor([1e-3**2] * 3 + [0.04] * 4 + [0.09] * 3 + [1.0])
-    small = variance * torch.tensor([0.005**2] * 3 + [1.0] * 8)
-    assert not still_channels(small, GEOMETRY, size=0.005).any()
-    assert still_channels(small, GEOMETRY)[:3].all()
-    person = channel_weights(variance, GEOMETRY) * torch.tensor([200.0] * 3 + [1.0] * 8)
-    assert torch.allclose(channel_weights(small, GEOMETRY, size=0.005), person)
-
-
 def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
     descriptors, bands = bands_of_frames()
     opacity = 10
     for band in (bands.ll[:, opacity], bands.d3[:, :, opacity], bands.d2[:, :, opacity]):
         band.mul_(1e-6).add_(2)
-    student, data = (
-        new_student(),
-        replace(samples(), subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part)))),
-    )
-    checkpoints = Checkpoints(tmp_path, "k")
-    train(student, data, settings=quick(), checkpoints=checkpoints, device=CPU, report=lambda _: None)
+    data = replace(samples(), subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))))
+    student = train_in(tmp_path, quick(), data=data)
     assert torch.equal(
         student.predict(descriptors).ll[:, opacity], student.geometry.ll_mean[opacity].expand(FRAMES, -1, -1)
     )
@@ -346,8 +295,6 @@ def test_large_sources_are_read_batch_by_batch(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_fewer_frames_than_blendshapes_train(tmp_path: Path) -> None:
-    student, data = new_student(), samples(2)
-    settings = quick()
-    train(student, data, settings=settings, checkpoints=Checkpoints(tmp_path, "k"), device=CPU, report=lambda _: None)
+    student = train_in(tmp_path, quick(), data=samples(2))
     assert all(torch.isfinite(tensor).all() for tensor in student.state_dict().values())
     assert isinstance(student.geometry, Branch)

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-import upm_files
 from upm_files import Break, faults_after, put, replaced
 
 FRAME = "Runtime/Frame.cs"
@@ -44,11 +43,6 @@ CASES: dict[str, tuple[Break, str]] = {
         "Tools/Walk.cs: in no assembly, expected an .asmdef in its folder or above",
     ),
 }
-
-
-@pytest.fixture
-def packages(tmp_path: Path) -> list[Path]:
-    return upm_files.write(tmp_path)
 
 
 @pytest.mark.parametrize(("change", "fault"), CASES.values(), ids=list(CASES))

@@ -17,17 +17,15 @@ import torch
 import torch._dynamo  # which the first optimiser of a process would import
 from recordings import RATE, FormulaTeacher, plan
 from synthetic_avatar import synthetic_rig
-from synthetic_student import SETTINGS, new_student, quick, samples
+from synthetic_student import SETTINGS, quick, train_in
 
 from mua.errors import InputError
 from mua.processes import ALONE, Processes, joined
 from mua.recording.parts import record_together
 from mua.student import optimise
-from mua.student.checkpoint import Checkpoints
 from mua.student.model import Student
 from mua.student.optimise import Progress
 from mua.student.settings import Schedule, Settings
-from mua.student.train import train
 
 PAPER = replace(
     quick(),
@@ -75,25 +73,12 @@ def trained(
     name: str, directory: Path, processes: Processes = ALONE
 ) -> tuple[Student, dict[tuple[str, int], float | None]]:
     """A student trained by one of RECIPES, and the loss that was reported of each stage and step."""
-    settings = RECIPES[name]
-    student, data = new_student(settings), samples()
-    student.mean.copy_(data.descriptors.mean(0))
-    student.scale.copy_(data.descriptors.std(0))
     losses: dict[tuple[str, int], float | None] = {}
 
     def report(progress: Progress) -> None:
         losses[progress.stage, progress.step] = progress.loss
 
-    train(
-        student,
-        data,
-        settings=settings,
-        checkpoints=Checkpoints(directory, name),
-        device=torch.device("cpu"),
-        report=report,
-        processes=processes,
-    )
-    return student, losses
+    return train_in(directory, RECIPES[name], report, processes=processes), losses
 
 
 def _train(directory: Path, processes: Processes, *names: str) -> None:

@@ -1,0 +1,84 @@
+"""What the window plays: where its camera stands, which frame it rests at, and which clip and file are chosen."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mua import rotation
+from mua.cli.view_options import Asked, look_of
+from mua.errors import InputError
+from mua.gpu import Device
+from mua.player.focus import find_focus
+from mua.player.session import Session
+from mua.player.source import Source
+
+
+def session(device: Device, source: Source, **options: Any) -> Session:
+    return Session(device, source, look_of(Asked(**options), None), color_format="rgba8unorm")
+
+
+def test_opens_with_the_camera_asked_for(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    plain, chosen = (
+        session(device, Source(avatar_files), **options)._framed((400, 300))
+        for options in ({}, {"azimuth": 30.0, "elevation": 20.0, "zoom": 2.5})
+    )
+    assert chosen.azimuth - plain.azimuth == pytest.approx(np.radians(30))
+    assert chosen.elevation == pytest.approx(np.radians(20))
+    assert chosen.framed / chosen.distance == pytest.approx(2.5)
+    assert session(device, Source(avatar_files), stereo=True, follow=False).stereo
+    assert not session(device, Source(avatar_files), stereo=True, follow=False).follow
+
+
+def test_goes_round_while_it_plays(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    turning = session(device, Source(avatar_files), orbit=90.0)
+    turning.view = turning._framed((400, 300))
+    before = turning.view.azimuth
+    turning.advance(0.5)
+    assert turning.view.azimuth - before == pytest.approx(np.radians(45))
+    turning.playing = False
+    turning.advance(0.5)
+    assert turning.view.azimuth - before == pytest.approx(np.radians(45))
+
+
+def test_rests_at_the_frame_asked_for(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    resting = session(device, Source(avatar_files, frame=3))
+    assert (resting.index, resting.playing) == (3, False)
+    with pytest.raises(InputError, match="--frame is 7; clip 'wave' has frames 0 to 6"):
+        session(device, Source(avatar_files, frame=7))
+
+
+def test_keeps_what_it_looks_at_in_the_middle(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    looking = session(device, Source(avatar_files), look_at="tip")
+    places = find_focus(looking._stage.rig, "tip").places(
+        looking._stage.rig.skeleton, looking.clip.rotations, looking.clip.translations
+    )
+    for index in (0, 4):
+        looking.step(index - looking.index)
+        (camera,) = looking._cameras((400, 300))
+        x, y, _, w = camera.projection @ camera.view @ np.append(places[index], 1)
+        np.testing.assert_allclose([x / w, y / w], 0, atol=1e-9)
+    with pytest.raises(InputError, match="--look-at is 'tail'"):
+        session(device, Source(avatar_files), look_at="tail")
+
+
+def test_another_clip_is_seen_from_the_same_side(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    watching = session(device, Source(avatar_files), azimuth=20.0)
+    clip, root = watching.clip, watching._stage.rig.skeleton.root
+    rotations = clip.rotations.copy()
+    half_turn = np.array([0.0, 0, 1, 0])  # about the vertical
+    rotations[:, root] = rotation.multiply(half_turn, rotations[:, root])
+    watching._cameras((400, 300))
+    assert watching.view is not None
+    before = watching.view
+    watching.choose_clip(replace(clip, rotations=rotations))
+    turned = watching.view.azimuth - before.azimuth
+    assert np.cos(turned) == pytest.approx(-1)
+    np.testing.assert_allclose(watching.view.target, before.target * [-1, 1, -1], atol=1e-9)
+
+
+def test_refuses_a_clip_that_is_not_there(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    with pytest.raises(InputError, match="--clip is 'run'"):
+        Session(device, Source(avatar_files, clip="run"), look_of(Asked(), None), color_format="rgba8unorm")
