@@ -1,32 +1,47 @@
 """Surfaces made of flat squares whose every texel has a known colour."""
 
 import numpy as np
+from people import upright
 
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
-from mua.pose.skeleton import Skeleton
-from mua.rig.character import Character
+from mua.rig.character import Character, Mesh
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.scene import Material, Wrap
 
-ONE_JOINT = Skeleton(
-    names=("root",),
-    parents=np.array([-1], np.int32),
-    bind_rotations=np.array([[1.0, 0, 0, 0]]),
-    bind_translations=np.zeros((1, 3)),
-    root=0,
-)
+ONE_JOINT = upright(("root",), [-1])
+
+
+def grid_points(cells: int) -> Array:
+    """The corners [N, 2] of a unit square's cells, row after row."""
+    line = np.linspace(0, 1, cells + 1)
+    return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+
+
+def grid_faces(rows: int, columns: int) -> Array:
+    """Two triangles for each cell between such corners, the lower ones first: [2 R C, 3]."""
+    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
+    lower = np.stack([corner, corner + 1, corner + columns + 1], axis=1)
+    upper = np.stack([corner + 1, corner + columns + 2, corner + columns + 1], axis=1)
+    return np.concatenate([lower, upper])
+
+
+def joined(*meshes: Mesh) -> Mesh:
+    """Meshes as one, which share neither vertices nor UVs."""
+    vertices, corners = (np.cumsum([0, *(len(getattr(m, name)) for m in meshes)]) for name in ("vertices", "uv"))
+    return Mesh(
+        np.concatenate([m.vertices for m in meshes]),
+        np.concatenate([m.faces + at for m, at in zip(meshes, vertices, strict=False)]).astype(np.int32),
+        np.concatenate([m.uv for m in meshes]),
+        np.concatenate([m.uv_faces + at for m, at in zip(meshes, corners, strict=False)]).astype(np.int32),
+    )
 
 
 def patch(cells: int, *, at: float, uv: Array, width: float = 1.0) -> tuple[Array, Array, Array]:
     """A square of `cells` x `cells` quads in the plane x = at .. at + width, its UV the 2 x 2 map (and shift) `uv`."""
-    line = np.linspace(0, 1, cells + 1)
-    grid = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+    grid = grid_points(cells)
     vertices = np.column_stack([grid[:, 0] * width + at, grid[:, 1] * width, np.zeros(len(grid))])
-    corner = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
-    lower = np.stack([corner, corner + 1, corner + cells + 1], axis=1)
-    upper = np.stack([corner + 1, corner + cells + 2, corner + cells + 1], axis=1)
-    return vertices, np.concatenate([lower, upper]), grid @ uv[:2] + uv[2]
+    return vertices, grid_faces(cells, cells), grid @ uv[:2] + uv[2]
 
 
 def surfaces_of(*patches: tuple[Array, Array, Array], images: tuple[Array, ...], wrap: Wrap = "repeat") -> Surfaces:

@@ -1,4 +1,7 @@
-"""A person in T-pose built joint by joint, other proportions and joint axes of the same, and motion for it."""
+"""Skeletons: plain ones, a person in T-pose with other proportions and joint axes, and motion for it."""
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -29,6 +32,25 @@ JOINTS = {
     "LeftToe_End": ("LeftToeBase", (0.1, 0.0, 0.17)),
 }
 PARENTS = {name: parent for name, (parent, _) in JOINTS.items()}
+
+
+def upright(names: Sequence[str], parents: Any, offsets: Any = None, *, root: int = 0) -> Skeleton:
+    """Joints that are not turned at rest, at [J, 3] metres from their parents, or all in one place."""
+    turned = np.tile([1.0, 0, 0, 0], (len(names), 1))
+    places = np.zeros((len(names), 3)) if offsets is None else np.array(offsets, float)
+    return Skeleton(tuple(names), np.array(parents, np.int32), turned, places, root)
+
+
+def chain(*names: str) -> Skeleton:
+    """Joints one below the other."""
+    return upright(names, np.arange(-1, len(names) - 1), np.ones((len(names), 3)))
+
+
+def still(skeleton: Skeleton, frames: int = 1, *, root: Any = None, rate: float = 30.0) -> Clip:
+    """The bind pose, held; its root at another place, [3] or [F, 3] metres."""
+    at = skeleton.bind_translations[skeleton.root] if root is None else root
+    translations = skeleton.with_root(np.broadcast_to(at, (frames, 3)))
+    return Clip("still", rate, np.tile(skeleton.bind_rotations, (frames, 1, 1)), translations)
 
 
 def person(*, arms_down: float = 0, legs_apart: float = 0, size: float = 1, axes: int | None = None) -> Skeleton:

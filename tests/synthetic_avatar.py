@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pywt
+from people import upright
 
 from mua import rotation
 from mua.arrays import Array
@@ -64,15 +65,19 @@ def sparse_avatar(seed: int) -> Avatar:
     return with_surface(with_texels(avatar, np.random.default_rng(seed).random(len(avatar.rig.texels.texels)) < 0.8))
 
 
-def with_texels(avatar: Avatar, kept: Array) -> Avatar:
-    """The same avatar, valid at some of its texels alone: [N] for each whether it is kept."""
-    texels = avatar.rig.texels
-    few = replace(
+def texels_at(texels: TexelMap, kept: Array | slice) -> TexelMap:
+    """Some of the valid texels of a map."""
+    return replace(
         texels,
         texels=texels.texels[kept],
         triangles=texels.triangles[kept],
         barycentrics=texels.barycentrics[kept],
     )
+
+
+def with_texels(avatar: Avatar, kept: Array) -> Avatar:
+    """The same avatar, valid at some of its texels alone: [N] for each whether it is kept."""
+    few = texels_at(avatar.rig.texels, kept)
     branches = [replace(b, static=b.static[:, kept]) for b in (avatar.geometry, avatar.appearance)]
     return replace(avatar, rig=replace(avatar.rig, texels=few), geometry=branches[0], appearance=branches[1])
 
@@ -85,13 +90,7 @@ def empty_avatar() -> Avatar:
 
 def synthetic_rig() -> Rig:
     """A triangular tube along +Y, open at both ends, with a UV seam along it; joints at heights 0, 0.5 and 1 m."""
-    skeleton = Skeleton(
-        names=("root", "middle", "tip"),
-        parents=np.array([-1, 0, 1], dtype=np.int32),
-        bind_rotations=np.tile([1.0, 0, 0, 0], (3, 1)),
-        bind_translations=np.array([[0, 0.1, 0], [0, 0.5, 0], [0, 0.5, 0]]),
-        root=0,
-    )
+    skeleton = upright(("root", "middle", "tip"), (-1, 0, 1), [[0, 0.1, 0], [0, 0.5, 0], [0, 0.5, 0]])
     height, angle = np.meshgrid(np.linspace(0, 1.5, RINGS), 2 * np.pi * np.arange(SPOKES) / SPOKES, indexing="ij")
     vertices = np.stack([0.3 * np.sin(angle), height, 0.3 * np.cos(angle)], axis=-1).reshape(-1, 3)
     columns, rows = np.meshgrid(np.linspace(0.1, 0.9, SPOKES + 1), np.linspace(0.9, 0.1, RINGS))

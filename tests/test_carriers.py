@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from patches import grid_faces, grid_points, joined
 from tube import tube
 
 from mua.arrays import Array
@@ -21,17 +22,12 @@ GAP = 0.02  # between the sheets; each is 1 high and wide
 
 def two_sheets() -> Character:
     """A jacket over a shirt: two sheets on a joint each, whose charts meet along a wave in the texture."""
-    line = np.linspace(0, 1, CELLS + 1)
-    x, y = np.meshgrid(line, line)
-    wave = 0.5 + 0.04 * np.sin(4 * np.pi * y)
-    corner = (np.arange(CELLS)[:, None] * (CELLS + 1) + np.arange(CELLS)).ravel()
-    below = np.stack([corner, corner + 1, corner + CELLS + 1], axis=1)
-    above = np.stack([corner + 1, corner + CELLS + 2, corner + CELLS + 1], axis=1)
-    faces = np.concatenate([below, above])
-    count = x.size
-    places = [np.stack([x, y, 0 * x + z], axis=-1).reshape(-1, 3) for z in (0, GAP)]
-    charts = [np.stack([u, y], axis=-1).reshape(-1, 2) for u in (wave * x, wave + (1 - wave) * x)]
-    faces = np.concatenate([faces, faces + count]).astype(np.int32)
+    x, y = grid_points(CELLS).T
+    wave, faces, count = 0.5 + 0.04 * np.sin(4 * np.pi * y), grid_faces(CELLS, CELLS), len(x)
+    sheets = [
+        Mesh(np.stack([x, y, 0 * x + z], axis=1), faces, np.stack([u, y], axis=1), faces)
+        for z, u in ((0, wave * x), (GAP, wave + (1 - wave) * x))
+    ]
     weights = np.zeros((2 * count, 8), np.float32)
     weights[:, 0] = 1
     indices = np.zeros((2 * count, 8), np.int32)
@@ -39,7 +35,7 @@ def two_sheets() -> Character:
     return Character(
         name="sheets",
         skeleton=tube().skeleton,
-        mesh=Mesh(np.concatenate(places), faces, np.concatenate(charts), faces),
+        mesh=joined(*sheets),
         skin_indices=indices,
         skin_weights=weights,
         base_color=np.zeros((4, 4, 4), np.uint8),

@@ -7,15 +7,20 @@ from dataclasses import replace
 from rich.console import Console
 
 from mua.compare import entries, report
-from mua.compare.entries import Cost, Entry
+from mua.compare.entries import Cost, Entry, Picture
 from mua.compare.metrics import Scores
 from mua.compare.scores import Result, Sample
+from mua.recording import WholeFrame
+
+
+def truth(frame: WholeFrame) -> Picture:
+    return Picture(frame.texture)
 
 
 def result(name: str, psnr: float, cost: Cost, *, own_mesh: bool = False) -> Result:
     scores = Scores(psnr, 0.9, 0.9, 0.1, math.nan)
     samples = [Sample("a", 0, held_out, 0, 0.2, scores) for held_out in (False, True)]
-    return Result(Entry(name, None, cost, own_mesh=own_mesh), samples)
+    return Result(Entry(name, truth, cost, own_mesh=own_mesh), samples)
 
 
 def test_storage_is_held_against_the_widest_file_of_the_same_avatar() -> None:
@@ -48,8 +53,8 @@ def row(entry: Entry, failure: str = "") -> Result:
 
 
 SETTING = report.Setting("rec", "a device", {"training": 1, "held out": 1}, 1, 512, 60.0, None, "tiny", None, 0.08)
-MEAN = row(Entry(entries.MEAN, None, Cost(parameters=10, flops=0, bytes=40)))
-FILE = row(Entry("a_file_with_a_name_of_more_than_forty_letters", None, Cost(10, 10, 10, 31.2, "f16")))
+MEAN = row(Entry(entries.MEAN, truth, Cost(parameters=10, flops=0, bytes=40)))
+FILE = row(Entry("a_file_with_a_name_of_more_than_forty_letters", truth, Cost(10, 10, 10, 31.2, "f16")))
 
 
 def test_no_figure_is_cut_on_eighty_columns() -> None:
@@ -64,7 +69,7 @@ def test_nothing_is_said_of_what_did_not_happen() -> None:
     for word in ("trained for", "own mesh", "held out", "│ LPIPS", "failed"):
         assert word not in of_files
     assert "FPS" in of_files
-    systems = told([MEAN, row(Entry("ours", None, Cost(10, 10, 40)))], SETTING)
+    systems = told([MEAN, row(Entry("ours", truth, Cost(10, 10, 40)))], SETTING)
     assert "trained for 60 s" in systems
     assert "FPS" not in systems
 

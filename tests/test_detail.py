@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from patches import grid_faces, grid_points
+from people import upright
 
 from mua.arrays import Array
 from mua.atlas.detail import BY_DEFAULT, LARGEST_SHARES, factors, read_detail
@@ -13,7 +15,6 @@ from mua.atlas.texel_density import describe_texels
 from mua.atlas.uv import build_atlas
 from mua.cli.bake import main
 from mua.errors import InputError
-from mua.pose.skeleton import Skeleton
 from mua.rig.body_parts import BODY_PARTS, body_parts
 from mua.rig.character import Character
 from mua.rig.charts import areas
@@ -26,25 +27,9 @@ CELLS = 20
 SNAPPED = 0.1  # charts are packed on a grid of whole texels
 
 
-def skeleton() -> Skeleton:
-    count = len(JOINTS)
-    return Skeleton(
-        names=JOINTS,
-        parents=np.array(PARENTS, np.int32),
-        bind_rotations=np.tile([1.0, 0, 0, 0], (count, 1)),
-        bind_translations=np.zeros((count, 3)),
-        root=0,
-    )
-
-
 def strip(joint_of_column: list[int], *, joined: bool = True) -> Surfaces:
     """A strip of unit squares along x, one for each joint; one chart, or one for each square."""
-    line = np.linspace(0, 1, CELLS + 1)
-    grid = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    corner = (np.arange(CELLS)[:, None] * (CELLS + 1) + np.arange(CELLS)).ravel()
-    lower = np.stack([corner, corner + 1, corner + CELLS + 1], axis=1)
-    upper = np.stack([corner + 1, corner + CELLS + 2, corner + CELLS + 1], axis=1)
-    square = np.concatenate([lower, upper])
+    grid, square = grid_points(CELLS), grid_faces(CELLS, CELLS)
     count = len(joint_of_column)
     places = np.concatenate([grid + np.array([k if joined else 2 * k, 0]) for k in range(count)])
     faces = np.concatenate([square + k * len(grid) for k in range(count)])
@@ -57,7 +42,7 @@ def strip(joint_of_column: list[int], *, joined: bool = True) -> Surfaces:
     weights[:, 0] = 1
     return Surfaces(
         name="strip",
-        skeleton=skeleton(),
+        skeleton=upright(JOINTS, PARENTS),
         vertices=np.column_stack([rows, np.zeros(len(rows))]),
         faces=faces,
         uv=rows / (2 * count),

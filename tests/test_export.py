@@ -1,13 +1,12 @@
 """The exported avatar, evaluated in numpy, is the student."""
 
 import numpy as np
-import pywt
 import torch
 from synthetic_student import INPUTS, bands_of_frames, random_student
 
 from mua import model
 from mua.arrays import Array
-from mua.student.export import LARGEST_ROW, export_branches, export_coarse, export_normalization, export_wavelet
+from mua.student.export import LARGEST_ROW, export_branches, export_coarse, export_normalization
 from mua.student.model import linear_layers
 
 RELATIVE = 1e-5  # the project's bound for a float32 asset against the torch student
@@ -80,19 +79,6 @@ def test_mesh_of_the_avatar_is_the_students() -> None:
     coarse = export_coarse(student.coarse)
     found = coarse.mean + np.tensordot(numpy_mlp(coarse.mlp, x.double().numpy()), coarse.basis, axes=1)
     assert_close(found, student.coarse(x))
-
-
-def test_static_offset_is_split_between_the_branches() -> None:
-    student = random_student()
-    geometry, appearance = export_branches(student)
-    assert np.array_equal(np.concatenate([geometry.static, appearance.static]), student.static.numpy())
-
-
-def test_wavelet_is_pywts_synthesis_bank() -> None:
-    wavelet = export_wavelet(random_student())
-    assert wavelet.levels == 4
-    assert np.array_equal(wavelet.rec_hi, pywt.Wavelet("bior4.4").rec_hi)
-    assert np.array_equal(wavelet.rec_lo, pywt.Wavelet("bior4.4").rec_lo)
 
 
 def test_arrays_do_not_share_memory_with_the_student() -> None:

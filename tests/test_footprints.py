@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from patches import grid_faces, joined
 
 from mua.rig.character import Mesh
 from mua.rig.surface_points import spread_points
@@ -25,13 +26,7 @@ def laid(mesh: Mesh) -> tuple[TexelMap, Surfels, np.ndarray]:
 def sheet(points: np.ndarray, uv: np.ndarray) -> Mesh:
     """A grid [R, C, 3] of points and its UVs [R, C, 2] as triangles."""
     rows, columns = points.shape[:2]
-    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
-    faces = np.concatenate(
-        [
-            np.stack([corner, corner + 1, corner + columns], axis=1),
-            np.stack([corner + 1, corner + columns + 1, corner + columns], axis=1),
-        ]
-    ).astype(np.int32)
+    faces = grid_faces(rows - 1, columns - 1).astype(np.int32)
     return Mesh(points.reshape(-1, 3), faces, uv.reshape(-1, 2), faces)
 
 
@@ -42,17 +37,6 @@ def graded(widths: np.ndarray, height: float, *, size: float = 1.0) -> Mesh:
     points = np.stack(np.broadcast_arrays(x[None], np.array([[0], [size]]), 0), axis=-1)
     uv = np.stack(np.broadcast_arrays(u[None], np.array([[0.05], [0.05 + height]])), axis=-1)
     return sheet(points.astype(float), uv.astype(float))
-
-
-def apart(*meshes: Mesh) -> Mesh:
-    """Meshes with charts of their own."""
-    vertices, corners = (np.cumsum([0, *(len(getattr(m, name)) for m in meshes)]) for name in ("vertices", "uv"))
-    return Mesh(
-        np.concatenate([m.vertices for m in meshes]),
-        np.concatenate([m.faces + at for m, at in zip(meshes, vertices, strict=False)]),
-        np.concatenate([m.uv for m in meshes]),
-        np.concatenate([m.uv_faces + at for m, at in zip(meshes, corners, strict=False)]),
-    )
 
 
 def least_coverage(mesh: Mesh, *, border: float = 0.05) -> float:
@@ -85,7 +69,7 @@ def test_a_seam_between_two_charts_is_closed() -> None:
     left, right = graded(np.ones(2), 0.37), graded(np.ones(2), 0.37)
     aside, below = np.array([1.0, 0, 0]), np.array([0, 0.47])
     moved = Mesh(right.vertices + aside, right.faces, right.uv + below, right.uv_faces)
-    assert least_coverage(apart(left, moved)) > OPAQUE
+    assert least_coverage(joined(left, moved)) > OPAQUE
 
 
 def test_a_sliver_in_the_texture_makes_no_fog() -> None:
@@ -95,7 +79,7 @@ def test_a_sliver_in_the_texture_makes_no_fog() -> None:
         np.array([[[0, 2.0, 0], [0.3, 2.0, 0]], [[0, 2.3, 0], [0.3, 2.3, 0]]]),
         np.array([[[0.05, 0.9], [0.95, 0.9]], [[0.05, 0.922], [0.95, 0.922]]]),
     )
-    texels, found, places = laid(apart(body, flap))
+    texels, found, places = laid(joined(body, flap))
     assert np.exp(found.log_scales[places[:, 1] > 1.5]).max() < 0.3
     assert len(texels.texels)
 

@@ -5,17 +5,13 @@ import re
 
 import numpy as np
 import pytest
+from people import chain, upright
 
 from mua.pose.joint_names import roles
 from mua.pose.skeleton import Skeleton
 
 LEG = ("left thigh", "left shin", "left foot", "left toe")
 ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")
-
-
-def chain(*names: str) -> Skeleton:
-    parents = np.arange(-1, len(names) - 1, dtype=np.int32)
-    return Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), root=0)
 
 
 @pytest.mark.parametrize(
@@ -99,9 +95,8 @@ def test_knows_fingers() -> None:
 def tree(**parents: str) -> Skeleton:
     """Joints by name with the names of their parents, empty for none; `__` stands for a space."""
     names = tuple(parents)
-    above = np.array([names.index(parent) if parent else -1 for parent in parents.values()], dtype=np.int32)
-    root = names.index("Hips") if "Hips" in names else 0
-    return Skeleton(names, above, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), root=root)
+    above = [names.index(parent) if parent else -1 for parent in parents.values()]
+    return upright(names, above, np.ones((len(names), 3)), root=names.index("Hips") if "Hips" in names else 0)
 
 
 def test_twist_joints_take_no_part_in_limbs() -> None:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, walk, world
+from people import person, upright, walk, world
 from scipy.spatial.transform import Rotation
 
 from mua.motion.joint_places import roles_by_place
@@ -72,7 +72,7 @@ def quadruped() -> Skeleton:
             add(parent, (x, 0.55, z), (x, 0.3, z - 0.02), (x, 0.05, z), (x, 0.0, z + 0.05))
     places, above = np.array(at), np.array(parents, dtype=np.int32)
     offsets = places - np.where(above[:, None] < 0, 0, places[above])
-    return Skeleton(tuple(names), above, np.tile([1.0, 0, 0, 0], (len(names), 1)), offsets, root=0)
+    return upright(names, above, offsets)
 
 
 def test_tells_nothing_of_what_is_no_standing_person() -> None:

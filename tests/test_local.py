@@ -9,11 +9,11 @@ import pytest
 import recordings
 import torch
 from limbs import limbs_apart, two_limbs
+from people import upright
 from synthetic_avatar import synthetic_rig
 from synthetic_student import SETTINGS, new_student
 
 from mua.pose.encoding import PoseEncoding
-from mua.pose.skeleton import Skeleton
 from mua.recording import Recording
 from mua.student.coarse import mesh_pca
 from mua.student.distil import prepare
@@ -36,11 +36,7 @@ PARENTS = [-1, 0, 1, 2, 3, 1, 5]
 ARMATURE, HIPS, SPINE, NECK, HEAD, THIGH, SHIN = range(7)
 
 
-def skeleton() -> Skeleton:
-    count = len(PARENTS)
-    upright = np.tile([1.0, 0, 0, 0], (count, 1))
-    names = tuple(f"joint {joint}" for joint in range(count))
-    return Skeleton(names, np.array(PARENTS, np.int32), upright, np.zeros((count, 3)), root=HIPS)
+BODY = upright([f"joint {joint}" for joint in range(len(PARENTS))], PARENTS, root=HIPS)
 
 
 def test_steps_count_joints_along_the_skeleton() -> None:
@@ -53,15 +49,15 @@ def test_steps_count_joints_along_the_skeleton() -> None:
         [1, 2, 3, 4, 0, 1],
         [2, 3, 4, 5, 1, 0],
     ]
-    assert joint_steps(skeleton(), seen).tolist() == expected
+    assert joint_steps(BODY, seen).tolist() == expected
 
 
 def test_steps_pass_over_joints_that_are_not_encoded() -> None:
-    assert joint_steps(skeleton(), [HIPS, HEAD, SHIN]).tolist() == [[0, 1, 1], [1, 0, 2], [1, 2, 0]]
+    assert joint_steps(BODY, [HIPS, HEAD, SHIN]).tolist() == [[0, 1, 1], [1, 0, 2], [1, 2, 0]]
 
 
 def test_a_joint_that_is_not_encoded_is_carried_by_the_one_above_it() -> None:
-    assert carriers(skeleton(), [HIPS, SPINE, SHIN]).tolist() == [0, 0, 1, 1, 1, 0, 2]
+    assert carriers(BODY, [HIPS, SPINE, SHIN]).tolist() == [0, 0, 1, 1, 1, 0, 2]
 
 
 def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_step() -> None:

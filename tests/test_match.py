@@ -4,16 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person
+from people import chain, person, upright
 
 from mua.errors import InputError
 from mua.motion.match import joint_pairs, match_joints, require_limbs, unmatched_source, unmatched_target
 from mua.pose.skeleton import Skeleton
-
-
-def chain(*names: str) -> Skeleton:
-    parents = np.arange(-1, len(names) - 1, dtype=np.int32)
-    return Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), root=0)
 
 
 def pairs(source: Skeleton, target: Skeleton, mapping: dict[str, str] | None = None) -> dict[str, tuple[str, str]]:
@@ -127,8 +122,8 @@ def block_figure(*more: tuple[str, str]) -> Skeleton:
         *more,
     ]
     names = tuple(name for name, _ in joints)
-    parents = np.array([names.index(above) if above else -1 for _, above in joints], np.int32)
-    return Skeleton(names, parents, np.tile([1.0, 0, 0, 0], (len(names), 1)), np.ones((len(names), 3)), 1)
+    parents = [names.index(above) if above else -1 for _, above in joints]
+    return upright(names, parents, np.ones((len(names), 3)), root=1)
 
 
 def test_limbs_of_one_bone_follow_the_upper_one() -> None:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, walk, world
+from people import person, still, upright, walk, world
 
 from mua.motion.match import match_joints
 from mua.motion.planted_feet import Feet, plant_feet
@@ -75,10 +75,8 @@ def test_feet_are_left_alone_where_the_source_slides_or_nothing_is_won() -> None
 
 @pytest.mark.parametrize("feet", ["auto", "plant"])
 def test_bodies_without_legs_and_single_frames_stay_as_they_are(feet: Feet) -> None:
-    clip = Clip("half", 30.0, np.tile([1.0, 0, 0, 0], (3, 2, 1)), np.zeros((3, 2, 3)))
-    half = Skeleton(
-        ("Hips", "Spine"), np.array([-1, 0], dtype=np.int32), clip.rotations[0], np.array([[0, 1.0, 0], [0, 0.5, 0]]), 0
-    )
+    half = upright(("Hips", "Spine"), (-1, 0), [[0, 1.0, 0], [0, 0.5, 0]])
+    clip = still(half, 3)
     assert plant_feet(SourceMotion(half, clip), half, clip, match_joints(half, half), feet=feet) == (clip, ())
     whole = person()
     single = walk(whole, frames=1)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, walk, world
+from people import person, still, upright, walk, world
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
@@ -105,9 +105,9 @@ def test_a_twist_that_the_motion_has_too_is_no_fault() -> None:
 def test_has_no_facing_for_a_clip_that_goes_nowhere_or_backwards() -> None:
     skeleton = person()
     clip = walk(skeleton)
-    still = led(clip, path(clip) * [0, 1, 0])
+    standing = led(clip, path(clip) * [0, 1, 0])
     backwards = led(clip, path(clip) * [1, 1, -1])
-    assert measured(skeleton, still, still).facing_degrees is None
+    assert measured(skeleton, standing, standing).facing_degrees is None
     assert measured(skeleton, backwards, backwards).facing_degrees is None
 
 
@@ -132,9 +132,7 @@ def test_measures_feet_that_slide_where_the_source_stands() -> None:
 
 
 def test_measures_what_there_is_of_a_body() -> None:
-    names = ("Hips", "Spine")
-    offsets = np.array([[0, 1.0, 0], [0, 0.5, 0]])
-    half = Skeleton(names, np.array([-1, 0], dtype=np.int32), np.tile([1.0, 0, 0, 0], (2, 1)), offsets, root=0)
-    clip = Clip("half", 30.0, np.tile([1.0, 0, 0, 0], (1, 2, 1)), offsets[None])
+    half = upright(("Hips", "Spine"), (-1, 0), [[0, 1.0, 0], [0, 0.5, 0]])
+    clip = still(half)
     found = measured(half, clip, clip)
     assert (found.limb_degrees, found.facing_degrees, found.feet_height, found.slide) == (0, None, None, None)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from patches import grid_faces
 
 from mua.arrays import Array
 from mua.atlas.chart_quality import starved
@@ -16,11 +17,7 @@ def sheet(widths: Array) -> tuple[Array, Array, Array]:
     Its cells are as large as each other, but as wide in the texture as `widths` [ROWS, COLUMNS] says.
     """
     x, y = np.meshgrid(np.arange(COLUMNS + 1.0), np.arange(ROWS + 1.0))
-    row, column = (index.ravel() for index in np.mgrid[:ROWS, :COLUMNS])
-    corner = row * (COLUMNS + 1) + column
-    below = np.stack([corner, corner + 1, corner + COLUMNS + 1], axis=1)
-    above = np.stack([corner + 1, corner + COLUMNS + 2, corner + COLUMNS + 1], axis=1)
-    faces = np.concatenate([below, above])
+    faces = grid_faces(ROWS, COLUMNS)
     places = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)[faces]
     uv = places[..., :2].copy()
     middle = uv.mean(axis=1, keepdims=True)

@@ -1,73 +1,16 @@
-"""The student's forward pass against the paper's formulas spelt out in numpy and PyWavelets."""
+"""The student's sizes and mean texture; test_export.py and test_distil.py hold its forward pass against decode()."""
 
 import numpy as np
 import pytest
-import pywt
 import torch
-from synthetic_student import INPUTS, SIZE, VERTICES, bands_of_frames, random_student, valid_texels
+from synthetic_student import random_student
 
-from mua.channels import CHANNELS, GEOMETRY
 from mua.errors import InputError
 from mua.pose.encoding import PoseEncoding
-from mua.student.model import Alphas, Branch, Student, build_mlp
+from mua.student.model import Student, build_mlp
 from mua.student.settings import PRESETS, Settings, preset
 
 FLOAT32 = float(np.finfo(np.float32).eps)
-
-
-def random_alphas(branch: Branch, frames: int) -> Alphas:
-    generator = torch.Generator().manual_seed(3)
-    return branch.split(torch.randn(frames, branch.channels * branch.ranks.total, generator=generator))
-
-
-def test_subbands_are_mean_plus_blendshapes() -> None:
-    branch = random_student().geometry
-    alphas = random_alphas(branch, 3)
-    bands = branch.synthesize(alphas)
-    f, s, c = 2, 1, 4
-    ll = branch.ll_mean[c] + sum(a * shape for a, shape in zip(alphas.ll[f, c], branch.ll_basis[c], strict=True))
-    terms = zip(alphas.d2[f, c], branch.d2.h[s, c], branch.d2.w[s, c], strict=True)
-    d2 = branch.d2.mean[s, c] + sum(a * torch.outer(h, w) for a, h, w in terms)
-    assert torch.allclose(bands.ll[f, c], ll, atol=100 * FLOAT32)
-    assert torch.allclose(bands.d2[f, s, c], d2, atol=100 * FLOAT32)
-
-
-def test_mlp_output_is_ll_then_d3_then_d2_each_row_major() -> None:
-    branch = random_student().geometry
-    flat = torch.arange(branch.channels * branch.ranks.total, dtype=torch.float32)[None]
-    alphas = branch.split(flat)
-    assert alphas.ll[0, 1, 0] == branch.ranks.ll
-    assert alphas.d3[0, 0, 0] == branch.channels * branch.ranks.ll
-    assert torch.equal(alphas.flat(), flat)
-
-
-def test_texture_is_pywts_inverse_plus_the_static_offset() -> None:
-    student = random_student()
-    _, bands = bands_of_frames(2)
-    frame, channel = 1, 17
-    d3, d2 = bands.d3[frame, :, channel].double().numpy(), bands.d2[frame, :, channel].double().numpy()
-    zero = [tuple(np.zeros((3, SIZE >> level, SIZE >> level))) for level in (2, 1)]
-    coefficients = [bands.ll[frame, channel].double().numpy(), tuple(d3), tuple(d2), *zero]
-    image = pywt.waverec2(coefficients, "bior4.4", mode="periodization")
-    expected = image.reshape(-1)[valid_texels()] + student.static[channel].double().numpy()
-    found = student.texture(bands)[frame, :, channel].numpy()
-    assert np.abs(found - expected).max() < 100 * FLOAT32 * np.abs(image).max()
-
-
-def test_descriptors_are_normalised_before_the_first_layer() -> None:
-    student = random_student()
-    descriptors = torch.randn(4, INPUTS, generator=torch.Generator().manual_seed(0))
-    inputs = (descriptors - student.mean) / student.scale
-    assert torch.equal(student.coefficients(descriptors)[0].flat(), student.geometry.mlp(inputs))
-    assert student.mesh(descriptors).shape == (4, VERTICES, 3)
-
-
-def test_all_channels_are_geometry_then_appearance() -> None:
-    student = random_student()
-    descriptors = torch.randn(2, INPUTS, generator=torch.Generator().manual_seed(0))
-    bands, geometry = student.predict(descriptors), student.geometry(student.normalize(descriptors))
-    assert bands.ll.shape[1] == CHANNELS
-    assert torch.equal(bands.of(GEOMETRY).d3, geometry.d3)
 
 
 def test_mean_lowpass_is_the_texture_of_zero_coefficients() -> None:

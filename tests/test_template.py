@@ -5,23 +5,18 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
+from patches import joined
+from people import upright
 
 from mua.arrays import Array
 from mua.characters.read import read_character
-from mua.pose.skeleton import Skeleton
 from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
 from mua.rig.surface_points import points_on_surface
 from mua.rig.template import CLOSE_ENOUGH, make_template
 from mua.rig.texel_map import build_texel_map
 
-TWO_JOINTS = Skeleton(
-    names=("low", "high"),
-    parents=np.array([-1, 0], np.int32),
-    bind_rotations=np.array([[1.0, 0, 0, 0], [1.0, 0, 0, 0]]),
-    bind_translations=np.array([[0.0, 0, 0], [0.0, 1, 0]]),
-    root=0,
-)
+TWO_JOINTS = upright(("low", "high"), (-1, 0), [[0.0, 0, 0], [0.0, 1, 0]])
 
 
 def sphere(rows: int, columns: int, *, at: tuple[float, float, float], radius: float, square: Array) -> Mesh:
@@ -56,8 +51,8 @@ def sphere(rows: int, columns: int, *, at: tuple[float, float, float], radius: f
 
 def character_of(*meshes: Mesh) -> Character:
     """Spheres as one mesh, bound to the high joint the more the higher they are."""
-    shift = np.cumsum([[0, 0]] + [[len(m.vertices), len(m.uv)] for m in meshes], axis=0)
-    vertices = np.concatenate([m.vertices for m in meshes])
+    mesh = joined(*meshes)
+    vertices = mesh.vertices
     indices, weights = np.zeros((len(vertices), 8), np.int32), np.zeros((len(vertices), 8), np.float32)
     indices[:, 1] = 1
     weights[:, 1] = np.clip(vertices[:, 1] / 2 + 0.5, 0, 1)
@@ -65,12 +60,7 @@ def character_of(*meshes: Mesh) -> Character:
     return Character(
         name="spheres",
         skeleton=TWO_JOINTS,
-        mesh=Mesh(
-            vertices=vertices,
-            faces=np.concatenate([m.faces + s[0] for m, s in zip(meshes, shift, strict=False)]).astype(np.int32),
-            uv=np.concatenate([m.uv for m in meshes]),
-            uv_faces=np.concatenate([m.uv_faces + s[1] for m, s in zip(meshes, shift, strict=False)]).astype(np.int32),
-        ),
+        mesh=mesh,
         skin_indices=indices,
         skin_weights=weights,
         base_color=np.zeros((4, 4, 4), np.uint8),

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from patches import grid_faces, grid_points
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
@@ -31,12 +32,7 @@ def random_mesh(seed: int, faces: int) -> Mesh:
 
 def grid_mesh(cells: int) -> Mesh:
     """The unit square as 2 x cells x cells triangles that share edges and vertices."""
-    line = np.linspace(0, 1, cells + 1)
-    uv = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    corner = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
-    lower = np.stack([corner, corner + 1, corner + cells + 1], axis=1)
-    upper = np.stack([corner + 1, corner + cells + 2, corner + cells + 1], axis=1)
-    return flat_mesh(uv, np.concatenate([lower, upper]))
+    return flat_mesh(grid_points(cells), grid_faces(cells, cells))
 
 
 def exact_search(mesh: Mesh, size: int) -> tuple[dict[int, int], int]:

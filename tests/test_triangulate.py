@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
+from patches import joined
+from synthetic_avatar import texels_at
 from tube import tube
 
 from mua.arrays import Array
@@ -79,17 +81,10 @@ def test_keeps_the_openings_of_the_template(size: int) -> None:
 
 def test_leaves_limbs_apart_that_touch_in_the_texture() -> None:
     one = tube().mesh
-    count = len(one.vertices)
-    beside = one.vertices + np.array([1.0, 0, 0])
     low, high = one.uv.min(axis=0), one.uv.max(axis=0)
     uv = (one.uv - low) / (high - low) * [0.5, 1]
-    mesh = Mesh(
-        np.concatenate([one.vertices, beside]),
-        np.concatenate([one.faces, one.faces + count]),
-        np.concatenate([uv, uv + np.array([0.5, 0])]),
-        np.concatenate([one.uv_faces, one.uv_faces + len(uv)]),
-    )
-    body = solid(mesh, 64)
+    beside = replace(one, vertices=one.vertices + np.array([1.0, 0, 0]), uv=uv + np.array([0.5, 0]))
+    body = solid(joined(replace(one, uv=uv), beside), 64)
     assert len(body.split(only_watertight=False)) == 2
     assert body.edges_unique_length.max() < 0.2
 
@@ -117,10 +112,5 @@ def test_every_square_of_texels_inside_a_chart_has_two_triangles_cut_along_its_s
 def test_makes_no_triangle_of_too_few_texels(count: int) -> None:
     mesh = tube().mesh
     texels = build_texel_map(mesh, 32)
-    few = replace(
-        texels,
-        texels=texels.texels[:count],
-        triangles=texels.triangles[:count],
-        barycentrics=texels.barycentrics[:count],
-    )
+    few = texels_at(texels, slice(count))
     assert triangulate(mesh, few).triangles(few).shape == (0, 3)

@@ -1,11 +1,11 @@
 """A small character for tests: an upright tube on three joints, its wall one UV chart that is cut along one side."""
 
 import numpy as np
+from people import upright
 
 from mua import rotation
 from mua.arrays import Array
 from mua.pose.clip import Clip
-from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character, Mesh
 
 HEIGHT, RADIUS = 1.75, 0.12  # metres
@@ -15,13 +15,7 @@ RATE = 30.0
 def tube(*, rings: int = 29, sides: int = 13, looseness: float | None = None) -> Character:
     """A tube of rings x sides vertices that faces outward, its joints one above the other."""
     joint_heights = np.array([0.05, 0.6, 1.2])
-    skeleton = Skeleton(
-        names=("Hips", "Spine", "Chest"),
-        parents=np.array([-1, 0, 1], np.int32),
-        bind_rotations=np.tile([1.0, 0, 0, 0], (3, 1)),
-        bind_translations=np.array([[0, 0.05, 0], [0, 0.55, 0], [0, 0.6, 0]]),
-        root=0,
-    )
+    skeleton = upright(("Hips", "Spine", "Chest"), (-1, 0, 1), [[0, 0.05, 0], [0, 0.55, 0], [0, 0.6, 0]])
     mesh = _wall(rings, sides)
     near = np.exp(-(((mesh.vertices[:, 1:2] - joint_heights - 0.3) / 0.2) ** 2))
     order = np.argsort(-near, axis=1, kind="stable")

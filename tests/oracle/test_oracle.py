@@ -40,10 +40,10 @@ PAGE = decoder.SCHEMA.with_name("README.md")
 INDEPENDENT = {"re", "collections.abc", "dataclasses", "pathlib", "typing", "numpy", "pywt", "flatbuffers"}
 
 
-def turned_avatar(*, heading: bool, rate: float = 30.0) -> Avatar:
+def turned_avatar(*, heading: bool, rate: float = 30.0, wavelet: str = "bior4.4") -> Avatar:
     """Joints that are turned in the bind pose, a root that hangs on another joint, a clip of another rate."""
     rng = np.random.default_rng(5)
-    avatar = synthetic_avatar(3)
+    avatar = synthetic_avatar(3, wavelet=wavelet)
     turns, places = rotation.normalize(rng.normal(size=(3, 4))), rng.normal(size=(3, 3))
     parents = avatar.rig.skeleton.parents
     skeleton = Skeleton(("hook", "root", "tip"), parents, turns, places, root=1)
@@ -107,6 +107,13 @@ def test_clips_of_any_rate_are_resampled_as_the_page_says(tmp_path: Path, rate: 
     path = tmp_path / "a.muaavatar"
     write(path, turned_avatar(heading=True, rate=rate), storage="f16")
     assert_decodes_alike(path, frames=3)
+
+
+@pytest.mark.parametrize("wavelet", ["bior1.1", "bior2.2", "bior6.8"])
+def test_textures_of_any_wavelet_are_those_of_pywt(tmp_path: Path, wavelet: str) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, turned_avatar(heading=True, wavelet=wavelet), storage="f32")
+    assert_decodes_alike(path, frames=2)
 
 
 @pytest.mark.parametrize("turn", [[0.0, 1, 0, 0], [0.0, 0.6, 0, 0.8]])
