@@ -11,29 +11,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import torch
 from commands import process
 from PIL import Image
 from recordings import content
 from silent import Silent
 
-from mua.asset import read, write
-from mua.asset.tensors import Storage
-from mua.baking.assemble import assemble
+from mua.asset import read
 from mua.baking.distillation import Baked
 from mua.baking.order import Order
 from mua.baking.pipeline import bake, recording_key
 from mua.baking.plan import plan, split
 from mua.baking.sources import RATE, load_character
 from mua.channels import ATTRIBUTES
-from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.locks import DirectoryLock
 from mua.pose.clip import Clip
-from mua.pose.descriptor import describe
 from mua.pose.resample import resample
-from mua.recording import Recording
-from mua.student.distil import distil
 from mua.student.settings import Ranks, Schedule, preset
 
 SMALL = dataclasses.replace(
@@ -98,27 +91,6 @@ def test_baselines_stand_in_the_only_possible_order(baked: Baked) -> None:
     errors = baked.errors["training"]
     for attribute in ("offset", "rotation", "SH"):
         assert errors.rms(attribute, "bands") < errors.rms(attribute, "best") < errors.rms(attribute, "mean")
-
-
-@pytest.mark.parametrize(("storage", "bound"), [("f32", 1e-5), ("f16", 2e-3)])
-def test_decoded_file_equals_the_torch_student(baked: Baked, tmp_path: Path, storage: Storage, bound: float) -> None:
-    """Relative to the largest value of each attribute, on frames of every clip; bounds from the issue of the format."""
-    work = baked.output.parent / "work"
-    recording = Recording(next(work.glob("recording-*")))
-    cpu = torch.device("cpu")
-    student = distil(recording, SMALL, device=cpu, directory=work / "student", report=Silent())
-    avatar = assemble(student, recording.rig, name="a", encoding=student.encoding, clips=recording.clips, notes="")
-    write(tmp_path / "a.muaavatar", avatar, storage=storage)
-    avatar = read(tmp_path / "a.muaavatar")
-    for clip in recording.clips[:8]:
-        described = describe(recording.rig.skeleton, student.encoding, clip.rotations, clip.translations)[7:8]
-        expected = student.texture(student.predict(torch.from_numpy(described).float()))[0].numpy()
-        posed = decode_clip_frame(avatar, clip, frame=7)
-        for channels in ATTRIBUTES.values():
-            scale = np.abs(expected[:, channels]).max()
-            assert np.abs(posed.texture[:, channels] - expected[:, channels]).max() <= bound * scale
-        mesh = student.mesh(torch.from_numpy(described).float())[0].numpy()
-        assert np.abs(posed.canonical - mesh).max() <= bound * np.abs(mesh).max()
 
 
 def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Path) -> None:

@@ -23,7 +23,6 @@ from mua.compare.entries import Entry, Picture, avatar_entries, mean_entry, sent
 from mua.compare.images import Studio
 from mua.compare.scores import choose_frames
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames
-from mua.decode import pose_splats
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
@@ -31,7 +30,6 @@ from mua.player.offscreen import Offscreen
 from mua.player.toggles import Toggles
 from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip, Recording, TeacherWriter, WholeFrame, record
-from mua.rendering import render_over
 from mua.student import settings as presets
 from mua.student.optimise import Report
 from mua.student.settings import Schedule
@@ -120,17 +118,8 @@ def test_a_given_texture_is_drawn_as_the_player_draws_it(
             image = player.picture(frame.index, [camera])
             assert np.abs(picture - np.clip(image[..., :3], 0, 1)).max() < SAME
             assert picture.max() > 0.2  # there is something to see
-
-
-def test_pictures_agree_with_the_cpu_rasteriser(studio: Studio, frames: list[WholeFrame]) -> None:
-    frame = frames[1]
-    posed = pose_splats(
-        synthetic_rig(), frame.mesh, texture=frame.texture.astype(float), pose=frame.clip.pose(frame.index)
-    )
-    drawn = studio.draw(frame, frame.texture)
-    for camera, picture in zip(studio.cameras(frame), drawn, strict=True):
-        assert psnr(picture, np.clip(render_over(posed, camera, background=(0, 0, 0)), 0, 1)) > LEAST_PSNR
-    assert psnr(drawn[0], drawn[1]) < 30  # the views differ
+    first, second = studio.draw(frames[1], frames[1].texture)
+    assert psnr(first, second) < 30  # the views differ
 
 
 def test_a_mesh_of_ones_own_is_drawn(studio: Studio, frames: list[WholeFrame]) -> None:

@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 import recordings
 import torch
 from limbs import limbs_apart, two_limbs
@@ -193,8 +192,3 @@ def test_a_recording_is_prepared_with_its_parts(tmp_path: Path) -> None:
     assert samples.parts.fine.shape == student.geometry.d2.mean.shape[-2:]
     alike = replace(settings, generalisation=replace(settings.generalisation, fade=1.0))
     assert prepare(recording, alike)[1].parts is None
-
-
-@pytest.mark.parametrize("fade", [1.0, 0.5])
-def test_reach_is_one_where_nothing_fades(fade: float) -> None:
-    assert torch.equal(two_parts().reach(fade), torch.tensor([[1, fade], [fade, 1]]))

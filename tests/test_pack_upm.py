@@ -45,14 +45,6 @@ def test_holds_every_kernel_byte_for_byte(tarball: bytes) -> None:
             assert packed[f"package/ComputeShaders/{path.name}"] == path.read_bytes()
 
 
-def test_holds_a_meta_for_every_file_that_unity_imports(tarball: bytes) -> None:
-    packed = read(tarball)
-    for name in packed:
-        if not name.endswith(".meta") and "Documentation~" not in name and "Golden~" not in name:
-            assert f"{name}.meta" in packed
-    assert b"folderAsset: yes" in packed["package/ComputeShaders.meta"]
-
-
 def test_holds_the_golden_files_where_the_self_test_looks(tarball: bytes) -> None:
     packed = read(tarball)
     look_up = packed["package/Runtime/SelfTest/GoldenFolder.cs"].decode()

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from synthetic_avatar import synthetic_avatar
+from test_camera import ndc
 
 from mua import rotation
-from mua.arrays import Array
-from mua.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
 from mua.player.focus import find_focus
 from mua.player.shot import Shot, film, full_turn
@@ -19,12 +18,6 @@ from mua.rig.bounds import frame_boxes, root_positions, union
 AVATAR = synthetic_avatar()
 RIG, CLIP = AVATAR.rig, AVATAR.clips[0]
 ROUNDING = 1e-9
-
-
-def ndc(camera: Camera, points: Array) -> Array:
-    clip = np.concatenate([points, np.ones((len(points), 1))], axis=1) @ (camera.projection @ camera.view).T
-    assert np.all(clip[:, 3] > 0)
-    return np.asarray(clip[:, :2] / clip[:, 3:])
 
 
 @pytest.mark.parametrize("shot", [Shot((64, 96)), Shot((64, 96), follow=True), Shot((64, 96), turning=2.0)])
@@ -114,13 +107,6 @@ def test_after_a_full_turn_comes_the_first_picture_again(speed: float) -> None:
 def test_a_turntable_too_slow_or_too_fast_is_refused(speed: float) -> None:
     with pytest.raises(InputError, match=f"--orbit is {speed:g}; a turntable turns by 1 to 360 degrees per second"):
         full_turn(Shot((64, 64), turning=np.radians(speed)))
-
-
-def test_two_eyes_stand_about_the_one() -> None:
-    one = film(Shot((64, 64)), RIG, CLIP)[0][0]
-    left, right = film(Shot((64, 64), eyes=EYE_DISTANCE), RIG, CLIP)[0]
-    np.testing.assert_allclose((left.position + right.position) / 2, one.position, atol=ROUNDING)
-    assert np.linalg.norm(right.position - left.position) == pytest.approx(EYE_DISTANCE)
 
 
 def test_one_frame_is_a_clip_too() -> None:

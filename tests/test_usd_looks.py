@@ -173,18 +173,6 @@ def test_rigid_parts_that_move_are_a_character(tmp_path: Path) -> None:
     np.testing.assert_allclose(placed[2], [1.0, 1, 0], atol=1e-6)  # half a metre ahead became half a metre aside
 
 
-def test_a_body_of_which_a_single_arm_moves_is_whole(tmp_path: Path) -> None:
-    path = robot(tmp_path / "robot.usda")
-    stage = Usd.Stage.Open(str(path))
-    for limb in ("/Robot/Arm/Hand", "/Robot/Leg"):
-        stage.RemovePrim(limb)
-    stage.GetRootLayer().Save()
-    surfaces = read_surfaces(path)
-    assert surfaces.skeleton.names == ("Robot", "Arm")
-    assert np.bincount(surfaces.skin_indices[:, 0]).tolist() == [3, 3]
-    assert "Meshes that hang on no joint are left out: Floor." in surfaces.notes
-
-
 def test_two_skeletons_are_one_character(plain: Path) -> None:
     def twin(stage: Usd.Stage) -> None:
         for source, target in (("/Man/Skeleton", "/Man/Tail"), ("/Man/Body", "/Man/Fur")):
