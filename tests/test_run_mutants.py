@@ -155,6 +155,8 @@ def test_faults_meet_the_tests_that_enter_their_function() -> None:
     caught = {(".", "tests/test_b.py::test"): 2, ("b", "tests/test_c.py::test"): 9}
     assert order("a.py", "f", caught) == "abc"
     assert order("a.cs", "") == "ab"
+    tests.append(a_test("tests/test_f.py", 1, "folder/old.cs"))
+    assert order("folder/new.cs", "") == "f"  # since the tests were watched
     tests[0] = a_test("tests/test_b.py", 3, "a.py\tf", fixtures={"trained": BOUND})
     assert order("a.py", "f", caught) == "acb"  # slow ones last
     parted = [a_test(f"tests/test_{name}.py", 1, "AvatarPose.cs") for name in ("drawn", "pose", "avatar_pose")]

@@ -201,14 +201,13 @@ def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str
 
     That is those named after the file, then, slow ones last, those that `caught` most in its folder, then the fastest.
     """
-    if not mutant.path.endswith(".py"):
-        chosen = [test for test in tests if mutant.path in test.places]
-    else:
-        within = f"{mutant.path}\t"
-        chosen = [test for test in tests if within + mutant.scope in test.places]
-        chosen = chosen or [test for test in tests if any(p.startswith(within) and p[-1] != ">" for p in test.places)]
-        chosen = chosen or [test for test in tests if f"{within}<module>" in test.places]
-    own, folder = _words(mutant.path), folder_of(mutant)
+    within, folder = f"{mutant.path}\t", folder_of(mutant)
+    scope = within + mutant.scope if mutant.path.endswith(".py") else mutant.path
+    chosen = [test for test in tests if scope in test.places]
+    chosen = chosen or [test for test in tests if any(p.startswith(within) and p[-1] != ">" for p in test.places)]
+    chosen = chosen or [test for test in tests if f"{within}<module>" in test.places]
+    chosen = chosen or [test for test in tests if any(p.startswith(f"{folder}/") for p in test.places)]  # a new file
+    own = _words(mutant.path)
 
     def rank(test: SeenTest) -> tuple[float, bool, int, float]:
         words, seconds = _words(test.file), test.seconds + sum(test.fixtures.values())
