@@ -122,6 +122,12 @@ def test_places_joints_and_end_sites_like_slow_kinematics(tmp_path: Path) -> Non
     np.testing.assert_allclose(world_positions(motion), slow_world_positions(path), atol=BOUND)
 
 
+def test_the_rest_pose_is_that_of_the_offsets(tmp_path: Path) -> None:
+    skeleton = read_bvh(write(tmp_path, PERSON), scale=1.0).skeleton
+    _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    np.testing.assert_allclose(at, [[0, 0, 0], [1, -9, 0], [1, -9, 2], [0, 7, 0.5], [0, 9, 0.5]], atol=BOUND)
+
+
 @pytest.mark.parametrize("name", ["cmu/02_01.bvh", "dab.bvh"])
 def test_places_real_motion_like_slow_kinematics(shared_data: SharedData, name: str) -> None:
     path = shared_data.path(f"motion/{name}")

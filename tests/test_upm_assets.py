@@ -8,7 +8,7 @@ from upm_files import KERNEL_GUID, Break, edited, faults_after, put, replaced
 
 META = "Runtime/Frame.cs.meta"
 TAKEN = "0123456789abcdef0123456789abcdef"
-LONG = f"Runtime/{'x' * 140}.txt"
+LONGEST, LONG = (f"Runtime/{'x' * count}.txt" for count in (128, 129))
 BESIDE_GUID = gen_meta.guid("com.mua.test", "Runtime/beside.hlsl")
 
 
@@ -45,7 +45,6 @@ WRITTEN: list[tuple[str, str, str]] = [
         guid_of(TAKEN),
         f'guid: "{TAKEN}", expected "{BESIDE_GUID}", that of its place: run tools/gen_meta.py',
     ),
-    (LONG, "", "152 characters, expected at most 140"),
     ("Runtime/Größe.txt", "", f"name 'Gr\\xf6\\xdfe.txt', {NAME}"),
     ("Runtime/aux.txt", "", f"name 'aux.txt', {NAME}"),
     ("Runtime/Thumbs.db", "", "left by an operating system, expected only files of the package"),
@@ -93,6 +92,11 @@ CASES: list[tuple[bool, Break, str]] = [
         True,
         lambda root: replaced(root / ASSET, KERNEL_GUID, TAKEN),
         f'{ASSET}:4: kernel: guid "{TAKEN}" is of no file here',
+    ),
+    (
+        True,
+        lambda root: [put(root / path, "") for path in (LONGEST, LONG)],
+        f"{LONG}: 141 characters, expected at most 140",
     ),
     (
         True,

@@ -327,6 +327,14 @@ def test_hlsl_scans_counts_and_writes_the_arguments(device: Device, count: int) 
     np.testing.assert_array_equal(arguments, [6 * total, 2, 0, 0, -(-total // 2048), 1, 1, total])
 
 
+@pytest.mark.parametrize("total", [2048, 2049])
+def test_hlsl_asks_for_as_many_sorting_groups_as_hold_the_splats(device: Device, total: int) -> None:
+    group_counts = np.full(-(-total // GROUP), GROUP, np.uint32)
+    group_counts[-1] -= len(group_counts) * GROUP - total
+    arguments, _ = scan_on(device, group_counts, total)
+    assert arguments[4] == -(-total // 2048)
+
+
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
 @pytest.mark.parametrize("count", GPU_COUNTS)
 def test_hlsl_compacts_in_order(device: Device, count: int, share: float) -> None:
