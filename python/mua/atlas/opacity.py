@@ -52,7 +52,7 @@ def cut_out(
     image = bled(material.image)
     height, width = image.shape[:2]
     finer = int(np.ceil(EDGE / max(density, EDGE / LARGEST_CUT_OUT)))
-    finer = max(min(finer, LARGEST_CUT_OUT // max(height, width)), 1)
+    finer = min(finer, LARGEST_CUT_OUT // max(height, width))
     if finer > 1 and image[..., 3].min() < image[..., 3].max():
         size = (width * finer, height * finer)
         image = np.asarray(Image.merge("RGBA", [_enlarged(image[..., k], size) for k in range(4)]))
