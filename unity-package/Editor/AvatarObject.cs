@@ -32,6 +32,15 @@ namespace Mua.Editor
             return made;
         }
 
+        [MenuItem("GameObject/MUA Avatar", false, 10)] // among the kinds of objects
+        private static void Create(MenuCommand command)
+        {
+            var parent = command.context as GameObject;
+            Transform below = parent == null ? null : parent.transform;
+            Vector3 at = parent == null ? Vector3.zero : below.position;
+            Selection.activeObject = Create(Find(), below, at);
+        }
+
         /// <summary>The selected avatar, or else the first of the project that can be shown; null where there is none.</summary>
         public static AvatarAsset Find()
         {

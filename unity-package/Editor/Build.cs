@@ -19,6 +19,8 @@ namespace Mua.Editor
     /// </summary>
     public static class Build
     {
+        private const string OutputWord = "-muaOutput";
+        private const string DevelopmentWord = "-muaDevelopment";
         private const double Megabyte = 1e6;
 
         /// <summary>Writes the APK for a Quest to `-muaOutput`.</summary>
@@ -64,8 +66,8 @@ namespace Mua.Editor
 
         private static ProjectOutcome Try(BuildTarget target, string[] words)
         {
-            BuildArguments arguments = BuildArguments.Parse(words);
-            var output = new BuildOutput(target, arguments.Output);
+            var output = new BuildOutput(target, Output(words));
+            bool isDevelopment = Array.IndexOf(words, DevelopmentWord) >= 0;
             Require(ProjectSetup.Unable(target));
             output.Prepare();
             ProjectOutcome brought = Bring();
@@ -75,10 +77,22 @@ namespace Mua.Editor
             }
             Require(ProjectSetup.Apply(target).ToArray());
             var watch = Stopwatch.StartNew();
-            Write(target, arguments, PlayerSample.CreateScene(), output);
+            Write(target, isDevelopment, PlayerSample.CreateScene(), output);
             Debug.Log(FormattableString.Invariant(
                 $"MUA-BUILD OK {output.Path}, {output.Size() / Megabyte:0.0} MB, {watch.Elapsed.TotalSeconds:0} s"));
             return ProjectOutcome.Done;
+        }
+
+        /// <summary>A full path. Errors: BuildFailedException where no output is named.</summary>
+        private static string Output(string[] words)
+        {
+            int at = Array.IndexOf(words, OutputWord) + 1;
+            string output = at > 0 && at < words.Length ? words[at] : "";
+            if (output.Length == 0 || output.StartsWith("-"))
+            {
+                throw new BuildFailedException($"the command line has no {OutputWord} PATH, expected where to write the player");
+            }
+            return Path.GetFullPath(output).TrimEnd(Path.DirectorySeparatorChar, Path.AltDirectorySeparatorChar);
         }
 
         // Both at once, so that one more run is enough.
@@ -97,7 +111,7 @@ namespace Mua.Editor
             return isImported ? ProjectOutcome.Again : ProjectOutcome.Done;
         }
 
-        private static void Write(BuildTarget target, BuildArguments arguments, string scene, BuildOutput output)
+        private static void Write(BuildTarget target, bool isDevelopment, string scene, BuildOutput output)
         {
             var options = new BuildPlayerOptions
             {
@@ -105,7 +119,7 @@ namespace Mua.Editor
                 locationPathName = output.Unfinished,
                 target = target,
                 targetGroup = BuildPipeline.GetBuildTargetGroup(target),
-                options = arguments.IsDevelopment ? BuildOptions.Development : BuildOptions.None,
+                options = isDevelopment ? BuildOptions.Development : BuildOptions.None,
             };
             try
             {
@@ -166,38 +180,6 @@ namespace Mua.Editor
             string line = sentence.Split('\n').First().Trim(); // mua-deploy reads one
             Debug.LogError($"MUA-BUILD FAIL {line}");
             return ProjectOutcome.Failed;
-        }
-    }
-
-    /// <summary>What the editor's command line asks of a build.</summary>
-    internal sealed class BuildArguments
-    {
-        private const string OutputWord = "-muaOutput";
-        private const string DevelopmentWord = "-muaDevelopment";
-
-        private BuildArguments(string output, bool isDevelopment)
-        {
-            Output = output;
-            IsDevelopment = isDevelopment;
-        }
-
-        /// <summary>A full path.</summary>
-        public string Output { get; }
-
-        /// <summary>With the profiler and debug symbols.</summary>
-        public bool IsDevelopment { get; }
-
-        /// <summary>Errors: BuildFailedException where no output is named.</summary>
-        public static BuildArguments Parse(string[] words)
-        {
-            int at = Array.IndexOf(words, OutputWord) + 1;
-            string output = at > 0 && at < words.Length ? words[at] : "";
-            if (output.Length == 0 || output.StartsWith("-"))
-            {
-                throw new BuildFailedException($"the command line has no {OutputWord} PATH, expected where to write the player");
-            }
-            string path = Path.GetFullPath(output).TrimEnd(Path.DirectorySeparatorChar, Path.AltDirectorySeparatorChar);
-            return new BuildArguments(path, Array.IndexOf(words, DevelopmentWord) >= 0);
         }
     }
 }

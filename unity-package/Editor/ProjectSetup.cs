@@ -13,12 +13,14 @@ namespace Mua.Editor
     public static class ProjectSetup
     {
         /// <summary>Sets up for a Quest; in batch mode ends the editor, with 0, 1 or, to be run again, 3.</summary>
+        [MenuItem("MUA/Set Up Project for Quest", false, 20)]
         public static void Quest()
         {
             Start(BuildTarget.Android);
         }
 
         /// <summary>Sets up for Windows with a headset linked; in batch mode ends the editor as Quest does.</summary>
+        [MenuItem("MUA/Set Up Project for PC Link", false, 21)]
         public static void PcLink()
         {
             Start(BuildTarget.StandaloneWindows64);
@@ -59,6 +61,7 @@ namespace Mua.Editor
         }
 
         /// <summary>Logs what Check says of the platform that is active.</summary>
+        [MenuItem("MUA/Check Project", false, 22)]
         internal static void Tell()
         {
             Tell(Check(), Nearest());

@@ -13,6 +13,7 @@ namespace Mua.Editor
         private const string Run = "editor"; // in place of the digits that mua-deploy gives
 
         /// <summary>Runs all cases and says in a dialog how many passed; the console has each.</summary>
+        [MenuItem("MUA/Run Self-Test", false, 40)]
         public static void Execute()
         {
             string folder = GoldenFolder.Find(GoldenFile.Stems[0] + ".json");

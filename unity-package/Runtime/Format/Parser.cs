@@ -193,7 +193,7 @@ namespace Mua.Format
             long count = ReadWord(start, path);
             RequireWithin(start + 4L, count * width, path);
             Claim(4 + count * width, path);
-            return new Block(start + 4, (int)count);
+            return new Block { Offset = start + 4, Count = (int)count };
         }
 
         /// <summary>Refuses parts that overlap: else a small file could name one part a million times.</summary>

@@ -3,14 +3,8 @@ namespace Mua.Format
     /// <summary>A vector of scalars in the file: its first byte and its number of elements.</summary>
     internal sealed class Block
     {
-        public readonly int Offset;
-        public readonly int Count;
-
-        public Block(int offset, int count)
-        {
-            Offset = offset;
-            Count = count;
-        }
+        public int Offset;
+        public int Count;
     }
 
     /// <summary>A parsed table: one value for each field of its layout, null where an optional one is absent.</summary>

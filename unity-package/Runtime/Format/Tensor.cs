@@ -16,36 +16,25 @@ namespace Mua.Format
     public sealed class Tensor
     {
         /// <summary>How the elements are stored.</summary>
-        public ElementType Type { get; }
+        public ElementType Type { get; internal set; }
 
         /// <summary>One to four sides.</summary>
-        public int[] Shape { get; }
+        public int[] Shape { get; internal set; }
 
         /// <summary>Number of elements.</summary>
-        public int Count { get; }
+        public int Count { get; internal set; }
 
         /// <summary>The file that holds the elements.</summary>
-        public byte[] Content { get; }
+        public byte[] Content { get; internal set; }
 
         /// <summary>First byte of the elements in Content, a multiple of 16.</summary>
-        public int Offset { get; }
+        public int Offset { get; internal set; }
 
         /// <summary>Bytes that the elements fill.</summary>
-        public int ByteLength { get; }
+        public int ByteLength { get; internal set; }
 
         /// <summary>Of I8, one factor for each of as many equal rows; null for other types.</summary>
-        public float[] Scale { get; }
-
-        internal Tensor(ElementType type, int[] shape, int count, byte[] content, int offset, int length, float[] scale)
-        {
-            Type = type;
-            Shape = shape;
-            Count = count;
-            Content = content;
-            Offset = offset;
-            ByteLength = length;
-            Scale = scale;
-        }
+        public float[] Scale { get; internal set; }
 
         /// <summary>The stored bytes.</summary>
         public ReadOnlySpan<byte> Bytes => new ReadOnlySpan<byte>(Content, Offset, ByteLength);

@@ -79,8 +79,11 @@ namespace Mua.Format
             {
                 throw Fault("shape", path + ".scale", rows + " scales do not fit " + type + Describe(shape));
             }
-            float[] scales = rows == 0 ? null : View<float>(scale.Offset, 4 * rows).ToArray();
-            return new Tensor(type, shape, count, content, data.Offset, data.Count, scales);
+            return new Tensor
+            {
+                Type = type, Shape = shape, Count = count, Content = content, Offset = data.Offset, ByteLength = data.Count,
+                Scale = rows == 0 ? null : View<float>(scale.Offset, 4 * rows).ToArray(),
+            };
         }
 
         /// <summary>The sides of a shape that a file could hold: an empty tensor's sides are bounded, too.</summary>

@@ -96,7 +96,7 @@ namespace Mua.Samples.VrPlayer
             Array.Sort(paths, string.CompareOrdinal);
             foreach (string path in paths)
             {
-                entries.Add(new AvatarEntry(Path.GetFileNameWithoutExtension(path), path, null));
+                entries.Add(new AvatarEntry { Name = Path.GetFileNameWithoutExtension(path), Path = path });
             }
         }
 
@@ -107,7 +107,8 @@ namespace Mua.Samples.VrPlayer
                 string path = line.Trim();
                 if (path.Length > 0)
                 {
-                    entries.Add(new AvatarEntry(Path.GetFileNameWithoutExtension(path), folder + "/" + path, null));
+                    string name = Path.GetFileNameWithoutExtension(path);
+                    entries.Add(new AvatarEntry { Name = name, Path = folder + "/" + path });
                 }
             }
         }
@@ -118,7 +119,7 @@ namespace Mua.Samples.VrPlayer
             {
                 if (asset != null)
                 {
-                    entries.Add(new AvatarEntry(asset.name, null, asset));
+                    entries.Add(new AvatarEntry { Name = asset.name, Asset = asset });
                 }
             }
         }
@@ -127,20 +128,13 @@ namespace Mua.Samples.VrPlayer
     /// <summary>An avatar that can be shown.</summary>
     internal sealed class AvatarEntry
     {
-        public AvatarEntry(string name, string path, AvatarAsset asset)
-        {
-            Name = name;
-            Path = path;
-            Asset = asset;
-        }
-
-        public string Name { get; }
+        public string Name { get; set; }
 
         /// <summary>Of a file; null where Asset is set.</summary>
-        public string Path { get; }
+        public string Path { get; set; }
 
         /// <summary>An imported avatar; null where Path is set.</summary>
-        public AvatarAsset Asset { get; }
+        public AvatarAsset Asset { get; set; }
 
         /// <summary>Whether it was tried and cannot be shown.</summary>
         public bool HasFailed { get; set; }

@@ -4,22 +4,14 @@ using UnityEngine.XR;
 namespace Mua.Samples.VrPlayer
 {
     /// <summary>A button of a controller and what it does.</summary>
-    internal readonly struct HeadsetButton
+    internal struct HeadsetButton
     {
-        public readonly XRNode Hand;
-        public readonly InputFeatureUsage<bool> Usage;
-        public readonly PlayerAction Plain;
+        public XRNode Hand;
+        public InputFeatureUsage<bool> Usage;
+        public PlayerAction Plain;
 
         /// <summary>What it does while the left grip is held.</summary>
-        public readonly PlayerAction Shifted;
-
-        public HeadsetButton(XRNode hand, InputFeatureUsage<bool> usage, PlayerAction plain, PlayerAction shifted)
-        {
-            Hand = hand;
-            Usage = usage;
-            Plain = plain;
-            Shifted = shifted;
-        }
+        public PlayerAction Shifted;
     }
 
     /// <summary>
@@ -103,12 +95,12 @@ namespace Mua.Samples.VrPlayer
 
         private static HeadsetButton Left(InputFeatureUsage<bool> usage, PlayerAction plain, PlayerAction shifted)
         {
-            return new HeadsetButton(XRNode.LeftHand, usage, plain, shifted);
+            return new HeadsetButton { Hand = XRNode.LeftHand, Usage = usage, Plain = plain, Shifted = shifted };
         }
 
         private static HeadsetButton Right(InputFeatureUsage<bool> usage, PlayerAction plain, PlayerAction shifted)
         {
-            return new HeadsetButton(XRNode.RightHand, usage, plain, shifted);
+            return new HeadsetButton { Hand = XRNode.RightHand, Usage = usage, Plain = plain, Shifted = shifted };
         }
     }
 }

@@ -27,7 +27,8 @@ namespace Mua.Samples.VrPlayer
         private float foveation = 0.5f;
 
         private readonly AvatarShelf shelf = new AvatarShelf();
-        private readonly PlayerInput input = new PlayerInput();
+        private readonly HeadsetInput headset = new HeadsetInput();
+        private readonly DesktopInput desktop = new DesktopInput();
         private PlayerControls controls;
         private StatusPanel status;
         private string message = "";
@@ -83,7 +84,9 @@ namespace Mua.Samples.VrPlayer
 
         private void Update()
         {
-            PlayerIntents intents = input.Read();
+            var intents = new PlayerIntents();
+            headset.Read(ref intents);
+            desktop.Read(ref intents);
             controls.Apply(intents, Time.unscaledDeltaTime);
             Choose(intents.Pressed);
             if (shown.State == AvatarState.Failed && shelf.Current != null && !shelf.Current.HasFailed)
