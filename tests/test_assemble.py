@@ -4,12 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import (
-    GREY,
-    HERE,
-    part,
-    scene,
-)
+from scenes import GREY, HERE, part, scene
 
 from mua.characters.assemble import assemble, first_of_equal
 from mua.errors import InputError

@@ -5,19 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from gltf_files import posed
-from scenes import (
-    BIND,
-    DOUBLE_BOUND,
-    HERE,
-    PARENTS,
-    WEIGHT_BOUND,
-    assert_follows,
-    at,
-    moving,
-    part,
-    placed,
-    scene,
-)
+from scenes import BIND, DOUBLE_BOUND, HERE, PARENTS, WEIGHT_BOUND, assert_follows, at, moving, part, placed, scene
 from scipy.spatial.transform import Rotation
 
 from mua.characters.assemble import assemble

@@ -4,13 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import (
-    DOUBLE_BOUND,
-    HERE,
-    at,
-    part,
-    scene,
-)
+from scenes import DOUBLE_BOUND, HERE, at, part, scene
 
 from mua.characters.assemble import assemble, limit_influences
 from mua.scene import Skin

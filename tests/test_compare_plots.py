@@ -72,16 +72,6 @@ def test_pictures_are_cut_to_the_figure_and_a_margin(strip: Array) -> None:
     assert plots._figure_box([np.zeros((20, 30, 3))]) == (slice(0, 20), slice(0, 30))
 
 
-def test_the_worst_square_holds_the_largest_error() -> None:
-    error = np.zeros((120, 90))
-    error[100:104, 3:6] = 1
-    rows, columns = plots._worst_box(error)
-    assert (rows.stop - rows.start, columns.stop - columns.start) == (20, 20)
-    assert (error[rows, columns] > 0).sum() == 12
-    assert rows.stop <= 120
-    assert columns.start >= 0
-
-
 def test_sheets_show_the_worst_and_the_median_frame() -> None:
     clips = [SimpleNamespace(name=name, held_out=held_out) for name, held_out in (("walk", False), ("turn", True))]
     frames: list[Any] = [SimpleNamespace(clip=clip, index=index) for clip in clips for index in (1, 3, 5)]

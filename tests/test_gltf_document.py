@@ -6,13 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gltf_files import (
-    POINTS,
-    assert_is_column,
-    body,
-    primitive,
-    read,
-)
+from gltf_files import POINTS, assert_is_column, body, primitive, read
 
 from mua.characters.read import read_surfaces
 from mua.errors import InputError

@@ -42,11 +42,6 @@ def test_buffers_by_name_with_access_scalar_and_element_size(shader: Path) -> No
     assert (totals.name, totals.read_only, totals.scalar) == ("totals", False, "int")
 
 
-def test_group_size_is_that_of_the_entry(shader: Path) -> None:
-    assert reflect(spirv(shader, "Mix")).threads == (8, 4, 2)
-    assert reflect(spirv(shader, "Count")).threads == (64, 1, 1)
-
-
 def test_constants_have_types_shapes_and_places(shader: Path) -> None:
     found = reflect(spirv(shader, "Mix")).constants
     described = {constant.name: (constant.offset, constant.scalar, constant.shape) for constant in found}

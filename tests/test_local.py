@@ -17,15 +17,7 @@ from mua.recording import Recording
 from mua.student.coarse import mesh_pca
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
-from mua.student.local import (
-    Parts,
-    body_parts,
-    carriers,
-    joint_steps,
-    sample_locality,
-    sample_owners,
-    texture_locality,
-)
+from mua.student.local import Parts, body_parts, carriers, joint_steps, sample_locality, sample_owners, texture_locality
 from mua.student.model import Alphas
 from mua.student.regress import fit_local, whitening
 from mua.student.targets import Targets

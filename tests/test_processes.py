@@ -81,16 +81,6 @@ def test_three_processes_share_the_work_and_differ_by_rounding(tmp_path: Path) -
     assert all(identical(states[0], state) for state in states[1:])
 
 
-def test_one_process_computes_the_shares_of_two() -> None:
-    rows = torch.tensor([7, 2, 5, 5, 0, 9])
-    halves = ALONE.shares(rows, frames=10)
-    for half, rank in zip(halves, range(2), strict=True):
-        (share,) = Processes(rank, 2).shares(rows, frames=10)
-        assert torch.equal(half.rows, share.rows)
-        assert half.held == share.held
-        assert 2 * half.weight == share.weight
-
-
 @pytest.mark.parametrize("name", ["closed form", "paper"])
 def test_both_processes_end_with_the_same_bytes(pair: Path, name: str) -> None:
     assert identical(result(pair, name, 0)[0], result(pair, name, 1)[0])

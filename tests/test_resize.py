@@ -5,12 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import (
-    HERE,
-    in_units,
-    part,
-    scene,
-)
+from scenes import HERE, in_units, part, scene
 
 from mua.atlas.surfaces import Surfaces
 from mua.characters.assemble import assemble

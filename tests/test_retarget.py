@@ -32,15 +32,8 @@ LIMBS = [
     for side in ("Left", "Right")
     for bone, end in (("Arm", "ForeArm"), ("ForeArm", "Hand"), ("UpLeg", "Leg"), ("Leg", "Foot"))
 ]
-CMU_NAMES = {
-    "Arm": "humerus",
-    "ForeArm": "radius",
-    "Hand": "wrist",
-    "UpLeg": "femur",
-    "Leg": "tibia",
-    "Foot": "foot",
-    "ToeBase": "toes",
-}
+CMU_NAMES = {"Arm": "humerus", "ForeArm": "radius", "Hand": "wrist", "UpLeg": "femur", "Leg": "tibia", "Foot": "foot"}
+SMPL_NAMES = {"Arm": "shoulder", "ForeArm": "elbow", "Hand": "wrist", "UpLeg": "hip", "Leg": "knee", "Foot": "ankle"}
 
 
 def bone(skeleton: Skeleton, clip: Clip, begin: str, end: str) -> np.ndarray:
@@ -53,6 +46,13 @@ def bone(skeleton: Skeleton, clip: Clip, begin: str, end: str) -> np.ndarray:
 def angle(a: np.ndarray, b: np.ndarray) -> float:
     """The largest angle between unit vectors, radians."""
     return float(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)).max())
+
+
+def with_offset(skeleton: Skeleton, joint: str, offset: Any) -> Skeleton:
+    """The same with a joint elsewhere in its parent."""
+    offsets = skeleton.bind_translations.copy()
+    offsets[skeleton.names.index(joint)] = offset
+    return replace(skeleton, bind_translations=offsets)
 
 
 def below_a_turned_joint(skeleton: Skeleton) -> Skeleton:
@@ -90,14 +90,18 @@ def test_limbs_point_where_the_source_points(arms_down: float, legs_apart: float
         assert angle(bone(target, found, begin, end), bone(source, clip, begin, end)) < ANGLE_BOUND
 
 
+def assert_turned_as_at_rest(skeleton: Skeleton, turned: np.ndarray, *names: str) -> None:
+    """`turned` [J, 4] are rotations in the world."""
+    rest, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    joints = [skeleton.names.index(name) for name in names]
+    np.testing.assert_allclose(np.abs(np.sum(turned[joints] * rest[joints], axis=1)), 1, atol=POSITION_BOUND)
+
+
 def test_the_rest_pose_of_another_person_gives_ones_own_torso() -> None:
     source, target = person(arms_down=50, legs_apart=20, axes=1), person(axes=2)
     rest = still(source)
     turned, _ = world(target, retarget(SourceMotion(source, rest), target)[0])
-    expected, _ = target.world(target.bind_rotations, target.bind_translations)
-    for name in ("Hips", "Spine", "Spine2", "Neck", "Head", "LeftShoulder"):
-        j = target.names.index(name)
-        np.testing.assert_allclose(np.abs(turned[0, j] @ expected[j]), 1, atol=POSITION_BOUND)
+    assert_turned_as_at_rest(target, turned[0], "Hips", "Spine", "Spine2", "Neck", "Head", "LeftShoulder")
 
 
 def test_soles_are_level_when_splayed_legs_close() -> None:
@@ -109,10 +113,7 @@ def test_soles_are_level_when_splayed_legs_close() -> None:
         rotations[0, source.names.index(f"{side}UpLeg")] = turn
     closed = replace(still(source), rotations=rotations)
     turned, _ = world(target, retarget(SourceMotion(source, closed), target)[0])
-    expected, _ = target.world(target.bind_rotations, target.bind_translations)
-    for name in ("LeftFoot", "RightFoot", "LeftToeBase"):
-        j = target.names.index(name)
-        np.testing.assert_allclose(np.abs(turned[0, j] @ expected[j]), 1, atol=POSITION_BOUND)
+    assert_turned_as_at_rest(target, turned[0], "LeftFoot", "RightFoot", "LeftToeBase")
 
 
 def test_soles_stay_level_where_only_the_targets_legs_are_apart() -> None:
@@ -139,9 +140,8 @@ def test_faces_the_targets_way_whatever_way_the_source_rests(yaw: float) -> None
     turn = Rotation.from_euler("y", yaw, degrees=True).as_quat(scalar_first=True)
     rest, rotations = source.bind_rotations.copy(), clip.rotations.copy()
     rest[0], rotations[:, 0] = rotation.multiply(turn, rest[0]), rotation.multiply(turn, rotations[:, 0])
-    offsets = source.bind_translations.copy()
-    offsets[0] = rotation.rotate(turn, offsets[0])
-    turned_source = replace(source, bind_rotations=rest, bind_translations=offsets)
+    moved = with_offset(source, "Hips", rotation.rotate(turn, source.bind_translations[0]))
+    turned_source = replace(moved, bind_rotations=rest)
     translations = clip.translations.copy()
     translations[:, 0] = rotation.rotate(turn, translations[:, 0])
     turned_clip = replace(clip, rotations=rotations, translations=translations)
@@ -155,13 +155,6 @@ def test_path_and_size_scale_with_the_legs() -> None:
     clip = random_clip(small)
     found, _ = retarget(SourceMotion(small, clip), large)
     np.testing.assert_allclose(world(large, found)[1], 2 * world(small, clip)[1], atol=POSITION_BOUND)
-
-
-def with_offset(skeleton: Skeleton, joint: str, offset: Any) -> Skeleton:
-    """The same with a joint elsewhere in its parent."""
-    offsets = skeleton.bind_translations.copy()
-    offsets[skeleton.names.index(joint)] = offset
-    return replace(skeleton, bind_translations=offsets)
 
 
 def test_source_resting_about_its_hips_is_set_on_the_floor() -> None:
@@ -301,17 +294,14 @@ def test_amass_rest_pose_stands_upright_in_the_targets_place(joints: int) -> Non
     standing = still(smpl, root=[0, 0.95, 0])
     found, _ = retarget(SourceMotion(smpl, standing), target)
     for begin, end in LIMBS:
-        names = {"Arm": "shoulder", "ForeArm": "elbow", "Hand": "wrist", "UpLeg": "hip", "Leg": "knee", "Foot": "ankle"}
         side = "left" if begin.startswith("Left") else "right"
-        limb = [f"{side}_{names[part.removeprefix('Left').removeprefix('Right')]}" for part in (begin, end)]
+        limb = [f"{side}_{SMPL_NAMES[part.removeprefix('Left').removeprefix('Right')]}" for part in (begin, end)]
         assert angle(bone(target, found, begin, end), bone(smpl, standing, *limb)) < ANGLE_BOUND
     turned, at = world(target, found)
-    bind_turned, bind_at = target.world(target.bind_rotations, target.bind_translations)
-    for name in ("Hips", "Head", "LeftFoot", "RightToeBase"):
-        j = target.names.index(name)
-        assert abs(at[0, j, 1] - bind_at[j, 1]) < 0.02
-        if not name.startswith(("Left", "Right")):
-            np.testing.assert_allclose(np.abs(turned[0, j] @ bind_turned[j]), 1, atol=POSITION_BOUND)
+    _, bind_at = target.world(target.bind_rotations, target.bind_translations)
+    joints = [target.names.index(name) for name in ("Hips", "Head", "LeftFoot", "RightToeBase")]
+    assert np.abs(at[0, joints, 1] - bind_at[joints, 1]).max() < 0.02
+    assert_turned_as_at_rest(target, turned[0], "Hips", "Head")
 
 
 @pytest.fixture(scope="module")

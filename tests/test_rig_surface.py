@@ -4,11 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from synthetic_avatar import sparse_avatar
 from tube import tube
 
 from mua.arrays import Array
-from mua.rig.surface import block_triangles, blocks, codes_of, count_codes, runs_of, strip_triangles, strips_of
+from mua.rig.surface import blocks, codes_of, count_codes, runs_of, strip_triangles, strips_of
 from mua.rig.texel_map import TexelMap
 
 
@@ -44,21 +43,6 @@ def test_runs_give_their_codes_back_in_as_few_bytes_as_can_be(lengths: list[int]
     assert len(runs) == sum(-(-length // 16) for length in lengths)
 
 
-def test_codes_are_bits_of_triangle_diagonal_and_direction() -> None:
-    square = np.array([[0, 1, 2, 3]])
-    found = {code: block_triangles(square, np.array([code])).tolist() for code in (0, 4, 1, 2, 5, 6, 11, 15)}
-    assert found == {
-        0: [],
-        4: [],
-        1: [[0, 1, 3]],
-        2: [[0, 3, 2]],
-        5: [[0, 1, 2]],
-        6: [[1, 3, 2]],
-        11: [[3, 1, 0], [2, 3, 0]],
-        15: [[2, 1, 0], [2, 3, 1]],
-    }
-
-
 @pytest.mark.parametrize(
     "triangles",
     [
@@ -83,15 +67,3 @@ def test_a_zipped_seam_is_one_strip() -> None:
 
 def test_strips_too_short_for_a_triangle_are_none() -> None:
     assert strip_triangles(np.array([-1, 2, -1, 2, 4, -1, -1, 6])).tolist() == []
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_every_triangle_of_a_sparse_surface_has_three_texels(seed: int) -> None:
-    avatar = sparse_avatar(seed)
-    assert avatar.surface
-    texels = avatar.rig.texels
-    triangles = avatar.surface.triangles(texels)
-    assert len(triangles) > len(texels.texels)
-    assert triangles.min() >= 0
-    assert triangles.max() < len(texels.texels)
-    assert all(len(set(triangle)) == 3 for triangle in triangles.tolist())

@@ -181,11 +181,6 @@ def test_clip_has_the_animations_name_rate_and_length(character: Path) -> None:
     assert not read_surfaces(character).notes
 
 
-def test_moved_hips_are_the_root(character: Path) -> None:
-    surfaces = read_surfaces(character)
-    assert surfaces.skeleton.names[surfaces.skeleton.root] == "Hips"
-
-
 def test_texture_keeps_rows_and_turns_v_down(character: Path) -> None:
     surfaces = read_surfaces(character)
     (material,) = surfaces.materials

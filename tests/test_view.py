@@ -1,6 +1,5 @@
 """mua-view writes the picture or video that it is asked for and refuses what it cannot show in a sentence."""
 
-import dataclasses
 import json
 import subprocess
 from pathlib import Path
@@ -11,9 +10,7 @@ import pytest
 from bvh_files import BVH
 from commands import process
 from PIL import Image
-from synthetic_avatar import synthetic_avatar
 
-from mua.asset import write
 from mua.cli.view import view
 from mua.errors import InputError
 from mua.gpu import adapters
@@ -93,13 +90,6 @@ def test_a_turntable_shows_one_frame_from_all_sides_and_repeats_without_a_seam(
     steps = np.abs(pictures - np.roll(pictures, -1, axis=0)).mean(axis=(1, 2, 3))
     assert steps[-1] < 2 * np.median(steps)  # from the last to the first it is a step as any other
     assert np.abs(pictures[0] - pictures[15]).mean() > 2 * steps.max()
-
-
-def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
-    path = tmp_path / "still.muaavatar"
-    write(path, dataclasses.replace(synthetic_avatar(), clips=()))
-    with pytest.raises(InputError, match="holds no clips"):
-        view([path], output=tmp_path / "v.png")
 
 
 def test_command_exits_with_status_one_and_keeps_an_earlier_image(avatar_file: Path, tmp_path: Path) -> None:
@@ -191,13 +181,6 @@ def test_refuses_with_a_sentence_and_writes_nothing(
 def test_refuses_several_files_for_one_picture(avatar_file: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="expected one FILE, found 2"):
         view([avatar_file] * 2, output=tmp_path / "v.png")
-
-
-def test_names_the_file_that_is_broken(tmp_path: Path) -> None:
-    path = tmp_path / "broken.muaavatar"
-    path.write_bytes(b"not an avatar at all")
-    with pytest.raises(InputError, match=r"broken\.muaavatar"):
-        view([path], output=tmp_path / "v.png")
 
 
 def test_shows_what_is_toggled(avatar_file: Path, tmp_path: Path) -> None:
