@@ -91,14 +91,22 @@ def column(stage: Usd.Stage, *, up: Callable[[float], tuple[float, float, float]
     return mesh
 
 
+def preview(stage: Usd.Stage, path: str, prim: Usd.Prim) -> UsdShade.Shader:
+    """The surface of a new material, which a prim gets."""
+    material = UsdShade.Material.Define(stage, path)
+    shader = UsdShade.Shader.Define(stage, f"{path}/Surface")
+    shader.CreateIdAttr("UsdPreviewSurface")
+    material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+    UsdShade.MaterialBindingAPI.Apply(prim).Bind(material)
+    return shader
+
+
 def texture(stage: Usd.Stage, mesh: UsdGeom.Mesh, folder: Path) -> None:
     picture = np.zeros((4, 4, 4), np.uint8)
     picture[0] = (200, 10, 20, 128)  # the top row
     picture[3] = (10, 200, 20, 255)
     Image.fromarray(picture).save(folder / "skin.png")
-    material = UsdShade.Material.Define(stage, "/Man/Skin")
-    shader = UsdShade.Shader.Define(stage, "/Man/Skin/Surface")
-    shader.CreateIdAttr("UsdPreviewSurface")
+    shader = preview(stage, "/Man/Skin", mesh.GetPrim())
     image = UsdShade.Shader.Define(stage, "/Man/Skin/Image")
     image.CreateIdAttr("UsdUVTexture")
     image.CreateInput("file", Sdf.ValueTypeNames.Asset).Set("skin.png")
@@ -115,8 +123,6 @@ def texture(stage: Usd.Stage, mesh: UsdGeom.Mesh, folder: Path) -> None:
     shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).ConnectToSource(
         image.CreateOutput("a", Sdf.ValueTypeNames.Float)
     )
-    material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
-    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
 
 
 def skinned_by_usd(path: Path, time: float) -> np.ndarray:
@@ -192,11 +198,12 @@ def test_texture_keeps_rows_and_turns_v_down(character: Path) -> None:
 
 def test_an_opacity_threshold_makes_a_mask(character: Path) -> None:
     assert read_surfaces(character).materials[0].alpha_mode == "blend"
-    stage = Usd.Stage.Open(str(character))
-    shader = UsdShade.Shader.Get(stage, "/Man/Skin/Surface")
-    shader.CreateInput("opacityThreshold", Sdf.ValueTypeNames.Float).Set(0.25)
-    stage.Save()
-    (material,) = read_surfaces(character).materials
+
+    def cut(stage: Usd.Stage) -> None:
+        shader = UsdShade.Shader.Get(stage, "/Man/Skin/Surface")
+        shader.CreateInput("opacityThreshold", Sdf.ValueTypeNames.Float).Set(0.25)
+
+    (material,) = read_surfaces(edited(character, cut)).materials
     assert (material.alpha_mode, material.alpha_cutoff) == ("mask", 0.25)
 
 
@@ -208,10 +215,10 @@ def test_texture_inside_a_package_is_read(tmp_path: Path, character: Path) -> No
 
 
 def test_mesh_without_material_takes_its_display_color(tmp_path: Path) -> None:
-    path = write_character(tmp_path / "plain.usda", textured=False)
-    stage = Usd.Stage.Open(str(path))
-    UsdGeom.Mesh(stage.GetPrimAtPath("/Man/Body")).CreateDisplayColorAttr([Gf.Vec3f(1, 0, 0.2140411)])
-    stage.GetRootLayer().Save()
+    def paint(stage: Usd.Stage) -> None:
+        UsdGeom.Mesh(stage.GetPrimAtPath("/Man/Body")).CreateDisplayColorAttr([Gf.Vec3f(1, 0, 0.2140411)])
+
+    path = edited(write_character(tmp_path / "plain.usda", textured=False), paint)
     np.testing.assert_array_equal(read_surfaces(path).materials[0].image[0, 0], [255, 0, 127, 255])
 
 
@@ -235,13 +242,9 @@ def test_subsets_have_their_own_materials(character: Path) -> None:
         mesh = UsdGeom.Mesh.Get(stage, "/Man/Body")
         binding = UsdShade.MaterialBindingAPI(mesh.GetPrim())
         subset = binding.CreateMaterialBindSubset("shoes", Vt.IntArray([0, 1, 2, 3]))
-        material = UsdShade.Material.Define(stage, "/Man/Leather")
-        shader = UsdShade.Shader.Define(stage, "/Man/Leather/Surface")
-        shader.CreateIdAttr("UsdPreviewSurface")
+        shader = preview(stage, "/Man/Leather", subset.GetPrim())
         shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(0, 0, 1))
         shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(0.5)
-        material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
-        UsdShade.MaterialBindingAPI.Apply(subset.GetPrim()).Bind(material)
 
     surfaces = read_surfaces(edited(character, split))
     low = surfaces.vertices[surfaces.faces][..., 1].max(axis=1) < 0.51
@@ -292,11 +295,10 @@ def test_stage_without_mesh_and_animated_skeleton_is_no_motion(character: Path) 
 
 
 def test_placed_skeleton_carries_its_character_along(character: Path) -> None:
-    place = Gf.Vec3d(100, 0, 0)
-    stage = Usd.Stage.Open(str(character))
-    UsdGeom.Xformable(stage.GetPrimAtPath("/Man")).AddTranslateOp().Set(place)
-    stage.GetRootLayer().Save()
-    surfaces = read_surfaces(character)
+    def place(stage: Usd.Stage) -> None:
+        UsdGeom.Xformable(stage.GetPrimAtPath("/Man")).AddTranslateOp().Set(Gf.Vec3d(100, 0, 0))
+
+    surfaces = read_surfaces(edited(character, place))
     np.testing.assert_allclose(surfaces.vertices.min(axis=0), [0.9, 0, -0.08], atol=1e-7)
     np.testing.assert_allclose(surfaces.clips[0].translations[0, 0], [1, 0, 0], atol=1e-7)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, Vt
-from test_usd import edited, write_character
+from test_usd import edited, preview, write_character
 
 from mua.atlas.surfaces import Surfaces
 from mua.characters.read import read_surfaces
@@ -65,12 +65,7 @@ def test_colours_of_another_length_are_refused(plain: Path) -> None:
 
 
 def surface(stage: Usd.Stage) -> UsdShade.Shader:
-    material = UsdShade.Material.Define(stage, "/Man/Metal")
-    shader = UsdShade.Shader.Define(stage, "/Man/Metal/Surface")
-    shader.CreateIdAttr("UsdPreviewSurface")
-    material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
-    UsdShade.MaterialBindingAPI.Apply(body(stage).GetPrim()).Bind(material)
-    return shader
+    return preview(stage, "/Man/Metal", body(stage).GetPrim())
 
 
 def test_glow_lights_a_dark_material(plain: Path) -> None:
