@@ -110,7 +110,7 @@ def test_only_what_another_process_causes_is_put_down_to_it(message: str, ended:
 def test_a_killed_process_ends_all_and_any_number_goes_on(pair: Path, tmp_path: Path) -> None:
     killed = tmp_path / "killed"
     first, _ = errors(start("killed", killed), "killed", killed)
-    assert first.startswith("error: process 1 of 2: another has ended")
+    assert first.startswith("error: process 1 of 2: another process has ended")
     assert first.count("\n") == 1
     assert list((killed / "quick").glob("*.pt"))  # something to go on from
     shutil.copytree(killed, tmp_path / "alone")
@@ -130,7 +130,7 @@ def test_a_silent_process_is_not_waited_for(tmp_path: Path) -> None:
     processes[0].join(timeout=60)
     processes[1].kill()
     first, _ = errors(processes, "silent", tmp_path)
-    assert first.startswith("error: process 1 of 2: another has ended or said nothing for 3 s")
+    assert first.startswith("error: process 1 of 2: another process has ended or not answered for 3 s")
     assert first.count("\n") == 1
 
 
