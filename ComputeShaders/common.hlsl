@@ -1,4 +1,4 @@
-// What several kernels share: elements of stored tensors, half floats in pairs, quaternions and dual quaternions.
+// What several kernels share: elements of stored tensors, half floats in pairs, quaternions, dual quaternions, their blend.
 // References: python/mua/asset/tensors.py, python/mua/rotation.py.
 
 #ifndef MUA_COMMON_HLSL
@@ -9,6 +9,7 @@ static const uint STORED_F32 = 0;
 static const uint STORED_F16 = 1;
 
 static const float LARGEST_HALF = 65504;
+static const float LEAST_NORM = 1.17549435e-38; // the smallest normal float: rotations that cancel stay finite
 
 // The half float in the low half of a word (lane 0) or in its high half (lane 1).
 float halfAt(uint word, uint lane)
@@ -79,6 +80,38 @@ float3 quaternionRotate(float4 q, float3 v)
 float3 dualTransform(float4 real, float4 dual, float3 p)
 {
     return quaternionRotate(real, p) + 2 * quaternionMultiply(dual, quaternionConjugate(real)).yzw;
+}
+
+struct DualQuaternion
+{
+    float4 real;
+    float4 dual;
+};
+
+DualQuaternion noTransform()
+{
+    DualQuaternion none;
+    none.real = 0;
+    none.dual = 0;
+    return none;
+}
+
+// Add weight x (real, dual) on the hemisphere of the reference.
+DualQuaternion accumulate(DualQuaternion total, float4 real, float4 dual, float weight, float4 reference)
+{
+    float signedWeight = dot(real, reference) < 0 ? -weight : weight;
+    total.real += signedWeight * real;
+    total.dual += signedWeight * dual;
+    return total;
+}
+
+// A sum divided by the norm of its real part, without orthogonalisation.
+DualQuaternion normalized(DualQuaternion total)
+{
+    float norm = max(length(total.real), LEAST_NORM);
+    total.real /= norm;
+    total.dual /= norm;
+    return total;
 }
 
 #endif

@@ -71,28 +71,29 @@ float2 splatCorner(uint corner)
 
 // One vertex of a splat's quad for one eye, outside the clip volume where that eye does not see the splat. Rows of
 // pixels run down from clip y = 1. The depth is that of the splat's centre, so that what else is drawn can hide it.
-SplatVaryings splatVertex(uint vertex, uint eye, uint splatCount, float2 screen, float4x4 viewProjection,
-                          StructuredBuffer<uint> order, StructuredBuffer<float2> ellipses,
-                          StructuredBuffer<uint2> colors, StructuredBuffer<uint4> splats)
+// splats = [2 N] as pack_splats of python/mua/kernels/splat_project.py lays them out.
+SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewProjection, StructuredBuffer<uint> order,
+                          StructuredBuffer<uint4> splats)
 {
-    uint splat = order[vertex / 6];
-    uint first = (eye * splatCount + splat) * 3;
-    float2 middle = ellipses[first];
-    float2 axis = ellipses[first + 1]; // cosine and sine of the major axis
-    float2 deviations = ellipses[first + 2];
-    uint2 packedColor = colors[splat];
-    float4 color = float4(unpackHalves(packedColor.x), unpackHalves(packedColor.y));
+    uint splat = 2 * order[vertex / 6];
+    uint4 head = splats[splat];
+    uint4 tail = splats[splat + 1];
+    float4 color = float4(unpackHalves(head.w), unpackHalves(tail.x));
+    float2 major = unpackHalves(eye == 0 ? tail.y : tail.z);
+    float2 deviations = float2(length(major), halfAt(tail.w, eye));
+    float2 axis = major / max(deviations.x, LEAST_NORM);
 
     float2 offset = splatCorner(vertex % 6) * splatHalfLengths(deviations, color.a);
-    float2 pixel = middle + float2(axis.x * offset.x - axis.y * offset.y, axis.y * offset.x + axis.x * offset.y);
-    float4 clip = mul(viewProjection, float4(asfloat(splats[4 * splat].xyz), 1));
+    float2 pixels = float2(axis.x * offset.x - axis.y * offset.y, axis.y * offset.x + axis.x * offset.y);
+    float4 clip = mul(viewProjection, float4(asfloat(head.xyz), 1));
+    float2 place = clip.xy / clip.w + pixels * float2(2, -2) / screen;
     float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
-    bool seen = deviations.x > 0;
+    bool seen = deviations.y > 0;
 
     SplatVaryings varyings;
-    varyings.position = float4(2 * pixel.x / screen.x - 1, 1 - 2 * pixel.y / screen.y, depth, 1);
-    if (!seen)
-        varyings.position = float4(2, 2, 0, 1);
+    varyings.position = float4(2, 2, 0, 1);
+    if (seen)
+        varyings.position = float4(place, depth, 1);
     varyings.offset = offset;
     varyings.deviations = deviations;
     varyings.color = color;

@@ -35,7 +35,7 @@ struct StrokeVaryings
 
 float3 surfaceSplat(StructuredBuffer<uint4> splats, uint splat)
 {
-    return asfloat(splats[4 * splat].xyz);
+    return asfloat(splats[2 * splat].xyz);
 }
 
 // Sum of the normals of the triangles about a texel, times twice their areas. An avatar's splats begin at firstSplat.

@@ -21,6 +21,7 @@ from mua.gpu import Device
 from mua.kernels.dq_skinning import blend_vertices
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import view_projection
+from mua.player.frame import AvatarFrame
 from mua.player.overlays import (
     BONE_COLOR,
     BONE_WIDTH,
@@ -55,7 +56,7 @@ class Stage:
         self.device = device
         write(path, with_surface(synthetic_avatar()), storage="f32")
         self.avatar = read(path)
-        self.gpu = SplatFrame(device, [AvatarBuffers(device, path)])
+        self.gpu = SplatFrame(device, [AvatarFrame(device, AvatarBuffers(device, path))])
         self.scene = Scene(device, self.gpu)
         self.clip = self.avatar.clips[0]
         self.window = self.avatar.encoding.frames(INDEX)
@@ -244,7 +245,8 @@ def test_stands_the_ground_under_most_frames() -> None:
 def test_draws_an_avatar_without_texels(device: Device, tmp_path: Path) -> None:
     avatar = empty_avatar()
     write(tmp_path / "empty.muaavatar", avatar)
-    scene = Scene(device, SplatFrame(device, [AvatarBuffers(device, tmp_path / "empty.muaavatar")]))
+    frame = AvatarFrame(device, AvatarBuffers(device, tmp_path / "empty.muaavatar"))
+    scene = Scene(device, SplatFrame(device, [frame]))
     camera = camera_at(avatar.rig.mesh.vertices)
     picture = draw_picture(device, scene, (camera,), Toggles(splats=False, geometry=True))
     assert picture.max() == 0

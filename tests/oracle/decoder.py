@@ -246,4 +246,4 @@ def keys(avatar: Tree, splats: Splats, view: Array, near: float) -> Array:
     corners = np.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
     depths, box = (-(points @ view[2, :3] + view[2, 3]) for points in (splats.centres, corners))
     nearest, farthest = (end(box) + s * np.linalg.norm(high - low) / 2 for end, s in ((np.min, -1), (np.max, 1)))
-    return np.floor(65535 * np.clip((farthest - depths) / (farthest - max(nearest, near)), 0, 1) + 0.5)
+    return np.floor(65534 * np.clip((farthest - depths) / (farthest - max(nearest, near)), 0, 1) + 0.5)

@@ -4,20 +4,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from sorted_keys import append_sort
+from projected import texels_of
 
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera
 from mua.decode import Splats, box_of
 from mua.gpu import Device
-from mua.kernels.dq_skinning import covariances, pack_splats
+from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors, splat_draw
 from mua.kernels.splat_project import splat_project
 from mua.kernels.splat_sort import splat_sort
+from mua.player.buffers import RigPlaces
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image
+from mua.player.splats import SplatFrame
 
-PROJECTED = 256  # splats that one group projects
 EYE_DISTANCE = 0.063  # metres
 EYE_SHIFT = 0.04  # of the projection's axis, towards the nose: eyes of a headset look past their screen's middle
 
@@ -56,49 +57,30 @@ def random_frame(count: int, bounds: Array, *, deviations: tuple[float, float], 
     )
 
 
+class PosedFrame:
+    """A frame's splats as a posed avatar, each on a vertex of its own."""
+
+    def __init__(self, device: Device, frame: Splats) -> None:
+        texels = texels_of(frame)
+        buffers = {name: device.buffer(array, name=name) for name, array in texels.buffers.items()}
+        self.rig = RigPlaces(buffers["faces"], buffers["texels"])
+        self.mesh, self.vertex_dq = buffers["mesh"], buffers["vertex_dq"]
+        self.texel_channels = buffers["texel_channels"]
+        self.splat_count, self.bounds = len(texels), frame.bounds
+
+
+def as_drawn(frame: Splats) -> Splats:
+    """The frame as the kernels are given it, in half floats; its box stays."""
+    return replace(texels_of(frame).splats, bounds=frame.bounds)
+
+
 def sort_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> SortedSplats:
     """The frame's splats projected and sorted by the shaders, as a player does it."""
-    covariance = covariances(frame.rotations, frame.scales)
-    packed = pack_splats(frame.centres, covariance, frame.opacities, frame.texel_dq, frame.sh)
-    count, groups = len(packed), -(-len(packed) // PROJECTED)
-    bounds = np.concatenate([frame.bounds, np.ones((2, 1))], axis=1)
-    splats = device.buffer(packed, name="splats")
-    ellipses = device.buffer(24 * len(cameras) * count, name="ellipses")
-    colors = device.buffer(8 * count, name="colors")
-    flags, group_counts = device.buffer(4 * count, name="flags"), device.buffer(4 * groups, name="group_counts")
-    arguments = device.buffer(32, name="arguments", indirect=True)
-    visible, keys = device.buffer(4 * count, name="visible"), device.buffer(4 * count, name="keys")
+    splats = SplatFrame(device, [PosedFrame(device, frame)])
     commands = device.commands()
-    commands.dispatch(
-        device.kernel("splat_project.compute", "SplatProject"),
-        (groups, 1, 1),
-        {"splats": splats, "ellipses": ellipses, "colors": colors, "flags": flags, "group_counts": group_counts},
-        view=np.stack([cameras[0].view, cameras[-1].view]),
-        projection=np.stack([cameras[0].projection, cameras[-1].projection]),
-        camera=np.append(np.mean([camera.position for camera in cameras], axis=0), 1),
-        bounds_low=bounds[0],
-        bounds_high=bounds[1],
-        screen=np.array(cameras[0].screen),
-        near=NEAR,
-        eyes=len(cameras),
-        splat_count=count,
-    )
-    commands.dispatch(
-        device.kernel("splat_project.compute", "ScanCounts"),
-        (1, 1, 1),
-        {"group_counts": group_counts, "arguments": arguments},
-        splat_count=count,
-        instances=1,
-    )
-    commands.dispatch(
-        device.kernel("splat_project.compute", "SplatCompact"),
-        (groups, 1, 1),
-        {"flags": flags, "group_counts": group_counts, "visible": visible, "keys": keys},
-        splat_count=count,
-    )
-    _, order = append_sort(commands, device, keys, visible, arguments)
+    splats.sort(commands, cameras)
     commands.submit()
-    return SortedSplats(count, splats, ellipses, colors, order, arguments)
+    return splats.sorted
 
 
 def draw_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> Array:
@@ -110,6 +92,7 @@ def draw_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> Arra
 
 def reference_frame(frame: Splats, cameras: Sequence[Camera]) -> Array:
     """The reference's picture [E, H, W, 4], premultiplied: one order and one colour for both eyes."""
+    frame = as_drawn(frame)
     splats, keys, ellipses = splat_project(
         frame.centres,
         covariances(frame.rotations, frame.scales),

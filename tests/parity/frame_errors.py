@@ -19,13 +19,14 @@ from mua.gpu import Device, open_device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.buffers import AvatarBuffers
+from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.rig.bounds import frame_boxes, union
 from mua.rig.rig import Rig
 
-VISIBLE_WORD = 7  # of `arguments`
+VISIBLE_WORD = 4  # of `arguments`
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,9 @@ class FrameErrors:
 class PosedFrame:
     """One frame of a clip, decoded and sorted on a device, and the reference."""
 
-    def __init__(self, device: Device, frame: SplatFrame, clip: Clip, index: int, *, eyes: int, screen: int) -> None:
+    def __init__(
+        self, device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, index: int, *, eyes: int, screen: int
+    ) -> None:
         (gpu,) = frame.avatars
         avatar = gpu.avatar.avatar
         window = avatar.encoding.frames(index)
@@ -54,12 +57,12 @@ class PosedFrame:
         frame.sort(commands, self.cameras)
         commands.submit()
         self.visible = int(frame.arguments.read()[VISIBLE_WORD])
-        self.order = frame.sorted.order.read()[: self.visible]  # [M]
-        self.keys = frame.keys[0].read()[: self.visible]  # [M] as sorted
+        self.order = frame.order.read()[: self.visible]  # [M]
+        self.keys = frame.keys.read(np.uint16)[self.order]  # [M] as sorted
 
     def errors(self) -> FrameErrors:
-        splats = unpacked(self.frame.splats.read())
-        found = self.frame.colors.read(np.float16).reshape(-1, 4)[self.order].astype(float)
+        splats = unpacked(self.frame.splats.read())[: len(self.exact.centres)]
+        colors, opacities = (splats[name][self.order].astype(float) for name in ("color", "opacity"))
         position = np.abs(splats["centre"] - self.exact.centres)
         exact, rounding = exact_keys(
             self.exact.centres[self.order], np.stack([camera.view for camera in self.cameras]), self.bounds
@@ -68,8 +71,8 @@ class PosedFrame:
         moved = LAST_KEY * np.linalg.norm(position, axis=1).max(initial=0) / span
         return FrameErrors(
             position=float(position.max(initial=0)),
-            color=float(np.abs(found[:, :3] - exact_colors(self.exact, self.cameras)[self.order]).max(initial=0)),
-            opacity=float(np.abs(found[:, 3] - self.exact.opacities[self.order]).max(initial=0)),
+            color=float(np.abs(colors - exact_colors(self.exact, self.cameras)[self.order]).max(initial=0)),
+            opacity=float(np.abs(opacities - self.exact.opacities[self.order]).max(initial=0)),
             key=float(np.abs(self.keys - exact).max(initial=0)) - 0.5,
             key_bound=float(rounding + moved),
         )
@@ -99,7 +102,7 @@ def main(files: Sequence[str]) -> None:
     device = open_device()
     print(f"on {device.adapter}")
     for file in files:
-        frame = SplatFrame(device, [AvatarBuffers(device, Path(file))])
+        frame = SplatFrame(device, [AvatarFrame(device, AvatarBuffers(device, Path(file)))])
         avatar = frame.avatars[0].avatar.avatar
         clip = resample(avatar.clips[0], avatar.encoding.rate)
         frames = np.linspace(0, len(clip) - 1, 5).astype(int)

@@ -1,4 +1,4 @@
-"""Golden cases of the kernels from pose to splats, with inputs and bounds of the kernels' own tests."""
+"""Golden cases of the kernels from pose to channels, with inputs and bounds of the kernels' own tests."""
 
 import numpy as np
 from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
@@ -6,22 +6,17 @@ from splat_rounding import ULP
 from stored import STORAGES, groups, store
 from test_dq_skinning import (
     BLEND_BOUND,
-    CENTRE_BOUND,
-    COVARIANCE_BOUND,
-    FACES,
     JOINTS,
-    OPACITY_BOUND,
     random_influences,
     random_joints,
-    random_texels,
 )
 from test_inverse_dwt import taps, upsampling_bound
 from test_mlp_matmul import layer, shader_bound
 
 from mua.asset.tensors import Storage
 from mua.kernels.blend_subbands import blend_detail, blend_ll
-from mua.kernels.dq_skinning import METRES2_TO_MM2, blend_texels, blend_vertices, covariances, skin_splats
-from mua.kernels.inverse_dwt import inverse_dwt, pack_channels, texel_tiles, upsample_texels, upsampling_taps
+from mua.kernels.dq_skinning import blend_vertices
+from mua.kernels.inverse_dwt import inverse_dwt, texel_tiles, upsample_texels, upsampling_taps
 from mua.kernels.mlp_matmul import mlp_matmul
 
 
@@ -39,7 +34,7 @@ def inverse_dwt_cases() -> list[Case]:
 
 
 def dq_skinning_cases() -> list[Case]:
-    return [_vertices(), _texels()]
+    return [_vertices()]
 
 
 def _layer(storage: Storage, *, relu: int) -> Case:
@@ -194,39 +189,4 @@ def _vertices() -> Case:
             "vertex_dq": np.full((131, 8), UNTOUCHED),
         },
         (Expected("vertex_dq", "float", blend_vertices(joints.astype(float), indices, weights), BLEND_BOUND),),
-    )
-
-
-def _texels() -> Case:
-    count, others, rng = 67, 3, np.random.default_rng(6)
-    vertex_dq = (random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))).astype(np.float32)
-    mesh = rng.uniform(-0.5, 0.5, (6, 3)).astype(np.float32)
-    texels = random_texels(rng, count)
-    millimetres = rng.uniform(-7, -5, (count, 3))  # 1 to 7, so that one bound fits all covariances
-    texels.texture[:, 7:10] = millimetres.astype(np.float16)
-    texture = texels.texture.astype(float)
-    on_faces = FACES, texels.triangles, texels.barycentrics
-    texel_dq = blend_texels(vertex_dq.astype(float), *on_faces)
-    centres, rotations, scales, opacities = skin_splats(texel_dq, mesh, *on_faces, texture)
-    covariance = METRES2_TO_MM2 * covariances(rotations, scales)
-    covariance_bound = COVARIANCE_BOUND * METRES2_TO_MM2 * float(scales.max()) ** 2
-    return Case(
-        "three triangles",
-        "SkinSplats",
-        groups((count, 64)),
-        {"texel_count": count, "first_splat": others},
-        {
-            **{"vertex_dq": vertex_dq, "mesh": mesh, "faces": FACES.astype(np.uint32)},
-            **{"triangles": texels.triangles.astype(np.uint32), "barycentrics": texels.barycentrics[:, :2]},
-            **{"texel_channels": pack_channels(texels.texture), "splats": np.full((others + count, 16), UNWRITTEN)},
-        },
-        (
-            Expected("splats", "uint", np.full(16 * others, UNWRITTEN), length=16, period=16),
-            Expected("splats", "float", centres, CENTRE_BOUND, first=16 * others, length=3, period=16),
-            halves("splats", covariance, covariance_bound, first=16 * others + 3, length=3, period=16),
-            halves("splats", texel_dq[:, :4], BLEND_BOUND, first=16 * others + 6, length=2, period=16),
-            halves("splats", texture[:, 11:], 0, first=16 * others + 8, length=6, period=16),
-            Expected("splats", "float", opacities, OPACITY_BOUND, first=16 * others + 14, period=16),
-            Expected("splats", "uint", np.zeros(count), first=16 * others + 15, period=16),
-        ),
     )

@@ -1,182 +1,174 @@
-"""Golden cases of the kernels from splats to their order, with inputs and bounds of the kernels' own tests."""
+"""Golden cases of the kernels from texels to their order, with inputs and bounds of the kernels' own tests."""
 
 import numpy as np
-from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
-from packed_splats import unpacked
+from golden_case import UNWRITTEN, Case, Expected, halves
 from projected import Scene
-from splat_rounding import ULP, exact_keys, eye_bounds
+from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, TEXEL_BOUND, ULP, exact_keys, eye_bounds
 from stored import groups
-from test_splat_project import BOX, packed_splats, stereo
+from test_splat_project import BOX, random_texels, stereo
 
 from mua.arrays import Array
 from mua.camera import NEAR, Camera
+from mua.decode import Splats
+from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
-from mua.kernels.splat_project import eye_ellipses, splat_project
-from mua.kernels.splat_sort import DIGIT_BITS, splat_sort
+from mua.kernels.splat_project import HIDDEN, eye_ellipses, pack_keys, splat_project
+from mua.kernels.splat_sort import splat_sort
+
+FIRST = 2  # splat of another avatar's, before those of a case
+SEEN, UNSEEN = 241, 42
+BLOCK = 2048
 
 
 def splat_project_cases() -> list[Case]:
-    return [_project(1), _project(2), _scan(), _compact()]
+    return [_project(1), _project(2)]
 
 
 def _scene(eyes: int) -> Scene:
     """Splats whose visibility, key and axes float32 cannot turn, before cameras that float32 holds exactly."""
     exact = [(c.view.astype(np.float32).astype(float), c.projection.astype(np.float32).astype(float)) for c in stereo()]
     cameras = tuple(Camera(view, projection, stereo()[0].screen) for view, projection in exact[:eyes])
-    scene = Scene(packed_splats(1999, reach=1.6), cameras, (1.6 * BOX).astype(np.float32).astype(float))
-    centres, covariance, opacities = scene.splats()
-    keys, key_bound = exact_keys(centres, np.stack([c.view for c in cameras]), scene.bounds)
-    clear = np.abs(keys - np.floor(keys) - 0.5) > 2 * key_bound
+    texels, box = random_texels(19_999), (1.6 * BOX).astype(np.float32).astype(float)
+    splats = texels.splats
+    keys, key_bound = exact_keys(splats.centres, np.stack([c.view for c in cameras]), box)
+    clear = np.abs(keys - np.floor(keys) - 0.5) > key_bound
     for camera in cameras:
-        bound = eye_bounds(centres, covariance, opacities, camera)
-        ellipses = eye_ellipses(centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
-        clear &= (np.abs(bound.margin) > 2) & (bound.middle.max(axis=1) < 1e-3)
-        clear &= (_axis_bound(ellipses, bound.variance) < 1e-3) & (ellipses[:, 2] > 0.01)
-    return Scene(scene.words[clear][:283], cameras, scene.bounds)
+        bound, ellipses = eye_bounds(splats, camera), _ellipses(texels.splats, camera)
+        clear &= (np.abs(bound.margin) > 2) & (_axis_bound(ellipses, bound.variance) < 1e-3) & (ellipses[:, 4] < 40)
+        clear &= np.abs(np.abs(ellipses[:, 2:4]) - 0.5).max(axis=1) < 0.49  # no axis is beside one of the screen's
+    seen = np.any([eye_bounds(splats, camera).margin > 0 for camera in cameras], axis=0)
+    chosen = [*np.flatnonzero(clear & seen)[:SEEN], *np.flatnonzero(clear & ~seen)[:UNSEEN]]
+    return Scene(texels.kept(np.array(chosen)), cameras, box)
+
+
+def _ellipses(splats: Splats, camera: Camera) -> Array:
+    covariance = covariances(splats.rotations, splats.scales)
+    return eye_ellipses(splats.centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
 
 
 def _axis_bound(ellipses: Array, variance_bound: Array) -> Array:
-    """Bound [N] of the major axis: the covariance's error over the difference of its axes."""
+    """Bound [N] of the major axis' direction: the covariance's error over the difference of its axes."""
     spread = (ellipses[:, 4] ** 2 - ellipses[:, 5] ** 2) / 2
     return np.asarray(variance_bound / np.maximum(spread, 1e-30) + 8 * ULP)
 
 
 def _project(eyes: int) -> Case:
     scene = _scene(eyes)
-    count = len(scene.words)
-    fields = unpacked(scene.words)
-    centres, covariance, opacities = scene.splats()
+    exact, before = scene.texels.splats, 8 * FIRST
     constants = {
-        name: np.float32(value) if name not in ("eyes", "splat_count", "instances") else value
+        name: np.float32(value) if name not in ("eyes", "texel_count") else value
         for name, value in scene.constants.items()
-        if name != "instances"
     }
-    views, projections = (constants[name][:eyes].astype(float) for name in ("view", "projection"))
-    splats, keys, seen = splat_project(
-        *(centres, covariance, opacities, views, projections),
+    seen, keys, ellipses = splat_project(
+        *(exact.centres, covariances(exact.rotations, exact.scales), exact.opacities),
+        *(constants[name][:eyes].astype(float) for name in ("view", "projection")),
         screen=scene.cameras[0].screen,
         near=float(constants["near"]),
         bounds=scene.bounds,
     )
-    ellipses = np.full((eyes, count, 6), float(UNTOUCHED))
-    ellipses[:, splats] = seen
-    flags = np.zeros(count, np.uint32)
-    flags[splats] = keys.astype(np.uint32) | 0x10000
-    colors = np.zeros((count, 4))
-    turn, sh = fields["turn"].astype(float), fields["sh"].astype(float)
-    colors[splats, :3] = splat_colors(centres, turn, sh, constants["camera"][:3].astype(float))[splats]
-    colors[splats, 3] = opacities[splats]
-    counts = np.add.reduceat(flags > 0, np.arange(0, count, 256)).astype(np.uint32)
-
-    bounds = [eye_bounds(centres, covariance, opacities, camera) for camera in scene.cameras]
-    variance = np.max([bound.variance[splats] for bound in bounds], axis=0)
-    middle = max(float(bound.middle[splats].max()) for bound in bounds)
-    drawn = seen[..., 4] > 0
-    axis = max(float(_axis_bound(e[d], variance[d]).max()) for e, d in zip(seen, drawn, strict=True))
-    deviation = max(float((variance[d] / e[d, 5]).max()) for e, d in zip(seen, drawn, strict=True))
-    direction = ULP * (3 / np.linalg.norm(centres - constants["camera"][:3], axis=1).min() + 28)
+    np.testing.assert_array_equal(seen, np.arange(SEEN))
+    camera = constants["camera"][:3].astype(float)
+    colors = splat_colors(exact.centres[:SEEN], exact.texel_dq[:SEEN], exact.sh[:SEEN], camera)
+    distance = np.linalg.norm(exact.centres - camera, axis=1).min()
+    color_bound = float(np.abs(exact.sh).sum(axis=1).max()) * (
+        ULP * (3 / distance + 28) + 4 * TEXEL_BOUND + 2 * CENTRE_BOUND / distance
+    )
+    pair = ellipses[0], ellipses[-1]
+    axes = np.concatenate([e[:, 4:5] * e[:, 2:4] for e in pair], axis=1)
+    minors = np.stack([e[:, 5] for e in pair], axis=1)
+    bounds = [eye_bounds(exact, eye).variance[:SEEN] for eye in scene.cameras]
+    deviation = max(float((v / np.maximum(e[:, 5], 0.01)).max()) for e, v in zip(ellipses, bounds, strict=True))
+    deviation += 5 * ULP * float(ellipses[..., 4].max())
+    turned = max(float((_axis_bound(e, v) * e[:, 4]).max()) for e, v in zip(ellipses, bounds, strict=True))
+    hidden = before + 8 * SEEN
     return Case(
         f"{eyes} of two eyes",
         "SplatProject",
-        groups((count, 256)),
-        constants,
+        groups((SEEN + UNSEEN, 256)),
+        {**constants, "first_splat": FIRST},
         {
-            **{"splats": scene.words, "ellipses": np.full(ellipses.size, UNTOUCHED)},
-            **{"colors": np.zeros(2 * count, np.uint32), "flags": np.full(count, UNWRITTEN)},
-            "group_counts": np.full(len(counts), UNWRITTEN),
+            **scene.texels.buffers,
+            "splats": np.full((FIRST + SEEN + UNSEEN, 8), UNWRITTEN),
+            "keys": np.full((FIRST + SEEN + UNSEEN + 1) // 2, UNWRITTEN),
         },
         (
-            Expected("ellipses", "float", ellipses[..., 0:2], middle, first=0, length=2, period=6),
-            Expected("ellipses", "float", ellipses[..., 2:4], axis, first=2, length=2, period=6),
-            Expected("ellipses", "float", ellipses[..., 4:6], deviation, 5 * ULP, first=4, length=2, period=6),
-            halves("colors", colors, float(np.abs(sh).sum(axis=1).max()) * direction),
-            Expected("flags", "uint", flags),
-            Expected("group_counts", "uint", counts),
-        ),
-    )
-
-
-def _scan() -> Case:
-    splats = 300_007  # more groups than threads
-    counts = np.random.default_rng(7).integers(0, 257, -(-splats // 256), dtype=np.uint32)
-    total = int(counts.sum())
-    arguments = np.array([6 * total, 2, 0, 0, -(-total // 2048), 1, 1, total], np.uint32)
-    return Case(
-        "300,007 splats",
-        "ScanCounts",
-        (1, 1, 1),
-        {"splat_count": splats, "instances": 2},
-        {"group_counts": counts, "arguments": np.full(8, UNWRITTEN)},
-        (
-            Expected("group_counts", "uint", (np.cumsum(counts) - counts).astype(np.uint32)),
-            Expected("arguments", "uint", arguments),
-        ),
-    )
-
-
-def _compact() -> Case:
-    count, rng = 517, np.random.default_rng(8)
-    flags = ((rng.random(count) < 0.4) * (0x10000 + rng.integers(0, 0x10000, count))).astype(np.uint32)
-    counts = np.add.reduceat(flags > 0, np.arange(0, count, 256))
-    visible = np.flatnonzero(flags).astype(np.uint32)
-    rest = np.full(count - len(visible), UNWRITTEN)
-    return Case(
-        "three groups",
-        "SplatCompact",
-        groups((count, 256)),
-        {"splat_count": count},
-        {
-            **{"flags": flags, "group_counts": (np.cumsum(counts) - counts).astype(np.uint32)},
-            **{name: np.full(count, UNWRITTEN) for name in ("visible", "keys")},
-        },
-        (
-            Expected("visible", "uint", np.append(visible, rest)),
-            Expected("keys", "uint", np.append(flags[visible] & 0xFFFF, rest)),
+            Expected("splats", "uint", np.full(before, UNWRITTEN)),
+            Expected("splats", "float", exact.centres, CENTRE_BOUND, first=before, length=3, period=8),
+            halves(
+                "splats",
+                np.concatenate([colors, exact.opacities[:SEEN, None]], axis=1),
+                color_bound + OPACITY_BOUND,
+                first=before + 3,
+                length=2,
+                period=8,
+            ),
+            halves("splats", axes, deviation + turned, first=before + 5, length=2, period=8),
+            halves("splats", minors, deviation, first=before + 7, period=8),
+            Expected("splats", "uint", np.zeros(UNSEEN), first=hidden + 3, period=8),
+            Expected("splats", "uint", np.full(4 * UNSEEN, UNWRITTEN), first=hidden + 4, length=4, period=8),
+            Expected("keys", "uint", np.full(FIRST // 2, UNWRITTEN)),
+            Expected("keys", "uint", pack_keys(np.append(keys, [HIDDEN] * UNSEEN)), first=FIRST // 2),
         ),
     )
 
 
 def splat_sort_cases() -> list[Case]:
-    """Both passes over two groups of keys, many of them equal."""
-    count, rng = 2048 + 517, np.random.default_rng(9)
-    keys = (rng.integers(0, 40, count) * 0x333).astype(np.uint32)
-    values = np.sort(rng.permutation(4 * count)[:count]).astype(np.uint32)
-    after = splat_sort(keys.astype(np.uint16))
-    low = np.argsort(keys & 0xFF, kind="stable")
-    passes = ((0, keys, values, low), (DIGIT_BITS, keys[low], values[low], None))
-    found = []
-    for shift, pass_keys, pass_values, order in passes:
-        sorted_keys = keys[after] if order is None else pass_keys[order]
-        sorted_values = values[after] if order is None else pass_values[order]
-        found += _sort_pass(shift, pass_keys, pass_values, sorted_keys, sorted_values)
-    return found
+    """Both passes over three groups of keys, many of them equal, some hidden, after which two groups are left."""
+    count, rng = 2 * BLOCK + 517, np.random.default_rng(9)
+    keys = (rng.integers(0, 40, count) * 0x333).astype(np.uint16)
+    keys[rng.random(count) < 0.4] = HIDDEN
+    visible = np.flatnonzero(keys != HIDDEN)
+    low = visible[np.argsort(keys[visible] & 0xFF, kind="stable")]
+    elements = (keys[low].astype(np.uint32) >> 8 << 24) | low.astype(np.uint32)
+    arguments = np.array([6 * len(visible), 2, 0, 0, len(visible)], np.uint32)
+    first = _sort_pass(0, count, pack_keys(keys), (visible, keys[visible] & 0xFF), elements, arguments)
+    order = splat_sort(keys).astype(np.uint32)
+    places = np.arange(len(visible))
+    return first + _sort_pass(1, count, elements, (places, elements >> 24), order, arguments)
 
 
-def _sort_pass(shift: int, keys: Array, values: Array, sorted_keys: Array, sorted_values: Array) -> list[Case]:
-    blocks = -(-len(keys) // 2048)
-    arguments = np.array([6 * len(keys), 1, 0, 0, blocks, 1, 1, len(keys)], np.uint32)
-    digits = (keys >> shift) & 0xFF
-    counts = np.stack([np.bincount(d, minlength=256) for d in np.split(digits, range(2048, len(keys), 2048))], axis=1)
+def _sort_pass(
+    second_pass: int,
+    count: int,
+    keys: Array,
+    digits: tuple[Array, Array],  # places among the pass's elements, and their digits
+    expected: Array,
+    arguments: Array,
+) -> list[Case]:
+    places, values = digits
+    visible = len(places)
+    blocks = -(-(visible if second_pass else count) // BLOCK)
+    groups_of = (-(-count // BLOCK), 1, 1)  # of which the second pass leaves some idle
+    owner = places // BLOCK
+    counts = np.stack([np.bincount(values[owner == block], minlength=256) for block in range(blocks)], axis=1)
     before = np.cumsum(counts, axis=1) - counts
     counts, before, totals = (a.astype(np.uint32) for a in (counts, before, counts.sum(axis=1)))
-    blank, name = np.full(len(keys), UNWRITTEN), f"shift {shift}"
+    constants = {"second_pass": second_pass, "key_count": count}
+    given = arguments if second_pass else np.full(5, UNWRITTEN)
+    name = ("keys", "elements")[second_pass]
     return [
         Case(
-            *(name, "CountDigits", (blocks, 1, 1), {"shift": shift}),
-            {"keys": keys, "arguments": arguments, "digit_counts": np.full(counts.size, UNWRITTEN)},
+            *(name, "CountDigits", groups_of, constants),
+            {"keys": keys, "arguments": given, "digit_counts": np.full(counts.size, UNWRITTEN)},
             (Expected("digit_counts", "uint", counts),),
         ),
         Case(
-            *(name, "ScanDigits", (256, 1, 1), {}),
-            {"arguments": arguments, "digit_counts": counts, "digit_totals": np.full(256, UNWRITTEN)},
-            (Expected("digit_counts", "uint", before), Expected("digit_totals", "uint", totals)),
+            *(name, "ScanDigits", (256, 1, 1), constants),
+            {"arguments": given, "digit_counts": counts, "digit_totals": np.full(256, UNWRITTEN)},
+            (
+                Expected("digit_counts", "uint", before),
+                Expected("digit_totals", "uint", totals),
+            ),
         ),
         Case(
-            *(name, "ScatterDigits", (blocks, 1, 1), {"shift": shift}),
+            *(name, "ScatterDigits", groups_of, {**constants, "instances": 2}),
             {
-                **{"keys": keys, "values": values, "arguments": arguments, "digit_counts": before},
-                **{"digit_totals": totals, "sorted_keys": blank, "sorted_values": blank},
+                **{"keys": keys, "arguments": given, "digit_counts": before, "digit_totals": totals},
+                "sorted": np.full(count, UNWRITTEN),
             },
-            (Expected("sorted_keys", "uint", sorted_keys), Expected("sorted_values", "uint", sorted_values)),
+            (
+                Expected("sorted", "uint", np.append(expected, np.full(count - visible, UNWRITTEN))),
+                Expected("arguments", "uint", arguments),
+            ),
         ),
     ]

@@ -1,18 +1,16 @@
-"""The 64-byte splat of pack_splats, unpacked; how far a half float of a GPU may lie from the exact value."""
+"""The 32-byte splat of pack_splats, unpacked; how far a half float of a GPU may lie from the exact value."""
 
 import numpy as np
 
 from mua.arrays import Array
-from mua.kernels.dq_skinning import METRES2_TO_MM2
 
 PACKED = np.dtype(
     [
         ("centre", "<f4", 3),
-        ("covariance", "<f2", 6),
-        ("turn", "<f2", 4),
-        ("sh", "<f2", 12),
-        ("opacity", "<f4"),
-        ("", "<u4"),
+        ("color", "<f2", 3),
+        ("opacity", "<f2"),
+        ("axes", "<f2", (2, 2)),  # of either eye, column and row, pixels
+        ("minors", "<f2", 2),
     ]
 )
 
@@ -22,15 +20,21 @@ MANTISSA_BITS = np.finfo(np.float16).nmant
 
 
 def unpacked(
-    words: Array,  # [N, 16] uint32
+    words: Array,  # [N, 8] uint32
 ) -> Array:
     """The fields [N] of PACKED."""
     return np.ascontiguousarray(words, "<u4").reshape(-1).view(PACKED)
 
 
-def covariance_of(fields: Array) -> Array:
-    """[N, 6] square metres, float64."""
-    return fields["covariance"].astype(float) / METRES2_TO_MM2
+def screen_covariance(
+    splats: Array,  # [N] of PACKED
+    eye: int,
+) -> Array:
+    """[N, 2, 2] square pixels, of the ellipses of one eye."""
+    axes, minors = splats["axes"][:, eye].astype(float), splats["minors"][:, eye].astype(float)
+    along = axes / np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-30)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1) * minors[:, None]
+    return axes[:, :, None] * axes[:, None, :] + across[:, :, None] * across[:, None, :]
 
 
 def assert_halves(

@@ -9,6 +9,8 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.camera import NEAR, Camera
+from mua.decode import Splats
+from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_project import GUARD, LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, half_lengths
 
 ULP = float(np.finfo(np.float32).eps)
@@ -24,12 +26,31 @@ class Bounds:
     margin: Array  # [N] by which a splat is in view, as a multiple of what rounding may take; negative where it is not
 
 
-def eye_bounds(centres: Array, covariance: Array, opacities: Array, camera: Camera) -> Bounds:
-    """Bounds for splats [N] (splat_project's arguments in float64) in one eye."""
+# A blend of three dual quaternions: a product and a sum for each, in it and in its norm; the norm's own 4 products, 4
+# sums and root; a division. Rotations lie within pi / 4 of none, so that the sum's norm is at least cos(pi / 8).
+TEXEL_BOUND = (2 * 3 + 4 + 4.5 + 2.5) / np.cos(np.pi / 8) * ULP
+# A centre: four components off by TEXEL_BOUND make a quaternion off by twice that. A turn doubles it on a canonical
+# point within 1.5 m; a translation 2 d q* takes it from both parts, d at most 0.9. The products and sums of the point
+# (6), the turn (12) and the translation (8) are half an ulp each of at most 1.5 + 1.8 m.
+CENTRE_BOUND = 2 * 2 * TEXEL_BOUND * (1.5 + 1 + 0.9) + 13 * ULP * (1.5 + 1.8)
+# A logistic: the error of exp, at most 3 ulp of 1 at x = 0, counts in numerator and denominator; a sum, a division.
+OPACITY_BOUND = (2 * 3 + 0.5 + 2.5) * ULP
+LOGIT_BOUND = (3 + 2 * 6 + 3) * ULP  # relative, of an opacity near LEAST_OPACITY
+# A covariance, relative to the largest variance: exp(-12..0), squared; the rotation's matrix (9 products and sums) is
+# quadratic in the product (4 ulp) of the blend and the texel's own quaternion (9 ulp), and counts twice.
+COVARIANCE_BOUND = 2 * (3 + 2 * 12 + 1) * ULP + 2 * 4 * (TEXEL_BOUND + 13 * ULP) + 2 * 9 * ULP
+
+
+def eye_bounds(splats: Splats, camera: Camera) -> Bounds:
+    """Bounds for splats [N], posed by texels as above, in one eye."""
+    centres, opacities = splats.centres, splats.opacities
+    covariance = covariances(splats.rotations, splats.scales)
+    spread_error = COVARIANCE_BOUND * np.square(splats.scales).max(axis=1, initial=0)
     half, focal = np.array(camera.screen) / 2, np.diagonal(camera.projection)[:2]
     skew = np.abs(camera.projection[:2, 2])
     place = centres @ camera.view[:3, :3].T + camera.view[:3, 3]
     place_error = 3 * ULP * (np.abs(centres) @ np.abs(camera.view[:3, :3]).T + np.abs(camera.view[:3, 3]))
+    place_error += CENTRE_BOUND * np.abs(camera.view[:3, :3]).sum(axis=1)
     depth = np.maximum(-place[:, 2:], NEAR)
     slope = np.abs(place[:, :2]) / depth
     relative = place_error.max(axis=1, keepdims=True) / depth
@@ -39,7 +60,7 @@ def eye_bounds(centres: Array, covariance: Array, opacities: Array, camera: Came
     jacobian2 = np.sum((half * focal / depth) ** 2 * (1 + held**2), axis=1)
     sigma = np.linalg.norm(covariance[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]], axis=1)
     # A row of the Jacobian: the magnification, and the slope that is at most 1.5 times as sensitive; it counts twice.
-    variance = jacobian2 * sigma * (2 * 2.5 * (relative[:, 0] + 6 * ULP) + 6 * ULP)
+    variance = jacobian2 * (sigma * (2 * 2.5 * (relative[:, 0] + 6 * ULP) + 6 * ULP) + spread_error)
 
     ellipses = eye_ellipses(centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
     reach_error = _extent_error(ellipses, opacities, variance)
@@ -47,7 +68,7 @@ def eye_bounds(centres: Array, covariance: Array, opacities: Array, camera: Came
     beside = np.minimum(ellipses[:, :2] + extent, np.array(camera.screen) - ellipses[:, :2] + extent)
     beside /= middle + reach_error[:, None]
     before = (-place[:, 2] - NEAR) / (place_error[:, 2] + ULP * NEAR)
-    solid = (opacities - LEAST_OPACITY) / (ULP * LEAST_OPACITY)
+    solid = (opacities - LEAST_OPACITY) / (LOGIT_BOUND * LEAST_OPACITY)
     return Bounds(middle, variance, np.minimum.reduce([*beside.T, before, solid]))
 
 
@@ -58,7 +79,7 @@ def _extent_error(ellipses: Array, opacities: Array, variance: Array) -> Array:
     spread = (ellipses[:, 4] ** 2 - ellipses[:, 5] ** 2) / 2
     turn_error = np.minimum(variance / np.maximum(spread, 1e-30), np.pi / 2) + 8 * ULP
     log = np.log(np.maximum(opacities / LEAST_OPACITY, 1))
-    square_error = 2 * (LOG_ERROR + 3 * ULP * (1 + log))
+    square_error = 2 * (LOG_ERROR + 3 * ULP * (1 + log) + LOGIT_BOUND)
     reach = np.sqrt(2 * log)
     reach_error = square_error / np.maximum(reach, np.sqrt(square_error)) + 5 * ULP * reach
     lengths = half_lengths(ellipses, opacities).sum(axis=1)
@@ -84,4 +105,5 @@ def exact_keys(centres: Array, views: Array, bounds: Array) -> tuple[Array, floa
     span = max(farthest - nearest, 1e-30)
     keys = np.clip((farthest - depths) / span, 0, 1) * LAST_KEY
     largest = max(np.abs(centres).max(initial=0), np.abs(bounds).max()) * np.abs(mean[:3]).sum() + abs(mean[3])
-    return keys, LAST_KEY * ((3 * 4 * largest + 4 * spare) * ULP / span + 4 * ULP)
+    moved = CENTRE_BOUND * np.abs(mean[:3]).sum()
+    return keys, LAST_KEY * (((3 * 4 * largest + 4 * spare) * ULP + moved) / span + 4 * ULP)

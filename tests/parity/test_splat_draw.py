@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import wgpu
 from drawn_splats import draw_frame, random_frame, reference_frame, sort_frame, stereo
+from packed_splats import unpacked
 from scipy.special import ndtr
 from synthetic_avatar import synthetic_avatar
 
@@ -20,7 +21,7 @@ from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels import splat_draw as kernel
 from mua.kernels.splat_draw import MOST_ALPHA, pixel_integral, splat_draw
-from mua.kernels.splat_project import half_lengths
+from mua.kernels.splat_project import half_lengths, pack_splats
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image, read_image
 from mua.rendering import frame_bounds, render_premultiplied
 
@@ -162,6 +163,7 @@ def test_float32_scene_draws_as_float64() -> None:
 LEAST_PSNR = 50.0  # dB, of the drawn image against the reference, for each eye
 PICTURE = (512, 512)
 RASTER_GRID = 1 / 256  # pixels; what Direct3D 11 demands, and desktop devices have
+PLACED = 1e-4  # pixels, of a centre in float32 on these screens
 BOX = 0.4 * np.array([[-1.0, -1, -1], [1, 1, 1]])  # metres; `camera` sees about 460 pixels to a metre of it
 EYES = [1, 2]
 FIELDS = ["centres", "rotations", "scales", "opacities", "sh", "texel_dq"]
@@ -222,7 +224,7 @@ def test_shader_draws_what_render_does(device: Device) -> None:
 def test_front_to_back_is_another_image(device: Device) -> None:
     frame, seen_by, expected = reference_scene(1)
     splats = sort_frame(device, frame, seen_by)
-    drawn = splats.arguments.read()[7]
+    drawn = splats.arguments.read()[4]
     reversed_order = device.buffer(splats.order.read()[:drawn][::-1], name="order")
     wrong = replace(splats, order=reversed_order)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), wrong, seen_by)[None]
@@ -235,22 +237,36 @@ def test_eyes_differ(device: Device) -> None:
 
 
 def on_device(
-    device: Device, ellipses: Array, colors: Array, opacities: Array, order: Array, *, depth: Array | None = None
+    device: Device,
+    ellipses: Array,
+    colors: Array,
+    opacities: Array,
+    order: Array,
+    *,
+    screen: tuple[int, int],
+    depth: Array | float = 2.0,  # [N] metres
 ) -> SortedSplats:
-    """Splats as the shaders would leave them, for one eye; their centres, if any, by eye-space depth [N] in metres."""
-    count = len(ellipses)
-    words = np.zeros((count, 16), np.float32)
-    words[:, 2] = -1 if depth is None else -depth
-    halves = np.concatenate([colors, opacities[:, None]], axis=1).astype(np.float16)
-    arguments = np.array([6 * len(order), 1, 0, 0, 0, 1, 1, len(order)], np.uint32)
+    """Splats as the shaders would leave them for one eye, which looks along -Z."""
+    (camera,) = facing(screen)
+    ndc = (2 * ellipses[:, :2] / screen - 1) * [1, -1]
+    focal, skew = np.diagonal(camera.projection)[:2], camera.projection[:2, 2]
+    away = np.broadcast_to(depth, len(ellipses))[:, None]
+    centres = np.concatenate([(ndc + skew) / focal * away, -away], axis=1)
+    arguments = np.array([6 * len(order), 1, 0, 0, len(order)], np.uint32)
     return SortedSplats(
-        count=count,
-        splats=device.buffer(words, name="splats"),
-        ellipses=device.buffer(ellipses.astype(np.float32), name="ellipses"),
-        colors=device.buffer(halves, name="colors"),
+        splats=device.buffer(pack_splats(centres, colors, opacities, ellipses[None]), name="splats"),
         order=device.buffer(order.astype(np.uint32), name="order"),
         arguments=device.buffer(arguments, name="arguments", indirect=True),
     )
+
+
+def in_halves(ellipses: Array) -> Array:
+    """Ellipses [N, 6] whose axes half floats hold."""
+    blank = np.zeros((len(ellipses), 3))
+    fields = unpacked(pack_splats(blank, blank, blank[:, 0], ellipses[None]))
+    axes, minors = (fields[name][:, 0].astype(float) for name in ("axes", "minors"))
+    major = np.linalg.norm(axes, axis=1, keepdims=True)
+    return np.concatenate([ellipses[:, :2], axes / np.maximum(major, 1e-30), major, minors[:, None]], axis=1)
 
 
 def facing(screen: tuple[int, int]) -> tuple[Camera]:
@@ -261,12 +277,13 @@ def facing(screen: tuple[int, int]) -> tuple[Camera]:
 def integration_bound(exact: Array, opacity: float, major: float, minor: float) -> Array:
     """Error [H, W, 4] of one drawn splat whose premultiplied colours are at most 1.5 times its alpha.
 
-    Corners of quads fall on a grid of pixels, which moves the offsets interpolated between them by half a step. The
+    Corners of quads fall on a grid of pixels, which moves the offsets interpolated between them by half a step, and
+    centres are projected in float32. The
     masses of both axes take that on by the density's slope or by twice the density, and round as S(x) does, whose
     8 operations on x come through by x S'(x) < 0.25. Half floats round to the nearest or towards zero.
     """
     sigma = np.array([major, minor])
-    shift = np.sqrt(0.5) * RASTER_GRID
+    shift = np.sqrt(0.5) * RASTER_GRID + PLACED
     mass = np.minimum(1, 0.41 / sigma)
     off = shift * np.minimum(0.82 / sigma, 0.25 / sigma**2) + 16 * np.finfo(np.float32).eps
     alpha = opacity * 2 * np.pi * major * minor * (mass[0] * off[1] + mass[1] * off[0] + off[0] * off[1])
@@ -281,9 +298,10 @@ def test_shader_integrates_a_splat_as_the_reference(
 ) -> None:
     rng = np.random.default_rng(screen[0])
     angle, middle = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.8, 2) * screen
-    ellipses = np.array([[*middle, np.cos(angle), np.sin(angle), *deviations]])
+    ellipses = in_halves(np.array([[*middle, np.cos(angle), np.sin(angle), *deviations]]))
+    angle = np.arctan2(ellipses[0, 3], ellipses[0, 2])
     colors, opacities = np.array([[0.25, 0.75, 1.5]]), np.array([0.875])  # half floats hold them exactly
-    splats = on_device(device, ellipses, colors, opacities, np.zeros(1))
+    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing(screen))
     exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
     row, column = np.mgrid[: screen[1], : screen[0]] + 0.5 - middle[::-1, None, None]
@@ -295,7 +313,7 @@ def test_shader_integrates_a_splat_as_the_reference(
 
 def test_shader_leaves_no_splat_quite_opaque(device: Device) -> None:
     ellipses = np.array([[8.0, 8, 1, 0, 40, 40]])
-    splats = on_device(device, ellipses, np.ones((1, 3)), np.ones(1), np.zeros(1))
+    splats = on_device(device, ellipses, np.ones((1, 3)), np.ones(1), np.zeros(1), screen=(16, 16))
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing((16, 16)))
     np.testing.assert_allclose(found.max(axis=(0, 1)), MOST_ALPHA, rtol=np.finfo(np.float16).eps)
 
@@ -303,7 +321,7 @@ def test_shader_leaves_no_splat_quite_opaque(device: Device) -> None:
 def test_shader_draws_nothing_of_what_this_eye_does_not_see(device: Device) -> None:
     ellipses, colors, opacities, order = random_scene(7, (13, 5))
     ellipses[:, 4:6] = 0
-    splats = on_device(device, ellipses, colors, opacities, order)
+    splats = on_device(device, ellipses, colors, opacities, order, screen=(13, 5))
     assert not draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing((13, 5))).any()
 
 
@@ -328,7 +346,9 @@ def test_no_visible_splat_gives_an_empty_picture(device: Device, axis: int) -> N
 def test_what_stands_before_a_splat_hides_it(device: Device) -> None:
     screen = (16, 16)
     ellipses = np.tile([8.0, 8, 1, 0, 4, 4], (2, 1))
-    splats = on_device(device, ellipses, np.eye(2, 3), np.ones(2), np.array([1, 0]), depth=np.array([1.0, 3.0]))
+    splats = on_device(
+        device, ellipses, np.eye(2, 3), np.ones(2), np.array([1, 0]), screen=screen, depth=np.array([1.0, 3.0])
+    )
     renderer = SplatRenderer(device, IMAGE_FORMAT, depth_format="depth32float")
     found = draw_over_depth(device, renderer, splats, facing(screen), 1 - NEAR / 2.0)  # a wall 2 m away
     assert found[8, 8, 0] > 0.5
@@ -341,7 +361,7 @@ def test_a_splat_whose_middle_lies_before_the_near_plane_is_drawn(device: Device
     seen_by = facing(screen)
     ellipses, colors, opacities = np.array([[8.0, 8, 1, 0, 4, 4]]), np.array([[0.25, 0.75, 1.5]]), np.array([0.875])
     near = seen_by[0].near * np.array([0.5])
-    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), depth=near)
+    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen, depth=near)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, seen_by)
     exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
     np.testing.assert_allclose(found, exact, rtol=0, atol=integration_bound(exact, 0.875, 4, 4).max())

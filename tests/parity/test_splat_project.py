@@ -1,18 +1,32 @@
 """Projection against 4x4 matrices and a numerically differentiated Jacobian; culling and keys by behaviour."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from packed_splats import assert_halves, unpacked
-from projected import FILE, GROUP, UNWRITTEN, Projected, Scene, compact_on, project_on, scan_on
-from splat_rounding import ULP, Bounds, exact_keys, eye_bounds
+from packed_splats import LARGEST_HALF, assert_halves, screen_covariance, unpacked
+from projected import FACES, GROUP, UNWRITTEN, Projected, Scene, Texels, held, on_steps, project_on, texels_of
+from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, TEXEL_BOUND, ULP, Bounds, exact_keys, eye_bounds
+from test_dq_skinning import random_joints
 
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera, orbit
-from mua.gpu import Device, run
-from mua.kernels.dq_skinning import covariances, pack_splats
+from mua.decode import Splats
+from mua.gpu import Device
+from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
-from mua.kernels.splat_project import LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, splat_project
+from mua.kernels.splat_project import (
+    HIDDEN,
+    LAST_KEY,
+    LEAST_OPACITY,
+    eye_ellipses,
+    half_extents,
+    pack_keys,
+    pack_splats,
+    pack_texels,
+    splat_project,
+)
 
 GPU_COUNTS = [0, 1, GROUP - 1, GROUP, GROUP + 1, 4099, 300_007]
 
@@ -56,7 +70,7 @@ def pixel_of(seen_by: Camera, points: Array) -> Array:
     return (ndc * [1, -1] + 1) / 2 * SCREEN
 
 
-def screen_covariance(ellipses: Array) -> Array:
+def covariance_of(ellipses: Array) -> Array:
     """[M, 2, 2] from the ellipses' axes."""
     cosine, sine, major, minor = ellipses[:, 2:6].T
     axes = np.stack([np.stack([cosine, -sine], 1), np.stack([sine, cosine], 1)], 1)
@@ -76,7 +90,7 @@ def test_ellipse_is_the_covariance_through_the_derivative_of_the_projection(coun
     sigma = np.empty((count, 3, 3))
     sigma[:, rows, columns] = sigma[:, columns, rows] = covariance
     expected = jacobian @ sigma @ jacobian.swapaxes(1, 2)
-    np.testing.assert_allclose(screen_covariance(ellipses[0]), expected, rtol=1e-8, atol=1e-8 * expected.max(initial=1))
+    np.testing.assert_allclose(covariance_of(ellipses[0]), expected, rtol=1e-8, atol=1e-8 * expected.max(initial=1))
     assert np.all(ellipses[0, :, 4] >= ellipses[0, :, 5])
 
 
@@ -92,7 +106,7 @@ def test_float32_stays_near_float64(count: int) -> None:
     np.testing.assert_allclose(ellipses[0, :, :2], exact[0, :, :2], rtol=0, atol=32 * eps * max(SCREEN))
     largest = np.square(exact[0, :, 4]).max(initial=1)
     np.testing.assert_allclose(
-        screen_covariance(ellipses[0].astype(float)), screen_covariance(exact[0]), rtol=0, atol=64 * eps * largest
+        covariance_of(ellipses[0].astype(float)), covariance_of(exact[0]), rtol=0, atol=64 * eps * largest
     )
     key_bound = 1 + 32 * eps * LAST_KEY
     assert np.all(np.abs(keys.astype(int) - exact_keys) <= key_bound)
@@ -129,7 +143,6 @@ def at_eye(x: float, y: float, z: float) -> Array:
     return (np.array([[x, y, z]]) - view[:3, 3]) @ view[:3, :3]
 
 
-SEEN = 0x10000 + 7  # a flag: VISIBLE, and the key below it
 SMALL = np.array([[1e-4, 0, 0, 1e-4, 0, 1e-4]])
 
 
@@ -176,67 +189,138 @@ def test_the_box_holds_all_that_shows() -> None:
     centres, covariance, opacities = random_splats(101)
     _, _, ellipses = project(centres, covariance, opacities, camera())
     extent = half_extents(ellipses[0], opacities)
-    marginal = np.sqrt(np.diagonal(screen_covariance(ellipses[0]), axis1=1, axis2=2))
+    marginal = np.sqrt(np.diagonal(covariance_of(ellipses[0]), axis1=1, axis2=2))
     visible = marginal * np.sqrt(2 * np.log(opacities / LEAST_OPACITY))[:, None]
     assert np.all(extent >= visible)
 
 
-def packed_splats(count: int, reach: float = 1.0) -> Array:
+def random_splats_to_pack(count: int) -> tuple[Array, Array, Array, Array]:
+    """Centres, colours, opacities and ellipses of two eyes."""
     rng = np.random.default_rng(count)
-    centres, covariance, _ = random_splats(count)
-    opacities = rng.uniform(0, 1, count) ** 3  # some below LEAST_OPACITY
-    turns = np.concatenate([rotation.normalize(rng.normal(size=(count, 4))), np.zeros((count, 4))], axis=1)
-    sh = rng.normal(size=(count, 12))
-    return pack_splats(reach * centres, 0.1 * covariance, opacities, turns, sh)
+    angles, deviations = rng.uniform(-np.pi, np.pi, (2, count)), rng.uniform(0.1, 50, (2, count, 2))
+    axes = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    ellipses = np.concatenate([rng.normal(size=(2, count, 2)), axes, deviations], axis=-1)
+    return rng.normal(size=(count, 3)), rng.random((count, 3)), rng.random(count), ellipses
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_packed_splat_holds_floats_and_half_floats_in_32_bytes(count: int) -> None:
+    centres, colors, opacities, ellipses = random_splats_to_pack(count)
+    packed = pack_splats(centres, colors, opacities, ellipses)
+    assert packed.dtype == np.uint32
+    assert packed.shape == (count, 8)
+    fields = unpacked(packed)
+    np.testing.assert_array_equal(fields["centre"], centres.astype(np.float32))
+    np.testing.assert_array_equal(fields["color"], colors.astype(np.float16))
+    np.testing.assert_array_equal(fields["opacity"], opacities.astype(np.float16))
+    for eye in (0, 1):
+        axes = ellipses[eye, :, 2:4] * ellipses[eye, :, 4:5]
+        np.testing.assert_array_equal(fields["axes"][:, eye], axes.astype(np.float16))
+        np.testing.assert_array_equal(fields["minors"][:, eye], ellipses[eye, :, 5].astype(np.float16))
+
+
+def test_one_eye_stands_in_both_places_of_a_packed_splat() -> None:
+    centres, colors, opacities, ellipses = random_splats_to_pack(7)
+    one = unpacked(pack_splats(centres, colors, opacities, ellipses[:1]))
+    np.testing.assert_array_equal(one["axes"][:, 0], one["axes"][:, 1])
+    np.testing.assert_array_equal(one["minors"][:, 0], one["minors"][:, 1])
+
+
+def test_a_packed_ellipse_keeps_its_direction_and_its_size() -> None:
+    ellipses = random_splats_to_pack(503)[3]
+    fields = unpacked(pack_splats(*random_splats_to_pack(503)[:3], ellipses))
+    axes = fields["axes"][:, 0].astype(float)
+    cosine = np.sum(axes * ellipses[0, :, 2:4], axis=1) / np.linalg.norm(axes, axis=1)
+    assert np.all(np.arccos(np.minimum(cosine, 1)) < 2**-10)
+    np.testing.assert_allclose(np.linalg.norm(axes, axis=1), ellipses[0, :, 4], rtol=2**-11)
+
+
+def test_what_half_floats_cannot_hold_is_held_at_the_largest() -> None:
+    ellipse = np.array([[[0, 0, 0.6, 0.8, 1e9, 1e7]]])
+    fields = unpacked(pack_splats(np.zeros((1, 3)), np.full((1, 3), 1e9), np.ones(1), ellipse))
+    np.testing.assert_allclose(fields["axes"][0, 0].astype(float), LARGEST_HALF * np.array([0.6, 0.8]), rtol=2**-11)
+    np.testing.assert_array_equal(fields["minors"][0], [LARGEST_HALF] * 2)
+    np.testing.assert_array_equal(fields["color"], [[LARGEST_HALF] * 3])
+
+
+def test_packed_texels_hold_barycentrics_in_16_bits() -> None:
+    words = pack_texels(np.array([5, 7]), np.array([[0.25, 1, 0], [0, 0.5, 0.5]]))
+    np.testing.assert_array_equal(words, [[5, 0xFFFF4000], [7, 0x80000000]])
+
+
+@pytest.mark.parametrize("keys", [[], [7], [7, 9], [1, 2, HIDDEN]])
+def test_two_keys_lie_in_a_word(keys: list[int]) -> None:
+    found = pack_keys(np.array(keys, np.uint16)).view(np.uint16)
+    np.testing.assert_array_equal(found, keys + [HIDDEN] * (len(keys) % 2))
+
+
+def random_texels(count: int, *, scales: tuple[float, float] = (-5.2, -3.2), logit: float = 7) -> Texels:
+    """On FACES, posed up to 1.9 m from the origin; some without a rotation, some on an edge, some too faint to see."""
+    rng = np.random.default_rng(count)
+    barycentrics = rng.dirichlet([1, 1, 1], count).reshape(count, 3)
+    barycentrics[::5, :2], barycentrics[::5, 2] = 0.5, 0
+    texture = rng.normal(size=(count, 23))
+    texture[:, 0:3] *= 0.05
+    texture[::8, 3:7] = 0
+    texture[:, 7:10] = rng.uniform(*scales, (count, 3))
+    texture[:, 10] = rng.uniform(-logit, logit, count)
+    return Texels(
+        (random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))).astype(np.float32),
+        rng.uniform(-0.5, 0.5, (6, 3)).astype(np.float32),
+        FACES,
+        rng.integers(0, len(FACES), count),
+        on_steps(barycentrics),
+        held(texture),
+    )
 
 
 def assert_as_the_reference(scene: Scene, found: Projected) -> None:
-    """Visibility, ellipses, keys and colours, each within what float32 may take from it."""
-    centres, covariance, opacities = scene.splats()
-    bounds = [eye_bounds(centres, covariance, opacities, c) for c in scene.cameras]
+    """Places, visibility, ellipses, keys and colours, each within what float32 may take from it."""
+    exact, splats = scene.texels.splats, found.splats[: len(scene.texels)]
+    bounds = [eye_bounds(exact, c) for c in scene.cameras]
     margin = np.max([b.margin for b in bounds], axis=0)
-    seen = np.zeros(len(centres), bool)
-    seen[found.visible] = True
-    assert np.all(np.diff(found.visible.astype(int)) > 0)
+    seen = found.keys[: len(exact)] != HIDDEN
+    np.testing.assert_allclose(splats["centre"], exact.centres, rtol=0, atol=CENTRE_BOUND)
     assert seen[margin > 1].all()
     assert not seen[margin < -1].any()
-
-    for camera, bound, ellipses in zip(scene.cameras, bounds, found.ellipses[:, found.visible], strict=True):
-        assert_ellipses(scene, camera, bound, found.visible, ellipses)
+    assert np.all(found.keys[len(exact) :] == HIDDEN)
+    for eye in (0, 1):
+        which = min(eye, len(bounds) - 1)
+        assert_ellipses(scene, scene.cameras[which], bounds[which], seen, splats, eye)
     views = np.stack([c.view for c in scene.cameras])
-    exact, key_bound = exact_keys(centres[found.visible], views, scene.bounds)
-    assert key_bound < 0.5  # so that keys differ by one at most, and that only beside a half
-    assert np.all(np.abs(found.keys - exact) <= 0.5 + key_bound)
-    assert_colors(scene, found)
+    keys, key_bound = exact_keys(exact.centres[seen], views, scene.bounds)
+    assert key_bound < 1 or not seen.any()
+    assert np.all(np.abs(found.keys[: len(exact)][seen] - keys) <= 0.5 + key_bound)
+    assert_colors(scene, splats[seen], seen)
 
 
-def assert_ellipses(scene: Scene, camera: Camera, bound: Bounds, visible: Array, ellipses: Array) -> None:
-    exact = eye_ellipses(*scene.splats()[:2], camera.view, camera.projection, camera.screen, NEAR)[visible]
-    drawn = ellipses[:, 4] > 0
-    margin = bound.margin[visible]
-    assert drawn[margin > 1].all()
-    assert not drawn[margin < -1].any()
-    assert np.all(ellipses[~drawn, 4:] == 0)
-    assert np.all(np.abs(ellipses[drawn, :2] - exact[drawn, :2]) <= bound.middle[visible][drawn])
-    error = screen_covariance(ellipses[drawn].astype(float)) - screen_covariance(exact[drawn])
-    # The axes and their lengths are rounded on top: 8 ulp of the unit vector, 5 of each deviation, each twice.
-    spectral = 2 * (8 + 5) * ULP * exact[drawn, 4] ** 2
-    assert np.all(np.linalg.norm(error, axis=(1, 2)) <= bound.variance[visible][drawn] + spectral)
-    assert np.all(ellipses[:, 2] >= 0)
-    assert np.all(ellipses[:, 4] >= ellipses[:, 5])
+def assert_ellipses(scene: Scene, camera: Camera, bound: Bounds, seen: Array, splats: Array, eye: int) -> None:
+    exact = scene.texels.splats
+    covariance = covariances(exact.rotations, exact.scales)
+    ellipses = eye_ellipses(exact.centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
+    drawn = seen & (splats["minors"][:, eye] > 0)
+    assert drawn[bound.margin > 1].all()
+    assert not drawn[bound.margin < -1].any()
+    error = screen_covariance(splats[drawn], eye) - covariance_of(ellipses[drawn])
+    # The axes and their lengths are rounded on top: 8 ulp of the unit vector, 5 of each deviation, each twice; then
+    # both coordinates of the major axis and the minor deviation to half floats, at most 1/1024 off, and twice.
+    spectral = 2 * ((8 + 5) * ULP + (2**0.5 + 1) * 2**-10) * ellipses[drawn, 4] ** 2
+    assert np.all(np.linalg.norm(error, axis=(1, 2)) <= bound.variance[drawn] + spectral)
 
 
-def assert_colors(scene: Scene, found: Projected) -> None:
-    fields = unpacked(scene.words)[found.visible]
-    centres, sh = fields["centre"].astype(float), fields["sh"].astype(float)
+def assert_colors(scene: Scene, splats: Array, seen: Array) -> None:
+    frame = scene.texels.splats
+    centres, sh = frame.centres[seen], frame.sh[seen]
     camera = np.mean([c.position for c in scene.cameras], axis=0)
-    exact = splat_colors(centres, fields["turn"].astype(float), sh, camera)
+    exact = splat_colors(centres, frame.texel_dq[seen], sh, camera)
     distance = np.linalg.norm(centres - camera, axis=1)
-    # A direction: its difference, 8 ulp of a division by a norm; 12 products and sums of the turn, 8 of the colour.
+    # A direction: its difference, 8 ulp of a division by a norm; 12 products and sums of the turn, 8 of the colour;
+    # what the centre is off; what the turn is off, which counts twice in each of two vectors.
     direction = ULP * ((np.abs(centres).max(axis=1, initial=0) + np.abs(camera).max()) / distance + 8)
+    direction += np.sqrt(3) * CENTRE_BOUND / distance + 4 * TEXEL_BOUND
     bound = np.abs(sh).sum(axis=1) * (direction + 20 * ULP) + ULP
-    assert_halves(found.colors[found.visible, :3], exact, bound[:, None])
-    assert_halves(found.colors[found.visible, 3], fields["opacity"].astype(float), 0)
+    assert_halves(splats["color"], exact, bound[:, None])
+    assert_halves(splats["opacity"], frame.opacities[seen], OPACITY_BOUND)
 
 
 def stereo(apart: float = 0.2) -> tuple[Camera, Camera]:
@@ -254,17 +338,25 @@ def stereo(apart: float = 0.2) -> tuple[Camera, Camera]:
 @pytest.mark.parametrize("eyes", [1, 2])
 @pytest.mark.parametrize("count", GPU_COUNTS)
 def test_hlsl_projects_as_the_reference(device: Device, count: int, eyes: int) -> None:
-    scene = Scene(packed_splats(count, reach=1.6), stereo()[:eyes], 1.6 * BOX)
+    scene = Scene(random_texels(count), stereo()[:eyes], 1.6 * BOX)
     found = project_on(device, scene)
     assert_as_the_reference(scene, found)
     if count > GROUP:
-        assert 0 < len(found.visible) < count
+        assert 0 < np.count_nonzero(found.keys != HIDDEN) < count
+
+
+@pytest.mark.parametrize("count", [GROUP + 1, 4099])
+def test_hlsl_takes_any_scale_opacity_and_sign(device: Device, count: int) -> None:
+    scene = Scene(random_texels(count, scales=(-12, 0), logit=100), stereo(), 1.6 * BOX)
+    assert_as_the_reference(scene, project_on(device, scene))
 
 
 ROLL = np.array([[0.0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
 SHIFT = np.eye(4) + 2.0 * np.eye(4, k=3)
+INSIDE = np.eye(4)
+INSIDE[:3, 3] = -random_texels(4099).splats.centres.mean(axis=0)
 CAMERAS = {
-    "inside the body": Camera(np.eye(4), camera().projection, SCREEN),
+    "inside the body": Camera(INSIDE, camera().projection, SCREEN),
     "looking past its side": Camera(SHIFT @ camera().view, camera().projection, SCREEN),
     "one pixel": orbit(BOX, screen=(1, 1)),
     "rolled by a right angle": Camera(ROLL @ camera().view, camera().projection, SCREEN),
@@ -273,94 +365,97 @@ CAMERAS = {
 
 @pytest.mark.parametrize("place", CAMERAS)
 def test_hlsl_projects_from_wherever_the_camera_is(device: Device, place: str) -> None:
-    scene = Scene(packed_splats(4099), (CAMERAS[place],), BOX)
+    scene = Scene(random_texels(4099), (CAMERAS[place],), 1.6 * BOX)
     found = project_on(device, scene)
     assert_as_the_reference(scene, found)
-    assert 0 < len(found.visible) < 4099
+    assert 0 < np.count_nonzero(found.keys != HIDDEN) < 4099
+
+
+def posed(centres: Array, scales: Array) -> Texels:
+    """Opaque splats where they are asked for, their axes those of the world."""
+    count = len(centres)
+    turn = np.tile([1.0, 0, 0, 0], (count, 1))
+    frame = Splats(
+        **{"canonical": centres, "mesh": centres, "texture": centres, "centres": centres, "rotations": turn},
+        **{"scales": scales, "opacities": np.full(count, 0.99), "sh": np.zeros((count, 12))},
+        **{"texel_dq": np.concatenate([turn, np.zeros((count, 4))], axis=1), "bounds": BOX},
+    )
+    return texels_of(frame)
 
 
 def test_hlsl_culls_before_the_near_plane_in_each_eye(device: Device) -> None:
     depths = np.array([-1, 0, 0.5, 0.99, 1.01, 2]) * NEAR
-    centres = np.stack([np.zeros(6), np.zeros(6), -depths], axis=1)
-    words = pack_splats(centres, SMALL.repeat(6, axis=0), np.ones(6), np.ones((6, 8)), np.zeros((6, 12)))
+    texels = posed(np.stack([np.zeros(6), np.zeros(6), -depths], axis=1), np.full((6, 3), 0.01))
     back = np.eye(4)
     back[2, 3] = -0.5
     eyes = tuple(Camera(view, camera().projection, SCREEN) for view in (back, np.eye(4)))
     for seen_by, visible in ((eyes[1:], [4, 5]), (eyes, range(6))):
-        scene = Scene(words, seen_by, BOX)
+        scene = Scene(texels, seen_by, BOX)
         found = project_on(device, scene)
-        np.testing.assert_array_equal(found.visible, visible)
+        np.testing.assert_array_equal(np.flatnonzero(found.keys != HIDDEN), visible)
         assert_as_the_reference(scene, found)
-        assert np.isfinite(found.ellipses).all()
+        drawn = found.splats[found.keys != HIDDEN]
+        assert all(np.isfinite(drawn[name]).all() for name in drawn.dtype.names)
 
 
-def test_hlsl_sees_nothing_behind_the_camera(device: Device) -> None:
+def test_hlsl_sees_nothing_behind_the_camera_and_leaves_its_splats_a_centre_alone(device: Device) -> None:
     away = camera().view.copy()
     away[[0, 2]] *= -1
-    found = project_on(device, Scene(packed_splats(503), (Camera(away, camera().projection, SCREEN),), BOX))
-    np.testing.assert_array_equal(found.arguments, [0, 2, 0, 0, 0, 1, 1, 0])
+    scene = Scene(random_texels(503), (Camera(away, camera().projection, SCREEN),), BOX)
+    scene = replace(scene, texels=scene.texels.kept(np.linalg.norm(scene.texels.splats.centres, axis=1) < 1))
+    found = project_on(device, scene)
+    assert len(scene.texels) > 100
+    assert np.all(found.keys == HIDDEN)
+    assert_as_the_reference(scene, found)
+    np.testing.assert_array_equal(found.words[: len(scene.texels), 4:], UNWRITTEN)
 
 
 def test_hlsl_sees_all_that_lies_before_the_camera(device: Device) -> None:
-    words = pack_splats(*random_splats(503), np.ones((503, 8)), np.zeros((503, 12)))
-    found = project_on(device, Scene(words, stereo(), BOX))
-    np.testing.assert_array_equal(found.visible, np.arange(503))
+    texels = posed(random_splats(503)[0], np.full((503, 3), 0.01))
+    found = project_on(device, Scene(texels, stereo(), BOX))
+    assert np.all(found.keys[:503] != HIDDEN)
 
 
-@pytest.mark.parametrize("difference", [1.0, -1.0, 0.0])
-@pytest.mark.parametrize("b", [0.0, 1e-9, -1e-9, 1.0])
-def test_hlsl_turns_the_axis_of_any_covariance(device: Device, difference: float, b: float) -> None:
+def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device) -> None:
+    """Half turns, so that the sign of a vertex decides where the sum turns to."""
+    half_turn = np.array([[1, 0, 0, 0], [-0.6, 0.8, 0, 0], [-0.6, 0, 0.8, 0]], np.float32)
+    vertex_dq = np.concatenate([half_turn, np.zeros((3, 4), np.float32)], axis=1)
+    barycentrics = on_steps(np.array([[0.5, 0.5, 0], [0, 0.5, 0.5], [0.25, 0.25, 0.5], [0.375, 0.25, 0.375]]))
+    texture = np.zeros((4, 23))
+    texture[:, :3], texture[:, 7:10], texture[:, 10] = [0.1, 0.2, 0.3], -4, 3
+    texels = Texels(vertex_dq, np.zeros((3, 3), np.float32), FACES[:1], np.zeros(4, int), barycentrics, held(texture))
+    found = project_on(device, Scene(texels, (camera(),), BOX))
+    np.testing.assert_allclose(found.splats["centre"], texels.splats.centres, rtol=0, atol=CENTRE_BOUND / 0.8)
+
+
+def test_hlsl_keeps_rotations_that_cancel_and_scales_beyond_any_finite(device: Device) -> None:
+    texels = random_texels(65)
+    texels.texture[:, 7:10] = np.resize([10.0, 11.0, LARGEST_HALF], (65, 3))
+    texels.vertex_dq[:3] = 0
+    found = project_on(device, Scene(texels, (camera(),), BOX))
+    assert np.isfinite(found.splats["centre"][:65]).all()
+    drawn = found.splats[found.keys != HIDDEN]
+    assert len(drawn) > 0
+    assert all(np.isfinite(drawn[name]).all() for name in drawn.dtype.names)
+
+
+@pytest.mark.parametrize("scales", [(3, 1, 1), (1, 3, 1), (1, 1, 3), (1, 1, 1), (0.01, 2, 2)])
+@pytest.mark.parametrize("angle", [0.0, 1e-4, -1e-4, 0.7, -0.7, np.pi / 2])
+def test_hlsl_turns_the_axis_of_any_covariance(device: Device, scales: tuple[float, ...], angle: float) -> None:
     """Upright, level, slanting and round ellipses, through a camera that keeps x and y apart."""
-    covariance = np.array([[2 + difference, b, 0, 2 - difference, 0, 0]]) * 1e-4
-    words = pack_splats(np.array([[0, 0, -2.0]]), covariance, np.ones(1), np.ones((1, 8)), np.zeros((1, 12)))
-    scene = Scene(words, (Camera(np.eye(4), np.diag([1.0, 97 / 61, -1, 0]), SCREEN),), 3 * BOX)
+    texels = posed(np.array([[0, 0, -2.0]]), 0.01 * np.array([scales]))
+    texels.texture[0, 3:7] = [np.cos(angle / 2), 0, 0, np.sin(angle / 2)]
+    texels = replace(texels, texture=held(texels.texture))
+    scene = Scene(texels, (Camera(np.eye(4), np.diag([1.0, 97 / 61, -1, 0]), SCREEN),), 3 * BOX)
     assert_as_the_reference(scene, project_on(device, scene))
 
 
-@pytest.mark.parametrize("count", [*GPU_COUNTS, 1_000_003])
-def test_hlsl_scans_counts_and_writes_the_arguments(device: Device, count: int) -> None:
-    groups = -(-count // GROUP)
-    group_counts = np.random.default_rng(count).integers(0, GROUP + 1, groups, dtype=np.uint32)
-    arguments, scanned = scan_on(device, group_counts, count)
-    total = int(group_counts.sum())
-    np.testing.assert_array_equal(scanned, np.cumsum(group_counts) - group_counts)
-    np.testing.assert_array_equal(arguments, [6 * total, 2, 0, 0, -(-total // 2048), 1, 1, total])
-
-
-@pytest.mark.parametrize("total", [2048, 2049])
-def test_hlsl_asks_for_as_many_sorting_groups_as_hold_the_splats(device: Device, total: int) -> None:
-    group_counts = np.full(-(-total // GROUP), GROUP, np.uint32)
-    group_counts[-1] -= len(group_counts) * GROUP - total
-    arguments, _ = scan_on(device, group_counts, total)
-    assert arguments[4] == -(-total // 2048)
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
-@pytest.mark.parametrize("count", GPU_COUNTS)
-def test_hlsl_compacts_in_order(device: Device, count: int, share: float) -> None:
-    rng = np.random.default_rng(count)
-    flags = (rng.random(count) < share) * (0x10000 + rng.integers(0, 0x10000, count))
-    padded = np.append(flags, np.zeros(-count % GROUP, int)).reshape(-1, GROUP)
-    group_counts = np.count_nonzero(padded, axis=1)
-    before = (np.cumsum(group_counts) - group_counts).astype(np.uint32)
-    visible, keys = compact_on(device, flags.astype(np.uint32), before)
-    expected = np.flatnonzero(flags)
-    np.testing.assert_array_equal(visible[: len(expected)], expected)
-    np.testing.assert_array_equal(keys[: len(expected)], flags[expected] & 0xFFFF)
-    assert np.all(visible[len(expected) :] == UNWRITTEN)
-    assert np.all(keys[len(expected) :] == UNWRITTEN)
-
-
-@pytest.mark.parametrize("count", [GROUP - 1, GROUP + 1])
-def test_a_flag_behind_the_last_splat_is_not_looked_at(device: Device, count: int) -> None:
-    groups = -(-count // GROUP)
-    unwritten = np.full(count + 1, UNWRITTEN, np.uint32)
-    buffers = {
-        "flags": np.full(count + 1, SEEN, np.uint32),
-        "group_counts": (GROUP * np.arange(groups)).astype(np.uint32),
-        "visible": unwritten,
-        "keys": unwritten,
-    }
-    found = run(device, FILE, "SplatCompact", (groups, 1, 1), buffers, splat_count=count)
-    np.testing.assert_array_equal(found["visible"], [*range(count), UNWRITTEN])
-    np.testing.assert_array_equal(found["keys"], [*[SEEN & 0xFFFF] * count, UNWRITTEN])
+@pytest.mark.parametrize("first", [0, 2, 256])
+@pytest.mark.parametrize("count", [GROUP - 1, GROUP, GROUP + 1])
+def test_hlsl_leaves_the_splats_of_others_alone(device: Device, count: int, first: int) -> None:
+    scene = Scene(random_texels(count), (camera(),), BOX)
+    alone, behind = project_on(device, scene), project_on(device, scene, first_splat=first)
+    np.testing.assert_array_equal(behind.words[first:], alone.words)
+    np.testing.assert_array_equal(behind.keys[first:], alone.keys)
+    assert np.all(behind.words[:first] == UNWRITTEN)
+    assert np.all(behind.keys[:first].view(np.uint32) == UNWRITTEN - 1)

@@ -22,12 +22,13 @@ from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
+from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
 from mua.rendering import frame_bounds, render_premultiplied
 from mua.rig.bounds import union
 
 INDICES = (0, 3, 6)  # of the frame that each avatar shows
-VISIBLE_WORD = 7  # of `arguments`
+VISIBLE_WORD = 4  # of `arguments`
 
 
 def turned(angle: float, place: Sequence[float]) -> Array:
@@ -69,7 +70,7 @@ class Crowd:
         for index, avatar in enumerate(avatars):
             write(directory / f"{index}.muaavatar", avatar, storage="f32")
         buffers = [AvatarBuffers(device, directory / f"{index}.muaavatar") for index in range(len(avatars))]
-        self.device, self.frame = device, SplatFrame(device, buffers)
+        self.device, self.frame = device, SplatFrame(device, [AvatarFrame(device, b) for b in buffers])
         alone = [
             moved(decode_clip_frame(avatar.avatar, avatar.avatar.clips[0], frame=index, dtype=np.float64), place)
             for avatar, index, place in zip(buffers, INDICES, PLACES, strict=True)
@@ -84,7 +85,14 @@ class Crowd:
         self.frame.sort(commands, self.cameras)
         commands.submit()
         count = int(self.frame.arguments.read()[VISIBLE_WORD])
-        self.order, self.keys = self.frame.sorted.order.read()[:count], self.frame.keys[0].read()[:count].astype(int)
+        slots = self.frame.order.read()[:count]
+        self.keys = self.frame.keys.read(np.uint16)[slots].astype(int)
+        firsts = self.frame.first_splats
+        self.slots = np.concatenate(
+            [first + np.arange(a.splat_count) for first, a in zip(firsts, self.frame.avatars, strict=True)]
+        )
+        self.order = np.searchsorted(self.slots, slots)  # splats, an odd avatar's last slot left out
+        np.testing.assert_array_equal(self.slots[self.order], slots)
 
 
 @pytest.fixture(scope="module", params=[1, 2])
@@ -93,14 +101,13 @@ def crowd(request: pytest.FixtureRequest, device: Device, tmp_path_factory: pyte
 
 
 def test_every_avatars_splats_agree_with_the_reference(crowd: Crowd) -> None:
-    splats = unpacked(crowd.frame.splats.read())
+    splats = unpacked(crowd.frame.splats.read())[crowd.slots]
     middle = np.mean([camera.position for camera in crowd.cameras], axis=0)
     colors = splat_colors(crowd.exact.centres, crowd.exact.texel_dq, crowd.exact.sh, middle)
-    found = crowd.frame.colors.read(np.float16).reshape(-1, 4).astype(float)
     assert len(splats) == len(crowd.exact.centres) == sum(avatar.splat_count for avatar in crowd.frame.avatars)
     assert np.abs(splats["centre"] - crowd.exact.centres).max() < POSITION_BOUND
     assert np.abs(splats["opacity"] - crowd.exact.opacities).max() < OPACITY_BOUND
-    assert np.abs(found[:, :3] - colors).max() < COLOR_BOUND
+    assert np.abs(splats["color"] - colors).max() < COLOR_BOUND
 
 
 def test_one_order_goes_through_all_avatars(crowd: Crowd) -> None:
@@ -110,17 +117,17 @@ def test_one_order_goes_through_all_avatars(crowd: Crowd) -> None:
     exact, rounding = exact_keys(crowd.exact.centres, views, bounds)
     depths = np.ptp(np.stack(np.meshgrid(*bounds.T)).reshape(3, -1).T @ views.mean(axis=0)[2, :3])
     moved_by = LAST_KEY * POSITION_BOUND * np.sqrt(3) / depths
-    np.testing.assert_array_equal(np.sort(crowd.order), np.arange(crowd.frame.splat_count))
+    np.testing.assert_array_equal(np.sort(crowd.order), np.arange(len(crowd.exact.centres)))
     assert np.abs(crowd.keys - exact[crowd.order]).max() <= 0.5 + rounding + moved_by
     assert np.all(np.diff(crowd.keys) >= 0)
     assert np.all(np.diff(crowd.order.astype(int))[np.diff(crowd.keys) == 0] > 0)
-    owner = np.searchsorted([avatar.first_splat for avatar in crowd.frame.avatars], crowd.order, side="right")
+    owner = np.searchsorted(crowd.frame.first_splats, crowd.slots[crowd.order], side="right")
     assert np.count_nonzero(np.diff(owner)) > len(owner) / 10  # they do stand among each other
 
 
 def test_the_box_of_each_avatar_holds_its_splats(crowd: Crowd) -> None:
-    for avatar in crowd.frame.avatars:
-        own = crowd.exact.centres[avatar.first_splat :][: avatar.splat_count]
+    for avatar, first in zip(crowd.frame.avatars, crowd.frame.first_splats, strict=True):
+        own = crowd.exact.centres[np.searchsorted(crowd.slots, first) :][: avatar.splat_count]
         assert np.all(avatar.bounds[0] <= own.min(axis=0))
         assert np.all(own.max(axis=0) <= avatar.bounds[1])
 

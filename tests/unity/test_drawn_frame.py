@@ -16,7 +16,7 @@ from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
-from test_recorded_frame import MIRROR, STAND_INS
+from test_recorded_frame import MIRROR, STAND_INS, unpacked
 
 from mua.arrays import Array
 from mua.asset import write
@@ -138,21 +138,21 @@ class Painter:
         return target.image(lambda render_pass: draw.draw(render_pass, **given), half)
 
     def player(
-        self, scene: Scene, *, colors: Array | None = None, plane: tuple[int, float] | None = None
+        self, scene: Scene, *, splats: Array | None = None, plane: tuple[int, float] | None = None
     ) -> list[Array]:
         """[H, W, 4] of each eye; `plane`: an eye and the depth on the device over the left half of its image."""
         held = dict(scene.drawn["indirect"].buffers)
-        held |= {} if colors is None else {"colors": colors}
-        buffers = [self.device.buffer(held[name], name=name) for name in ("splats", "ellipses", "colors", "order")]
+        held |= {} if splats is None else {"splats": splats}
+        buffers = [self.device.buffer(held[name], name=name) for name in ("splats", "order")]
         words = np.array([scene.drawn["indirect"].arguments[0], 1, 0, 0], np.uint32)
         arguments = self.device.buffer(words, name="arguments", indirect=True)
-        splats = SortedSplats(len(held["splats"]) // 16, *buffers, arguments)
+        sorted_splats = SortedSplats(*buffers, arguments)
         renderer = SplatRenderer(self.device, self.format, depth_format=DEPTH_FORMAT)
         target = Target(self.device, self.format, (len(scene.cameras) * SCREEN[0], SCREEN[1]), 1.0, self.folder)
         half = None if plane is None else (plane[1], (plane[0] * SCREEN[0], 0, SCREEN[0] // 2, SCREEN[1]))
 
         def draw(render_pass: wgpu.GPURenderPassEncoder) -> None:
-            renderer.draw(render_pass, splats, scene.cameras)
+            renderer.draw(render_pass, sorted_splats, scene.cameras)
 
         return np.split(target.image(draw, half), len(scene.cameras), axis=1)
 
@@ -185,7 +185,7 @@ def test_counts_of_draws(mono: Scene, instanced: Scene) -> None:
         indirect, direct = scene.drawn["indirect"], scene.drawn["direct"]
         assert (indirect.indirect, direct.indirect) == (True, False)
         assert indirect.arguments[1] == instances
-        assert direct.arguments == (6 * len(direct.buffers["splats"]) // 16, 1)
+        assert direct.arguments == (6 * len(direct.buffers["splats"]) // 8, 1)
         assert 0 < indirect.arguments[0] < direct.arguments[0]
 
 
@@ -259,11 +259,11 @@ def test_what_is_drawn_before_hides_the_splats_behind_it(painter: Painter, both:
 
 def test_a_linear_project_is_given_light(painter: Painter, mono: Scene) -> None:
     """sRGB of each splat turned to light before it is blended."""
-    halves = mono.drawn["indirect"].buffers["colors"].view(np.float16).reshape(-1, 4).astype(float)
-    srgb = halves[:, :3]
+    splats = unpacked(mono.drawn["indirect"].buffers["splats"]).copy()
+    srgb = splats["color"].astype(float)
     light = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    lit = np.column_stack([light, halves[:, 3]]).astype(np.float16).view(np.uint32).ravel()
-    (expected,) = painter.player(mono, colors=lit)
+    splats["color"] = light
+    (expected,) = painter.player(mono, splats=splats.view(np.uint32))
     found = painter.unity(mono.drawn["indirect"], space=())
     covered = expected[..., 3] > 0
     assert np.abs(found - expected)[covered].max() < 2.0**-9  # of the expected colours' half floats

@@ -13,7 +13,7 @@ from test_compiles import PACKAGE, Compiler
 from mua.gpu import Device
 
 KERNELS = ROOT / "ComputeShaders"
-CASES = 35
+CASES = 32
 ASSEMBLIES = ("UnityEngine", "UnityEditor", "UnityEngine.TestRunner", "nunit.framework", "Mua.Format", "Mua.Motion")
 OURS = ("Mua.Avatar", "Mua.Avatar.SelfTest", "Mua.Avatar.Editor", "Mua.Avatar.Tests", "Mua.Avatar.Editor.Tests")
 Told = dict[str, list[str]]

@@ -223,7 +223,7 @@ def test_the_device_is_told_of_eyes_instances_and_pixels(recorded: Recorded) -> 
     mode = recorded.mode
     for kernel, constant, expected in (
         ("SplatProject", "eyes", mode.eyes),
-        ("ScanCounts", "instances", mode.instances),
+        ("ScatterDigits", "instances", mode.instances),
     ):
         assert [int(given[0]) for given in recorded.constants("moved", kernel, constant)] == [expected] * mode.passes
     for given in recorded.constants("moved", "SplatProject", "screen"):
@@ -386,6 +386,6 @@ def test_the_picture_is_that_of_the_cpu_rasteriser(
 def uploaded(device: Device, drawn: Drawn) -> SortedSplats:
     """What a draw was bound to, for the desktop player's."""
     words = np.array([drawn.arguments[0], 1, 0, 0], np.uint32)
-    held = {name: device.buffer(drawn.buffers[name], name=name) for name in ("splats", "ellipses", "colors", "order")}
+    held = {name: device.buffer(drawn.buffers[name], name=name) for name in ("splats", "order")}
     arguments = device.buffer(words, name="arguments", indirect=True)
-    return SortedSplats(count=len(drawn.buffers["splats"]) // 16, arguments=arguments, **held)
+    return SortedSplats(arguments=arguments, **held)

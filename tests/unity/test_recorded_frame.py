@@ -42,7 +42,7 @@ from test_frame import (
 from test_splats import joined, moved
 
 MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
-VISIBLE_WORD = 7  # of `arguments`
+VISIBLE_WORD = 4  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
 PLACES = (  # Unity's position, then rotation (x, y, z, w)
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
@@ -95,6 +95,9 @@ class Recorded:
         for file, avatar in zip(files, avatars, strict=True):
             write(file, avatar, storage=storage)
         self.avatars = [read(file) for file in files]
+        counts = [len(avatar.rig.texels.texels) for avatar in self.avatars]
+        firsts = np.cumsum([0, *(count + count % 2 for count in counts)])
+        self.slots = np.concatenate([f + np.arange(n) for f, n in zip(firsts, counts, strict=False)])  # of splats
         self.exact = {shot.label: self._exact(shot) for shot in SHOTS}
         self.cameras = {shot.label: self._cameras(shot) for shot in SHOTS}
         scenario = folder / "scenario.txt"
@@ -160,12 +163,11 @@ def recorded(
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
 def test_splats_are_those_of_the_reference(recorded: Recorded, shot: Shot) -> None:
-    exact, splats = recorded.exact[shot.label], unpacked(recorded.kept(shot, "splats"))
-    colors = recorded.kept(shot, "colors").view(np.float16).reshape(-1, 4).astype(float)
+    exact, splats = recorded.exact[shot.label], unpacked(recorded.kept(shot, "splats"))[recorded.slots]
     middle = np.mean([camera.position for camera in recorded.cameras[shot.label]], axis=0)
     assert np.abs(splats["centre"] - exact.centres).max() < POSITION_BOUND
     assert np.abs(splats["opacity"] - exact.opacities).max() < OPACITY_BOUND
-    assert np.abs(colors[:, :3] - splat_colors(exact.centres, exact.texel_dq, exact.sh, middle)).max() < COLOR_BOUND
+    assert np.abs(splats["color"] - splat_colors(exact.centres, exact.texel_dq, exact.sh, middle)).max() < COLOR_BOUND
 
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
@@ -173,8 +175,10 @@ def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded,
     """That of the keys over the box around all; splats of equal keys stay in the order of avatars and texels."""
     exact, views = recorded.exact[shot.label], np.stack([camera.view for camera in recorded.cameras[shot.label]])
     count = int(recorded.kept(shot, "arguments")[VISIBLE_WORD])
-    order = recorded.kept(shot, "order")[:count]
-    keys = (recorded.kept(shot, "flags")[order] & LAST_KEY).astype(int)
+    slots = recorded.kept(shot, "order")[:count]
+    keys = recorded.kept(shot, "keys").view(np.uint16)[slots].astype(int)
+    order = np.searchsorted(recorded.slots, slots)
+    np.testing.assert_array_equal(recorded.slots[order], slots)
     bounds = recorded.bounds(shot)
     expected, rounding = exact_keys(exact.centres[order], views, bounds)
     span = np.ptp(exact_depths(bounds, recorded.cameras[shot.label]))
@@ -187,10 +191,9 @@ def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded,
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
 def test_the_picture_agrees_with_the_cpu_rasteriser(recorded: Recorded, device: Device, shot: Shot) -> None:
     """By the desktop player's draw of what the package's frame left: splat_draw.hlsl is the same file."""
-    names = ("splats", "ellipses", "colors", "order")
-    buffers = [device.buffer(recorded.kept(shot, name), name=name) for name in names]
+    buffers = [device.buffer(recorded.kept(shot, name), name=name) for name in ("splats", "order")]
     arguments = device.buffer(recorded.kept(shot, "arguments"), name="arguments", indirect=True)
-    splats, cameras = SortedSplats(len(recorded.exact[shot.label].centres), *buffers, arguments), recorded.cameras
+    splats, cameras = SortedSplats(*buffers, arguments), recorded.cameras
     image = draw_image(device, SplatRenderer(device, image_format(device)), splats, cameras[shot.label])
     for found, camera in zip(np.split(image, shot.eyes, axis=1), cameras[shot.label], strict=True):
         assert psnr(found, render_premultiplied(recorded.exact[shot.label], camera)) > LEAST_PSNR
@@ -198,7 +201,8 @@ def test_the_picture_agrees_with_the_cpu_rasteriser(recorded: Recorded, device: 
 
 def test_the_dispatches_are_those_of_the_desktop_player(recorded: Recorded) -> None:
     decoded = FRAME_ORDER[: FRAME_ORDER.index("SplatProject")]
-    frame = [*decoded * len(recorded.avatars), *FRAME_ORDER[len(decoded) :]]
+    count = len(recorded.avatars)
+    frame = [*decoded * count, *["SplatProject"] * count, *FRAME_ORDER[len(decoded) + 1 :]]
     assert recorded.replayed.kernels == frame * len(SHOTS)
     assert len(FRAME_ORDER) < FEWER_THAN
 

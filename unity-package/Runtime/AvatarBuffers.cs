@@ -1,6 +1,5 @@
 using System;
 using System.Collections.Generic;
-using System.Runtime.InteropServices;
 using Mua.Format;
 using UnityEngine;
 
@@ -12,12 +11,9 @@ namespace Mua
     /// </summary>
     internal sealed class AvatarBuffers : IDisposable
     {
-        private const int Pair = 2 * sizeof(float);
-
         private readonly BufferSet buffers = new BufferSet();
         private readonly List<Upload> uploads = new List<Upload>();
-        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces, tiles, tileRows, triangles;
-        private readonly Upload barycentrics;
+        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces, tiles, tileRows, texels;
         private int filled; // uploads
         private long sent, total; // bytes
 
@@ -36,8 +32,7 @@ namespace Mua
             var held = new TexelTiles(avatar.Texels.Indices.Integers.ToArray(), avatar.Texels.Size);
             tiles = Add(new Upload("texels.texels", held.Tiles, sizeof(int)));
             tileRows = Add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
-            triangles = Add(Stored(avatar.Texels.Triangles, "texels.triangles"));
-            barycentrics = Add(new Upload("texels.barycentrics", Pairs(avatar.Texels.Barycentrics), Pair));
+            texels = Add(new Upload("texels", Places(avatar.Texels), 2 * sizeof(int)));
             foreach (Upload upload in uploads)
             {
                 total += upload.Bytes;
@@ -78,9 +73,8 @@ namespace Mua
 
         public GraphicsBuffer TileRows => tileRows.Buffer;
 
-        public GraphicsBuffer Triangles => triangles.Buffer;
-
-        public GraphicsBuffer Barycentrics => barycentrics.Buffer;
+        /// <summary>[N] triangle, and its first two barycentrics in 16 bits each.</summary>
+        public GraphicsBuffer Texels => texels.Buffer;
 
         /// <summary>Share of the bytes that are on the device, 0 to 1.</summary>
         public float Progress => total == 0 ? 1 : (float)((double)sent / total);
@@ -193,11 +187,22 @@ namespace Mua
             return upload;
         }
 
-        private static Vector2[] Pairs(Tensor tensor)
+        /// <summary>[N, 2] as pack_texels of python/mua/kernels/splat_project.py has them.</summary>
+        private static int[] Places(Texels texels)
         {
-            var pairs = new Vector2[tensor.Shape[0]];
-            tensor.ToFloats().AsSpan().CopyTo(MemoryMarshal.Cast<Vector2, float>(pairs.AsSpan()));
-            return pairs;
+            float[] barycentrics = texels.Barycentrics.ToFloats();
+            var places = new int[2 * texels.Count];
+            for (int i = 0; i < texels.Count; i++)
+            {
+                places[2 * i] = texels.Triangles.Integers[i];
+                places[2 * i + 1] = Steps(barycentrics[2 * i]) | Steps(barycentrics[2 * i + 1]) << 16;
+            }
+            return places;
+        }
+
+        private static int Steps(float barycentric)
+        {
+            return (int)Math.Round((double)barycentric * ushort.MaxValue);
         }
     }
 }

@@ -8,7 +8,7 @@ using UnityEngine.Rendering;
 namespace Mua
 {
     /// <summary>
-    /// One frame of an avatar: the dispatches from a window of poses to posed splats, in the order of
+    /// One frame of an avatar: the dispatches from a window of poses to channels and posed vertices, in the order of
     /// python/mua/player/frame.py. The buffers between the kernels are made once; the splats are shared with others.
     /// </summary>
     internal sealed class AvatarFrame : IDisposable
@@ -27,7 +27,7 @@ namespace Mua
         private readonly BufferSet buffers = new BufferSet();
         private readonly GraphicsBuffer[] activations = new GraphicsBuffer[2];
         private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest detailed, its ll
-        private GraphicsBuffer descriptor, details, texelChannels;
+        private GraphicsBuffer descriptor, details;
 
         /// <summary>InvalidOperationException where a kernel is missing or a buffer is more than the device holds.</summary>
         public AvatarFrame(AvatarResources resources, AvatarBuffers avatar)
@@ -57,7 +57,10 @@ namespace Mua
 
         public int SplatCount => Avatar.SplatCount;
 
-        /// <summary>[M, 16] words of all avatars, given by SplatFrame.</summary>
+        /// <summary>[6, N] of four half floats, of the last decode.</summary>
+        public GraphicsBuffer TexelChannels { get; private set; }
+
+        /// <summary>[M, 8] words of all avatars, given by SplatFrame.</summary>
         public GraphicsBuffer Splats { get; private set; }
 
         /// <summary>Where this avatar's begin.</summary>
@@ -91,7 +94,7 @@ namespace Mua
         }
 
         /// <summary>
-        /// Appends the dispatches from a window of poses to posed splats; what depends on the pose alone is written to the
+        /// Appends the dispatches from a window of poses to channels and posed vertices; what depends on the pose alone is written to the
         /// device at once.
         /// </summary>
         /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
@@ -147,7 +150,7 @@ namespace Mua
                 activations[i] = buffers.Structured("activations", layers, sizeof(float));
                 textures[i] = buffers.Structured("texture", texture >> 2 * i, sizeof(float));
             }
-            texelChannels = buffers.Structured("texel_channels", (long)ChannelRows * SplatCount, 2 * sizeof(uint));
+            TexelChannels = buffers.Structured("texel_channels", (long)ChannelRows * SplatCount, 2 * sizeof(uint));
             Joints = buffers.Structured("joints", jointValues.Length, 4 * sizeof(float));
             VertexDq = buffers.Structured("vertex_dq", 2L * Avatar.VertexCount, 4 * sizeof(float));
         }
@@ -207,7 +210,7 @@ namespace Mua
         }
 
         /// <summary>
-        /// Coefficients, LL, level by level as long as there are details; then the valid texels to `texelChannels`.
+        /// Coefficients, LL, level by level as long as there are details; then the valid texels to TexelChannels.
         /// </summary>
         private void Branch(CommandBuffer commands, BranchBuffers branch, int firstRow)
         {
@@ -225,7 +228,7 @@ namespace Mua
                 offset += branch.Channels * band.Rank;
                 size *= 2;
             }
-            inverseDwt.UpsampleTexels(commands, Avatar, branch, size, textures[0], texelChannels, firstRow);
+            inverseDwt.UpsampleTexels(commands, Avatar, branch, size, textures[0], TexelChannels, firstRow);
             commands.EndSample(AvatarStages.Texture);
         }
 
@@ -233,7 +236,6 @@ namespace Mua
         {
             commands.BeginSample(AvatarStages.Pose);
             dqSkinning.BlendVertices(commands, Avatar, Joints, VertexDq);
-            dqSkinning.SkinSplats(commands, Avatar, VertexDq, Mesh, texelChannels, Splats, FirstSplat);
             commands.EndSample(AvatarStages.Pose);
         }
 

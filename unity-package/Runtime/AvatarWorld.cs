@@ -111,9 +111,14 @@ namespace Mua
                 avatars[i].Record(commands);
                 avatars[i].Surface.AddOpaque(draws, eyes, avatars[i].Views);
             }
-            if (splats.SplatCount > 0 && !camera.orthographic)
+            bool drawsSplats = splats.SplatCount > 0 && !camera.orthographic;
+            if (drawsSplats || ShowsGeometry()) // which is drawn through the splats' centres
             {
-                splats.Sort(commands, eyes);
+                splats.Project(commands, eyes);
+            }
+            if (drawsSplats)
+            {
+                splats.Sort(commands);
                 draws.Add(splatDraw.Bind(splats));
             }
             for (int i = 0; i < avatars.Count; i++)
@@ -179,6 +184,18 @@ namespace Mua
             {
                 avatars[avatars.Count - 1].Refuse(error.Message);
             }
+        }
+
+        private bool ShowsGeometry()
+        {
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                if ((avatars[i].Views & AvatarViews.Geometry) != 0)
+                {
+                    return true;
+                }
+            }
+            return false;
         }
 
         private void AddFrames(bool withSplats)

@@ -6,20 +6,21 @@ using UnityEngine.Rendering;
 namespace Mua
 {
     /// <summary>
-    /// All avatars' splats together: the dispatches from posed splats to those that one or two eyes see, back to front, in
-    /// the order of python/mua/player/splats.py. One sort serves avatars that stand among each other, and both eyes.
+    /// All avatars' splats together: the dispatches from posed texels to the splats that one or two eyes see, back to front,
+    /// in the order of python/mua/player/splats.py. One sort serves avatars that stand among each other, and both eyes.
     /// </summary>
     internal sealed class SplatFrame : IDisposable
     {
-        private const int DigitBits = 8, KeyBits = 16;
-        private const int ArgumentWords = 8;
+        private const int ArgumentWords = 5;
+        private const int SplatWords = 8;
+        private const long MostSplats = 1 << 24; // that the elements of the sort can tell apart
 
         private readonly SplatProject splatProject;
         private readonly SplatSort splatSort;
         private readonly AvatarFrame[] avatars;
+        private readonly int shown;
         private readonly BufferSet buffers = new BufferSet();
-        private readonly GraphicsBuffer[] keys = new GraphicsBuffer[2];
-        private readonly GraphicsBuffer[] orders = new GraphicsBuffer[2];
+        private GraphicsBuffer halfSorted;
 
         /// <summary>One avatar at least; InvalidOperationException where the device cannot hold the buffers.</summary>
         public SplatFrame(AvatarResources resources, IReadOnlyList<AvatarFrame> avatars)
@@ -27,25 +28,23 @@ namespace Mua
         {
         }
 
-        /// <summary>Only the first `shown` avatars are sorted and drawn; the others are posed for other views.</summary>
+        /// <summary>Only the first `shown` avatars are sorted and drawn; the others are placed for other views.</summary>
         public SplatFrame(AvatarResources resources, IReadOnlyList<AvatarFrame> avatars, int shown)
         {
             splatProject = new SplatProject(resources.SplatProject);
             splatSort = new SplatSort(resources.SplatSort);
-            this.avatars = new AvatarFrame[shown];
-            int posed = 0;
+            this.avatars = new AvatarFrame[avatars.Count];
+            this.shown = shown;
+            long placed = 0;
             for (int i = 0; i < avatars.Count; i++)
             {
-                posed += avatars[i].SplatCount;
-                if (i < shown)
-                {
-                    this.avatars[i] = avatars[i];
-                    SplatCount = posed;
-                }
+                this.avatars[i] = avatars[i];
+                placed += Even(avatars[i]);
+                SplatCount = i < shown ? (int)Math.Min(placed, int.MaxValue) : SplatCount;
             }
             try
             {
-                CreateBuffers(posed);
+                CreateBuffers(placed);
             }
             catch
             {
@@ -56,52 +55,60 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 avatars[i].ShareSplats(Splats, first);
-                first += avatars[i].SplatCount;
+                first += Even(avatars[i]);
             }
         }
 
-        /// <summary>N, of all avatars that are drawn.</summary>
+        /// <summary>N, of all avatars that are drawn, and one more where an avatar has an odd number.</summary>
         public int SplatCount { get; }
 
-        /// <summary>[N, 16] words.</summary>
+        /// <summary>[N, 8] words, as pack_splats of python/mua/kernels/splat_project.py lays them out.</summary>
         public GraphicsBuffer Splats { get; private set; }
 
-        /// <summary>[E, N, 6].</summary>
-        public GraphicsBuffer Ellipses { get; private set; }
+        /// <summary>[N] of 16 bits.</summary>
+        public GraphicsBuffer Keys { get; private set; }
 
-        /// <summary>[N, 4] half floats.</summary>
-        public GraphicsBuffer Colors { get; private set; }
-
-        /// <summary>[8] of the draw, of the sort's dispatches, and how many splats are visible.</summary>
+        /// <summary>[5] of the draw, and how many splats are visible.</summary>
         public GraphicsBuffer Arguments { get; private set; }
 
-        /// <summary>Arguments once more, for the draw and the dispatches themselves.</summary>
+        /// <summary>Arguments once more, for the draw itself.</summary>
         public GraphicsBuffer IndirectArguments { get; private set; }
 
-        /// <summary>[M] the visible splats, back to front: two passes of the sort end where they began.</summary>
-        public GraphicsBuffer Order => orders[0];
-
-        public GraphicsBuffer Flags { get; private set; }
-
-        public GraphicsBuffer GroupCounts { get; private set; }
+        /// <summary>[M] the visible splats, back to front.</summary>
+        public GraphicsBuffer Order { get; private set; }
 
         public GraphicsBuffer DigitCounts { get; private set; }
 
         public GraphicsBuffer DigitTotals { get; private set; }
 
-        /// <summary>The eyes of the last Sort.</summary>
+        /// <summary>The eyes of the last Project.</summary>
         public AvatarEyes Eyes { get; private set; }
 
-        /// <summary>Appends the dispatches from posed splats to Order, for one or two eyes.</summary>
-        public void Sort(CommandBuffer commands, AvatarEyes eyes)
+        /// <summary>Appends the dispatches from posed texels to splats and keys, for one or two eyes.</summary>
+        public void Project(CommandBuffer commands, AvatarEyes eyes)
         {
             Eyes = eyes;
-            Project(commands, eyes);
-            commands.BeginSample(AvatarStages.Sort);
-            for (int pass = 0; pass < KeyBits / DigitBits; pass++)
+            Vector3 low = avatars[0].Low, high = avatars[0].High;
+            for (int i = 1; i < shown; i++)
             {
-                SortDigit(commands, DigitBits * pass, pass % 2);
+                low = Vector3.Min(low, avatars[i].Low);
+                high = Vector3.Max(high, avatars[i].High);
             }
+            commands.BeginSample(AvatarStages.Project);
+            foreach (AvatarFrame avatar in avatars)
+            {
+                splatProject.Project(commands, this, avatar, eyes, low, high);
+            }
+            commands.EndSample(AvatarStages.Project);
+        }
+
+        /// <summary>Appends the dispatches from the keys of the last Project to Order.</summary>
+        public void Sort(CommandBuffer commands)
+        {
+            commands.BeginSample(AvatarStages.Sort);
+            SortDigit(commands, Keys, halfSorted, 0);
+            SortDigit(commands, halfSorted, Order, 1);
+            commands.CopyBuffer(Arguments, IndirectArguments);
             commands.EndSample(AvatarStages.Sort);
         }
 
@@ -110,49 +117,36 @@ namespace Mua
             buffers.Dispose();
         }
 
-        private void CreateBuffers(int posed)
+        private void CreateBuffers(long placed)
         {
-            Splats = buffers.Structured("splats", 4L * posed, 4 * sizeof(uint));
-            Ellipses = buffers.Structured("ellipses", 3L * AvatarEyes.Most * SplatCount, 2 * sizeof(float));
-            Colors = buffers.Structured("colors", SplatCount, 2 * sizeof(uint));
-            Flags = buffers.Structured("flags", SplatCount, sizeof(uint));
-            int groups = Kernel.Groups(SplatCount, SplatProject.Projected);
-            GroupCounts = buffers.Structured("group_counts", groups, sizeof(uint));
-            Arguments = buffers.Copied("arguments", ArgumentWords);
-            IndirectArguments = buffers.Arguments("indirect arguments", ArgumentWords);
-            for (int i = 0; i < 2; i++)
+            if (placed > MostSplats)
             {
-                keys[i] = buffers.Structured("keys", SplatCount, sizeof(uint));
-                orders[i] = buffers.Structured("order", SplatCount, sizeof(uint));
+                throw new InvalidOperationException(
+                    placed + " splats of all avatars are more than the " + MostSplats + " that can be sorted.");
             }
+            Splats = buffers.Structured("splats", SplatWords / 4 * placed, 4 * sizeof(uint));
+            Keys = buffers.Structured("keys", placed / 2, sizeof(uint));
             long sorted = (long)SplatSort.Digits * Kernel.Groups(SplatCount, SplatSort.Sorted);
             DigitCounts = buffers.Structured("digit_counts", sorted, sizeof(uint));
             DigitTotals = buffers.Structured("digit_totals", SplatSort.Digits, sizeof(uint));
+            Arguments = buffers.Copied("arguments", ArgumentWords);
+            IndirectArguments = buffers.Arguments("indirect arguments", ArgumentWords);
+            halfSorted = buffers.Structured("half_sorted", SplatCount, sizeof(uint));
+            Order = buffers.Structured("order", SplatCount, sizeof(uint));
         }
 
-        private void Project(CommandBuffer commands, AvatarEyes eyes)
+        /// <summary>One pass of the sort, from the splats' keys to elements, or from those to the order.</summary>
+        private void SortDigit(CommandBuffer commands, GraphicsBuffer keys, GraphicsBuffer sorted, int secondPass)
         {
-            Vector3 low = avatars[0].Low, high = avatars[0].High;
-            foreach (AvatarFrame avatar in avatars)
-            {
-                low = Vector3.Min(low, avatar.Low);
-                high = Vector3.Max(high, avatar.High);
-            }
-            commands.BeginSample(AvatarStages.Project);
-            splatProject.Project(commands, this, eyes, low, high);
-            splatProject.ScanGroups(commands, this, eyes.Instances);
-            commands.CopyBuffer(Arguments, IndirectArguments);
-            splatProject.Compact(commands, this, orders[0], keys[0]);
-            commands.EndSample(AvatarStages.Project);
+            splatSort.Count(commands, this, keys, secondPass);
+            splatSort.Scan(commands, this, secondPass);
+            splatSort.Scatter(commands, this, keys, sorted, secondPass, Eyes.Instances);
         }
 
-        /// <summary>One pass of the sort, from buffers `source` of the two pairs to the others.</summary>
-        private void SortDigit(CommandBuffer commands, int shift, int source)
+        /// <summary>An avatar's splats, and one more where they are odd: two keys lie in a word.</summary>
+        private static int Even(AvatarFrame avatar)
         {
-            int target = 1 - source;
-            splatSort.Count(commands, this, keys[source], shift);
-            splatSort.Scan(commands, this);
-            splatSort.Scatter(commands, this, keys[source], orders[source], keys[target], orders[target], shift);
+            return avatar.SplatCount + avatar.SplatCount % 2;
         }
     }
 }

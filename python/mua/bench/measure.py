@@ -18,6 +18,7 @@ from mua.gpu.failure import naming
 from mua.gpu.timestamps import Timestamps
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer
+from mua.player.frame import AvatarFrame
 from mua.player.shot import Shot, film
 from mua.player.splats import SplatFrame
 from mua.pose.clip import Clip
@@ -26,7 +27,7 @@ from mua.pose.resample import resample
 WARM_UP = 3  # frames before the first that counts
 COPIED = 128 << 20  # bytes of the copy; more than any cache holds
 COPIES = 5
-VISIBLE_WORD = 7  # of the arguments that splat_project writes: how many splats some eye sees
+VISIBLE_WORD = 4  # of the arguments that splat_sort writes: how many splats some eye sees
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
     clip = clip.cut(slice(played))
     shots = film(Shot(screen, eyes=eyes), buffers.avatar.rig, clip)
     bandwidth = copy_bandwidth(device)
-    frame = SplatFrame(device, [buffers])
+    frame = SplatFrame(device, [AvatarFrame(device, buffers)])
     spent, visible = _compute_frames(device, frame, clip, shots, frames)
     drawn = _draw_frames(device, frame, clip, shots, frames)  # after all computing, see there
     work = frame_work(load(path), visible=visible, eyes=len(shots[0]))
@@ -104,7 +105,7 @@ def copy_bandwidth(device: Device) -> float:
 
 
 def _compute_frames(
-    device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
+    device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, shots: list[tuple[Camera, ...]], frames: int
 ) -> tuple[dict[str, list[float]], int]:
     """Milliseconds of every counted frame by kernel, and the median of the visible splats."""
     spent: dict[str, list[float]] = defaultdict(list)
@@ -119,7 +120,7 @@ def _compute_frames(
 
 
 def _draw_frames(
-    device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Camera, ...]], frames: int
+    device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, shots: list[tuple[Camera, ...]], frames: int
 ) -> list[float]:
     """Milliseconds of drawing every counted frame.
 
@@ -134,7 +135,9 @@ def _draw_frames(
     return taken[WARM_UP:]
 
 
-def _compute(device: Device, frame: SplatFrame, clip: Clip, shots: list[tuple[Camera, ...]], index: int) -> Commands:
+def _compute(
+    device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, shots: list[tuple[Camera, ...]], index: int
+) -> Commands:
     """Submit everything up to the sort of a frame; the clip starts over at its end."""
     (avatar,) = frame.avatars
     window = [i % len(clip) for i in avatar.avatar.avatar.encoding.frames(index)]

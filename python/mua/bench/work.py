@@ -13,13 +13,13 @@ from mua.kernels.inverse_dwt import BATCH, ROWS, texel_tiles, upsampling_taps
 
 FLOAT = UINT = 4  # bytes
 HALF = 2
-DUAL_QUATERNION, SPLAT, ELLIPSE, COLOR = 8 * FLOAT, 64, 6 * FLOAT, 8  # bytes
+DUAL_QUATERNION = 8 * FLOAT  # bytes
+SPLAT, CENTRE = 32, 16  # bytes: of a splat that some eye sees, and of another
+KEY = 2  # bytes
 INFLUENCES = 8
-PROJECT_GROUP = 256  # splats that share one count
 SORT_GROUP = 2048  # keys that share one histogram
 DIGITS = 256
 TILE = UINT + 16 * 2 * UINT  # bytes that say where a tile lies and which of its texels are valid
-PASSES = 2  # of the radix sort
 
 # Operations of the posing kernels, counted on their references.
 BLEND_TERM = 8 + 16  # dot product with the reference of the signs, 8 multiply-adds
@@ -27,11 +27,13 @@ NORMALIZE_DUAL = 8 + 1 + 8  # squared norm, root, 8 quotients
 DUAL_TRANSFORM = 30 + 24 + 6  # rotate a vector; 2 vec(dual conj(real)); add both
 QUATERNION_PRODUCT = 28
 UNIT_QUATERNION = 8 + 1 + 4
-COVARIANCE = 30 + 9 + 36 + 6  # rotation matrix, its scaled columns, six products of rows, mm^2
+AXES = 30 + 9  # rotation matrix, its scaled columns
 ACTIVATIONS = 3 + 4  # three exponentials, the logistic function
-SKIN = 3 * BLEND_TERM + NORMALIZE_DUAL + 18 + DUAL_TRANSFORM + QUATERNION_PRODUCT + UNIT_QUATERNION + COVARIANCE
+SKIN = 3 * BLEND_TERM + NORMALIZE_DUAL + 18 + DUAL_TRANSFORM + QUATERNION_PRODUCT + UNIT_QUATERNION + AXES
 SKIN += ACTIVATIONS  # 18: the barycentric point and the offset
-PROJECT_EYE = 24 + 15 + 24 + 36 + 18 + 18 + 6 + 25  # eye space, slopes, Jacobian, J S, J S J^T, axes, pixel, quad's box
+PROJECT_EYE = (
+    24 + 15 + 24 + 30 + 15 + 18 + 6 + 25
+)  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box
 PROJECT_SHARED = 12 + 30 + 27 + 11  # direction, turned back, SH; key
 
 
@@ -57,11 +59,8 @@ def frame_work(
     return {
         **_decode(tree),
         "BlendVertices": blend_vertices(len(tree["skeleton"]["names"]), _shape(tree["template"]["skin_indices"])[0]),
-        "SkinSplats": skin_splats(texels, _shape(tree["coarse"]["mean"])[0], _shape(tree["template"]["faces"])[0]),
-        "SplatProject": splat_project(texels, visible, eyes),
-        "ScanCounts": scan_counts(texels),
-        "SplatCompact": splat_compact(texels, visible),
-        **splat_sort(visible),
+        "SplatProject": splat_project(tree, visible, eyes),
+        **splat_sort(texels, visible),
     }
 
 
@@ -119,38 +118,29 @@ def blend_vertices(joints: int, vertices: int) -> Work:
     return Work(moved, vertices * (INFLUENCES * BLEND_TERM + NORMALIZE_DUAL))
 
 
-def skin_splats(texels: int, vertices: int, faces: int) -> Work:
-    """Vertices and faces, triangle, two barycentrics and 23 channels for each texel read, 64 bytes of splat written."""
-    shared = (DUAL_QUATERNION + 3 * FLOAT) * vertices + 3 * UINT * faces
-    return Work(shared + texels * (UINT + 2 * FLOAT + ROWS * BATCH * HALF + SPLAT), texels * SKIN)
+def splat_project(tree: Tree, visible: int, eyes: int) -> Work:
+    """Vertices and faces, place and 24 half floats of each texel read; a key and a centre or 32 bytes written.
+
+    Vertices and faces are gathered, and counted once.
+    """
+    texels, vertices = _shape(tree["texels"]["texels"])[0], _shape(tree["coarse"]["mean"])[0]
+    shared = (DUAL_QUATERNION + 3 * FLOAT) * vertices + 3 * UINT * _shape(tree["template"]["faces"])[0]
+    texel = 2 * UINT + ROWS * BATCH * HALF + CENTRE + KEY
+    moved = shared + texels * texel + visible * (SPLAT - CENTRE)
+    return Work(moved, texels * (SKIN + eyes * PROJECT_EYE + PROJECT_SHARED))
 
 
-def splat_project(texels: int, visible: int, eyes: int) -> Work:
-    """Splats read; flags and colours, counts of groups and an ellipse for each eye of the visible written."""
-    written = texels * (UINT + COLOR) + visible * eyes * ELLIPSE + UINT * _groups(texels, PROJECT_GROUP)
-    return Work(texels * SPLAT + written, texels * (eyes * PROJECT_EYE + PROJECT_SHARED))
-
-
-def scan_counts(texels: int) -> Work:
-    """The groups' counts read and written, 8 arguments written; integers only."""
-    return Work(2 * UINT * _groups(texels, PROJECT_GROUP) + 8 * UINT, 0)
-
-
-def splat_compact(texels: int, visible: int) -> Work:
-    """Flags and the groups' counts read, index and key of what is visible written; integers only."""
-    return Work(UINT * (texels + _groups(texels, PROJECT_GROUP)) + 2 * UINT * visible, 0)
-
-
-def splat_sort(visible: int) -> dict[str, Work]:
-    """Both passes: keys counted; a histogram for each group scanned; keys and indices read and scattered."""
-    histograms = UINT * DIGITS * _groups(visible, SORT_GROUP)
-    totals = UINT * DIGITS
+def splat_sort(texels: int, visible: int) -> dict[str, Work]:
+    """Keys, then elements, counted, scanned and scattered; integers only."""
+    first, last = (UINT * DIGITS * _groups(count, SORT_GROUP) for count in (texels, visible))
+    totals = 2 * UINT * DIGITS
+    read = KEY * texels + UINT * visible
     moved = {
-        "CountDigits": UINT * visible + histograms,
-        "ScanDigits": 2 * histograms + totals,
-        "ScatterDigits": 4 * UINT * visible + histograms + totals,
+        "CountDigits": read + first + last,
+        "ScanDigits": 2 * (first + last) + totals,
+        "ScatterDigits": read + 2 * UINT * visible + first + last + totals,
     }
-    return {name: Work(PASSES * once, 0) for name, once in moved.items()}
+    return {name: Work(once, 0) for name, once in moved.items()}
 
 
 def _decode(tree: Tree) -> dict[str, Work]:

@@ -19,7 +19,7 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.inverse_dwt import unpack_channels
 from mua.player.buffers import AvatarBuffers
-from mua.player.splats import SplatFrame
+from mua.player.frame import AvatarFrame
 from mua.recording import Recording, WholeFrame
 from mua.rig.rig import Rig
 from mua.student.checkpoint import Checkpoints
@@ -153,7 +153,7 @@ class _Decoder:
 
     def __init__(self, device: Device, buffers: AvatarBuffers) -> None:
         self._device = device
-        (self._frame,) = SplatFrame(device, [buffers]).avatars
+        self._frame = AvatarFrame(device, buffers)
         self._last: tuple[tuple[str, int], Picture] | None = None
 
     def __call__(self, frame: WholeFrame) -> Picture:

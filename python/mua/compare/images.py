@@ -13,7 +13,8 @@ from mua.camera import Camera, orbit
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.draw import SplatRenderer, draw_image, image_format
-from mua.player.textured import TexturedFrame
+from mua.player.splats import SplatFrame
+from mua.player.textured import TexturedRig
 from mua.pose.clip import Clip
 from mua.recording import WholeFrame
 from mua.rig.bounds import frame_boxes, root_positions, union
@@ -46,7 +47,8 @@ class Studio:
         self.azimuths = [float(FIRST_VIEW + turn) for turn in 2 * np.pi * np.arange(views) / views]
         boxes = [frame_boxes(rig, _still(frame)) - root_positions(rig, _still(frame))[:, None] for frame in frames]
         self._box = union(np.concatenate(boxes))
-        self._frame = TexturedFrame(device, rig)
+        self._posed = TexturedRig(device, rig)
+        self._frame = SplatFrame(device, [self._posed])
         self._renderer = SplatRenderer(device, image_format(device))
 
     def cameras(self, frame: WholeFrame) -> list[Camera]:
@@ -68,7 +70,7 @@ class Studio:
         for index, camera in enumerate(self.cameras(frame)):
             commands = self._device.commands()
             if index == 0:
-                self._frame.pose(commands, frame.mesh if mesh is None else mesh, texture, pose)
+                self._posed.pose(commands, frame.mesh if mesh is None else mesh, texture, pose)
             self._frame.sort(commands, [camera])
             commands.submit()
             image = draw_image(self._device, self._renderer, self._frame.sorted, [camera])

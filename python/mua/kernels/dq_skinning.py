@@ -10,10 +10,6 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 
-METRES2_TO_MM2 = (
-    1e6  # covariances are packed in mm^2: half floats hold 0.25 mm to 25 cm of standard deviation in full precision
-)
-PACKED_WORDS = 16
 LARGEST_LOG_SCALE = 10.0  # 22 km, far beyond what is packed; below it no exponential is infinite
 
 
@@ -81,27 +77,6 @@ def covariances(
     return np.stack([np.sum(axes[:, i] * axes[:, j], axis=1) for i, j in zip(rows, columns, strict=True)], axis=1)
 
 
-def pack_splats(
-    centres: Array,  # [N, 3] metres
-    covariance: Array,  # [N, 6] square metres
-    opacities: Array,  # [N]
-    texel_dq: Array,  # [N, 8]; its real part turns the view direction back
-    sh: Array,  # [N, 12]
-) -> Array:
-    """Splats as a GPU holds them, [N, 16] uint32.
-
-    Words 0-2: centre, f32. 3-5: covariance in mm^2, f16 pairs, low half first. 6-7: R_tex as a quaternion, f16 pairs.
-    8-13: SH, f16 pairs. 14: opacity, f32. 15: zero, so that a splat is 64 bytes.
-    """
-    packed = np.zeros((len(centres), PACKED_WORDS), dtype=np.uint32)
-    packed[:, 0:3] = centres.astype(np.float32).view(np.uint32)
-    packed[:, 3:6] = _halves(covariance * METRES2_TO_MM2)
-    packed[:, 6:8] = _halves(texel_dq[:, :4])
-    packed[:, 8:14] = _halves(sh)
-    packed[:, 14] = opacities.astype(np.float32).view(np.uint32)
-    return packed
-
-
 def _accumulate(
     total: Array,  # [N, 8], added to
     dual: Array,  # [N, 8]
@@ -131,12 +106,3 @@ def _norm(
 ) -> Array:
     """Norms [N, 1], never zero: rotations that cancel give a finite splat, not NaN."""
     return np.maximum(np.sqrt(np.einsum("ni,ni->n", q, q)), np.finfo(q.dtype).tiny)[:, None]
-
-
-def _halves(
-    values: Array,  # [N, 2 m]
-) -> Array:
-    """Pairs of half floats as words [N, m], the first in the low half; beyond the largest, values are held there."""
-    largest = np.finfo(np.float16).max
-    bits = np.ascontiguousarray(np.clip(values, -largest, largest), dtype=np.float16).view(np.uint16).astype(np.uint32)
-    return np.asarray(bits[:, 0::2] | bits[:, 1::2] << 16)

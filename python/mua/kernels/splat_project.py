@@ -1,4 +1,4 @@
-"""Splats to screen: culling, the ellipse of each splat in each eye, the depth key, compaction before the sort.
+"""Splats to screen: culling, the ellipse of each splat in each eye, the depth key; splats and keys as a GPU holds them.
 
 The screen covariance is that of the projection linearised at the centre (EWA, Zwicker et al. 2001,
 https://doi.org/10.1145/383259.383300). No blur is added to it: splat_draw integrates over the pixel instead.
@@ -12,7 +12,10 @@ from mua.arrays import Array
 LEAST_OPACITY = 1 / 255  # below it a splat changes no 8-bit image
 LEAST_VARIANCE = 1e-4  # px^2; float32 rounding of the covariance of a 30 px splat, so that a thin axis stays positive
 GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
-LAST_KEY = 0xFFFF
+LAST_KEY = 0xFFFE
+HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees
+SPLAT_WORDS = 8
+LARGEST_BARYCENTRIC = 0xFFFF  # stands for 1
 
 
 def splat_project(
@@ -95,6 +98,48 @@ def eye_ellipses(
     deviations = np.sqrt(np.maximum([mean + spread, mean - spread], LEAST_VARIANCE)) * (-eye[:, 2] > near)
     column, row = ((ndc * np.sign(half) + 1) * np.abs(half)).T
     return np.stack([column, row, np.cos(angle), np.sin(angle), *deviations], axis=1).astype(centres.dtype)
+
+
+def pack_texels(
+    triangles: Array,  # [N]
+    barycentrics: Array,  # [N, 2] or more: the first two
+) -> Array:
+    """Where texels lie on the mesh, as a GPU holds them, [N, 2] uint32: the triangle, two barycentrics of 16 bits each.
+
+    Half a step of a barycentric is less than a thousandth of a millimetre of an edge of 10 cm.
+    """
+    steps = np.rint(barycentrics[:, :2].astype(float) * LARGEST_BARYCENTRIC).astype(np.uint32)
+    return np.stack([triangles.astype(np.uint32), steps[:, 0] | steps[:, 1] << 16], axis=1)
+
+
+def pack_splats(
+    centres: Array,  # [N, 3] metres
+    colors: Array,  # [N, 3] sRGB
+    opacities: Array,  # [N]
+    ellipses: Array,  # [E, N, 6] of one eye or two; deviations 0 where an eye does not see the splat
+) -> Array:
+    """Splats as they are drawn, 32 bytes each, [N, 8] uint32.
+
+    Words 0-2: centre, f32. The others are pairs of half floats, low half first: 3-4 colour and opacity, 5 and 6 the
+    major axis of either eye, as long as its standard deviation, 7 the standard deviations across it in either eye.
+    """
+    largest = float(np.finfo(np.float16).max)
+    first, last = ellipses[0], ellipses[-1]
+    axes = [np.minimum(ellipse[:, 4:5], largest) * ellipse[:, 2:4] for ellipse in (first, last)]
+    minors = np.stack([first[:, 5], last[:, 5]], axis=1)
+    halves = np.clip(np.concatenate([colors, opacities[:, None], *axes, minors], axis=1), -largest, largest)
+    packed = np.zeros((len(centres), SPLAT_WORDS), dtype=np.uint32)
+    packed[:, 0:3] = centres.astype("<f4").view("<u4")
+    packed[:, 3:8] = np.ascontiguousarray(halves.astype("<f2")).view("<u4")
+    return packed
+
+
+def pack_keys(
+    keys: Array,  # [N] HIDDEN where no eye sees the splat
+) -> Array:
+    """Two keys to a word, [ceil(N / 2)] uint32, the first in the low half; one that is missing is HIDDEN."""
+    padded = np.append(keys, [HIDDEN] * (len(keys) % 2)).astype("<u2")
+    return np.ascontiguousarray(padded).view("<u4")
 
 
 def _keys(

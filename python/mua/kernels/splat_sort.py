@@ -3,16 +3,17 @@
 import numpy as np
 
 from mua.arrays import Array
+from mua.kernels.splat_project import HIDDEN
 
 DIGIT_BITS = 8
 KEY_BITS = 16
 
 
 def splat_sort(
-    keys: Array,  # [M] uint16
+    keys: Array,  # [N] uint16
 ) -> Array:
-    """The stable ascending order of the keys, [M] int32 indices into them."""
-    order = np.arange(len(keys), dtype=np.int32)
+    """The stable ascending order of the keys that are not HIDDEN, [M] int32 indices into all of them."""
+    order = np.flatnonzero(keys != HIDDEN).astype(np.int32)
     for shift in range(0, KEY_BITS, DIGIT_BITS):
         digits = (keys[order] >> shift).astype(np.uint8)
         order = order[_scatter(digits)]

@@ -1,7 +1,9 @@
 """An avatar's tensors on the device, in the type in which the file stores them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,6 +15,10 @@ from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
+from mua.kernels.splat_project import pack_texels
+from mua.rig.rig import Rig
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,32 @@ class BranchBuffers:
     rank: int  # of LL
 
 
+@dataclass(frozen=True)
+class RigPlaces:
+    """Where a rig's texels lie on its mesh."""
+
+    faces: Buffer  # [F, 3]
+    texels: Buffer  # [N, 2] words (mua.kernels.splat_project.pack_texels)
+
+
+@dataclass(frozen=True)
+class RigBuffers(RigPlaces):
+    """And what its vertices are posed by."""
+
+    skin_indices: Buffer  # [V, 8]
+    skin_weights: Buffer  # [V, 8]
+
+
+def upload_rig(device: Device, rig: Rig) -> RigBuffers:
+    """Errors: InputError where a buffer is more than the device can bind or hold."""
+    return RigBuffers(
+        faces=device.buffer(rig.mesh.faces.astype(np.uint32), name="template.faces"),
+        texels=device.buffer(pack_texels(rig.texels.triangles, rig.texels.barycentrics), name="texels"),
+        skin_indices=device.buffer(rig.skin_indices.astype(np.uint32), name="template.skin_indices"),
+        skin_weights=device.buffer(rig.skin_weights.astype(np.float32), name="template.skin_weights"),
+    )
+
+
 class AvatarBuffers:
     """Everything of a file that does not change from frame to frame; `avatar` is the same file on the CPU."""
 
@@ -89,15 +121,11 @@ class AvatarBuffers:
         self.appearance = self._branch(tree, "appearance")
         self.rec_lo = self._upload(self.avatar.wavelet.rec_lo.astype(np.float32), "wavelet.rec_lo")
         self.rec_hi = self._upload(self.avatar.wavelet.rec_hi.astype(np.float32), "wavelet.rec_hi")
-        self.skin_indices = self._upload(rig.skin_indices.astype(np.uint32), "template.skin_indices")
-        self.skin_weights = self._upload(rig.skin_weights.astype(np.float32), "template.skin_weights")
-        self.faces = self._upload(rig.mesh.faces.astype(np.uint32), "template.faces")
+        self.rig = self._named(lambda: upload_rig(device, rig))
         tiles, tile_rows = texel_tiles(texels.texels, texels.size)
         self.tile_count = len(tiles)
         self.tiles = self._upload(tiles, "texels.texels")
         self.tile_rows = self._upload(tile_rows, "texels.texels")
-        self.triangles = self._upload(texels.triangles.astype(np.uint32), "texels.triangles")
-        self.barycentrics = self._upload(texels.barycentrics[:, :2].astype(np.float32), "texels.barycentrics")
 
     def _mlp(self, layers: list[Tree], path: str) -> tuple[LayerBuffers, ...]:
         return tuple(self._layer(layer, f"{path}[{i}]") for i, layer in enumerate(layers))
@@ -143,7 +171,10 @@ class AvatarBuffers:
         return StoredBuffer(self._upload(words, field), layout)
 
     def _upload(self, content: Array, field: str) -> Buffer:
+        return self._named(lambda: self._device.buffer(content, name=field))
+
+    def _named(self, upload: Callable[[], T]) -> T:
         try:
-            return self._device.buffer(content, name=field)
+            return upload()
         except InputError as error:
             raise InputError(f"{self._path}: {error}") from error

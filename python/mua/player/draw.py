@@ -24,12 +24,9 @@ DEVICE_DEPTH = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, 0,
 class SortedSplats:
     """What splat_project and splat_sort leave for the draw."""
 
-    count: int  # N, of the avatar
-    splats: Buffer  # [N, 16] words (mua.kernels.dq_skinning.pack_splats)
-    ellipses: Buffer  # [E, N, 6]
-    colors: Buffer  # [N, 4] half floats
+    splats: Buffer  # [N, 8] words (mua.kernels.splat_project.pack_splats)
     order: Buffer  # [M] the visible splats, back to front
-    arguments: Buffer  # [8]; the draw's first
+    arguments: Buffer  # [5]; the draw's first
 
 
 class SplatRenderer:
@@ -50,7 +47,7 @@ class SplatRenderer:
 
     def draw(self, render_pass: wgpu.GPURenderPassEncoder, splats: SortedSplats, cameras: Sequence[Camera]) -> None:
         """Append the draw of one or two eyes, side by side from the left; all share one size of screen."""
-        buffers = {name: getattr(splats, name) for name in ("order", "ellipses", "colors", "splats")}
+        buffers = {"order": splats.order, "splats": splats.splats}
         for eye, camera in enumerate(cameras):
             set_eye(render_pass, eye, camera)
             self._pipeline.bind(
@@ -59,7 +56,6 @@ class SplatRenderer:
                 view_projection=view_projection(camera),
                 screen=np.array(camera.screen, dtype=np.float32),
                 eye=eye,
-                splat_count=splats.count,
             )
             render_pass.draw_indirect(splats.arguments.raw, 0)
 

@@ -1,4 +1,4 @@
-"""One frame of an avatar: the dispatches from a window of poses to posed splats.
+"""One frame of an avatar: the dispatches from a window of poses to channels and posed vertices.
 
 Kept a plain list in the order of the kernels, so that unity-package/Runtime/AvatarFrame.cs reads line for line like it.
 """
@@ -18,25 +18,17 @@ LL_TEXELS = 64  # of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
 TEXEL_CHANNELS = 2 * ROWS * BATCH  # bytes
-SKINNED = 64  # vertices or texels of a group of BlendVertices and SkinSplats
+SKINNED = 64  # vertices of a group of BlendVertices
 IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # where the clip puts it
 
 
 class AvatarFrame:
-    """The buffers between the kernels, sized once and reused by every frame; the splats are shared with others."""
+    """The buffers between the kernels, sized once and reused by every frame."""
 
-    def __init__(
-        self,
-        device: Device,
-        avatar: AvatarBuffers,
-        splats: Buffer,  # [M, 16] words of all avatars (mua.kernels.dq_skinning.pack_splats)
-        *,
-        first_splat: int,  # of this avatar
-    ) -> None:
+    def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
         """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
         rig = avatar.avatar.rig
-        self.avatar = avatar
-        self.splats, self.first_splat = splats, first_splat
+        self.avatar, self.rig = avatar, avatar.rig
         self.splat_count = len(rig.texels.texels)
         self.vertex_count = len(rig.mesh.vertices)
         self.bounds = avatar.avatar.bounds  # [2, 3] world box of the last decode, metres
@@ -51,7 +43,6 @@ class AvatarFrame:
         self._inverse_dwt = device.kernel("inverse_dwt.compute", "InverseDwt")
         self._upsample_texels = device.kernel("inverse_dwt.compute", "UpsampleTexels")
         self._blend_vertices = device.kernel("dq_skinning.compute", "BlendVertices")
-        self._skin_splats = device.kernel("dq_skinning.compute", "SkinSplats")
 
     def _create_buffers(self, device: Device) -> None:
         avatar, buffer = self.avatar.avatar, device.buffer
@@ -79,7 +70,7 @@ class AvatarFrame:
         translations: Array,  # [k, J, 3] local joint translations, metres
         place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
     ) -> None:
-        """Append the dispatches from a window of poses to posed splats.
+        """Append the dispatches from a window of poses to channels and posed vertices.
 
         What depends on the pose alone is written to the device at once: submit before the next decode.
         """
@@ -225,26 +216,11 @@ class AvatarFrame:
             (groups(self.vertex_count, SKINNED), 1, 1),
             {
                 "joints": self.joints,
-                "indices": self.avatar.skin_indices,
-                "weights": self.avatar.skin_weights,
+                "indices": self.rig.skin_indices,
+                "weights": self.rig.skin_weights,
                 "vertex_dq": self.vertex_dq,
             },
             vertex_count=self.vertex_count,
-        )
-        commands.dispatch(
-            self._skin_splats,
-            (groups(self.splat_count, SKINNED), 1, 1),
-            {
-                "vertex_dq": self.vertex_dq,
-                "mesh": self.mesh,
-                "faces": self.avatar.faces,
-                "triangles": self.avatar.triangles,
-                "barycentrics": self.avatar.barycentrics,
-                "texel_channels": self.texel_channels,
-                "splats": self.splats,
-            },
-            texel_count=self.splat_count,
-            first_splat=self.first_splat,
         )
 
 

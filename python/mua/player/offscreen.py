@@ -7,6 +7,7 @@ from mua.camera import Camera
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import image_format
+from mua.player.frame import AvatarFrame
 from mua.player.overlays import ground_height
 from mua.player.scene import Scene, draw_picture
 from mua.player.splats import SplatFrame
@@ -20,7 +21,7 @@ class Offscreen:
     def __init__(self, device: Device, avatar: AvatarBuffers, clip: Clip, toggles: Toggles) -> None:
         """`clip` is at the rate of the avatar's encoding. Errors: InputError where the device has too little memory."""
         self._device, self._clip, self._toggles = device, clip, toggles
-        self._frame = SplatFrame(device, [avatar])
+        self._frame = SplatFrame(device, [AvatarFrame(device, avatar)])
         (self._avatar,) = self._frame.avatars
         self._scene = Scene(device, self._frame, color_format=image_format(device))
         self._ground = ground_height(avatar.avatar.rig, clip)

@@ -40,7 +40,7 @@ MARGIN = 0.06  # of its size round the shadow, so that its soft edge is not cut 
 class PosedBuffers:
     """What the overlays read of a frame."""
 
-    splats: Buffer  # uint4 [4 M] of all avatars
+    splats: Buffer  # uint4 [2 M] of all avatars
     vertex_dq: Buffer  # float4 [2 V]
     mesh: Buffer  # float [3 V] canonical
     first_splat: int = 0  # of the avatar

@@ -9,6 +9,7 @@ from mua.camera import Camera
 from mua.gpu import Device
 from mua.gpu.failure import naming
 from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye
+from mua.player.frame import AvatarFrame
 from mua.player.overlays import Overlays, PosedBuffers
 from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
@@ -23,7 +24,7 @@ class Scene:
     def __init__(
         self,
         device: Device,
-        frame: SplatFrame,  # of this avatar alone
+        frame: SplatFrame[AvatarFrame],  # of this avatar alone
         *,
         color_format: str = IMAGE_FORMAT,
         background: tuple[float, float, float, float] = CLEAR,  # premultiplied sRGB and alpha
@@ -33,7 +34,7 @@ class Scene:
         self._splats = frame.sorted
         self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
         (avatar,) = frame.avatars
-        posed = PosedBuffers(frame.splats, avatar.vertex_dq, avatar.mesh, first_splat=avatar.first_splat)
+        posed = PosedBuffers(frame.splats, avatar.vertex_dq, avatar.mesh, first_splat=frame.first_splats[0])
         self._overlays = Overlays(device, avatar.avatar.avatar, posed, color=color_format, depth=DEPTH_FORMAT)
         self._depth: wgpu.GPUTexture | None = None
 

@@ -14,6 +14,7 @@ from mua.gpu import Device
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
+from mua.player.frame import AvatarFrame
 from mua.player.motion import named_clip, player_clips, require_frame
 from mua.player.overlays import ground_height
 from mua.player.scene import CLEAR, Scene
@@ -34,7 +35,7 @@ class Stage:
         """Errors: InputError where the file is broken or too large, the motion does not fit or a joint is missing."""
         avatar = AvatarBuffers(device, file)
         self.clips, self.notes = player_clips(avatar.avatar, file, motion=source.motion, mapping=source.mapping)
-        self.frame = SplatFrame(device, [avatar])
+        self.frame = SplatFrame(device, [AvatarFrame(device, avatar)])
         background = CLEAR if look.background is None else (*look.background, 1.0)
         self.scene = Scene(device, self.frame, color_format=color_format, background=background)
         self.rig, self.encoding, self.bounds = avatar.avatar.rig, avatar.avatar.encoding, avatar.avatar.bounds

@@ -1,102 +1,113 @@
-"""All avatars' splats together: the dispatches from posed splats to those that one or two eyes see, back to front.
+"""All avatars' splats together: the dispatches from posed texels to the splats that one or two eyes see, back to front.
 
 Kept a plain list in the order of the kernels, so that unity-package/Runtime/SplatFrame.cs reads line for line like it.
 """
 
 from collections.abc import Sequence
 from itertools import accumulate
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.camera import Camera
 from mua.errors import InputError
-from mua.gpu import Commands, Device
-from mua.player.buffers import AvatarBuffers
+from mua.gpu import Buffer, Commands, Device
+from mua.kernels.splat_project import SPLAT_WORDS
+from mua.player.buffers import RigPlaces
 from mua.player.draw import SortedSplats
-from mua.player.frame import AvatarFrame, groups
+from mua.player.frame import FLOAT, groups
 from mua.rig.bounds import union
 
 EYES = 2  # at most
-FLOAT = 4  # bytes
-PROJECTED = 256  # splats of a group of SplatProject and SplatCompact
+MOST_SPLATS = 1 << 24  # that the elements of the sort can tell apart
+PROJECTED = 256  # texels of a group of SplatProject
 SORTED = 2048  # keys of a group of the sort
 DIGITS = 256  # values of 8 bits
-DIGIT_SHIFTS = (0, 8)
-SORT_ARGUMENTS = 16  # byte of `arguments` at which the group counts of the sort stand
+ARGUMENTS = 5  # words: of the draw, and how many splats some eye sees
 
 
-class SplatFrame:
+class Posed(Protocol):
+    """An avatar whose vertices are posed and whose channels are decoded: AvatarFrame or TexturedRig."""
+
+    @property
+    def rig(self) -> RigPlaces: ...
+
+    splat_count: int
+    mesh: Buffer  # [V, 3] canonical vertices
+    vertex_dq: Buffer  # [V, 8]
+    texel_channels: Buffer  # [6, N, 4] halves
+    bounds: Array  # [2, 3] world box, metres
+
+
+P = TypeVar("P", bound=Posed)
+
+
+class SplatFrame(Generic[P]):
     """One sort for all avatars, so that those that stand among each other blend rightly.
 
     A splat's colour is computed once for both eyes, towards the mean of their positions: degree-1 harmonics turn with
     the direction, and two eyes 63 mm apart see an avatar a metre away in directions 4 degrees apart.
     """
 
-    def __init__(self, device: Device, avatars: Sequence[AvatarBuffers]) -> None:
-        """One avatar at least. Errors: InputError where a buffer is more than the device can bind or hold."""
-        counts = [len(avatar.avatar.rig.texels.texels) for avatar in avatars]
-        self.splat_count = sum(counts)
+    def __init__(self, device: Device, avatars: Sequence[P]) -> None:
+        """One avatar at least. Errors: InputError where there are too many splats, for the device or for the sort."""
+        self.avatars = tuple(avatars)
+        *firsts, count = accumulate((a.splat_count + a.splat_count % 2 for a in avatars), initial=0)
+        if count > MOST_SPLATS:
+            raise InputError(f"{count} splats of all avatars; expected at most {MOST_SPLATS}")
+        self.first_splats, self.splat_count = tuple(firsts), count  # each avatar's first is even
         self._load_kernels(device)
         self._create_buffers(device)
-        self.avatars: tuple[AvatarFrame, ...] = tuple(
-            AvatarFrame(device, avatar, self.splats, first_splat=first)
-            for avatar, first in zip(avatars, accumulate(counts, initial=0), strict=False)
-        )
 
     def _load_kernels(self, device: Device) -> None:
         self._splat_project = device.kernel("splat_project.compute", "SplatProject")
-        self._scan_counts = device.kernel("splat_project.compute", "ScanCounts")
-        self._splat_compact = device.kernel("splat_project.compute", "SplatCompact")
         self._count_digits = device.kernel("splat_sort.compute", "CountDigits")
         self._scan_digits = device.kernel("splat_sort.compute", "ScanDigits")
         self._scatter_digits = device.kernel("splat_sort.compute", "ScatterDigits")
 
     def _create_buffers(self, device: Device) -> None:
         splats, buffer = self.splat_count, device.buffer
-        self.splats = buffer(64 * splats, name="splats")  # [N, 16] words (mua.kernels.dq_skinning.pack_splats)
-        self.ellipses = buffer(FLOAT * 6 * EYES * splats, name="ellipses")  # [E, N, 6]
-        self.colors = buffer(8 * splats, name="colors")  # [N, 4] halves
-        self.flags = buffer(4 * splats, name="flags")
-        self.group_counts = buffer(4 * groups(splats, PROJECTED), name="group_counts")
-        self.arguments = buffer(32, name="arguments", indirect=True)
-        self.keys = tuple(buffer(4 * splats, name=f"keys {i}") for i in range(2))
-        self.orders = tuple(buffer(4 * splats, name=f"order {i}") for i in range(2))
-        self.digit_counts = buffer(4 * DIGITS * groups(splats, SORTED), name="digit_counts")
-        self.digit_totals = buffer(4 * DIGITS, name="digit_totals")
-        self.sorted = SortedSplats(  # two passes of the sort end where they began
-            splats, self.splats, self.ellipses, self.colors, self.orders[0], self.arguments
-        )
+        self.splats = buffer(4 * SPLAT_WORDS * splats, name="splats")  # mua.kernels.splat_project.pack_splats
+        self.keys = buffer(FLOAT * splats // 2, name="keys")  # mua.kernels.splat_project.pack_keys
+        self.digit_counts = buffer(FLOAT * DIGITS * groups(splats, SORTED), name="digit_counts")
+        self.digit_totals = buffer(FLOAT * DIGITS, name="digit_totals")
+        self.arguments = buffer(FLOAT * ARGUMENTS, name="arguments", indirect=True)
+        self.half_sorted = buffer(FLOAT * splats, name="half_sorted")
+        self.order = buffer(FLOAT * splats, name="order")
+        self.sorted = SortedSplats(self.splats, self.order, self.arguments)
 
     def sort(self, commands: Commands, cameras: Sequence[Camera]) -> None:
-        """Append the dispatches from posed splats to `sorted`, the splats that one or two eyes see, back to front.
+        """Append the dispatches from posed texels to `sorted`, the splats that one or two eyes see, back to front.
 
         Errors: InputError unless there are one or two cameras of one screen.
         """
         if not 1 <= len(cameras) <= EYES or any(camera.screen != cameras[0].screen for camera in cameras):
             screens = ", ".join("x".join(map(str, camera.screen)) for camera in cameras)
             raise InputError(f"cameras have the screens [{screens}]; expected one or {EYES} of one size")
-        self._project(commands, cameras)
-        for i, shift in enumerate(DIGIT_SHIFTS):
-            self._sort_digit(commands, shift, source=i % 2)
+        for avatar, first_splat in zip(self.avatars, self.first_splats, strict=True):
+            self._project(commands, avatar, first_splat, cameras)
+        self._sort_digit(commands, self.keys, self.half_sorted, second_pass=0)
+        self._sort_digit(commands, self.half_sorted, self.order, second_pass=1)
 
     def box(self) -> Array:
-        """[2, 3] world box of what was decoded last, metres."""
+        """[2, 3] world box of what was posed last, metres."""
         return union(np.stack([avatar.bounds for avatar in self.avatars]))
 
-    def _project(self, commands: Commands, cameras: Sequence[Camera]) -> None:
+    def _project(self, commands: Commands, avatar: P, first_splat: int, cameras: Sequence[Camera]) -> None:
         low, high = self.box()
         pair = (cameras[0], cameras[-1])
-        threads = (groups(self.splat_count, PROJECTED), 1, 1)
         commands.dispatch(
             self._splat_project,
-            threads,
+            (groups(avatar.splat_count, PROJECTED), 1, 1),
             {
+                "mesh": avatar.mesh,
+                "faces": avatar.rig.faces,
+                "texels": avatar.rig.texels,
+                "texel_channels": avatar.texel_channels,
+                "vertex_dq": avatar.vertex_dq,
                 "splats": self.splats,
-                "ellipses": self.ellipses,
-                "colors": self.colors,
-                "flags": self.flags,
-                "group_counts": self.group_counts,
+                "keys": self.keys,
             },
             view=np.stack([camera.view for camera in pair]),
             projection=np.stack([camera.projection for camera in pair]),
@@ -106,39 +117,17 @@ class SplatFrame:
             screen=np.array(cameras[0].screen),
             near=cameras[0].near,
             eyes=len(cameras),
-            splat_count=self.splat_count,
-        )
-        commands.dispatch(
-            self._scan_counts,
-            (1, 1, 1),
-            {"group_counts": self.group_counts, "arguments": self.arguments},
-            splat_count=self.splat_count,
-            instances=1,
-        )
-        commands.dispatch(
-            self._splat_compact,
-            threads,
-            {
-                "flags": self.flags,
-                "group_counts": self.group_counts,
-                "visible": self.orders[0],
-                "keys": self.keys[0],
-            },
-            splat_count=self.splat_count,
+            texel_count=avatar.splat_count,
+            first_splat=first_splat,
         )
 
-    def _sort_digit(self, commands: Commands, shift: int, *, source: int) -> None:
-        """One pass of the sort, from buffers `source` of the two pairs to the others."""
-        keys, arguments = self.keys[source], self.arguments
-        counts = {"digit_counts": self.digit_counts, "arguments": arguments}
+    def _sort_digit(self, commands: Commands, keys: Buffer, sorted: Buffer, *, second_pass: int) -> None:
+        """One pass of the sort, from the splats' keys to elements, or from those to the order."""
+        blocks = (groups(self.splat_count, SORTED), 1, 1)
+        counts = {"digit_counts": self.digit_counts, "arguments": self.arguments}
         totals = {**counts, "digit_totals": self.digit_totals}
-        target = {"sorted_keys": self.keys[1 - source], "sorted_values": self.orders[1 - source]}
-        commands.dispatch_indirect(self._count_digits, arguments, SORT_ARGUMENTS, {"keys": keys, **counts}, shift=shift)
-        commands.dispatch(self._scan_digits, (DIGITS, 1, 1), totals)
-        commands.dispatch_indirect(
-            self._scatter_digits,
-            arguments,
-            SORT_ARGUMENTS,
-            {"keys": keys, "values": self.orders[source], **totals, **target},
-            shift=shift,
-        )
+        constants = {"second_pass": second_pass, "key_count": self.splat_count}
+        commands.dispatch(self._count_digits, blocks, {"keys": keys, **counts}, **constants)
+        commands.dispatch(self._scan_digits, (DIGITS, 1, 1), totals, **constants)
+        moved = {"keys": keys, **totals, "sorted": sorted}
+        commands.dispatch(self._scatter_digits, blocks, moved, **constants, instances=1)

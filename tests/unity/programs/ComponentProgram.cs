@@ -255,7 +255,7 @@ namespace Mua
         {
             AvatarRenderer first = Show(files[0]);
             Frames(2);
-            Machine.BufferSize(2 * 64 * AvatarWorld.Current.SplatCount - 1);
+            Machine.BufferSize(2 * 32 * AvatarWorld.Current.SplatCount - 1);
             AvatarRenderer second = Show(files[0]);
             Frames(20);
             Say("state", first.State + " " + second.State);

@@ -137,7 +137,8 @@ namespace Mua
 
         private static void Execute(SplatFrame splats)
         {
-            splats.Sort(Commands, Eyes);
+            splats.Project(Commands, Eyes);
+            splats.Sort(Commands);
             Graphics.ExecuteCommandBuffer(Commands);
             Commands.Clear();
         }
@@ -156,10 +157,8 @@ namespace Mua
         private static void Keep(SplatFrame splats, string label)
         {
             Recorder.Keep(splats.Splats, label + " splats");
-            Recorder.Keep(splats.Colors, label + " colors");
-            Recorder.Keep(splats.Ellipses, label + " ellipses");
             Recorder.Keep(splats.Order, label + " order");
-            Recorder.Keep(splats.Flags, label + " flags");
+            Recorder.Keep(splats.Keys, label + " keys");
             Recorder.Keep(splats.Arguments, label + " arguments");
         }
 

@@ -86,6 +86,7 @@ namespace Mua
             Collect(surface, AvatarViews.Splats);
             Say("idle", Recorder.Made - made, Recorder.Renders, Draws.Count);
             Follow(arguments[3], frame);
+            splats.Project(Commands, Eyes);
             Graphics.ExecuteCommandBuffer(Commands);
             Commands.Clear();
             Machine.Playing(true);

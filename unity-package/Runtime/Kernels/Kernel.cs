@@ -86,11 +86,5 @@ namespace Mua
         {
             commands.DispatchCompute(shader, index, x, y, z);
         }
-
-        /// <summary>With the group counts that stand in `arguments` from byte `offset` on.</summary>
-        public void DispatchIndirect(CommandBuffer commands, GraphicsBuffer arguments, uint offset)
-        {
-            commands.DispatchCompute(shader, index, arguments, offset);
-        }
     }
 }

@@ -14,12 +14,9 @@ namespace Mua
         private const int IndirectPass = 0, DirectPass = 1;
 
         private static readonly int Order = Shader.PropertyToID("order");
-        private static readonly int Ellipses = Shader.PropertyToID("ellipses");
-        private static readonly int Colors = Shader.PropertyToID("colors");
         private static readonly int Splats = Shader.PropertyToID("splats");
         private static readonly int ViewProjection = Shader.PropertyToID("view_projection");
         private static readonly int Screen = Shader.PropertyToID("screen");
-        private static readonly int SplatCount = Shader.PropertyToID("splat_count");
         private static readonly int EyeCount = Shader.PropertyToID("eye_count");
         private static readonly int VisibleArguments = Shader.PropertyToID("visible_arguments");
 
@@ -46,12 +43,9 @@ namespace Mua
         public AvatarDraw Bind(SplatFrame frame)
         {
             Properties.SetBuffer(Order, frame.Order);
-            Properties.SetBuffer(Ellipses, frame.Ellipses);
-            Properties.SetBuffer(Colors, frame.Colors);
             Properties.SetBuffer(Splats, frame.Splats);
             Properties.SetMatrixArray(ViewProjection, frame.Eyes.DeviceViewProjection);
             Properties.SetVector(Screen, new Vector4(frame.Eyes.Screen[0], frame.Eyes.Screen[1], 0, 0));
-            Properties.SetInteger(SplatCount, frame.SplatCount);
             Properties.SetInteger(EyeCount, frame.Eyes.Count);
             Properties.SetBuffer(VisibleArguments, frame.Arguments);
             return Indirect

@@ -13,16 +13,15 @@ namespace Mua
         public const int Digits = 256;
 
         private const string File = "splat_sort.compute";
-        private const uint SortArguments = 16; // byte of `arguments` at which the group counts of the sort stand
 
         private static readonly int Keys = Shader.PropertyToID("keys");
-        private static readonly int Values = Shader.PropertyToID("values");
         private static readonly int Arguments = Shader.PropertyToID("arguments");
         private static readonly int DigitCounts = Shader.PropertyToID("digit_counts");
         private static readonly int DigitTotals = Shader.PropertyToID("digit_totals");
-        private static readonly int SortedKeys = Shader.PropertyToID("sorted_keys");
-        private static readonly int SortedValues = Shader.PropertyToID("sorted_values");
-        private static readonly int Shift = Shader.PropertyToID("shift");
+        private static readonly int SortedElements = Shader.PropertyToID("sorted");
+        private static readonly int SecondPass = Shader.PropertyToID("second_pass");
+        private static readonly int KeyCount = Shader.PropertyToID("key_count");
+        private static readonly int Instances = Shader.PropertyToID("instances");
 
         private readonly Kernel countDigits;
         private readonly Kernel scanDigits;
@@ -35,36 +34,40 @@ namespace Mua
             scatterDigits = new Kernel(shader, File, "ScatterDigits");
         }
 
-        public void Count(CommandBuffer commands, SplatFrame frame, GraphicsBuffer keys, int shift)
+        public void Count(CommandBuffer commands, SplatFrame frame, GraphicsBuffer keys, int secondPass)
         {
             countDigits.Set(commands, Keys, keys);
             countDigits.Set(commands, Arguments, frame.Arguments);
             countDigits.Set(commands, DigitCounts, frame.DigitCounts);
-            countDigits.Set(commands, Shift, shift);
-            countDigits.DispatchIndirect(commands, frame.IndirectArguments, SortArguments);
+            countDigits.Set(commands, SecondPass, secondPass);
+            countDigits.Set(commands, KeyCount, frame.SplatCount);
+            countDigits.Dispatch(commands, Kernel.Groups(frame.SplatCount, Sorted), 1, 1);
         }
 
-        public void Scan(CommandBuffer commands, SplatFrame frame)
+        public void Scan(CommandBuffer commands, SplatFrame frame, int secondPass)
         {
             scanDigits.Set(commands, Arguments, frame.Arguments);
             scanDigits.Set(commands, DigitCounts, frame.DigitCounts);
             scanDigits.Set(commands, DigitTotals, frame.DigitTotals);
+            scanDigits.Set(commands, SecondPass, secondPass);
+            scanDigits.Set(commands, KeyCount, frame.SplatCount);
             scanDigits.Dispatch(commands, Digits, 1, 1);
         }
 
+        /// <summary>The first pass also writes the arguments of a draw of `instances`.</summary>
         public void Scatter(
-            CommandBuffer commands, SplatFrame frame, GraphicsBuffer keys, GraphicsBuffer values,
-            GraphicsBuffer sortedKeys, GraphicsBuffer sortedValues, int shift)
+            CommandBuffer commands, SplatFrame frame, GraphicsBuffer keys, GraphicsBuffer sorted, int secondPass,
+            int instances)
         {
             scatterDigits.Set(commands, Keys, keys);
-            scatterDigits.Set(commands, Values, values);
             scatterDigits.Set(commands, Arguments, frame.Arguments);
             scatterDigits.Set(commands, DigitCounts, frame.DigitCounts);
             scatterDigits.Set(commands, DigitTotals, frame.DigitTotals);
-            scatterDigits.Set(commands, SortedKeys, sortedKeys);
-            scatterDigits.Set(commands, SortedValues, sortedValues);
-            scatterDigits.Set(commands, Shift, shift);
-            scatterDigits.DispatchIndirect(commands, frame.IndirectArguments, SortArguments);
+            scatterDigits.Set(commands, SortedElements, sorted);
+            scatterDigits.Set(commands, SecondPass, secondPass);
+            scatterDigits.Set(commands, KeyCount, frame.SplatCount);
+            scatterDigits.Set(commands, Instances, instances);
+            scatterDigits.Dispatch(commands, Kernel.Groups(frame.SplatCount, Sorted), 1, 1);
         }
     }
 }

@@ -16,13 +16,10 @@ Shader "Hidden/MUA/Splat"
         #include "Packages/com.mua.kernels/splat_draw.hlsl"
 
         StructuredBuffer<uint> order; // [M] splats, back to front
-        StructuredBuffer<float2> ellipses; // [E, N, 3] (column, row), (cos, sin), (major, minor), pixels
-        StructuredBuffer<uint2> colors; // [N] half floats: red and green, blue and opacity
-        StructuredBuffer<uint4> splats; // [N, 4] 64 bytes each; the centre is read
+        StructuredBuffer<uint4> splats; // [2 N] 32 bytes each
 
         float4x4 view_projection[2]; // of each eye, clip y up
         float4 screen; // width and height of one eye, pixels
-        uint splat_count;
         uint eye_count;
 
         struct Attributes
@@ -46,8 +43,7 @@ Shader "Hidden/MUA/Splat"
             if (isVisible)
             {
                 uint eye = boundEye(eye_count);
-                varyings.splat = splatVertex(attributes.vertex, eye, splat_count, screen.xy, view_projection[eye],
-                                             order, ellipses, colors, splats);
+                varyings.splat = splatVertex(attributes.vertex, eye, screen.xy, view_projection[eye], order, splats);
                 varyings.splat.position = targetPosition(varyings.splat.position);
                 varyings.splat.color.rgb = targetColor(varyings.splat.color.rgb);
             }
@@ -87,7 +83,7 @@ Shader "Hidden/MUA/Splat"
             #pragma vertex SplatDirectVert
             #pragma fragment SplatFrag
 
-            StructuredBuffer<uint> visible_arguments; // [8]; the first is the vertices of all visible splats
+            StructuredBuffer<uint> visible_arguments; // [5]; the first is the vertices of all visible splats
 
             Varyings SplatDirectVert(Attributes attributes)
             {

@@ -3,21 +3,18 @@
 #include "splat_draw.hlsl"
 
 StructuredBuffer<uint> order; // [M] splats, back to front
-StructuredBuffer<float2> ellipses; // [E, N, 3] (column, row), (cos, sin), (major, minor), pixels
-StructuredBuffer<uint2> colors; // [N] half floats: red and green, blue and opacity
-StructuredBuffer<uint4> splats; // [N, 4] 64 bytes each; the centre is read
+StructuredBuffer<uint4> splats; // [2 N] 32 bytes each
 
 cbuffer Constants
 {
     float4x4 view_projection; // of this eye, clip z in 0..w
     float2 screen; // of one eye, pixels
     uint eye;
-    uint splat_count;
 };
 
 SplatVaryings SplatVert(uint vertex : SV_VertexID)
 {
-    return splatVertex(vertex, eye, splat_count, screen, view_projection, order, ellipses, colors, splats);
+    return splatVertex(vertex, eye, screen, view_projection, order, splats);
 }
 
 float4 SplatFrag(SplatVaryings varyings) : SV_Target

@@ -2,7 +2,7 @@
 
 #include "surface_draw.hlsl"
 
-StructuredBuffer<uint4> splats; // [M, 4] of all avatars, 64 bytes each; the centre is read
+StructuredBuffer<uint4> splats; // [2 M] of all avatars, 32 bytes each; the centre is read
 StructuredBuffer<uint> ring_starts; // [N + 1] into ring
 StructuredBuffer<uint2> ring; // the other corners of the triangles about each texel
 
