@@ -1,5 +1,6 @@
 using System;
 using System.Collections.Generic;
+using System.Linq;
 using System.Threading;
 using UnityEditor;
 using UnityEditor.PackageManager;
@@ -48,7 +49,7 @@ namespace Mua.Editor
         /// <summary>Adds packages and waits for them, for batch mode.</summary>
         public static ProjectOutcome Add(IReadOnlyList<string> names)
         {
-            AddAndRemoveRequest adding = Request(names);
+            AddAndRemoveRequest adding = Client.AddAndRemove(names.ToArray());
             DateTime end = DateTime.UtcNow.AddSeconds(PatienceSeconds);
             while (!adding.IsCompleted && DateTime.UtcNow < end)
             {
@@ -77,7 +78,7 @@ namespace Mua.Editor
                 return ProjectOutcome.Failed;
             }
             SessionState.SetInt(WaitingKey, (int)target);
-            request = Request(names);
+            request = Client.AddAndRemove(names.ToArray());
             EditorApplication.update += Poll;
             return ProjectOutcome.Again;
         }
@@ -107,16 +108,6 @@ namespace Mua.Editor
                 Debug.LogError($"MUA: {Failure(request, Missing())}");
             }
             request = null;
-        }
-
-        private static AddAndRemoveRequest Request(IReadOnlyList<string> names)
-        {
-            var packages = new string[names.Count];
-            for (int i = 0; i < packages.Length; i++)
-            {
-                packages[i] = names[i];
-            }
-            return Client.AddAndRemove(packages);
         }
 
         private static string Failure(AddAndRemoveRequest adding, IReadOnlyList<string> names)

@@ -1,5 +1,6 @@
 using System;
 using System.Collections.Generic;
+using System.Linq;
 using Mua.Format;
 using UnityEngine;
 
@@ -99,16 +100,9 @@ namespace Mua
 
         private string DescribeMissing(int count)
         {
-            var names = new List<string>();
-            for (int joint = 0; joint < joints.Length && names.Count < Named; joint++)
-            {
-                if (joints[joint] == null)
-                {
-                    names.Add(skeleton.Names[joint]);
-                }
-            }
+            IEnumerable<string> names = skeleton.Names.Where((name, joint) => joints[joint] == null).Take(Named);
             return "the rig " + root.name + " lacks " + count + " of the avatar's " + joints.Length
-                + " joints, which keep their bind pose: " + string.Join(", ", names) + (count > names.Count ? ", ..." : "");
+                + " joints, which keep their bind pose: " + string.Join(", ", names) + (count > Named ? ", ..." : "");
         }
     }
 }

@@ -1,6 +1,7 @@
 using System;
 using System.Collections;
 using System.Collections.Generic;
+using System.Linq;
 using UnityEngine;
 
 namespace Mua.SelfTest
@@ -46,7 +47,7 @@ namespace Mua.SelfTest
                     Take(stem, reader);
                 }
             }
-            Total = Count();
+            Total = problems.Count + files.Sum(file => file.cases.Length);
             log.Say("START " + Total);
             foreach (string problem in problems)
             {
@@ -125,16 +126,6 @@ namespace Mua.SelfTest
             {
                 problems.Add(stem + "/golden: " + reader.Problem);
             }
-        }
-
-        private int Count()
-        {
-            int count = problems.Count;
-            foreach (GoldenFile file in files)
-            {
-                count += file.cases.Length;
-            }
-            return count;
         }
     }
 }
