@@ -116,7 +116,7 @@ def test_character_is_turned_to_face_forward(degrees: int) -> None:
 
 
 def test_collapsed_mesh_and_joint_are_refused() -> None:
-    with pytest.raises(InputError, match="all vertices of the skinned meshes lie at"):
+    with pytest.raises(InputError, match="all vertices of the skinned meshes are at"):
         assemble(scene(parts=(replace(part(), positions=np.zeros((30, 3))),)), HERE)
     with pytest.raises(InputError, match="node spine has a scale of 0"):
         assemble(scene(rest=BIND * (np.arange(5) != 1)[:, None, None]), HERE)

@@ -55,7 +55,7 @@ def test_welds_equal_vertices_of_a_mesh_only() -> None:
     surfaces = assemble(scene(parts=twice), HERE)
     assert len(surfaces.vertices) == 60  # the copy in the same mesh is gone, the one in another stays
     assert len(surfaces.faces) == 20
-    assert surfaces.notes == ("10 triangles that lie on others are dropped.",)
+    assert surfaces.notes == ("10 duplicate triangles are dropped.",)
 
 
 def test_other_weights_keep_vertices_apart() -> None:

@@ -153,7 +153,7 @@ def test_an_end_takes_no_name_that_a_clip_has() -> None:
 
 
 def test_unknown_held_out_clip_is_named() -> None:
-    with pytest.raises(InputError, match="--hold-out z: there is no such clip, only a"):
+    with pytest.raises(InputError, match="--hold-out z: there is no such clip; expected a"):
         split([clip("a", 50)], ["z"])
 
 
@@ -198,7 +198,7 @@ def test_motion_whose_joints_match_nothing_is_named(tmp_path: Path) -> None:
 
 
 def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Path) -> None:
-    assert "--clips jump: there is no such clip, only walk, turn" in refused(tmp_path, "--clips", "jump")
+    assert "--clips jump: there is no such clip; expected walk, turn" in refused(tmp_path, "--clips", "jump")
 
 
 @pytest.mark.long
@@ -221,4 +221,4 @@ def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> Non
 
 def test_a_command_is_refused_where_another_is_at_work(baked: Baked, tmp_path: Path) -> None:
     with DirectoryLock(tmp_path / "out.work", name="the other"):
-        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is at work there" in refused(tmp_path)
+        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused(tmp_path)

@@ -118,7 +118,7 @@ def test_by_default_the_head_is_finer_but_takes_no_more_than_its_share() -> None
 
 def test_a_part_that_is_not_there_is_said() -> None:
     character = build_atlas(strip([0, 1]), uv="auto", size=32, detail={"feet": 2})
-    assert character.notes[-1] == "--detail feet=2 changes nothing: no joint is known to be of the feet."
+    assert character.notes[-1] == "--detail feet=2 changes nothing: no joint of the feet was recognised."
 
 
 def test_the_width_of_texels_is_told_by_part() -> None:

@@ -108,7 +108,7 @@ def test_the_directory_that_would_be_made_is_the_highest_that_is_missing(tmp_pat
 
 
 def test_no_directory_is_made_at_the_root_of_a_disk() -> None:
-    with pytest.raises(InputError, match=r"-o /no such/place: there is no directory /no such; make it first"):
+    with pytest.raises(InputError, match=r"-o /no such/place: there is no directory /no such; create it first"):
         missing_directory(Path("/no such/place"), option="-o")
 
 

@@ -56,7 +56,7 @@ def test_mesh_on_a_joint_follows_it_rigidly(tmp_path: Path) -> None:
     worn = surfaces.vertices[surfaces.faces[hat_face]]
     np.testing.assert_allclose(worn, [[0, 1.6, 0], [0.1, 1.6, 0], [0, 1.7, 0]], atol=FLOAT_BOUND)
     assert (surfaces.skin_indices[surfaces.faces[hat_face], 0] == 2).all()
-    assert surfaces.notes == ("Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): node4.",)
+    assert surfaces.notes == ("Meshes that are attached rigidly to a joint (--leave-out NAME leaves one out): node4.",)
 
 
 def test_mesh_on_no_joint_is_left_out_with_a_note(tmp_path: Path) -> None:
@@ -65,7 +65,7 @@ def test_mesh_on_no_joint_is_left_out_with_a_note(tmp_path: Path) -> None:
     glb.json["scenes"][0]["nodes"].append(4)
     surfaces = read(glb, tmp_path)
     assert_is_column(surfaces)
-    assert surfaces.notes == ("Meshes that hang on no joint are left out: ground.",)
+    assert surfaces.notes == ("Meshes that no joint moves are left out: ground.",)
 
 
 def test_positions_equal_those_of_a_second_reader(shared_data: Any) -> None:
@@ -99,7 +99,7 @@ def test_lumberjack_stands_upright_and_keeps_its_clips(shared_data: Any) -> None
     assert abs(surfaces.vertices[:, 1].min()) < 0.01
     assert surfaces.vertices[:, 1].max() == pytest.approx(1.7026, abs=1e-3)  # 170.26 centimetres in the file
     assert [(clip.name, len(clip)) for clip in surfaces.clips] == [("Walk", 31), ("Poses", 188)]
-    assert surfaces.notes[0] == "Clips without length, single poses, are left out: A-pose."
+    assert surfaces.notes[0] == "Clips of a single pose are left out: A-pose."
     skeleton = surfaces.skeleton
     assert len(skeleton.names) == 33  # of 53: the others carry no weights and have no bind pose
     assert skeleton.names[skeleton.root] == "DEF-spine_02"

@@ -26,7 +26,7 @@ def test_clip_of_no_length_is_dropped_with_a_note(tmp_path: Path) -> None:
     animate(glb, 1, "rotation", times=[0.0], values=HALF_TURN[:1], name="pose")
     surfaces = read(glb, tmp_path)
     assert not surfaces.clips
-    assert surfaces.notes == ("Clips without length, single poses, are left out: pose.",)
+    assert surfaces.notes == ("Clips of a single pose are left out: pose.",)
 
 
 def test_motion_above_the_skeleton_moves_its_root(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_robot_of_rigid_parts_is_a_character(tmp_path: Path) -> None:
     assert set(surfaces.skeleton.names) >= {"torso", "arm", "hand", "head"}
     low, high = surfaces.vertices.min(axis=0), surfaces.vertices.max(axis=0)
     np.testing.assert_allclose([low, high], [[-0.04, 1, -0.02], [0.54, 1.6, 0.02]], atol=FLOAT_BOUND)
-    assert "Meshes that hang on no joint are left out: floor." in surfaces.notes
+    assert "Meshes that no joint moves are left out: floor." in surfaces.notes
     (clip,) = surfaces.clips
     half = posed(surfaces, clip.rotations[15], clip.translations[15])
     hand = surfaces.skin_indices[:, 0] == surfaces.skeleton.names.index("hand")
@@ -115,7 +115,7 @@ def test_part_that_clips_move_below_a_joint_is_a_joint_of_its_own(tmp_path: Path
     assert surfaces.skeleton.names == ("hips", "spine", "head", "jaw")
     parents = dict(zip(surfaces.skeleton.names, surfaces.skeleton.parents, strict=True))
     assert parents["jaw"] == 2
-    assert "Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): jaw, hat." in surfaces.notes
+    assert "Meshes that are attached rigidly to a joint (--leave-out NAME leaves one out): jaw, hat." in surfaces.notes
 
 
 @pytest.mark.parametrize(

@@ -106,14 +106,14 @@ def test_glow_that_lies_elsewhere_than_the_colour_is_named(tmp_path: Path) -> No
     moved = {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}}
     surfaces = read(textured(PICTURE, emissiveFactor=[1, 1, 1], emissiveTexture=moved), tmp_path)
     np.testing.assert_array_equal(surfaces.materials[0].image[..., :3], PICTURE[..., :3])
-    assert "Glow that is mapped otherwise than the base colour is left out, of materials: cloth." in surfaces.notes
+    assert "Emission with another UV mapping than the base colour is left out, in materials: cloth." in surfaces.notes
 
 
 def test_unlit_materials_and_variants_are_named(tmp_path: Path) -> None:
     glb = textured(PICTURE, extensions={"KHR_materials_unlit": {}})
     glb.json["extensions"] = {"KHR_materials_variants": {"variants": [{"name": "night"}, {"name": "day"}]}}
     told = read(glb, tmp_path).notes
-    assert "Materials that ask for no light are shaded like the others: cloth." in told
+    assert "Unlit materials are shaded like the others: cloth." in told
     assert "The file's material variants are left out, its default is drawn: night, day." in told
 
 

@@ -185,7 +185,7 @@ def morphed(glb: Glb, *, mesh: list[float] | None, node: list[float] | None) -> 
 def test_morph_targets_stand_at_their_weights_at_rest(tmp_path: Path, mesh: Any, node: Any, moved: Any) -> None:
     surfaces = read(morphed(body(), mesh=mesh, node=node), tmp_path)
     np.testing.assert_allclose(surfaces.vertices[surfaces.faces], (POINTS + moved)[TRIANGLES], atol=FLOAT_BOUND)
-    assert surfaces.notes == ("Morph targets are not carried beyond their weights at rest, of: body.",)
+    assert surfaces.notes == ("Morph targets keep their weights of the rest pose, in meshes: body.",)
 
 
 def test_broken_morph_targets_are_named(tmp_path: Path) -> None:

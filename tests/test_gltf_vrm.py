@@ -98,9 +98,9 @@ def test_author_licence_springs_faces_and_constraints_are_told(tmp_path: Path) -
     glb.json["nodes"][1]["extensions"] = {"VRMC_node_constraint": {"constraint": {}}}
     told = " ".join(read(glb, tmp_path).notes)
     assert "VRM avatar Mira by Ann, Bo: its licence is https://example.org/terms;" in told
-    assert "2 spring bone groups are not carried" in told
-    assert "facial expressions (blend shapes) are not carried" in told
-    assert "constraints on 1 of the avatar's nodes are not carried" in told
+    assert "2 spring bone groups are left out" in told
+    assert "facial expressions (blend shapes) are left out" in told
+    assert "constraints on 1 of the avatar's nodes are left out" in told
     old = first(body(), BONES, meta={"title": "Mira", "author": "Ann", "licenseName": "CC_BY"},
                 secondaryAnimation={"boneGroups": [{}]}, blendShapeMaster={"blendShapeGroups": [{}]})  # fmt: skip
     told = " ".join(read(old, tmp_path).notes)

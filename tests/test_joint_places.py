@@ -46,7 +46,7 @@ def test_motion_goes_onto_joints_told_by_their_places_and_says_so() -> None:
     expected, _ = retarget(SourceMotion(source, walk(source)), person(size=1.2))
     shins = [source.names.index(name) for name in ("LeftLeg", "RightLeg", "LeftForeArm", "LeftFoot")]
     np.testing.assert_allclose(world(target, found)[1][:, shins], world(target, expected)[1][:, shins], atol=1e-9)
-    assert any("told by their places" in note and "left thigh" in note for note in notes)
+    assert any("recognised by their positions" in note and "left thigh" in note for note in notes)
 
 
 def test_asks_names_first() -> None:

@@ -46,7 +46,7 @@ def test_a_second_process_is_refused_until_the_first_is_killed(tmp_path: Path) -
     with program(HOLD, tmp_path) as other:
         assert other.stdout is not None
         assert other.stdout.readline() == "held\n"
-        with pytest.raises(InputError, match=f"^--work w: process {other.pid} is at work there; wait until it has"):
+        with pytest.raises(InputError, match=f"^--work w: process {other.pid} is using it; wait until that has"):
             DirectoryLock(tmp_path, name="--work w")
         other.kill()
     with DirectoryLock(tmp_path, name="--work w"):

@@ -53,7 +53,7 @@ STANDS = places_of(assemble(whole(Rotation.identity()), HERE))
 @pytest.mark.parametrize(("axis", "degrees"), [("x", 90), ("x", -90), ("z", 90), ("z", -90)])
 def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
     surfaces = assemble(whole(Rotation.from_euler(axis, degrees, degrees=True)), HERE)
-    assert any("it is made to stand" in note for note in surfaces.notes)
+    assert any("it is turned upright" in note for note in surfaces.notes)
     for role, place in places_of(surfaces).items():
         np.testing.assert_allclose(place, STANDS[role], atol=1e-9)
 
@@ -69,4 +69,4 @@ def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
     ],
 )
 def test_who_stands_sits_leans_or_goes_on_four_legs_is_not_turned(scene: Scene) -> None:
-    assert not any("made to stand" in note for note in assemble(scene, HERE).notes)
+    assert not any("turned upright" in note for note in assemble(scene, HERE).notes)

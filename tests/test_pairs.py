@@ -12,7 +12,7 @@ import pytest
 from trainings import process
 
 PAIRS = 10
-BUSY = "is at work there; wait until it has ended, or name another directory"
+BUSY = "is using it; wait until that has ended, or choose another directory"
 BAKE = """
 import sys
 from pathlib import Path

@@ -81,7 +81,7 @@ def test_clips_are_chosen_by_name_by_number_or_by_a_word(wanted: list[str], chos
 
 @pytest.mark.parametrize("wanted", [["c"], ["a", "all"]])
 def test_a_clip_that_is_not_there_is_named(wanted: list[str]) -> None:
-    with pytest.raises(InputError, match=rf"--clips {wanted[-1]}: there is no such clip, only a"):
+    with pytest.raises(InputError, match=rf"--clips {wanted[-1]}: there is no such clip; expected a"):
         choose([clip("a", 1)], wanted)
 
 

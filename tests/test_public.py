@@ -108,7 +108,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "element type": (lambda: AVATAR.decode("wave", dtype="int8"), "dtype is 'int8'; expected float32 or float64"),
     "unknown element type": (lambda: AVATAR.decode("wave", dtype="f17"), "dtype is 'f17'; expected"),
     "short window": (lambda: AVATAR.decode(WINDOW[:2]), "the window has 2 poses; expected 3, newest first"),
-    "frame of a window": (lambda: AVATAR.decode(WINDOW, 1), "a window of poses has frame 0 alone"),
+    "frame of a window": (lambda: AVATAR.decode(WINDOW, 1), "a window of poses has only frame 0"),
     "window of other things": (lambda: AVATAR.decode([1, 2, 3]), "expected a clip's name, a Clip or poses"),  # type: ignore[list-item]
     "joints of another skeleton": (
         lambda: AVATAR.decode([mua.Pose(np.ones((5, 4)) / 2, np.zeros((5, 3)))] * 3),
@@ -138,7 +138,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "no camera": (lambda: mua.render(SPLATS, "front"), "camera is 'front'; expected a mua.Camera"),  # type: ignore[arg-type]
     "camera and angle": (
         lambda: mua.render(SPLATS, mua.Camera(np.eye(4), np.eye(4), (64, 64)), azimuth=3),
-        "camera comes with a size, an azimuth or an elevation",
+        "camera is given together with size, azimuth or elevation",
     ),
 }
 
@@ -152,8 +152,8 @@ WRONG_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "preset": ({"preset": "huge"}, "preset: 'huge' is unknown, expected one of tiny"),
     "frames": ({"frames": "many"}, "frames is 'many'; expected a whole number"),
     "texels": ({"texels": 100}, "--texels 100: expected a multiple of 16"),
-    "held-out clip": ({"hold_out": [1]}, r"hold_out is \[1\] \(list\); expected a name or several"),
-    "clips": ({"clips": 0.5}, r"clips is 0\.5 \(float\); expected a name or several"),
+    "held-out clip": ({"hold_out": [1]}, r"hold_out is \[1\] \(list\); expected a name or a list of names"),
+    "clips": ({"clips": 0.5}, r"clips is 0\.5 \(float\); expected a name or a list of names"),
     "mapping": ({"mapping": 3}, r"mapping is 3 \(int\); expected a path"),
     "feet": ({"feet": "glue"}, "feet is 'glue'; expected auto or keep or plant"),
     "uv": ({"uv": "cut"}, "uv is 'cut'; expected keep or unwrap or auto"),

@@ -76,7 +76,7 @@ def test_a_recording_that_a_kill_cut_short_is_no_damage_but_not_whole(tmp_path: 
     ):
         record(teacher, plan(teacher.rig), writer, progress=die)
     check(tmp_path, plan(teacher.rig), rate=RATE, whole=False)
-    with pytest.raises(InputError, match=r"clip 'walk' holds other frames than were recorded"):
+    with pytest.raises(InputError, match=r"clip 'walk' holds other frames than those recorded"):
         check(tmp_path, plan(teacher.rig), rate=RATE, whole=True)
 
 

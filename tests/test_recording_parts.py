@@ -123,7 +123,7 @@ def test_refuses_a_part_that_is_missing_unfinished_or_of_another_teacher(tmp_pat
     shutil.rmtree(second)
     with TeacherWriter(second, teacher.rig, rate=RATE) as writer:
         record(teacher, planned[1:2], writer)
-    with pytest.raises(InputError, match=r"part-2-of-3: is of another teacher than .*part-1-of-3"):
+    with pytest.raises(InputError, match=r"part-2-of-3: comes from another teacher than .*part-1-of-3"):
         join_parts(directory, planned)
     assert content(first) == kept
     assert not directory.exists()

@@ -170,7 +170,7 @@ def test_what_was_damaged_is_told_and_recorded_anew(alone: Path, tmp_path: Path,
     run(directory, FormulaTeacher, note=told.append)
     (sentence,) = told
     assert sentence.startswith(f"{damaged / 'shards/00000/whole_00000.npy'} is missing")
-    assert sentence.endswith(". It is recorded anew.")
+    assert sentence.endswith(". It is recorded again.")
     assert content(directory) == content(alone)
 
 

@@ -110,7 +110,7 @@ def test_interleaved_clips_stay_contiguous_after_a_kill(tmp_path: Path) -> None:
 def test_a_second_writer_is_refused_and_leaves_the_first_ones_frames(tmp_path: Path) -> None:
     with opened(tmp_path, whole_every=1) as first:
         add(first, *frames(3))
-        with pytest.raises(InputError, match=rf"process {os.getpid()} is at work there; wait until it has ended"):
+        with pytest.raises(InputError, match=rf"process {os.getpid()} is using it; wait until that has ended"):
             opened(tmp_path)
     assert [frame.index for frame in Recording(tmp_path).whole_frames()] == [0, 1, 2]
     opened(tmp_path)

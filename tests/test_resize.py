@@ -33,7 +33,7 @@ def high(surfaces: Surfaces) -> float:
 def test_a_height_that_no_unit_explains_is_made_that_of_an_adult_and_told(unit: float) -> None:
     surfaces = assemble(in_units(unit), HERE)
     assert high(surfaces) == pytest.approx(ADULT)
-    assert f"it is made {ADULT} m high. --height METRES" in surfaces.notes[0]
+    assert f"it is scaled to {ADULT} m. --height METRES" in surfaces.notes[0]
 
 
 def test_a_figure_that_creeps_is_not_taken_for_a_small_one() -> None:
@@ -46,7 +46,7 @@ def test_a_figure_that_creeps_is_not_taken_for_a_small_one() -> None:
 def test_a_giant_keeps_its_size_and_is_told() -> None:
     surfaces = assemble(in_units(15 / high(assemble(scene(), HERE))), HERE)
     assert high(surfaces) == pytest.approx(15)
-    assert "is 15 m high, as few creatures are, and is left so. --height METRES" in surfaces.notes[0]
+    assert "is 15 m high, which is unusual; its size is kept. --height METRES" in surfaces.notes[0]
 
 
 @pytest.mark.parametrize("height", [0.02, 2.0, 40.0])

@@ -395,6 +395,6 @@ def test_tells_which_limbs_of_the_character_nothing_moves() -> None:
         root=kept.index(whole.root),
     )
     _, notes = retarget_matched(SourceMotion(armless, random_clip(armless)), whole, match_joints(armless, whole))
-    assert "Nothing of the motion moves left arm and right arm." in notes
+    assert "The motion does not move left arm and right arm." in notes
     _, notes = retarget_matched(SourceMotion(whole, random_clip(whole)), armless, match_joints(whole, armless))
     assert not [note for note in notes if "moves" in note]

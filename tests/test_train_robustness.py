@@ -90,7 +90,7 @@ DAMAGES = {
     "nan in a pose": (with_nan("00000/rotations.npy", 2), "00000/rotations.npy: a pose"),
     "nan in the sum": (with_nan("00006/sum.npy"), "00006/sum.npy: the sum"),
     **{
-        f"a bit of {name}": (with_a_bit_flipped(f"{name}.npy"), f"{name}.npy: is damaged, its checksum is another")
+        f"a bit of {name}": (with_a_bit_flipped(f"{name}.npy"), f"{name}.npy: is damaged: its checksum differs")
         for name in (
             *("00000/rotations", "00001/translations", "00000/meshes", "00000/whole_00000"),
             *("00001/ll", "00001/d3", "00000/d2", "00006/sum"),

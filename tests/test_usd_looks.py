@@ -161,7 +161,7 @@ def test_rigid_parts_that_move_are_a_character(tmp_path: Path) -> None:
     assert np.bincount(surfaces.skin_indices[:, 0]).tolist() == [3, 3, 3, 3]
     hand = surfaces.skin_indices[:, 0] == 2
     np.testing.assert_allclose(surfaces.vertices[hand].min(axis=0), [0.5, 1, 0.5], atol=1e-6)
-    assert "Meshes that hang on no joint are left out: Floor." in surfaces.notes
+    assert "Meshes that no joint moves are left out: Floor." in surfaces.notes
     (clip,) = surfaces.clips
     assert (clip.name, len(clip)) == ("Animation", 31)
     _, placed = surfaces.skeleton.world(clip.rotations[-1], clip.translations[-1])

@@ -1,4 +1,4 @@
-"""What a caller of the public functions may pass; what is of another kind is refused in a sentence."""
+"""Checks the arguments of public functions, and refuses bad ones with a sentence."""
 
 import operator
 import os
@@ -34,7 +34,7 @@ def as_names(names: str | Sequence[str], name: str) -> tuple[str, ...]:
     """One name or several; raises InputError for anything but texts."""
     given = (names,) if isinstance(names, str) else names
     if not isinstance(given, Sequence) or not all(isinstance(one, str) for one in given):
-        raise InputError(f"{name} is {describe(names)}; expected a name or several")
+        raise InputError(f"{name} is {describe(names)}; expected a name or a list of names")
     return tuple(given)
 
 
@@ -72,9 +72,9 @@ def finite_array(values: Any, name: str, shape: tuple[int | None, ...]) -> Array
     try:
         array = np.asarray(values)
     except ValueError:  # rows of several lengths
-        raise InputError(f"{name}: no array, expected one of the shape {_written(shape)}") from None
+        raise InputError(f"{name}: not an array, expected the shape {_written(shape)}") from None
     if array.dtype.kind not in "iuf":
-        raise InputError(f"{name}: elements of type {array.dtype}, expected real numbers")
+        raise InputError(f"{name}: has elements of type {array.dtype}, expected real numbers")
     if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
         raise InputError(f"{name}: the shape is {_written(array.shape)}, expected {_written(shape)}")
     if not np.isfinite(array).all():
@@ -92,7 +92,7 @@ def unit_quaternions(values: Any, name: str, shape: tuple[int | None, ...]) -> A
 
 
 def describe(value: object) -> str:
-    """A value in a sentence, with its type where the value does not show it."""
+    """A value for a sentence, with its type where the value does not show it."""
     shown = repr(value)
     shown = shown if len(shown) <= 60 and "\n" not in shown else "a value"
     return shown if isinstance(value, str | None) else f"{shown} ({type(value).__name__})"

@@ -39,7 +39,7 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def require_writable(path: Path) -> None:
-    """Make the directory of `path`; raises InputError, ahead of hours of work, where nothing could be written there."""
+    """Make the directory of `path`; raises InputError, before hours of work, if nothing could be written there."""
     if path.is_dir():
         raise InputError(f"{path}: is a directory, expected a file to write")
     probe = _temporary(path)
@@ -56,7 +56,7 @@ def missing_directory(path: Path, *, option: str) -> Path | None:
     """The highest directory that would have to be made for `path` to be one; None where it is there.
 
     Makes nothing. Raises InputError where nothing can be written in what there is, and where the directory would be
-    made at the root of a disk: that is a slip of the pen more often than it is meant.
+    made at the root of a disk: that is most often a mistake.
     """
     missing, there = None, path.absolute()
     while not there.exists():
@@ -64,7 +64,7 @@ def missing_directory(path: Path, *, option: str) -> Path | None:
     if not there.is_dir():
         raise InputError(f"{option} {path}: {there} is no directory")
     if missing is not None and there == Path(there.anchor):
-        raise InputError(f"{option} {path}: there is no directory {missing}; make it first if it is meant")
+        raise InputError(f"{option} {path}: there is no directory {missing}; create it first if the path is right")
     probe = there / f".mua.{os.getpid()}.part"
     try:
         probe.touch()
@@ -89,7 +89,7 @@ def refused(path: Path, error: OSError, *, named: str = "") -> InputError:
     if isinstance(error, FileExistsError | NotADirectoryError):
         file = next((above for above in (path, *path.parents) if above.is_file()), error.filename)
         return InputError(f"{named or path}: cannot be written ({file} is no directory)")
-    kept = "; what it held before is kept" if path.is_file() else ""
+    kept = "; the previous file is kept" if path.is_file() else ""
     return InputError(f"{named or path}: cannot be written ({error.strerror}){kept}")
 
 

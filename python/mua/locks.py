@@ -36,8 +36,8 @@ class DirectoryLock:
         while not self._acquire(name):
             if time.monotonic() > end:
                 raise InputError(
-                    f"{name}: process {_holder(self._path)} is at work there; "
-                    "wait until it has ended, or name another directory"
+                    f"{name}: process {_holder(self._path)} is using it; "
+                    "wait until that has ended, or choose another directory"
                 )
             time.sleep(PAUSE)
 

@@ -63,7 +63,7 @@ def render(
     elif not isinstance(camera, Camera):
         raise InputError(f"camera is {describe(camera)}; expected a mua.Camera")
     elif (size, azimuth, elevation) != (SIZE, 0, 0):
-        raise InputError("camera comes with a size, an azimuth or an elevation; expected it alone")
+        raise InputError("camera is given together with size, azimuth or elevation; expected camera alone")
     return Image.fromarray(to_bytes(render_over(splats, camera, background=parse_color(background))))
 
 

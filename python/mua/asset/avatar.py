@@ -61,7 +61,7 @@ class Avatar(Model):
             self._check_clip(clip, number)
             return decode_clip_frame(self, clip, frame=number, dtype=element)
         if number != 0:
-            raise InputError(f"frame is {number}; a window of poses has frame 0 alone")
+            raise InputError(f"frame is {number}; a window of poses has only frame 0")
         rotations, translations = self._window(clip)
         return decode(self, rotations, translations=translations, dtype=element)
 

@@ -55,7 +55,7 @@ def factors(
         k = BODY_PARTS.index(part)
         by_part[k] = factor
         if area[k] == 0:
-            absent.append(f"--detail {part}={factor:g} changes nothing: no joint is known to be of the {part}.")
+            absent.append(f"--detail {part}={factor:g} changes nothing: no joint of the {part} was recognised.")
     return by_part[parts], tuple(absent)
 
 

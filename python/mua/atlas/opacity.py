@@ -33,14 +33,14 @@ def without_unseen(surfaces: Surfaces) -> Surfaces:
         corners[mapped] = surfaces.uv[surfaces.uv_faces[faces[mapped]]]
         seen[faces] = _seen(material, corners, mapped)
         if len(faces) and not seen[faces].any():
-            hidden.append(f"Material {material.name} shows nothing (its alpha is 0) and is left out.")
+            hidden.append(f"Material {material.name} is fully transparent (its alpha is 0) and is left out.")
     if seen.all():
         return surfaces
     if not seen.any():
-        raise InputError(f"{surfaces.name}: the alpha of every material is 0, expected at least one that shows")
+        raise InputError(f"{surfaces.name}: the alpha of every material is 0, expected a visible one")
     of_hidden = ~np.isin(surfaces.face_material, np.unique(surfaces.face_material[seen]))
     clear = np.count_nonzero(~seen & ~of_hidden)
-    told = [f"{clear:,} triangles on which their material is clear everywhere are left out."] if clear else []
+    told = [f"{clear:,} triangles that are fully transparent are left out."] if clear else []
     return replace(_only(surfaces, seen), notes=(*surfaces.notes, *hidden, *told))
 
 

@@ -74,7 +74,7 @@ def choose_device(name: DeviceName) -> torch.device:
     """The device of that name; raises InputError where it is a GPU and there is none."""
     found = torch.cuda.is_available()
     if name == "cuda" and not found:
-        raise InputError("--device cuda: torch finds no GPU here")
+        raise InputError("--device cuda: torch finds no GPU on this machine")
     return torch.device("cuda" if found and name != "cpu" else "cpu")
 
 

@@ -38,7 +38,7 @@ def bake(order: Order, listener: Listener) -> Baked:
     """
     device = choose_device(order.device)
     for directory in check_output(order.output, order.work):
-        listener.note(f"There is no directory {directory}: it is made.")
+        listener.note(f"There is no directory {directory}; it is created.")
     with DirectoryLock(order.work, name=f"--work {order.work}"):
         return _bake(order, device, listener)
 

@@ -25,7 +25,7 @@ def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip],
     names = [clip.name for clip in clips]
     for name in hold_out:
         if name not in names:
-            raise InputError(f"--hold-out {name}: there is no such clip, only {', '.join(names)}")
+            raise InputError(f"--hold-out {name}: there is no such clip; expected {', '.join(names)}")
     if not hold_out:
         return _cut(clips)
     training = [clip for clip in clips if clip.name not in hold_out]

@@ -42,8 +42,8 @@ def choose(clips: Sequence[Clip], wanted: Sequence[str]) -> tuple[Clip, ...]:
             return tuple(clips[: int(word)])
     for name in wanted:
         if name not in by_name:
-            expected = f"{', '.join(by_name)}; or {ALL}, {NONE} or how many"
-            raise InputError(f"--clips {name}: there is no such clip, only {expected}")
+            expected = f"{', '.join(by_name)}; or {ALL}, {NONE} or a number"
+            raise InputError(f"--clips {name}: there is no such clip; expected {expected}")
     return tuple(by_name[name] for name in dict.fromkeys(wanted))
 
 

@@ -85,7 +85,7 @@ def _motion(recording: Recording) -> Iterator[Finding]:
     lean = np.concatenate([_lean(recording.rig.skeleton, clip) for clip in recording.clips] or [np.zeros(0)])
     if len(lean) and np.mean(lean < UPRIGHT) > MOSTLY:
         told = f"the figure lies or hangs in {100 * np.mean(lean < UPRIGHT):.0f} % of all frames"
-        yield Finding(f"{told}: has the motion another up axis than the rig? Y is expected", certain=False)
+        yield Finding(f"{told}: does the motion have another up axis than the rig? Y is expected", certain=False)
 
 
 def _out_of_order(clip: Clip) -> bool:
@@ -110,12 +110,12 @@ def _lean(skeleton: Skeleton, clip: Clip) -> Array:
 def _variety(recording: Recording) -> Iterator[Finding]:
     """What a student could not learn, or what could not be measured."""
     if not recording.count():
-        yield Finding("no training frame has a mesh and a texture: there is nothing to learn", certain=True)
+        yield Finding("no training frame has a mesh and a texture, so nothing can be learnt", certain=True)
         return
     if not recording.count(held_out=True):
-        yield Finding("no clip is held out: how unseen motion looks will not be measured", certain=False)
+        yield Finding("no clip is held out, so errors on unseen motion will not be measured", certain=False)
     if not recording.whole_count:
-        yield Finding("no frame is kept whole: there will be neither errors nor a contact sheet", certain=False)
+        yield Finding("no frame is kept whole, so there will be neither errors nor a contact sheet", certain=False)
     rows = np.unique(np.linspace(0, recording.count() - 1, min(recording.count(), MESHES)).astype(int))
     texture = float(recording.subbands(slice(0, 23), rows).ll.std(0, correction=0).max())
     mesh = float(recording.meshes(rows).std(axis=0).max())

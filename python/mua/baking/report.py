@@ -16,14 +16,16 @@ STAND_IN = "the teacher is a simulated stand-in, not a capture"
 UNSAID = "the recording does not say whether its teacher is a capture or a simulation"
 LEGEND = (
     "Errors are root mean squares of whole vectors. Mean: the mean texture of the training frames. Best: the best "
-    "coefficients for the learnt bases. Explained: of the variance about the mean. Note: {teacher}."
+    "coefficients for the learnt bases. Explained: share of the variance about the mean. Note: {teacher}."
 )
 BASELINES = ("mean", "best", "student")
 SHORT = (
     *("", "frames", "colour\nexplained", "offset\nexplained"),
     *("colour\nerror\n/255", "offset\nerror\nmm", "mesh\nerror\nmm"),
 )
-SHORT_LEGEND = "Explained: of the variance about the mean texture of the training frames. Errors are root mean squares."
+SHORT_LEGEND = (
+    "Explained: share of the variance about the mean texture of the training frames. Errors are root mean squares."
+)
 HELD_OUT = "all held out"
 HEADINGS = ("frames", "attribute", "unit", "mean", "best", "student", "explained")
 
@@ -55,7 +57,7 @@ def percent(share: float) -> str:
 
 def table(groups: Mapping[str, Errors]) -> Table:
     """For the terminal: one line for training, for all held-out clips together and for each of them."""
-    shown = Table(*SHORT, title="How near the student comes to the teacher")
+    shown = Table(*SHORT, title="Errors of the student")
     shown.columns[0].overflow = "fold"
     for column in shown.columns[1:]:
         column.justify, column.no_wrap = "right", True

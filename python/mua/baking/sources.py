@@ -47,9 +47,9 @@ def load_character(
     if path is not None:
         return read_character(path, uv=uv, atlas_size=ATLAS, detail=detail, size=size, leave_out=leave_out)
     if size != AS_FOUND:
-        raise InputError("--scale and --height are for a character from a file; give CHARACTER")
+        raise InputError("--scale and --height need a character from a file; give CHARACTER")
     if leave_out:
-        raise InputError(f"--leave-out {leave_out[0]}: is for a character from a file; give CHARACTER")
+        raise InputError(f"--leave-out {leave_out[0]}: needs a character from a file; give CHARACTER")
     from mua.teachers.procedural import procedural_character  # not to be loaded for a file's sake
 
     return procedural_character(seed=seed)
@@ -68,7 +68,7 @@ def load_clips(
     """
     if not motions:
         if not character.clips:
-            raise InputError(f"{character.name}: holds no animation: give --motion a file or directory")
+            raise InputError(f"{character.name}: holds no animation; give a file or directory with --motion")
         return [resample(clip, RATE) for clip in character.clips], []
     clips: list[Clip] = []
     notes: list[str] = []

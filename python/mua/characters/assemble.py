@@ -19,7 +19,7 @@ from mua.scene import Part, Scene, Source, without
 WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one
 WEIGHT_STEP = 1e-5  # weights nearer than this are equal
 LOST_WEIGHT = 0.02  # of a vertex: dropping more than this is worth a sentence
-OTHER_SIZE = "--height METRES makes it another height; --scale FACTOR multiplies the units of the file."
+OTHER_SIZE = "--height METRES sets another height; --scale FACTOR multiplies the size in the file."
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     scene = without(scene, leave_out, path)
     if not any(len(part.faces) for part in scene.parts):
         still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
-        advice = "; what has no skeleton can be rigged in Blender or by Mixamo" if still else ""
+        advice = "; add a skeleton in Blender or with Mixamo" if still else ""
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character{advice}")
     check_scales(scene, path)
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
@@ -55,7 +55,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     mesh = _merge(scene, bind)
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.ptp(used, axis=0).any():
-        raise InputError(f"{path}: all vertices of the skinned meshes lie at {used[0].tolist()}, expected a surface")
+        raise InputError(f"{path}: all vertices of the skinned meshes are at {used[0].tolist()}, expected a surface")
     scene, change = corrected(scene, bind, points=used, stand=True)
     if change.unit != 1 or change.notes:
         bind = bind_pose(scene)
@@ -93,7 +93,9 @@ def _rigid_parts(scene: Scene) -> tuple[str, ...]:
     findings = Findings()
     for part in scene.parts:
         if scene.skins[part.skin].rigid:
-            findings.add("Meshes that hang rigidly on a joint (--leave-out NAME leaves one out): {}.", part.node)
+            findings.add(
+                "Meshes that are attached rigidly to a joint (--leave-out NAME leaves one out): {}.", part.node
+            )
     return findings.notes()
 
 
@@ -204,7 +206,7 @@ def _weld(mesh: _Mesh) -> _Mesh:
     faces = faces.reshape(-1, 3)
     uv, uv_faces = _corners(faces, mesh.uv, uv_faces=uv_faces, face_material=face_material)
     rows = first[used]
-    told = (f"{doubled} triangles that lie on others are dropped.",) if doubled else ()
+    told = (f"{doubled} duplicate triangles are dropped.",) if doubled else ()
     return replace(
         mesh,
         groups=mesh.groups[rows],

@@ -63,7 +63,7 @@ def corrected(
         correction[:3, :3] = upright
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)
         told.append(
-            "The character lies in its bind pose: the file's up axis is another than it says; it is made to stand."
+            "The character lies in its bind pose, because the file states a wrong up axis; it is turned upright."
         )
     unit, size_notes = plausible_unit(_height(points))
     correction[:3, :3] *= unit
@@ -72,7 +72,7 @@ def corrected(
         c, s = np.cos(turn * np.pi / 2).round(), np.sin(turn * np.pi / 2).round()
         correction[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ correction[:3, :3]
         told.append(
-            f"The character's left and right joints say that it does not face +Z; it is turned by {turn * 90}°."
+            f"The character's left and right joints show that it does not face +Z; it is turned by {turn * 90}°."
         )
     change = Correction(unit, size_notes, tuple(told))
     if (correction == np.eye(4)).all():
@@ -108,10 +108,10 @@ def plausible_unit(
                 f"which makes it {height * unit:.2f} m.",
             )
     if LEAST <= height <= MOST:
-        return 1.0, (f"The character is {height:.3g} m high, as few creatures are, and is left so.",)
+        return 1.0, (f"The character is {height:.3g} m high, which is unusual; its size is kept.",)
     unit = ADULT / height if height > 0 else 1.0
     return unit, (
-        f"The character is {height:.3g} m high by its file, as no person or creature is; it is made {ADULT} m high.",
+        f"The character is {height:.3g} m high in its file, like no person or creature; it is scaled to {ADULT} m.",
     )
 
 

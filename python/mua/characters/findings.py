@@ -1,6 +1,6 @@
 """What a reader leaves out or changes, gathered into one sentence for each kind of thing."""
 
-UNHELD = "Meshes that hang on no joint are left out: {}."
+UNHELD = "Meshes that no joint moves are left out: {}."
 SHOWN = 8  # names that a sentence lists before it counts the rest
 
 

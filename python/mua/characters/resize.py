@@ -21,7 +21,7 @@ def resized(surfaces: Surfaces, size: FigureSize, path: Path) -> Surfaces:
     height = float(np.ptp(surfaces.vertices[:, 1]))
     if size.height is not None:
         if not height:
-            raise InputError(f"--height {size.height:g}: the character of {path} lies flat, give --scale instead")
+            raise InputError(f"--height {size.height:g}: the character of {path} is flat; give --scale instead")
         factor = size.height / height
     else:
         factor = (size.scale or 1.0) / surfaces.unit

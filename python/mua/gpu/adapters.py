@@ -53,7 +53,7 @@ def choose(choice: str | None) -> tuple[Adapter, wgpu.GPUAdapter]:
         if choice.lower() in str(pair[0]).lower():
             return pair
     listed = ", ".join(f"{index}: {adapter}" for index, (adapter, _) in enumerate(pairs))
-    raise InputError(f"device {choice}: no graphics device has this in its name; there is {listed}")
+    raise InputError(f"device {choice}: no graphics device has this in its name; expected one of {listed}")
 
 
 def _described(raw: wgpu.GPUAdapter) -> Adapter:

@@ -74,7 +74,7 @@ def _roles(skeleton: Skeleton, said: Mapping[str, str] | None, owner: str) -> tu
     if not placed:
         return found, ()
     listed = ", ".join(f"{name} the {role.replace('_', ' ')}" for name, role in placed.items() if " " in role)
-    note = f"The {owner}'s joints are told by their places, for their names do not tell: {listed}."
+    note = f"The {owner}'s joints are recognised by their positions, because their names are unknown: {listed}."
     return find_roles(skeleton, {**placed, **(said or {})}), (note,)
 
 

@@ -66,7 +66,7 @@ def plant_feet(
         clip = _held(rest, clip, leg, stands, pair.target.leg)
     if feet == "auto" and max(_turned(rest, kept, clip, leg) for leg, _ in legs) > VISIBLY:
         return kept, ()
-    return clip, (f"{clip.name}: standing feet are held in place (--feet keep leaves them as they come).",)
+    return clip, (f"{clip.name}: standing feet are held in place (--feet keep turns this off).",)
 
 
 def _legs(target: Skeleton, matches: Matches) -> list[_Leg]:

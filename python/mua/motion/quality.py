@@ -184,14 +184,14 @@ def _limb_flaws(name: str, limbs: Mapping[str, float]) -> list[str]:
     if not wrong:
         return []
     listed = ", ".join(f"{limb} {angle:.0f}" for limb, angle in sorted(wrong.items(), key=lambda item: -item[1]))
-    return [f"{name}: limbs point elsewhere than in the motion (degrees: {listed})."]
+    return [f"{name}: limbs point in other directions than in the motion (degrees: {listed})."]
 
 
 def _facing_flaws(name: str, facing: _Facing | None) -> list[str]:
     if facing is None or abs(facing.worst - facing.source) <= FACING_BOUND:
         return []
     return [
-        f"{name}: the body faces {facing.worst:.0f} degrees away from where it goes; "
+        f"{name}: the body faces {facing.worst:.0f} degrees away from where it walks; "
         f"in the motion it is {facing.source:.0f}."
     ]
 

@@ -68,10 +68,10 @@ def retarget_matched(
     translations, notes = placed(rest, rotations, rotation.rotate(facing, at), rate=rate, honest=honest)
     notes = [f"{clip.name}: {note}" for note in notes]
     if missing := missing_limbs(source.skeleton, target, matches):
-        notes.append(f"Nothing of the motion moves {' and '.join(missing)}.")
+        notes.append(f"The motion does not move {' and '.join(missing)}.")
     if unmatched := len(target.names) - len(matches.chains):
         notes.append(
-            f"{unmatched} of {len(target.names)} joints match none of the motion and keep their bind rotation."
+            f"{unmatched} of {len(target.names)} joints match no joint of the motion and keep their bind rotation."
         )
     return Clip(clip.name, rate, rotations, translations), (*source.notes, *matches.notes, *notes)
 

@@ -34,7 +34,7 @@ def check(
     """Raise InputError, a sentence that names the file, where anything is not as the plan's writer left it."""
     recording = Recording(directory)
     if recording.header != Header.of(recording.rig, rate=rate, wavelet=WAVELET):
-        raise InputError(f"{directory / HEADER}: is not the header that was written")
+        raise InputError(f"{directory / HEADER}: differs from the header that was written")
     indices = read_indices(directory)
     if indices:
         load_reference(directory / REFERENCE, recording.header)
@@ -44,7 +44,7 @@ def check(
     for planned in plan:
         found = next((clip for clip in recording.clips if clip.name == planned.clip.name), None)
         if not _holds(found, planned, whole=whole):
-            raise InputError(f"{directory}: clip {planned.clip.name!r} holds other frames than were recorded")
+            raise InputError(f"{directory}: clip {planned.clip.name!r} holds other frames than those recorded")
 
 
 def _check_sums(shard: Path, index: Index, header: Header, *, last: bool) -> None:
@@ -52,7 +52,7 @@ def _check_sums(shard: Path, index: Index, header: Header, *, last: bool) -> Non
     names = [f"{name}.npy" for name in header.shapes(index.poses, index.frames)]
     names += [f"{whole_name(row)}.npy" for row in index.whole_rows]
     if {SUM, *names} != set(index.crc32):
-        raise InputError(f"{shard / INDEX}: lists other files than frames")
+        raise InputError(f"{shard / INDEX}: lists other files than its frames need")
     for name in [*names, SUM] if last else names:  # only the last sum is kept
         check_sum(shard / name, index)
 
@@ -66,12 +66,14 @@ def _check_indices(directory: Path, indices: Sequence[Index], plan: Sequence[Pla
             own = planned.get(segment.clip)
             if own is None or segment.start != ends[segment.clip] or segment.whole != _kept(own, segment):
                 raise InputError(
-                    f"{directory / SHARDS / shard_name(number) / INDEX}: is not the index that was written"
+                    f"{directory / SHARDS / shard_name(number) / INDEX}: differs from the index that was written"
                 )
             ends[segment.clip] += segment.poses
             frames += 0 if own.held_out else len(segment.recorded)
         if index.training_frames != frames:
-            raise InputError(f"{directory / SHARDS / shard_name(number) / INDEX}: counts other frames than it lists")
+            raise InputError(
+                f"{directory / SHARDS / shard_name(number) / INDEX}: has a frame count that differs from its list"
+            )
 
 
 def _kept(planned: PlannedClip, segment: Segment) -> list[int]:

@@ -169,7 +169,9 @@ def check_sum(path: Path, index: Index) -> None:
         while block := file.read(BLOCK):
             found = zlib.crc32(block, found)
     if found != index.crc32.get(path.name):
-        raise InputError(f"{path}: is damaged, its checksum is another than {INDEX} says; copy it again or record anew")
+        raise InputError(
+            f"{path}: is damaged: its checksum differs from that in {INDEX}; copy the file again or record it again"
+        )
 
 
 def forget(array: Array) -> None:

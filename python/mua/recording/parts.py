@@ -223,7 +223,7 @@ def _check(sources: Sequence[Path], plans: Sequence[Sequence[PlannedClip]]) -> N
         reference = (source / REFERENCE).read_bytes()
         first = first or (header, reference)
         if (header, reference) != first:
-            raise InputError(f"{source}: is of another teacher than {sources[0]}, expected parts of one recording")
+            raise InputError(f"{source}: comes from another teacher than {sources[0]}, expected parts of one recording")
         complete = {name for index in read_indices(source) for name in index.complete}
         for planned in own:
             if planned.clip.name not in complete:

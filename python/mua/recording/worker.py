@@ -31,7 +31,7 @@ def main() -> None:
     except InputError as error:
         _tell(answers, FAILED, str(error))
     except MemoryError:
-        _tell(answers, FAILED, "a process that records has too little memory; --jobs 1 takes the least")
+        _tell(answers, FAILED, "a process that records has too little memory; --jobs 1 needs the least")
     os._exit(0)  # past the thread that still listens
 
 

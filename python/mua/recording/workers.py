@@ -146,7 +146,7 @@ def _remove_damaged(
     try:
         damage.check(directory, plan, rate=rate, whole=whole)
     except InputError as error:
-        note(f"{error}. It is recorded anew.")
+        note(f"{error}. It is recorded again.")
         shutil.rmtree(directory)
 
 

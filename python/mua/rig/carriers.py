@@ -67,7 +67,7 @@ class Carried:
         if not strays:
             return ()
         return (
-            f"{strays:,} of {len(self.cost):,} texels are left out: no part of the simplified mesh lies near them and "
+            f"{strays:,} of {len(self.cost):,} texels are left out: no part of the template lies near them and "
             f"moves as they do.",
         )
 

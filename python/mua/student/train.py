@@ -122,7 +122,7 @@ def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoint
     """Raises InputError where the recipe has no stage `only`, or a checkpoint that it starts from is not finished."""
     needed = stages(settings)
     if only not in needed:
-        raise InputError(f"--stage {only}: this recipe has no such stage, expected {' or '.join(needed)}")
+        raise InputError(f"--stage {only}: this recipe has no such stage; expected {' or '.join(needed)}")
     for stage, names in needed.items():
         if stage == only:
             return

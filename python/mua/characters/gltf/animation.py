@@ -59,14 +59,14 @@ def read_animations(
         name = animation.name or f"animation{a}"
         tracks = _tracks(document, animation, f"animations[{a}]", index=index)
         if _morphs(document, animation, f"animations[{a}]"):
-            findings.add("The morph targets (a face, say) that move in these clips are not carried: {}.", name)
+            findings.add("Animated morph targets, such as facial expressions, are left out in these clips: {}.", name)
         if not tracks:
             findings.add("Clips that move no joint are left out: {}.", name)
             continue
         start = min(times[0] for _, _, times, _, _ in tracks)
         end = max(times[-1] for _, _, times, _, _ in tracks)
         if end - start < 0.5 / RATE:
-            findings.add("Clips without length, single poses, are left out: {}.", name)
+            findings.add("Clips of a single pose are left out: {}.", name)
             continue
         frames = start + np.arange(int(np.floor((end - start) * RATE + 1e-3)) + 1) / RATE
         local = _local(document, tracks, frames, nodes=nodes, rest=rest)

@@ -68,7 +68,7 @@ def _material(document: Document, index: int, material: Any, findings: Findings)
         raise document.error(f"{where} has the base colour factor {factor.tolist()}, expected four numbers")
     name = material.name or f"material{index}"
     if UNLIT in (material.extensions or {}) and not is_toon(material):
-        findings.add("Materials that ask for no light are shaded like the others: {}.", name)
+        findings.add("Unlit materials are shaded like the others: {}.", name)
     image, wraps, reads = pictures.flat(factor), REPEAT, Coordinates()
     if texture is not None:
         image, wraps = _picture(document, texture, f"{where} base colour texture")
@@ -80,7 +80,7 @@ def _material(document: Document, index: int, material: Any, findings: Findings)
         if not glow_reads.needed or (reads.agrees(glow_reads) and wraps == glow_wraps):
             image = pictures.glowing(image, glow)
         else:
-            findings.add("Glow that is mapped otherwise than the base colour is left out, of materials: {}.", name)
+            findings.add("Emission with another UV mapping than the base colour is left out, in materials: {}.", name)
     read = _with_opacity(Material(name, image, *wraps), material, document, where)
     opaque = read.alpha_mode == "opaque"
     return read, replace(reads, opaque=opaque, vertex_colors=not is_toon(material))

@@ -36,7 +36,7 @@ def read_parts(
         where = f"meshes[{source.mesh}].primitives[{p}]"
         mode = TRIANGLES if primitive.mode is None else primitive.mode
         if mode not in (TRIANGLES, STRIP, FAN):
-            findings.add("Points and lines are left out, of: {}.", name)
+            findings.add("Points and lines are left out, of meshes: {}.", name)
             continue
         material = len(coordinates) - 1 if primitive.material is None else primitive.material
         if not 0 <= material < len(coordinates):
@@ -50,7 +50,7 @@ def read_parts(
             findings.add("Meshes without the texture coordinates that their material asks for: {}.", name)
         positions = geometry["POSITION"].astype(float)
         if primitive.targets:
-            findings.add("Morph targets are not carried beyond their weights at rest, of: {}.", name)
+            findings.add("Morph targets keep their weights of the rest pose, in meshes: {}.", name)
             positions += _morphed(document, primitive.targets, morphs, where, count=len(positions))
         parts.append(
             Part(

@@ -96,7 +96,7 @@ def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list
             findings.add("Meshes of other scenes than the file's first are left out: {}.", node_name(document, node))
             continue
         if INSTANCES in (source.extensions or {}):
-            findings.add("Meshes that the file repeats at many places are drawn once: {}.", node_name(document, node))
+            findings.add("Instanced meshes are drawn once: {}.", node_name(document, node))
         flat = source.skin is None and abs(np.linalg.det(tree.world[node][:3, :3])) < np.finfo(np.float32).tiny
         if flat or node in tree.hidden or node in vrm.hidden_nodes or source.mesh in vrm.hidden_meshes:
             findings.add("Meshes that the file hides are left out: {}.", node_name(document, node))

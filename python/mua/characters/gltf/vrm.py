@@ -130,13 +130,14 @@ def _not_carried(document: Document, vrm: dict[str, Any], extensions: dict[str, 
     notes = []
     if isinstance(chains, list) and chains:
         notes.append(
-            f"The avatar's {len(chains)} spring bone groups are not carried: what they swing keeps its place, "
+            f"The avatar's {len(chains)} spring bone groups are left out: what they swing keeps its place, "
             f"and the simulation moves what hangs loose."
         )
     if faces:
-        notes.append("The avatar's facial expressions (blend shapes) are not carried; the neutral face is taken.")
+        notes.append("The avatar's facial expressions (blend shapes) are left out; the face stays neutral.")
     if constrained:
         notes.append(
-            f"The constraints on {constrained} of the avatar's nodes are not carried; clips that hold them are."
+            f"The constraints on {constrained} of the avatar's nodes are left out; clips that include their effect are "
+            "kept."
         )
     return notes

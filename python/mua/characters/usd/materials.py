@@ -51,7 +51,7 @@ def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, findings: Findings
             image = look.material.image
             look = replace(textured, material=replace(textured.material, image=image), color_primvar=look.color_primvar)
         elif not _same_place(look, textured):
-            sentence = "Glow that is mapped otherwise than the base colour is left out, of materials: {}."
+            sentence = "Emission with another UV mapping than the base colour is left out, in materials: {}."
             findings.add(sentence, look.material.name)
             return look
     if not picture[..., :3].any():

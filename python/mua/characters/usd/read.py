@@ -98,9 +98,7 @@ def _drawn(stage: Usd.Stage, findings: Findings) -> dict[object, Usd.Prim]:
         if shown.ComputeVisibility(NO_TIME) == UsdGeom.Tokens.invisible:
             findings.add("Meshes that the file hides are left out: {}.", prim.GetName())
         elif shown.ComputePurpose() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy):
-            findings.add(
-                "Meshes that stand for others while working (guides, proxies) are left out: {}.", prim.GetName()
-            )
+            findings.add("Guide and proxy meshes are left out: {}.", prim.GetName())
         else:
             drawn[prim.GetPath()] = prim
     return drawn
@@ -120,7 +118,7 @@ def _parts(
     for s, (prim, target) in enumerate(held):
         mesh = UsdGeom.Mesh(prim)
         if target is not None and target.HasBlendShapes():
-            findings.add("Blend shapes are not carried, of: {}.", prim.GetName())
+            findings.add("Blend shapes are left out, of meshes: {}.", prim.GetName())
         for owner, faces in subsets(mesh):
             look = read_look(mesh, owner, path, findings)
             at = {"skin": s, "bones": len(skins[s].joints), "material": len(materials)}
