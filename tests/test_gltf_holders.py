@@ -128,7 +128,7 @@ def test_moving_mesh_beside_the_skeleton_is_taken_where_it_is_near(
     turn(glb, block(glb, "drone", at=at, parent=None, size=size))
     surfaces = read(glb, tmp_path)
     assert ("drone" in surfaces.skeleton.names) is taken
-    told = "hang rigidly on a joint" if taken else "hang on no joint and are left out"
+    told = "are attached rigidly to a joint" if taken else "that no joint moves are left out"
     assert any("drone" in note for note in surfaces.notes), told
 
 

@@ -158,7 +158,7 @@ WRONG_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "feet": ({"feet": "glue"}, "feet is 'glue'; expected auto or keep or plant"),
     "uv": ({"uv": "cut"}, "uv is 'cut'; expected keep or unwrap or auto"),
     "detail": ({"detail": {"nose": 2}}, "--detail nose=2: expected a part and a factor"),
-    "height": ({"height": "tall"}, "height: elements of type .*, expected real numbers"),
+    "height": ({"height": "tall"}, "height: has elements of type .*, expected real numbers"),
     "storage": ({"storage": "f8"}, "storage is 'f8'; expected f32 or f16 or i8"),
     "seed": ({"seed": -1}, "--seed -1: expected 0 or more"),
     "device": ({"device": "tpu"}, "device is 'tpu'; expected auto or cpu or cuda"),

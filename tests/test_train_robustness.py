@@ -196,7 +196,7 @@ def test_an_avatar_that_finds_no_room_leaves_the_earlier_one_and_all_that_was_tr
     output.write_bytes(EARLIER)
     with disk_of(trained.stat().st_size - 1):
         told = mua_train(written).sentence
-    assert f"{output}: cannot be written (File too large); what it held" in told
+    assert f"{output}: cannot be written (File too large); the previous file" in told
     assert output.read_bytes() == EARLIER
     assert not list(tmp_path.rglob("*.part*"))
     assert not set(mua_train(written).out.splitlines()) & set(STAGE_NAMES)
