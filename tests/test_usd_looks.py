@@ -106,8 +106,8 @@ def box(stage: Usd.Stage, path: str) -> UsdGeom.Mesh:
 
 HIDING: dict[str, tuple[Change, str]] = {
     "invisible": (lambda s: UsdGeom.Imageable(box(s, "/Man/Hat")).MakeInvisible(), "that the file hides are left out"),
-    "proxy": (lambda s: box(s, "/Man/Hat").CreatePurposeAttr("proxy"), "guides, proxies"),
-    "unbound": (lambda s: box(s, "/Man/Hat"), "hang on no joint are left out"),
+    "proxy": (lambda s: box(s, "/Man/Hat").CreatePurposeAttr("proxy"), "Guide and proxy meshes are left out"),
+    "unbound": (lambda s: box(s, "/Man/Hat"), "that no joint moves are left out"),
 }
 
 
