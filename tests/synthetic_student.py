@@ -10,10 +10,11 @@ from mua.channels import ATTRIBUTES, CHANNELS
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.student.checkpoint import Checkpoints
-from mua.student.model import Bands, Student
+from mua.student.model import Student
 from mua.student.optimise import Progress, Report, Run
 from mua.student.settings import Ranks, Schedule, Settings
 from mua.student.train import Samples, train
+from mua.wavelets import Bands
 
 SIZE = 48  # LL 3 x 3
 ENCODING = PoseEncoding(joints=(), rate=30.0, window=1)

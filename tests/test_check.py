@@ -13,12 +13,13 @@ from test_bake import SMALL
 from test_fidelity import column_file
 from typer.testing import CliRunner
 
-from mua.baking.contact_sheet import CAPTION, CELL
+from mua.baking.contact_sheet import CELL
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
 from mua.characters.read import read_surfaces
 from mua.cli.bake import main
 from mua.errors import InputError
+from mua.fidelity.strips import CAPTION
 from mua.motion.load import load_motions
 from mua.motion.mapping import read_mapping
 

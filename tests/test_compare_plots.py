@@ -12,6 +12,7 @@ from mua.compare import plots
 from mua.compare.entries import Entry, Picture
 from mua.compare.metrics import Scores
 from mua.compare.scores import Result, Sample
+from mua.fidelity import strips
 
 CELL = plots.CELL
 DARK, BRIGHT = 16, 180  # of 255: the ends of the map's colours
@@ -45,7 +46,7 @@ def column(strip: Array, index: int) -> Array:
 
 
 def test_a_column_for_the_teacher_and_each_system_that_did_not_fail(strip: Array) -> None:
-    assert strip.shape == (2 * plots.CAPTION + 3 * CELL, 3 * (CELL + 2), 3)
+    assert strip.shape == (2 * strips.CAPTION + 3 * CELL, 3 * (CELL + 2), 3)
     assert strip.dtype == np.uint8
 
 
@@ -59,7 +60,7 @@ def test_the_map_is_bright_where_a_system_errs_and_dark_elsewhere(strip: Array) 
 
 
 def test_the_square_below_shows_the_place_of_the_greatest_error(strip: Array) -> None:
-    top = 2 * plots.CAPTION + CELL
+    top = 2 * strips.CAPTION + CELL
     closer = column(strip, 2)[top : top + CELL]
     np.testing.assert_array_equal(np.unique(closer.reshape(-1, 3), axis=0), [[255, 0, 0]])
     same = column(strip, 1)[top : top + CELL]

@@ -7,9 +7,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 import wgpu
+from dispatch import run
 
 from mua.errors import InputError
-from mua.gpu import Buffer, Device, run
+from mua.gpu import Buffer, Device
 
 SHADER = """
 #pragma kernel AddIndex

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dispatch import run
 
 from mua.errors import InputError
-from mua.gpu import Device, Kernel, run
+from mua.gpu import Device, Kernel
 
 SHADER = """
 #pragma kernel Echo

@@ -11,8 +11,8 @@ from together import errors, start, trained
 
 from mua.channels import GEOMETRY
 from mua.processes import ALONE, Processes, another_ended
-from mua.student.model import Bands
 from mua.student.source import hold
+from mua.wavelets import Bands
 
 State = dict[str, torch.Tensor]
 Losses = dict[tuple[str, int], float | None]

@@ -10,8 +10,9 @@ from PIL import Image
 from trainings import Training
 
 from mua import rotation
-from mua.baking.frames_picture import CAPTION, CELL
+from mua.baking.frames_picture import CELL
 from mua.baking.recording_check import check
+from mua.fidelity.strips import CAPTION
 from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
 

@@ -28,13 +28,14 @@ from mua.student import regress as regression
 from mua.student import source as sources
 from mua.student.conditioned import INPUT_FLOOR, Conditioned, Whitening, fold, whitening
 from mua.student.factorize import truncated_svd
-from mua.student.model import Bands, Branch, build_mlp
+from mua.student.model import Branch, build_mlp
 from mua.student.optimise import Progress
 from mua.student.regress import leading
 from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
 from mua.student.targets import joint_targets
 from mua.student.train import BestCoefficients
+from mua.wavelets import Bands
 
 
 def explained(predicted: torch.Tensor, truth: torch.Tensor) -> float:

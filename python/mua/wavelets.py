@@ -8,6 +8,7 @@ one matrix).
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import pywt
@@ -17,6 +18,18 @@ from torch import Tensor
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.levels import DYNAMIC_LEVELS, STATIC_LEVELS
+
+
+class Bands(NamedTuple):
+    """The subbands of F frames that vary with the frame; detail bands in the order of pywt's (cH, cV, cD)."""
+
+    ll: Tensor  # [F, C, n, n]
+    d3: Tensor  # [F, 3, C, n, n]
+    d2: Tensor  # [F, 3, C, 2n, 2n]
+
+    def of(self, channels: slice) -> "Bands":
+        """The subbands of some of the channels."""
+        return Bands(self.ll[:, channels], self.d3[:, :, channels], self.d2[:, :, channels])
 
 
 def wavedec2(
@@ -42,11 +55,10 @@ def wavedec2(
 def dynamic_subbands(
     x: Tensor,  # [..., C, H, W]
     wavelet: str,
-) -> tuple[Tensor, Tensor, Tensor]:
-    """LL [..., C, n, n], D3 [..., 3, C, n, n] and D2 [..., 3, C, 2n, 2n]: what of a texture varies with the frame."""
+) -> Bands:
+    """What of textures varies with the frame; without leading axes of one texture alone."""
     ll, details = wavedec2(analyse_lowpass(x, wavelet, STATIC_LEVELS), wavelet, DYNAMIC_LEVELS)
-    d3, d2 = (level.transpose(-4, -3).contiguous() for level in details)
-    return ll, d3, d2
+    return Bands(ll, *(level.transpose(-4, -3).contiguous() for level in details))
 
 
 def waverec2(
@@ -98,18 +110,6 @@ def synthesise_lowpass(
     return _both_axes(
         ll, _lowpass_synthesis_matrix(wavelet, rows, levels), _lowpass_synthesis_matrix(wavelet, columns, levels)
     )
-
-
-def static_offset(
-    image: Tensor,  # [..., H, W]
-    wavelet: str,
-    levels: int = 2,
-) -> Tensor:
-    """The part [..., H, W] of images that their finest details hold: IDWT(0, 0, 0, D1, D0) (paper, static offset).
-
-    As the transform inverts exactly, it is the image less the synthesis of its low-pass subband.
-    """
-    return image - synthesise_lowpass(analyse_lowpass(image, wavelet, levels), wavelet, levels)
 
 
 def _both_axes(

@@ -4,13 +4,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from dispatch import run
 from packed_splats import unpacked
 
 from mua import rotation
 from mua.arrays import Array
 from mua.camera import NEAR, Camera
 from mua.decode import Splats, box_of
-from mua.gpu import Device, run
+from mua.gpu import Device
 from mua.kernels.dq_skinning import blend_texels, skin_splats
 from mua.kernels.inverse_dwt import pack_channels, unpack_channels
 from mua.kernels.splat_project import LARGEST_BARYCENTRIC, pack_texels

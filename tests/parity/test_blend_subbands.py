@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from dispatch import run
 from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
-from mua.gpu import Device, run
+from mua.gpu import Device
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 
 SIZES = [(1, 1, 1), (2, 3, 5), (11, 7, 6), (3, 1, 13), (2, 0, 4)]  # channels, rank, side

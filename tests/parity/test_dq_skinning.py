@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from dispatch import run
 from pxr import Gf, UsdSkel, Vt
 from scipy.spatial.transform import Rotation
 from scipy.special import expit
 
 from mua import rotation
 from mua.arrays import Array
-from mua.gpu import Device, run
+from mua.gpu import Device
 from mua.kernels.dq_skinning import (
     blend_texels,
     blend_vertices,

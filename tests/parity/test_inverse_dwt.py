@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 import pywt
+from dispatch import run
 from packed_splats import assert_halves
 from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
-from mua.gpu import Device, run
+from mua.gpu import Device
 from mua.kernels.inverse_dwt import (
     BATCH,
     add_static,

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from dispatch import run
 from stored import STORAGES, Stored, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
-from mua.gpu import Device, run
+from mua.gpu import Device
 from mua.kernels.mlp_matmul import mlp_matmul
 
 SIZES = [(0, 5), (1, 1), (1, 0), (7, 13), (130, 257)]

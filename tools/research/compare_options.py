@@ -32,12 +32,13 @@ from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
-from mua.student.model import Bands, Student
+from mua.student.model import Student
 from mua.student.optimise import Progress
 from mua.student.paper_recipe import set_means
 from mua.student.settings import Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BRANCHES, Samples, train
+from mua.wavelets import Bands
 
 CPU = torch.device("cpu")
 BATCH = 64  # frames of a measurement
@@ -143,7 +144,7 @@ def part(recording: Recording, student: Student, samples: Samples, *, leave: lis
             samples,
             descriptors=descriptors,
             meshes=torch.from_numpy(recording.meshes(np.arange(len(descriptors)), held_out=True)),
-            subbands=lambda channels, rows: Bands(*recording.subbands(channels, rows, held_out=True)),
+            subbands=lambda channels, rows: recording.subbands(channels, rows, held_out=True),
         )
         return samples, held
     left = left_out(recording, leave)

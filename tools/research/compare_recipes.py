@@ -4,9 +4,8 @@
 
 The loss is the paper's (5 |LL| + |D3| + |D2|, geometry plus appearance) over all frames, taken between the steps, with
 the clock stopped. Two clocks run: on the wall, and the processor time of all threads of this process, which other work
-on the machine does not lengthen. Where the paper's recipe is run for fewer than its million steps, its end is
-extrapolated from its own curve by the power law through the last decade of steps; the plot shows both. Each measurement
-goes to losses.csv at once; a recipe left out by --recipe is taken from there. Writes recipes.png and recipes.md too.
+on the machine does not lengthen. Each measurement goes to losses.csv at once; a recipe left out by --recipe is taken
+from there. Writes recipes.png and recipes.md too.
 """
 
 import argparse
@@ -21,7 +20,6 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
-from scipy.optimize import curve_fit
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
@@ -31,13 +29,14 @@ from mua.recording import Recording
 from mua.student.checkpoint import Checkpoints
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
-from mua.student.model import Bands, Branch
+from mua.student.model import Branch
 from mua.student.optimise import Progress, Run
 from mua.student.paper_recipe import fit_branch_from_noise, set_means
 from mua.student.settings import RECIPES, Settings, preset, with_recipe
 from mua.student.source import Source, hold
 from mua.student.targets import channel_weights
 from mua.student.train import BRANCHES, fit_branch
+from mua.wavelets import Bands
 
 PAPER_STEPS = 1_000_000
 BATCH = 64  # frames of a measurement
@@ -81,17 +80,11 @@ def main() -> None:
     parser.add_argument("--preset", default="tiny")
     parser.add_argument("--recipe", choices=RECIPES, action="append", help="to run; both if left out")
     parser.add_argument("--steps", type=int, default=PAPER_STEPS, help="of the paper's recipe, for each branch")
-    parser.add_argument("--fine-tuning", type=int, help="steps of the closed-form recipe's; the preset's if left out")
-    parser.add_argument("--batch", type=int, help="frames of each of them; the preset's if left out")
-    parser.add_argument("--rate", type=float, help="of the first of them; the preset's if left out")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("-o", "--output", type=Path, default=Path("build/recipes"))
     arguments = parser.parse_args()
     recording = Recording(arguments.recording)
     settings = replace(preset(arguments.preset), texels=recording.rig.texels.size, seed=arguments.seed)
-    given = {"steps": arguments.fine_tuning, "batch": arguments.batch, "rate": arguments.rate}
-    change = {name: value for name, value in given.items() if value is not None}
-    settings = replace(settings, finetune=replace(settings.finetune, **change))
     short = with_recipe(settings, "paper")
     short = replace(short, finetune=replace(short.finetune, steps=arguments.steps))
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -119,7 +112,7 @@ def make_tasks(recording: Recording, settings: Settings) -> list[Task]:
         for kind, descriptors, taken in zip(KINDS, (samples.descriptors, held), (False, True), strict=True):
 
             def subbands(part: slice, rows: torch.Tensor, taken: bool = taken) -> Bands:
-                return Bands(*recording.subbands(part, rows, held_out=taken))
+                return recording.subbands(part, rows, held_out=taken)
 
             source = hold(subbands, channels, frames=len(descriptors), size=student.size)
             kinds[kind] = Frames(student.normalize(descriptors), source)
@@ -203,29 +196,6 @@ class Table:
         return np.array([(n, *(np.array(parts[0][n][1:]) + np.array(parts[1][n][1:]))) for n in both])
 
 
-@dataclass(frozen=True)
-class Tail:
-    """loss = floor + height steps^-power, through the last decade of a curve."""
-
-    floor: float
-    height: float
-    power: float
-
-    def __call__(self, steps: Array) -> Array:
-        return self.floor + self.height * np.asarray(steps, dtype=float) ** -self.power
-
-
-def tail(curve: Array, column: int) -> Tail:
-    last = curve[curve[:, STEPS] >= curve[-1, STEPS] / 10]
-    low = last[:, column].min()
-    start = (0.5 * low, (last[0, column] - 0.5 * low) * last[0, STEPS] ** 0.3, 0.3)
-    found, _ = curve_fit(
-        lambda x, floor, height, power: floor + height * x**-power,
-        last[:, STEPS], last[:, column], p0=start, bounds=([0, 0, 0.01], [low, np.inf, 3]), maxfev=20000,
-    )  # fmt: skip
-    return Tail(*map(float, found))
-
-
 def summary(table: Table) -> str:
     """The figures as Markdown; nothing where a recipe has not been run."""
     ours, paper = (table.curve(recipe) for recipe in RECIPES)
@@ -233,19 +203,15 @@ def summary(table: Table) -> str:
         return ""
     lines = ["| recipe | steps | seconds | processor seconds | training loss | held-out loss |"]
     lines.append("| --- | --- | --- | --- | --- | --- |")
-    rows = {"closed-form": ours[-1], "paper, as run": paper[-1]}
-    if paper[-1, STEPS] < PAPER_STEPS:
-        pace = paper[-1, 1:3] / paper[-1, STEPS]
-        ends = [float(tail(paper, column)(np.array(PAPER_STEPS))) for column in LOSSES]
-        rows["paper, extrapolated"] = np.array([PAPER_STEPS, *(pace * PAPER_STEPS), *ends])
+    end = paper[-1]
+    rows = {"closed-form": ours[-1], "paper": end}
     for name, (steps, seconds, processor, training, held) in rows.items():
         lines.append(f"| {name} | {int(steps):,} | {seconds:.0f} | {processor:.0f} | {training:.4f} | {held:.4f} |")
-    end = list(rows.values())[-1]
     best = paper[np.argmin(paper[:, LOSSES[1]])]
     lines += [
         "",
         f"Lowest held-out loss of the paper's recipe: {best[LOSSES[1]]:.4f}, after {int(best[STEPS]):,} steps.",
-        f"Time of a million of its steps over that of the closed-form recipe: {end[1] / ours[-1, 1]:.0f} on the wall, "
+        f"Time of its steps over that of the closed-form recipe: {end[1] / ours[-1, 1]:.0f} on the wall, "
         f"{end[2] / ours[-1, 2]:.0f} of the processor.",
     ]
     below = ours[ours[:, LOSSES[0]] <= end[LOSSES[0]]]
@@ -266,12 +232,6 @@ def plot(path: Path, table: Table) -> None:
             curve = table.curve(recipe)
             if len(curve):
                 panel.plot(curve[:, PROCESSOR], curve[:, column], color=colour, label=recipe, marker=".", markersize=3)
-        paper = table.curve("paper")
-        if len(paper) and paper[-1, STEPS] < PAPER_STEPS:
-            pace = paper[-1, PROCESSOR] / paper[-1, STEPS]
-            steps = np.geomspace(paper[-1, STEPS] / 10, PAPER_STEPS, 50)
-            law = tail(paper, column)
-            panel.plot(pace * steps, law(steps), "--", color="tab:orange", linewidth=1, label="its power law")
         panel.set(xscale="log", xlabel="processor seconds", title=f"{kind} frames")
     panels[0].set_ylabel("5 |LL| + |D3| + |D2|")
     panels[0].legend()

@@ -39,7 +39,6 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=40, help="of training, for each system")
     parser.add_argument("--cpu", action="store_true", help="count the process's own seconds, not those of the clock")
     parser.add_argument("--systems", nargs="*", default=list(SYSTEMS), choices=list(SYSTEMS))
-    parser.add_argument("--from-noise", action="store_true", help="no closed-form start for any system")
     parser.add_argument("--device", default="cpu", help="that the systems are trained on")
     parser.add_argument("-o", "--output", type=Path, default=Path("build/systems.md"))
     arguments = parser.parse_args()
@@ -50,11 +49,10 @@ def main() -> None:
     run = Run(generator, kept, lambda _: None, torch.device(arguments.device))
     frames = training_frames(recording, settings, run=run)
     clock = time.process_time if arguments.cpu else time.monotonic
-    budget = Budget(seconds=arguments.seconds, closed_form=not arguments.from_noise, clock=clock)
+    budget = Budget(seconds=arguments.seconds, clock=clock)
     rows = [heading()]
     for name in arguments.systems:
         system = SYSTEMS[name](frames.sizes)
-        assert isinstance(system, NetworkSystem)
         system.fit(frames, budget, torch.Generator().manual_seed(settings.seed), lambda _: None)
         rows.append(row(system, {kind: errors(recording, frames, system, held) for kind, held in KINDS.items()}))
         print(rows[-1], flush=True)

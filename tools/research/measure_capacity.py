@@ -24,12 +24,12 @@ from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.levels import COARSE_TEXELS, STATIC_LEVELS
 from mua.recording import Recording
 from mua.student.factorize import Factors, separable_blendshapes
-from mua.student.model import Bands, Branch, lowpass_texels
+from mua.student.model import Branch, lowpass_texels
 from mua.student.paper_recipe import set_means
 from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
 from mua.student.train import BestCoefficients, factorize_channel
-from mua.wavelets import synthesise_lowpass, waverec2
+from mua.wavelets import Bands, synthesise_lowpass, waverec2
 
 FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the preset's ranks
 COMPONENTS = (1, 2, 4, 8, 16, 24, 32, 48, 64, 96, 128, 192, 256)
@@ -108,7 +108,7 @@ def load(recording: Recording, count: int) -> tuple[Textures, Textures]:
         )
 
         def source(channels: slice, some: Tensor, start: int = part.start) -> Bands:
-            return Bands(*recording.subbands(slice(start + channels.start, start + channels.stop), rows[some]))
+            return recording.subbands(slice(start + channels.start, start + channels.stop), rows[some])
 
         weights = channel_weights(set_means(branch, source, frames=count), part)
         parts.append((branch.ll_mean, branch.d3.mean, branch.d2.mean, weights))
@@ -118,7 +118,7 @@ def load(recording: Recording, count: int) -> tuple[Textures, Textures]:
     texels = torch.from_numpy(recording.rig.texels.texels).long()
     found = []
     for held_out, chosen in ((False, rows), (True, torch.arange(recording.count(held_out=True)))):
-        bands = Bands(*recording.subbands(slice(0, CHANNELS), chosen, held_out=held_out))
+        bands = recording.subbands(slice(0, CHANNELS), chosen, held_out=held_out)
         weighted = Bands(*((band - middle) * scale for band, middle in zip(bands, mean, strict=True)))
         found.append(Textures(weighted, recording.wavelet, texels))
     return found[0], found[1]

@@ -23,11 +23,11 @@ from mua.levels import COARSE_TEXELS
 from mua.recording import Recording
 from mua.student.distil import prepare
 from mua.student.local import Parts
-from mua.student.model import Bands
 from mua.student.regress import whitening
 from mua.student.settings import preset
 from mua.student.smoother import fit_smoother
 from mua.student.targets import channel_weights
+from mua.wavelets import Bands
 
 STRIDE = 16  # of the samples
 FADES = (1.0, 0.8, 0.7, 0.6, 0.5, 0.3)

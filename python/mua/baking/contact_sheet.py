@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
@@ -12,14 +12,12 @@ from mua.decode import decode_clip_frame, pose_splats
 from mua.fidelity.background import background_for, over
 from mua.fidelity.compare import Fidelity
 from mua.fidelity.sheet import worst_strips
+from mua.fidelity.strips import GAIN, caption, difference, sheet
 from mua.recording import WholeFrame
 from mua.rendering import render_premultiplied, to_bytes
 
 CELL = (288, 416)  # width, height, pixels
-CAPTION = 22  # pixels
-GAIN = 4  # the difference is shown this many times as strong
 COLUMNS = 2  # frames beside each other
-TITLES = ("teacher", "student", f"difference x{GAIN}")
 
 
 def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, fidelity: Fidelity | None = None) -> Image.Image:
@@ -27,10 +25,7 @@ def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, fidelity: Fid
     strips = [] if fidelity is None else worst_strips(fidelity, CELL)
     strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
     strips += [_strip(avatar, frame) for frame in frames]
-    blank = np.full_like(strips[0], 255)
-    strips += [blank] * (-len(strips) % COLUMNS)
-    rows = [np.hstack(strips[i : i + COLUMNS]) for i in range(0, len(strips), COLUMNS)]
-    return Image.fromarray(np.vstack(rows))
+    return sheet(strips, COLUMNS)
 
 
 def _strip(avatar: Avatar, frame: WholeFrame) -> Array:
@@ -41,17 +36,7 @@ def _strip(avatar: Avatar, frame: WholeFrame) -> Array:
     camera = portrait(teacher, avatar.rig.skeleton, pose=pose, screen=CELL)
     drawn = [render_premultiplied(splats, camera) for splats in (teacher, student)]
     shown = [over(image, background_for(drawn[:1])) for image in drawn]
-    difference = 1 - GAIN * np.abs(shown[0] - shown[1])
-    picture = np.hstack([to_bytes(image) for image in (*shown, difference)])
+    picture = np.hstack([to_bytes(image) for image in (*shown, difference(*shown))])
     kind = "held out" if frame.clip.held_out else "trained on"
-    return np.vstack([_caption(f"{frame.clip.name}, frame {frame.index} ({kind})"), picture])
-
-
-def _caption(text: str) -> Array:
-    width = CELL[0]
-    bar = Image.new("RGB", (len(TITLES) * width, CAPTION), "white")
-    draw = ImageDraw.Draw(bar)
-    font = ImageFont.load_default(12)
-    for i, title in enumerate(TITLES):
-        draw.text((i * width + 6, 4), f"{title}: {text}" if i == 0 else title, fill="black", font=font)
-    return np.asarray(bar)
+    titles = (f"teacher: {frame.clip.name}, frame {frame.index} ({kind})", "student", f"difference x{GAIN}")
+    return np.vstack([caption(titles, CELL[0]), picture])

@@ -26,7 +26,7 @@ from mua.memory import release_memory
 from mua.pose.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
-from mua.student.distil import distil, distil_stage
+from mua.student.distil import distil
 from mua.student.model import Student
 from mua.student.settings import Settings, StageName
 
@@ -78,10 +78,11 @@ def choose_device(name: DeviceName) -> torch.device:
     return torch.device("cuda" if found and name != "cpu" else "cpu")
 
 
-def teach(order: Distillation, recording: Recording, listener: Listener) -> Student:
+def teach(order: Distillation, recording: Recording, listener: Listener, *, only: StageName | None = None) -> Student:
     """Train a student on `recording`; its stages are kept in the work directory, and the same order goes on from there.
 
-    Raises InputError where there is nothing to train on, or where checkpoints or the output cannot be written.
+    With `only` one stage is run up to its checkpoints; the student is then unfinished. Raises InputError where there is
+    nothing to train on or to start the stage from, or where checkpoints or the output cannot be written.
     """
     if order.processes.first:
         require_writable(order.output)
@@ -94,23 +95,7 @@ def teach(order: Distillation, recording: Recording, listener: Listener) -> Stud
             directory=order.checkpoints,
             report=listener,
             processes=order.processes,
-        )
-
-
-def teach_stage(order: Distillation, stage: StageName, recording: Recording, listener: Listener) -> None:
-    """Run one stage up to its checkpoints, which `teach` takes up.
-
-    Raises InputError as `teach` does, and where the stage starts from checkpoints that are not there.
-    """
-    with _within_memory(order):
-        distil_stage(
-            recording,
-            order.settings,
-            stage,
-            device=order.device,
-            directory=order.checkpoints,
-            report=listener,
-            processes=order.processes,
+            only=only,
         )
 
 

@@ -19,7 +19,7 @@ from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
 from mua.student.branches import thread_share
-from mua.student.model import Bands, Student
+from mua.student.model import Student
 from mua.student.train import BestCoefficients
 from mua.texture.fill import Fill
 from mua.threads import in_order
@@ -157,7 +157,7 @@ class _Comparer:
     def _closest(self, frames: Sequence[WholeFrame]) -> tuple[Array, Array]:
         """Textures [F, N, 23] whose D1 and D0 are at their mean, and those of the best coefficients."""
         images = torch.stack([self.fill(torch.from_numpy(frame.texture)) for frame in frames])
-        bands = Bands(*dynamic_subbands(images, self.student.wavelet))
+        bands = dynamic_subbands(images, self.student.wavelet)
         alphas = [best(bands.of(channels)) for best, channels in self.best]
         best = self.student.synthesize((alphas[0], alphas[1]))
         return self.student.texture(bands).numpy(), self.student.texture(best).numpy()

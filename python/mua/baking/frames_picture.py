@@ -3,18 +3,18 @@
 from collections.abc import Sequence
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 from mua.arrays import Array
 from mua.baking.portrait import portrait
 from mua.decode import pose_splats
 from mua.fidelity.background import background_for, over
+from mua.fidelity.strips import caption
 from mua.recording import WholeFrame
 from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.rig import Rig
 
 CELL = (360, 520)  # width, height, pixels
-CAPTION = 22  # pixels
 
 
 def frames_picture(rig: Rig, frames: Sequence[WholeFrame]) -> Image.Image:
@@ -26,7 +26,5 @@ def _cell(rig: Rig, frame: WholeFrame) -> Array:
     pose = frame.clip.pose(frame.index)
     splats = pose_splats(rig, frame.mesh, texture=frame.texture, pose=pose)
     drawn = render_premultiplied(splats, portrait(splats, rig.skeleton, pose=pose, screen=CELL))
-    bar = Image.new("RGB", (CELL[0], CAPTION), "white")
     text = f"{frame.clip.name}, frame {frame.index}{' (held out)' if frame.clip.held_out else ''}"
-    ImageDraw.Draw(bar).text((6, 4), text, fill="black", font=ImageFont.load_default(12))
-    return np.vstack([np.asarray(bar), to_bytes(over(drawn, background_for([drawn])))])
+    return np.vstack([caption([text], CELL[0]), to_bytes(over(drawn, background_for([drawn])))])

@@ -124,11 +124,10 @@ def _alone(order: "Distillation") -> AbstractContextManager[object]:
 def _carry_out(
     order: "Distillation", recording: "Recording", stage: StageName | None, listener: Listener
 ) -> "Baked | None":
-    from mua.baking.distillation import finish, teach, teach_stage
+    from mua.baking.distillation import finish, teach
 
+    student = teach(order, recording, listener, only=stage)
     if stage is not None:
-        teach_stage(order, stage, recording, listener)
         listener.note(f"checkpoints are in {order.checkpoints}")
         return None
-    student = teach(order, recording, listener)
     return finish(order, student, recording, listener) if order.processes.first else None

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from mua.baking.check import Check, check, write_json
 from mua.baking.order import Order
-from mua.cli.console import printer
+from mua.cli.console import printer, say
 from mua.cli.display import Display
 from mua.fidelity.compare import Fidelity
 from mua.files import require_writable
@@ -25,7 +25,7 @@ def check_and_show(order: Order, json: Path | None) -> None:
         write_json(json, order, found)
     show(console, found)
     if json is not None:
-        _say(console, str(json))
+        say(console, str(json))
 
 
 def show(console: Console, found: Check) -> None:
@@ -41,19 +41,19 @@ def show(console: Console, found: Check) -> None:
             if brought
             else "The character's own clips"
         )
-        _say(console, f"{whose}: {', '.join(motion.name for motion in found.motions)}")
+        say(console, f"{whose}: {', '.join(motion.name for motion in found.motions)}")
     if found.matched:
         pairs = ", ".join(f"{pair.target} < {pair.source}" for pair in found.matched)
-        _say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")
+        say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")
     if found.unmatched:
-        _say(
+        say(
             console,
             f"Skinned joints that the motion does not move ({len(found.unmatched)}): {', '.join(found.unmatched)}",
         )
     for sentence in (*found.notes, *found.warnings):
-        _say(console, sentence)
+        say(console, sentence)
     for path in found.written:
-        _say(console, str(path))
+        say(console, str(path))
 
 
 def _fidelity_table(fidelity: Fidelity) -> Table:
@@ -79,7 +79,3 @@ def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
 
 def _measured(value: float | None, shape: str) -> str:
     return "" if value is None else shape.format(value)
-
-
-def _say(console: Console, sentence: str) -> None:
-    console.print(sentence, highlight=False, markup=False, soft_wrap=True)

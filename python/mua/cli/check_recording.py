@@ -7,7 +7,7 @@ from rich.table import Table
 
 from mua.baking.frames_picture import frames_picture
 from mua.baking.recording_check import RecordingCheck, check
-from mua.cli.console import printer
+from mua.cli.console import printer, say
 from mua.errors import InputError
 from mua.files import replacing, require_writable
 from mua.recording import RecordedClip, Recording
@@ -26,7 +26,7 @@ def check_recording(recording: Recording, picture: Path) -> None:
     if found.pictured:
         with replacing(picture) as temporary:
             frames_picture(recording.rig, found.pictured).save(temporary, "PNG")
-        _say(console, str(picture))
+        say(console, str(picture))
     certain = [finding.sentence for finding in found.findings if finding.certain]
     if certain:
         raise InputError(f"recording {recording.directory}: {certain[0]}")
@@ -43,12 +43,8 @@ def _clips(clips: tuple[RecordedClip, ...]) -> Table:
 
 def _print(console: Console, found: RecordingCheck) -> None:
     for name, told in found.figures.items():
-        _say(console, f"{name:<8} {told}")
+        say(console, f"{name:<8} {told}")
     for finding in found.findings:
-        _say(console, f"{'mistake' if finding.certain else 'warning':<8} {finding.sentence}")
+        say(console, f"{'mistake' if finding.certain else 'warning':<8} {finding.sentence}")
     if not found.findings:
-        _say(console, "no mistake in units or conventions was found; look at the picture all the same")
-
-
-def _say(console: Console, sentence: str) -> None:
-    console.print(sentence, highlight=False, markup=False, soft_wrap=True)
+        say(console, "no mistake in units or conventions was found; look at the picture all the same")

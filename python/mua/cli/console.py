@@ -13,3 +13,8 @@ def printer(*, quiet: bool = False, highlight: bool = True) -> Console:
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = WIDE
     return console
+
+
+def say(console: Console, sentence: str) -> None:
+    """Print a sentence as it stands, on one line however long."""
+    console.print(sentence, highlight=False, markup=False, soft_wrap=True)

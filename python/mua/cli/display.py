@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from mua.cli.console import say
+
 if TYPE_CHECKING:  # torch takes seconds to load, and a check needs none of it
     from mua.baking.distillation import Baked
 
@@ -73,7 +75,7 @@ class Display:
     def _say_notes(self) -> None:
         for sentence, count in self._notes.items():
             times = f" ({count} times)" if count > 1 else ""
-            self.console.print(f"  {sentence}{times}", highlight=False, markup=False, soft_wrap=True)
+            say(self.console, f"  {sentence}{times}")
         self._notes.clear()
 
     def _end(self, name: str) -> None:
@@ -112,4 +114,4 @@ def show(console: Console, baked: "Baked") -> None:
     if baked.figures is not None:
         lines.append(f"{baked.figures}, {baked.figures.with_suffix('.json')}: errors of every attribute")
     for line in lines:
-        console.print(line, highlight=False, markup=False, soft_wrap=True)
+        say(console, line)

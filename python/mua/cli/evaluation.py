@@ -12,6 +12,7 @@ from mua.cli.display import Display
 from mua.compare import entries, plots, report, scores
 from mua.compare.images import Studio
 from mua.compare.metrics import Lpips
+from mua.compare.motion import training_frames
 from mua.compare.order import ALL, EvaluationOrder
 from mua.compare.system import Budget
 from mua.errors import InputError
@@ -94,7 +95,7 @@ def _systems(
         display.step(progress.step, progress.steps, detail=loss)
 
     display.stage("coarse mesh")
-    frames = entries.prepare_systems(recording, settings, run=Run(generator, checkpoints, step, device))
+    frames = training_frames(recording, settings, run=Run(generator, checkpoints, step, device))
     rows = []
     for name in names:
         display.stage(name)

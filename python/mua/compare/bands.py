@@ -21,12 +21,11 @@ from mua.compare.optimise import Groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
 from mua.levels import COARSE_TEXELS, DYNAMIC_LEVELS, LEVELS
 from mua.student.finetune import subband_loss
-from mua.student.model import Bands, Branch, lowpass_texels
+from mua.student.model import Branch, lowpass_texels
 from mua.student.optimise import Run
-from mua.student.paper_recipe import start_from_noise
 from mua.student.settings import Ranks
 from mua.student.train import start_branch
-from mua.wavelets import filters
+from mua.wavelets import Bands, filters
 
 PARTS = {"geometry": GEOMETRY, "appearance": APPEARANCE}
 KERNEL = 5  # texels
@@ -149,25 +148,20 @@ class BandNetwork(Network):
             for maps in self.maps:
                 maps.attach(frames, device)
 
-    def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
-        """Convolutions start from noise; blendshapes as our student's, by closed form or from noise."""
+    def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
+        """Convolutions start from noise, blendshapes as our student's."""
         settings = frames.sizes.settings
         inputs = self.normalize(frames.motion.descriptors.to(run.device))
         for branch, (name, part) in zip(self.branches, PARTS.items(), strict=False):
             source = partial(_bands_from, frames, part.start)
-            if closed_form:
-                start_branch(
-                    branch, inputs, source, channels=part, settings=settings, name=name, run=run, parts=frames.parts
-                )
-            else:
-                start_from_noise(branch, inputs, source, channels=part, run=run)
+            start_branch(
+                branch, inputs, source, channels=part, settings=settings, name=name, run=run, parts=frames.parts
+            )
             scale_branch(branch, self.weights[part])
         start_convolutions(self.convolutions, run.generator)
         groups: Groups = [{"params": list(self.convolutions.parameters()), "lr": rate}]
         mlps, bases = [b.mlp for b in self.branches], [p for b in self.branches for p in bases_of(b)]
-        if closed_form:
-            return groups + parameter_groups(mlps, bases, rate=frames.sizes.settings.finetune.lr)
-        return groups + parameter_groups(mlps, bases, rate=rate, basis_rate=1.0)
+        return groups + parameter_groups(mlps, bases, rate=settings.finetune.lr)
 
     def loss(self, frames: TrainingFrames, rows: Tensor) -> Tensor:
         """The paper's, over weighted subbands."""

@@ -12,8 +12,9 @@ from mua.asset.count import flops, parameters
 from mua.asset.read import load
 from mua.bench.measure import measure
 from mua.bench.report import total_milliseconds
-from mua.compare.motion import motion_of, training_frames
-from mua.compare.system import Budget, System, TrainingFrames
+from mua.compare.motion import motion_of
+from mua.compare.network import NetworkSystem
+from mua.compare.system import Budget, TrainingFrames
 from mua.compare.systems import SYSTEMS
 from mua.errors import InputError
 from mua.gpu import Device
@@ -23,8 +24,7 @@ from mua.player.frame import AvatarFrame
 from mua.recording import Recording, WholeFrame
 from mua.rig.rig import Rig
 from mua.student.checkpoint import Checkpoints
-from mua.student.optimise import Report, Run
-from mua.student.settings import Settings
+from mua.student.optimise import Report
 
 FLOAT = 4  # bytes of a system's number; avatar files count as stored
 FPS_FRAMES = 5  # timed of each file
@@ -113,16 +113,11 @@ def system_entry(
     return Entry(name, lambda frame: Picture(system_texture(system, recording, frames, frame)), cost)
 
 
-def system_texture(system: System, recording: Recording, frames: TrainingFrames, frame: WholeFrame) -> Array:
+def system_texture(system: NetworkSystem, recording: Recording, frames: TrainingFrames, frame: WholeFrame) -> Array:
     """A trained system's texture [N, 23] of a frame."""
     motion = motion_of(frame.clip, np.array([frame.index]), rig=recording.rig, student=frames.student)
     with torch.no_grad():
         return np.asarray(system.textures(motion)[0].cpu().numpy())
-
-
-def prepare_systems(recording: Recording, settings: Settings, *, run: Run) -> TrainingFrames:
-    """What all systems learn from (`mua.compare.motion.training_frames`)."""
-    return training_frames(recording, settings, run=run)
 
 
 def check_systems(names: list[str]) -> None:

@@ -16,7 +16,7 @@ from mua.student.factorize import separable_blendshapes
 from mua.student.local import Locality, sample_locality, texture_locality
 from mua.student.model import Branch, build_mlp
 from mua.student.optimise import Run
-from mua.student.paper_recipe import BASIS_START, start_mlp
+from mua.student.paper_recipe import start_mlp
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Ranks
 from mua.student.targets import joint_targets
@@ -62,18 +62,11 @@ class Blendshapes(FullNetwork):
         self.bases = tuple(Basis(part, sizes.settings.components, sizes=sizes) for part in parts)
         self.registered = nn.ModuleList(self.bases)
 
-    def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
+    def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
         for basis in self.bases:
-            if closed_form:
-                start_from_components(basis, self.normalize, frames, run=run)
-            else:
-                start_mlp(basis.mlp, run.generator)
-                noise = BASIS_START * torch.randn(basis.shapes.shape, generator=run.generator)
-                basis.shapes.data.copy_(noise)
+            start_from_components(basis, self.normalize, frames, run=run)
         mlps, shapes = [basis.mlp for basis in self.bases], [basis.shapes for basis in self.bases]
-        if closed_form:
-            return parameter_groups(mlps, shapes, rate=frames.sizes.settings.finetune.lr)
-        return parameter_groups(mlps, shapes, rate=rate, basis_rate=1.0)
+        return parameter_groups(mlps, shapes, rate=frames.sizes.settings.finetune.lr)
 
     def deviations(self, motion: Motion) -> Tensor:
         inputs = self.normalize(motion.descriptors)
@@ -138,18 +131,11 @@ class SingleLevel(FullNetwork):
         self.parts = tuple(Separable(part, rank, sizes=sizes) for part, rank in zip(PARTS, ranks, strict=True))
         self.registered = nn.ModuleList(self.parts)
 
-    def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
+    def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
         for part in self.parts:
-            if closed_form:
-                start_from_quarter(part, self.normalize, frames, run=run)
-            else:
-                start_mlp(part.mlp, run.generator)
-                for factor in (part.h, part.w):
-                    factor.data.copy_(BASIS_START**0.5 * torch.randn(factor.shape, generator=run.generator))
+            start_from_quarter(part, self.normalize, frames, run=run)
         mlps, factors = [part.mlp for part in self.parts], [f for part in self.parts for f in (part.h, part.w)]
-        if closed_form:
-            return parameter_groups(mlps, factors, rate=frames.sizes.settings.finetune.lr)
-        return parameter_groups(mlps, factors, rate=rate, basis_rate=1.0)
+        return parameter_groups(mlps, factors, rate=frames.sizes.settings.finetune.lr)
 
     def deviations(self, motion: Motion) -> Tensor:
         inputs = self.normalize(motion.descriptors)
@@ -248,16 +234,10 @@ class LinearMap(FullNetwork):
         self.code = nn.Linear(self.inputs, rank)
         self.grid = nn.Linear(rank, CHANNELS * side * side, bias=False)
 
-    def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
-        if closed_form:
-            self._solve(frames, run)
-            rate = frames.sizes.settings.finetune.lr
-        else:
-            start_mlp(nn.Sequential(self.code), run.generator)
-            noise = BASIS_START * torch.randn(self.grid.weight.shape, generator=run.generator)
-            self.grid.weight.data.copy_(noise)
-        basis_rate = 0.1 if closed_form else 1.0
-        return parameter_groups([self.code], list(self.grid.parameters()), rate=rate, basis_rate=basis_rate)
+    def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
+        self._solve(frames, run)
+        lr = frames.sizes.settings.finetune.lr
+        return parameter_groups([self.code], list(self.grid.parameters()), rate=lr, basis_rate=0.1)
 
     @torch.no_grad()
     def _solve(self, frames: TrainingFrames, run: Run) -> None:

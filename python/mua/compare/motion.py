@@ -17,12 +17,13 @@ from mua.recording import Recording
 from mua.rig.rig import Rig
 from mua.student.coarse import fit_coarse
 from mua.student.distil import prepare
-from mua.student.model import Bands, Student
+from mua.student.model import Student
 from mua.student.optimise import Run
 from mua.student.settings import Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights
 from mua.teachers.bones import figure_scale
+from mua.wavelets import Bands
 
 
 def training_frames(recording: Recording, settings: Settings, *, run: Run) -> TrainingFrames:
@@ -49,7 +50,11 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
         rig=recording.rig,
         sizes=Sizes(settings, student.encoding, len(student.coarse.mean), student.texels, recording.wavelet),
         student=student,
-        motion=Motion(*(torch.cat(part) for part in zip(*map(_fields, parts), strict=True))),
+        motion=Motion(
+            torch.cat([part.descriptors for part in parts]),
+            torch.cat([part.canonical for part in parts]),
+            torch.cat([part.posed for part in parts]),
+        ),
         bands=bands,
         mean=mean,
         mean_texture=samples.mean_texture,
@@ -106,7 +111,3 @@ def band_statistics(bands: Callable[[slice, Tensor], Bands], *, frames: int, tex
     ll, d3, d2 = zip(*means, strict=True)
     mean = Bands(torch.cat(ll, dim=1), torch.cat(d3, dim=2), torch.cat(d2, dim=2))
     return mean, torch.tensor(energy) / (frames * texels**2)
-
-
-def _fields(motion: Motion) -> tuple[Tensor, Tensor, Tensor]:
-    return motion.descriptors, motion.canonical, motion.posed

@@ -58,7 +58,7 @@ class Network(nn.Module):
         return (descriptors - self.input_mean) / self.input_scale
 
     @abstractmethod
-    def start(self, frames: TrainingFrames, *, closed_form: bool, rate: float, run: Run) -> Groups:
+    def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
         """Give the parameters their start; returns them in groups with the rates that they are descended at."""
 
     @abstractmethod
@@ -102,7 +102,7 @@ class NetworkSystem:
         return self._network
 
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
-        """Train a new network; the closed-form start, where the budget allows one, counts towards the seconds."""
+        """Train a new network; the closed-form start, where the system has one, counts towards the seconds."""
         started = budget.clock()
         network = self._build(frames.sizes)
         network.attach(frames, frames.device)
@@ -112,7 +112,7 @@ class NetworkSystem:
 
         size = figure_scale(frames.rig.mesh.vertices)
         run = Run(generator, Forgetful(Path(), ""), told, frames.device, size=size)
-        groups = network.start(frames, closed_form=budget.closed_form, rate=budget.rate, run=run)
+        groups = network.start(frames, rate=budget.rate, run=run)
         self.steps = optimise(
             lambda rows: network.loss(frames, rows),
             groups,

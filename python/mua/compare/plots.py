@@ -9,13 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw, ImageOps
 from scipy.ndimage import uniform_filter
 
 from mua.arrays import Array
 from mua.compare.images import Studio
 from mua.compare.metrics import compare
 from mua.compare.scores import KINDS, Result
+from mua.fidelity.strips import caption
 from mua.recording import WholeFrame
 from mua.rendering import to_bytes
 
@@ -26,7 +27,6 @@ Point = tuple[float, float, str, Colour]  # cost, PSNR, name
 
 PALETTES = ("tab10", "tab20")  # the second where the first has too few colours
 CELL = 300  # pixels along a cell's longer side
-CAPTION = 20  # pixels
 CROP = 6  # the zoomed square has so small a part of a picture's side
 MARGIN = 0.04  # of a picture's side, around the figure
 SHEET_FRAMES = 2  # of a kind: the worst and the median
@@ -166,20 +166,21 @@ def _strip(studio: Studio, frame: WholeFrame, results: Sequence[Result]) -> Arra
     kind = "held out" if frame.clip.held_out else "trained on"
     columns = []
     for name, picture in pictures.items():
-        marked = _cut(_marked(to_bytes(picture), worst), figure)
+        marked = _marked(to_bytes(picture), worst)[figure]
         height = CELL * marked.shape[0] // max(marked.shape[:2])
         width = max(CELL * marked.shape[1] // max(marked.shape[:2]), CELL // 2)
         shown_map = to_bytes(magma(np.clip(maps[name] / SHOWN_FLIP, 0, 1))[..., :3]) if name in maps else None
+        blank = np.full((height, width, 3), 255, np.uint8)
         rows = [
-            _caption(name, width),
+            caption([name], width),
             _fit(marked, width, height),
-            _fit(_cut(to_bytes(picture), worst), width, width),
-            _fit(_cut(shown_map, figure), width, height) if shown_map is not None else _blank(width, height),
+            _fit(to_bytes(picture)[worst], width, width),
+            blank if shown_map is None else _fit(shown_map[figure], width, height),
         ]
         columns.append(np.pad(np.vstack(rows), ((0, 0), (0, 2), (0, 0)), constant_values=255))
     strip = np.hstack(columns)
     about = f"{frame.clip.name}, frame {frame.index} ({kind}); below: the marked square, FLIP from 0 to {SHOWN_FLIP}"
-    return np.vstack([_caption(about, strip.shape[1]), strip])
+    return np.vstack([caption([about], strip.shape[1]), strip])
 
 
 Box = tuple[slice, slice]  # rows, columns
@@ -206,10 +207,6 @@ def _worst_box(error: Array) -> Box:
     return slice(starts[0], starts[0] + side), slice(starts[1], starts[1] + side)
 
 
-def _cut(picture: Array, box: Box) -> Array:
-    return np.asarray(picture[box])
-
-
 def _marked(picture: Array, box: Box) -> Array:
     """The picture with the square outlined."""
     image = Image.fromarray(picture)
@@ -221,23 +218,7 @@ def _marked(picture: Array, box: Box) -> Array:
 
 def _fit(picture: Array, width: int, height: int) -> Array:
     """The picture as large as it fits, in the middle of a black cell."""
-    scale = min(width / picture.shape[1], height / picture.shape[0])
-    size = (max(round(picture.shape[1] * scale), 1), max(round(picture.shape[0] * scale), 1))
-    cell = Image.new("RGB", (width, height))
-    scaled = Image.fromarray(picture).resize(size, Image.Resampling.LANCZOS)
-    cell.paste(scaled, ((width - size[0]) // 2, (height - size[1]) // 2))
-    return np.asarray(cell)
-
-
-def _caption(text: str, width: int) -> Array:
-    bar = Image.new("RGB", (width, CAPTION), "white")
-    font = ImageFont.load_default(11)
-    ImageDraw.Draw(bar).text((4, 3), text, fill="black", font=font)
-    return np.asarray(bar)
-
-
-def _blank(width: int, height: int) -> Array:
-    return np.full((height, width, 3), 255, np.uint8)
+    return np.asarray(ImageOps.pad(Image.fromarray(picture), (width, height), Image.Resampling.LANCZOS, color="black"))
 
 
 def _colours(count: int) -> list[Colour]:

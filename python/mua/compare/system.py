@@ -7,7 +7,6 @@ themselves are listed in `mua.compare.systems`.
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import torch
 from torch import Tensor
@@ -16,9 +15,9 @@ from mua.channels import CHANNELS
 from mua.pose.encoding import PoseEncoding
 from mua.rig.rig import Rig
 from mua.student.local import Parts
-from mua.student.model import Bands, Coarse, Student, lowpass_texels
-from mua.student.optimise import Report
+from mua.student.model import Coarse, Student, lowpass_texels
 from mua.student.settings import Settings
+from mua.wavelets import Bands
 
 ALL = slice(0, CHANNELS)
 
@@ -40,9 +39,8 @@ class Budget:
 
     seconds: float | None = None  # of the clock
     steps: int | None = None  # of Adam
-    closed_form: bool = True  # where a system has such a start; without it, all systems start from noise
     batch: int = 16  # frames per step
-    rate: float = 1e-3  # of Adam, from noise; a closed-form start is descended from more slowly
+    rate: float = 1e-3  # of Adam, for what starts from noise; a closed-form start is descended from more slowly
     clock: Callable[[], float] = time.monotonic  # or time.process_time, where others use the machine as well
 
 
@@ -99,26 +97,6 @@ class TrainingFrames:
     def textures(self, rows: Tensor) -> Tensor:
         """The recorded textures [F, N, 23] in raw channels."""
         return self.mean_texture + (self.deviations(rows) / self.weights[:, None]).transpose(1, 2)
-
-
-class System(Protocol):
-    """One row of a table."""
-
-    name: str
-    parameters: int  # learnt numbers, those of the coarse mesh included
-    flops: int  # of one frame, a multiply-add as two; posing and drawing excluded, as in `mua.asset.count`
-
-    def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
-        """Learn the training frames; what was learnt before is forgotten."""
-
-    def textures(self, motion: Motion) -> Tensor:
-        """Raw channels [F, N, 23] at the valid texels."""
-
-    def state(self) -> dict[str, Any]:
-        """What was learnt, for a file."""
-
-    def restore(self, state: dict[str, Any], frames: TrainingFrames) -> None:
-        """Take up what was learnt from the same frames before."""
 
 
 def coarse_parameters(coarse: Coarse) -> int:

@@ -1,11 +1,12 @@
 """Every system of the paper's tables that can be built from its description, by the name that a table calls it."""
 
 from collections.abc import Callable
+from functools import partial
 
 from mua.compare.bands import blendshapes_conv1d, conv_blendshapes, conv_conv, ours
 from mua.compare.full import LinearMap, SingleLevel, full_blendshapes, pca_only
 from mua.compare.network import Network, NetworkSystem
-from mua.compare.system import Sizes, System
+from mua.compare.system import Sizes
 
 NETWORKS: dict[str, Callable[[Sizes], Network]] = {
     "pca-only": pca_only,
@@ -18,9 +19,4 @@ NETWORKS: dict[str, Callable[[Sizes], Network]] = {
     "ours": ours,
 }
 
-
-def _system(name: str) -> Callable[[Sizes], System]:
-    return lambda sizes: NetworkSystem(name, sizes, NETWORKS[name])
-
-
-SYSTEMS: dict[str, Callable[[Sizes], System]] = {name: _system(name) for name in NETWORKS}
+SYSTEMS = {name: partial(NetworkSystem, name, build=build) for name, build in NETWORKS.items()}

@@ -1,15 +1,14 @@
 """One picture of the comparison: source, splats and their difference side by side."""
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from mua.arrays import Array
 from mua.fidelity.background import background_for, over
 from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot
+from mua.fidelity.strips import GAIN, caption, difference, sheet
 from mua.rendering import to_bytes
 
-GAIN = 4  # the difference is shown this many times as strong
-CAPTION = 22  # pixels
 COLUMNS = 2  # views beside each other
 MARK = 14  # pixels from the middle of the worst place to the frame around it
 
@@ -18,8 +17,7 @@ def fidelity_sheet(fidelity: Fidelity) -> Image.Image:
     """Three cells for every view of every pose; a frame marks the worst place of each view."""
     background = _background(fidelity)
     rows = [_strip(pose, shot, background=background) for pose in fidelity.poses for shot in pose.shots]
-    rows += [np.full_like(rows[0], 255)] * (-len(rows) % COLUMNS)
-    return Image.fromarray(np.vstack([np.hstack(rows[i : i + COLUMNS]) for i in range(0, len(rows), COLUMNS)]))
+    return sheet(rows, COLUMNS)
 
 
 def worst_strips(
@@ -38,8 +36,7 @@ def _background(fidelity: Fidelity) -> float:
 def _strip(pose: PoseFidelity, shot: Shot, cell: tuple[int, int] = SCREEN, *, background: float) -> Array:
     scale = min(cell[0] / SCREEN[0], cell[1] / SCREEN[1])
     shown = [_fitted(image, cell, scale, background) for image in (shot.source, shot.splats)]
-    difference = 1 - GAIN * np.abs(shown[0] - shown[1])
-    picture = Image.fromarray(np.hstack([to_bytes(image) for image in (*shown, difference)]))
+    picture = Image.fromarray(np.hstack([to_bytes(image) for image in (*shown, difference(*shown))]))
     draw = ImageDraw.Draw(picture)
     column, row = (scale * place for place in shot.place)
     for i in range(3):
@@ -51,7 +48,7 @@ def _strip(pose: PoseFidelity, shot: Shot, cell: tuple[int, int] = SCREEN, *, ba
         f"splats: overlap {100 * found.iou:.1f} %, {found.psnr:.1f} dB",
         f"difference x{GAIN}; frame: worst, at {shot.joint}",
     )
-    return np.vstack([_caption(titles, cell[0]), np.asarray(picture)])
+    return np.vstack([caption(titles, cell[0]), np.asarray(picture)])
 
 
 def _fitted(
@@ -68,12 +65,3 @@ def _fitted(
     filled = np.full((cell[1], cell[0], 3), background, np.float32)
     filled[: shown.shape[0], : shown.shape[1]] = shown
     return filled
-
-
-def _caption(titles: tuple[str, ...], width: int) -> Array:
-    bar = Image.new("RGB", (len(titles) * width, CAPTION), "white")
-    draw = ImageDraw.Draw(bar)
-    font = ImageFont.load_default(12)
-    for i, title in enumerate(titles):
-        draw.text((i * width + 6, 4), title, fill="black", font=font)
-    return np.asarray(bar)

@@ -5,6 +5,5 @@ from mua.gpu.buffer import Buffer
 from mua.gpu.commands import Commands
 from mua.gpu.device import Device, open_device
 from mua.gpu.kernel import Kernel
-from mua.gpu.once import run
 
-__all__ = ["Adapter", "Buffer", "Commands", "Device", "Kernel", "adapters", "open_device", "run"]
+__all__ = ["Adapter", "Buffer", "Commands", "Device", "Kernel", "adapters", "open_device"]

@@ -24,7 +24,7 @@ OP_INT, OP_FLOAT, OP_VECTOR, OP_MATRIX, OP_ARRAY, OP_RUNTIME_ARRAY, OP_STRUCT, O
 )
 OP_CONSTANT, OP_VARIABLE, OP_LOAD, OP_ACCESS_CHAIN, OP_IN_BOUNDS_ACCESS_CHAIN = 43, 59, 61, 65, 66
 OP_DECORATE, OP_MEMBER_DECORATE = 71, 72
-BUFFER_BLOCK, ROW_MAJOR, ARRAY_STRIDE, MATRIX_STRIDE, NON_WRITABLE, BINDING, SET, OFFSET = 3, 4, 6, 7, 24, 33, 34, 35
+BUFFER_BLOCK, ROW_MAJOR, ARRAY_STRIDE, MATRIX_STRIDE, NON_WRITABLE, BINDING, OFFSET = 3, 4, 6, 7, 24, 33, 35
 UNIFORM, STORAGE_BUFFER = 2, 12
 LOCAL_SIZE = 17
 
@@ -34,7 +34,6 @@ class BufferSlot:
     """A buffer that the code uses."""
 
     name: str
-    group: int
     binding: int
     read_only: bool
     scalar: str  # uint, int or float
@@ -63,7 +62,6 @@ class Interface:
 
     buffers: tuple[BufferSlot, ...]  # by binding
     constants: tuple[Constant, ...]  # by offset
-    constants_group: int
     constants_binding: int | None  # None if it has no constant buffer
     threads: tuple[int, int, int]  # of a group; ones if it is no compute shader
 
@@ -132,7 +130,7 @@ def _text(words: list[int]) -> str:
 def _interface(module: _Module) -> Interface:
     buffers: list[BufferSlot] = []
     constants: tuple[Constant, ...] = ()
-    group, binding = 0, None
+    binding = None
     for variable, (pointer, storage) in module.variables.items():
         if storage not in (UNIFORM, STORAGE_BUFFER) or BINDING not in module.decorations[variable]:
             continue
@@ -142,10 +140,10 @@ def _interface(module: _Module) -> Interface:
             continue
         if binding is not None:
             raise InputError("compiled shader: more than one constant buffer, expected one named Constants")
-        group, binding = module.decorations[variable].get(SET, 0), module.decorations[variable][BINDING]
+        binding = module.decorations[variable][BINDING]
         constants = _constants(module, variable, struct)
     buffers.sort(key=lambda slot: slot.binding)
-    return Interface(tuple(buffers), constants, group, binding, module.threads)
+    return Interface(tuple(buffers), constants, binding, module.threads)
 
 
 def _buffer(module: _Module, variable: int, struct: int) -> BufferSlot:
@@ -153,7 +151,7 @@ def _buffer(module: _Module, variable: int, struct: int) -> BufferSlot:
     read_only = NON_WRITABLE in own or NON_WRITABLE in module.member_decorations[struct, 0]
     scalar, _ = _element(module, module.types[array][1][0])
     stride = module.decorations[array][ARRAY_STRIDE]
-    return BufferSlot(module.names[variable], own.get(SET, 0), own[BINDING], read_only, scalar, stride)
+    return BufferSlot(module.names[variable], own[BINDING], read_only, scalar, stride)
 
 
 def _element(module: _Module, of: int) -> tuple[str, list[int]]:

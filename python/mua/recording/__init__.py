@@ -20,7 +20,7 @@ subbands per frame: the transform is linear, so they are those of the mean textu
 """
 
 from mua.recording.plausible import LikelyMistake
-from mua.recording.reader import RecordedClip, Recording, Subbands, WholeFrame
+from mua.recording.reader import RecordedClip, Recording, WholeFrame
 from mua.recording.record import PlannedClip, record
 from mua.recording.writer import TeacherWriter
 
@@ -29,7 +29,6 @@ __all__ = [
     "PlannedClip",
     "RecordedClip",
     "Recording",
-    "Subbands",
     "TeacherWriter",
     "WholeFrame",
     "record",

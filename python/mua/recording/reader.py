@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -36,6 +35,7 @@ from mua.recording.layout import (
     whole_name,
 )
 from mua.recording.rig_file import load_rig, rig_hash
+from mua.wavelets import Bands
 
 Rows = Sequence[int] | Array | Tensor  # recorded frames of one kind, counted from 0 in the order of recording
 
@@ -57,14 +57,6 @@ class WholeFrame:
     index: int  # in the clip
     mesh: Array  # [V, 3] float32 canonical vertices, metres
     texture: Array  # [N, 23] float32, rotations aligned to the reference frame
-
-
-class Subbands(NamedTuple):
-    """The subbands of F frames that vary with the frame; detail bands in the order of pywt's (cH, cV, cD)."""
-
-    ll: Tensor  # [F, C, n, n] float32
-    d3: Tensor  # [F, 3, C, n, n] float32
-    d2: Tensor  # [F, 3, C, 2n, 2n] float32
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +117,7 @@ class Recording:
         rows: Rows,
         *,
         held_out: bool = False,
-    ) -> Subbands:
+    ) -> Bands:
         """Absolute subbands of some channels and frames: the stored differences plus the reference's."""
         at = self._at(rows, held_out=held_out)
         reference = self.reference.subbands
@@ -134,7 +126,7 @@ class Recording:
             gathered = self._gather(name, at, part)
             gathered += getattr(reference, name)[part]  # in place: of all frames this is large
             bands.append(torch.from_numpy(gathered))
-        return Subbands(*bands)
+        return Bands(*bands)
 
     def meshes(self, rows: Rows, *, held_out: bool = False) -> Array:
         """Canonical vertices [F, V, 3] float32, metres."""

@@ -2,14 +2,13 @@
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from threading import Lock
 from typing import Protocol
 
 import numpy as np
 import torch
-from torch import Tensor
 
 from mua import __version__
 from mua.arrays import Array
@@ -21,7 +20,7 @@ from mua.recording import Recording
 from mua.rig.rig import Rig
 from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.local import body_parts
-from mua.student.model import Bands, Student
+from mua.student.model import Student
 from mua.student.optimise import Progress
 from mua.student.settings import Settings, StageName
 from mua.student.train import Samples, stages, train
@@ -47,60 +46,29 @@ def distil(
     directory: Path,  # of the checkpoints; a run that was killed goes on from them to the same bytes
     report: Listener,
     processes: Processes = ALONE,  # that share the work
+    only: StageName | None = None,  # run this stage up to its checkpoints; the student is then unfinished
 ) -> Student:
     """Train a student on the training frames of `recording`; it comes back on the CPU, without gradients.
 
-    Raises InputError where the recording has another texture size than `settings`, or no training frame.
+    Raises InputError where the recording has another texture size than `settings`, or no training frame, and where a
+    stage alone starts from checkpoints that are not in `directory`.
     """
-    run = _Run(device, directory, report, processes)
-    return _train(recording, settings, run, only=None).cpu()
-
-
-def distil_stage(
-    recording: Recording,
-    settings: Settings,
-    stage: StageName,
-    *,
-    device: torch.device,
-    directory: Path,  # of the checkpoints
-    report: Listener,
-    processes: Processes = ALONE,
-) -> None:
-    """Run one stage of what `distil` does, up to the checkpoints that `distil` and later stages take up.
-
-    Raises InputError as `distil` does, and where an earlier stage's checkpoints are not in `directory`.
-    """
-    _train(recording, settings, _Run(device, directory, report, processes), only=stage)
-
-
-@dataclass(frozen=True)
-class _Run:
-    """Where a training happens and who hears of it."""
-
-    device: torch.device
-    directory: Path
-    report: Listener
-    processes: Processes
-
-
-def _train(recording: Recording, settings: Settings, run: _Run, *, only: StageName | None) -> Student:
     student, samples = prepare(recording, settings)
-    checkpoints = Checkpoints(
-        run.directory, run_key((__version__, settings, recording.fingerprint()), [student.mean, student.scale])
-    )
-    if run.processes.first:
+    key = run_key((__version__, settings, recording.fingerprint()), [student.mean, student.scale])
+    checkpoints = Checkpoints(directory, key)
+    if processes.first:
         checkpoints.remove_leftovers(name for names in stages(settings).values() for name in names)
     train(
         student,
         samples,
         settings=settings,
         checkpoints=checkpoints,
-        device=run.device,
-        report=_Reporter(run.report, run.device),
+        device=device,
+        report=_Reporter(report, device),
         only=only,
-        processes=run.processes,
+        processes=processes,
     )
-    return student
+    return student.cpu()
 
 
 def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]:
@@ -156,13 +124,10 @@ def moving_joints(rig: Rig) -> Array:
 
 
 def _samples(recording: Recording, descriptors: Array) -> Samples:
-    def subbands(channels: slice, rows: Tensor) -> Bands:
-        return Bands(*recording.subbands(channels, rows))
-
     return Samples(
         descriptors=torch.from_numpy(descriptors).float(),
         meshes=torch.from_numpy(recording.meshes(np.arange(recording.count()))),
-        subbands=subbands,
+        subbands=recording.subbands,
         mean_texture=torch.from_numpy(recording.mean_texture()).float(),
     )
 

@@ -7,9 +7,10 @@ import torch
 from torch import Tensor, nn
 
 from mua.processes import Share
-from mua.student.model import Bands, Branch
+from mua.student.model import Branch
 from mua.student.optimise import Run, optimise
 from mua.student.settings import Generalisation, Schedule
+from mua.wavelets import Bands
 
 LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1
 BASIS_RATE = 3.0  # learning rate of the bases relative to that of the MLP

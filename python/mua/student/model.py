@@ -10,21 +10,9 @@ from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.levels import COARSE_TEXELS, STATIC_LEVELS
 from mua.pose.encoding import PoseEncoding
 from mua.student.settings import Ranks, Settings
-from mua.wavelets import synthesise_lowpass, waverec2
+from mua.wavelets import Bands, synthesise_lowpass, waverec2
 
 HIDDEN_LAYERS = 2
-
-
-class Bands(NamedTuple):
-    """The dynamic subbands of F frames; detail bands in the order of pywt's (cH, cV, cD)."""
-
-    ll: Tensor  # [F, C, n, n]
-    d3: Tensor  # [F, 3, C, n, n]
-    d2: Tensor  # [F, 3, C, 2n, 2n]
-
-    def of(self, channels: slice) -> "Bands":
-        """The subbands of some of the channels."""
-        return Bands(self.ll[:, channels], self.d3[:, :, channels], self.d2[:, :, channels])
 
 
 class Alphas(NamedTuple):

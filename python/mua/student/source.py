@@ -7,7 +7,7 @@ from torch import Tensor
 
 from mua.levels import LOWPASS_TEXELS
 from mua.processes import ALONE, Processes
-from mua.student.model import Bands
+from mua.wavelets import Bands
 
 HELD_BYTES = 1 << 30  # subbands up to this size are kept in memory, larger ones are read batch by batch
 GPU_SHARE = 0.5  # of what is free on a GPU may be taken by subbands; the rest is for the factorisation

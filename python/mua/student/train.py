@@ -18,7 +18,7 @@ from mua.student.conditioned import fold
 from mua.student.factorize import blendshapes, separable_blendshapes
 from mua.student.finetune import finetune
 from mua.student.local import Parts, texture_locality
-from mua.student.model import Alphas, Bands, Branch, Student, outer_products
+from mua.student.model import Alphas, Branch, Student, outer_products
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
@@ -27,6 +27,7 @@ from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
 from mua.teachers.bones import figure_scale
+from mua.wavelets import Bands
 
 BRANCHES = ("geometry", "appearance")
 

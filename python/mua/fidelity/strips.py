@@ -1,0 +1,35 @@
+"""Pictures beside each other in strips under captions, and sheets of such strips."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from mua.arrays import Array
+
+CAPTION = 22  # pixels
+GAIN = 4  # a difference is shown this many times as strong
+
+
+def caption(titles: Sequence[str], width: int) -> Array:
+    """A white bar [CAPTION, n width, 3] uint8 with a title over each of n pictures so many pixels wide."""
+    bar = Image.new("RGB", (len(titles) * width, CAPTION), "white")
+    draw = ImageDraw.Draw(bar)
+    for i, title in enumerate(titles):
+        draw.text((i * width + 6, 4), title, fill="black", font=ImageFont.load_default(12))
+    return np.asarray(bar)
+
+
+def difference(one: Array, other: Array) -> Array:
+    """How far pictures are apart, dark on white, in 0..1 and below."""
+    return np.asarray(1 - GAIN * np.abs(one - other))
+
+
+def sheet(
+    strips: Sequence[Array],  # [h, w, 3] uint8, all of one size
+    columns: int,  # of strips beside each other
+) -> Image.Image:
+    """All strips, row after row; what is left of the last row is white."""
+    blank = np.full_like(strips[0], 255)
+    filled = [*strips, *[blank] * (-len(strips) % columns)]
+    return Image.fromarray(np.vstack([np.hstack(filled[i : i + columns]) for i in range(0, len(filled), columns)]))
