@@ -1,8 +1,7 @@
-// Runs the reader of unity-package/Runtime/Format for tests/unity/test_format.py and tools/research/bench_reader.py.
+// Runs the reader of unity-package/Runtime/Format for tests/unity/test_format.py.
 
 using System;
 using System.Collections.Generic;
-using System.Diagnostics;
 using System.Globalization;
 using System.IO;
 using System.Linq;
@@ -54,9 +53,6 @@ internal static class FormatProgram
                 {
                     Console.WriteLine(Checksum.Append(Checksum.Append(0, content, 0, count), content, count, 2 * count + 1));
                 }
-                return 0;
-            case "time":
-                Time(content, int.Parse(arguments[2]));
                 return 0;
             default:
                 return 2;
@@ -152,21 +148,6 @@ internal static class FormatProgram
             }
         }
         return Enumerable.Range(0, length).Where(i => free[i]).ToArray();
-    }
-
-    private static void Time(byte[] content, int runs)
-    {
-        var clock = new Stopwatch();
-        for (int i = 0; i < runs; i++)
-        {
-            long before = GC.GetAllocatedBytesForCurrentThread();
-            clock.Restart();
-            AvatarFile avatar = AvatarFile.Read(content);
-            double milliseconds = clock.Elapsed.TotalMilliseconds;
-            long allocated = GC.GetAllocatedBytesForCurrentThread() - before;
-            Console.WriteLine(content.Length + " " + milliseconds.ToString("f1") + " " + allocated);
-            GC.KeepAlive(avatar);
-        }
     }
 
     /// <summary>Every value as `name kind hex`.</summary>
