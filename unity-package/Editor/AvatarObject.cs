@@ -4,7 +4,7 @@ using UnityEngine;
 
 namespace Mua.Editor
 {
-    /// <summary>Makes GameObjects that show an avatar; undo takes them back.</summary>
+    /// <summary>Makes GameObjects that show an avatar, by menu or where one is dropped; undo takes them back.</summary>
     internal static class AvatarObject
     {
         private const string Plain = "MUA Avatar"; // the name of one that shows nothing yet
@@ -58,11 +58,7 @@ namespace Mua.Editor
             }
             return null;
         }
-    }
 
-    /// <summary>Dropping an imported avatar into the scene view puts it there.</summary>
-    internal static class AvatarDrop
-    {
         [InitializeOnLoadMethod]
         private static void Register()
         {

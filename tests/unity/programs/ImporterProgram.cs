@@ -99,7 +99,7 @@ namespace Mua.Editor
         private static void Drops()
         {
             Place(files);
-            typeof(AvatarDrop).GetMethod("Register", Hidden).Invoke(null, null);
+            typeof(AvatarObject).GetMethod("Register", Hidden).Invoke(null, null);
             AvatarAsset asset = AvatarObject.Find();
             Say("hover", Drag.Drop(new Vector3(1, 0, 2), false, asset), UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None).Length);
             Say("other", Drag.Drop(new Vector3(1, 0, 2), true, asset.Thumbnail));
