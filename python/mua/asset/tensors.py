@@ -7,7 +7,6 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree
-from mua.errors import InputError
 
 Storage = Literal["f32", "f16", "i8"]
 
@@ -22,18 +21,13 @@ LARGEST = 65504.0  # of any real: f16's largest, so that what is decoded from a 
 
 
 def pack(values: Array, storage: Storage = "f32", *, rows: int = 0) -> Tree:
-    """Store `values` as f32, f16 or i8; i8 scales each of `rows` equal parts to its largest magnitude.
+    """Store `values`, finite and at most LARGEST, as f32, f16 or i8.
 
-    Errors: InputError where a value is not finite or does not fit f16.
+    i8 scales each of `rows` equal parts to its largest magnitude.
     """
     if storage == "i8":
         return _pack_i8(np.asarray(values, dtype=np.float32), rows)
-    with np.errstate(over="ignore"):  # reported below, by value
-        stored = np.asarray(values).astype(DTYPES[storage.upper()])
-    if not np.isfinite(stored).all():
-        worst = np.asarray(values).ravel()[np.flatnonzero(~np.isfinite(stored))[0]]
-        raise InputError(f"the value {worst} cannot be stored as {storage}")
-    return _tensor(storage.upper(), stored)
+    return _tensor(storage.upper(), np.asarray(values).astype(DTYPES[storage.upper()]))
 
 
 def pack_indices(values: Array) -> Tree:
@@ -42,8 +36,6 @@ def pack_indices(values: Array) -> Tree:
 
 
 def _pack_i8(values: Array, rows: int) -> Tree:
-    if not np.isfinite(values).all():
-        raise InputError("a value that is not finite cannot be stored as i8")
     parts = values.reshape(rows, -1)
     scale = np.abs(parts).max(axis=1, initial=0).astype(np.float32) / np.float32(127)
     stored = np.rint(parts / np.where(scale == 0, 1, scale)[:, None]).astype(np.int8)
