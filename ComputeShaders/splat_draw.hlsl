@@ -1,9 +1,12 @@
 // Splats as quads: what the desktop player's shader and Unity's share, and splat_project.compute with them.
 //
-//   S(x)  = 1 / (1 + exp(-1.6 x - 0.07 x^3))                               in place of the normal distribution function
-//   alpha = min(opacity 2 pi major minor mass(along, major) mass(across, minor), 0.99)
-//   mass(offset, deviation) = S((offset + 0.5) / deviation) - S((offset - 0.5) / deviation)
+//   alpha  = min(peak exp(-(along / wide_major)^2 / 2 - (across / wide_minor)^2 / 2), 0.99)
+//   peak   = opacity (major minor) / (wide_major wide_minor),  wide = sqrt(deviation^2 + 1 / 12)
 //   color = max(0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3), 0)     (x, y, z) from camera to splat, turned back by its texel
+//
+// The Gaussian is integrated over the pixel as the Gaussian that has the integral's sum and variance: the unit square has
+// 1/12 along any line through its middle. That is off by at most 1/480 / minor^4, and below 0.5 pixels by at most 0.09 of a
+// whole opacity; sums over pixels are exact. A fragment computes one exponential.
 //
 // Six vertices a splat, two triangles, in the order of the sort: back to front. Blend One, OneMinusSrcAlpha.
 // Buffers are arguments, so that each includer declares only what it binds. Reference: python/mua/kernels/splat_draw.py.
@@ -21,16 +24,16 @@ static const float LEAST_OPACITY = 1.0 / 255.0; // below it a splat changes no 8
 static const float MOST_ALPHA = 0.99; // of one splat at one pixel
 static const float SH_C0 = 0.28209479177387814;
 static const float SH_C1 = 0.4886025119029199;
-static const float TWO_PI = 6.283185307179586;
+static const float PIXEL_VARIANCE = 1.0 / 12.0; // px^2, of a unit square
+static const float LEAST_SHARE = 1.0 / 16.0; // of its opacity that a smaller splat's quad is made for: many may add up
+static const float EXPONENT = 0.8493218002880191; // square root of log2(e) / 2: exp(-x^2 / 2) = 2^-(EXPONENT x)^2
 static const float SMALLEST_DISTANCE = 1e-30; // metres; keeps the direction finite where the camera sits on a splat
-static const float LARGEST_EXPONENT = 80.0; // exp stays finite in float32
 
 struct SplatVaryings
 {
     float4 position : SV_Position;
-    float2 offset : TEXCOORD0; // along and across the ellipse, pixels from its centre
-    nointerpolation float2 deviations : TEXCOORD1; // standard deviations along and across, pixels
-    nointerpolation float4 color : TEXCOORD2; // sRGB, not premultiplied; opacity
+    float2 offset : TEXCOORD0; // along and across the ellipse; its square is what halves the peak
+    nointerpolation float4 color : TEXCOORD1; // sRGB, not premultiplied; log2 of the peak
 };
 
 // Colour of a splat towards the camera. rotation = R_tex; sh = constant term, then y, z, x.
@@ -43,22 +46,29 @@ float3 splatColor(float3 centre, float4 rotation, float3 sh[4], float3 camera)
     return max(color, 0);
 }
 
-// Half lengths of the quad along the ellipse's axes, pixels: to where opacity x Gaussian falls to LEAST_OPACITY, and
-// half a pixel on, for the integral over the pixel.
-float2 splatHalfLengths(float2 deviations, float opacity)
+// Standard deviations of the Gaussian integrated over pixels.
+float2 splatWide(float2 deviations)
 {
-    float reach = sqrt(max(2 * log(opacity / LEAST_OPACITY), 0));
-    return deviations * reach + 0.5;
+    return sqrt(deviations * deviations + PIXEL_VARIANCE);
 }
 
-// Mass of the normal distribution within half a unit of the offset, along two axes.
-float2 splatMass(float2 offset, float2 deviations)
+// Share of its opacity that a splat has in the middle.
+float splatShare(float2 deviations, float2 wide)
 {
-    float2 right = (offset + 0.5) / deviations;
-    float2 left = (offset - 0.5) / deviations;
-    float2 rightExponent = clamp(-right * (1.6 + 0.07 * right * right), -LARGEST_EXPONENT, LARGEST_EXPONENT);
-    float2 leftExponent = clamp(-left * (1.6 + 0.07 * left * left), -LARGEST_EXPONENT, LARGEST_EXPONENT);
-    return 1 / (1 + exp(rightExponent)) - 1 / (1 + exp(leftExponent));
+    return deviations.x / wide.x * (deviations.y / wide.y);
+}
+
+// How many standard deviations from its middle alpha falls to LEAST_OPACITY.
+float splatReach(float opacity, float share)
+{
+    return sqrt(max(2 * log(opacity * max(share, LEAST_SHARE) / LEAST_OPACITY), 0));
+}
+
+// Half lengths of the quad along the ellipse's axes, pixels.
+float2 splatHalfLengths(float2 deviations, float opacity)
+{
+    float2 wide = splatWide(deviations);
+    return wide * splatReach(opacity, splatShare(deviations, wide));
 }
 
 // Corner of a quad for one of its six vertices, each coordinate -1 or 1.
@@ -83,7 +93,10 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     float2 deviations = float2(length(major), halfAt(tail.w, eye));
     float2 axis = major / max(deviations.x, LEAST_NORM);
 
-    float2 offset = splatCorner(vertex % 6) * splatHalfLengths(deviations, color.a);
+    float2 wide = splatWide(deviations);
+    float share = splatShare(deviations, wide);
+    float2 corner = splatCorner(vertex % 6) * splatReach(color.a, share);
+    float2 offset = corner * wide;
     float2 pixels = float2(axis.x * offset.x - axis.y * offset.y, axis.y * offset.x + axis.x * offset.y);
     float4 clip = mul(viewProjection, float4(asfloat(head.xyz), 1));
     float2 place = clip.xy / clip.w + pixels * float2(2, -2) / screen;
@@ -94,18 +107,15 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     varyings.position = float4(2, 2, 0, 1);
     if (seen)
         varyings.position = float4(place, depth, 1);
-    varyings.offset = offset;
-    varyings.deviations = deviations;
-    varyings.color = color;
+    varyings.offset = EXPONENT * corner;
+    varyings.color = float4(color.rgb, log2(max(color.a * share, LEAST_NORM)));
     return varyings;
 }
 
 // Premultiplied sRGB and alpha of a splat at a pixel.
 float4 splatFragment(SplatVaryings varyings)
 {
-    float2 mass = splatMass(varyings.offset, varyings.deviations);
-    float integral = TWO_PI * varyings.deviations.x * varyings.deviations.y * mass.x * mass.y;
-    float alpha = min(varyings.color.a * integral, MOST_ALPHA);
+    float alpha = min(exp2(varyings.color.a - dot(varyings.offset, varyings.offset)), MOST_ALPHA);
     return float4(varyings.color.rgb * alpha, alpha);
 }
 

@@ -227,7 +227,7 @@ FAULTS = {
             "direction.z * sh[1] - direction.y * sh[2]",
             "splat_draw.hlsl",
         ),
-        drawn("half a pixel of the quad lost", "deviations * reach + 0.5", "deviations * reach"),
+        drawn("quad of the splat alone", "return wide * splatReach(", "return deviations * splatReach("),
     ],
     "splat_sort": [
         Fault("off by one in the scan of a group", "if (thread >= reach)", "if (thread > reach)", "scan.hlsl"),
@@ -272,7 +272,11 @@ FAULTS = {
         ),
     ],
     "splat_draw": [
-        drawn("missing clamp of alpha", "min(varyings.color.a * integral, MOST_ALPHA)", "varyings.color.a * integral"),
+        drawn(
+            "missing clamp of alpha",
+            "min(exp2(varyings.color.a - dot(varyings.offset, varyings.offset)), MOST_ALPHA)",
+            "exp2(varyings.color.a - dot(varyings.offset, varyings.offset))",
+        ),
         drawn("eye index ignored", "eye == 0 ? tail.y : tail.z", "tail.y"),
         drawn("vertex of the neighbouring splat", "order[vertex / 6]", "order[(vertex + 1) / 6]"),
         drawn(
@@ -282,8 +286,9 @@ FAULTS = {
         ),
         drawn("pixels run up", "pixels * float2(2, -2) / screen", "pixels * 2 / screen"),
         drawn("depth inverted", "clamp(clip.z / clip.w", "clamp(clip.w / clip.z"),
-        drawn("cubic term of the mass lost", "1.6 + 0.07 * right * right", "1.6"),
-        drawn("half a pixel of the mass lost", "(offset + 0.5) / deviations", "offset / deviations"),
+        drawn("pixel not integrated over", "PIXEL_VARIANCE = 1.0 / 12.0", "PIXEL_VARIANCE = 1e-6"),
+        drawn("peak not lowered", "log2(max(color.a * share, LEAST_NORM))", "log2(max(color.a, LEAST_NORM))"),
+        drawn("wider than it is", "EXPONENT = 0.8493218002880191", "EXPONENT = 0.7071067811865476"),
         drawn("not premultiplied", "float4(varyings.color.rgb * alpha, alpha)", "float4(varyings.color.rgb, alpha)"),
     ],
 }

@@ -11,7 +11,17 @@ from mua.arrays import Array
 from mua.camera import NEAR, Camera
 from mua.decode import Splats
 from mua.kernels.dq_skinning import covariances
-from mua.kernels.splat_project import GUARD, LAST_KEY, LEAST_OPACITY, eye_ellipses, half_extents, half_lengths
+from mua.kernels.splat_project import (
+    GUARD,
+    LAST_KEY,
+    LEAST_OPACITY,
+    LEAST_SHARE,
+    PIXEL_VARIANCE,
+    eye_ellipses,
+    half_extents,
+    half_lengths,
+    wide_deviations,
+)
 
 ULP = float(np.finfo(np.float32).eps)
 LOG_ERROR = 2.0**-21  # of log near 1; elsewhere 3 ulp
@@ -75,17 +85,20 @@ def eye_bounds(splats: Splats, camera: Camera) -> Bounds:
 def _extent_error(ellipses: Array, opacities: Array, variance: Array) -> Array:
     """Bound [N] of the rounding of half_extents, pixels."""
     deviations = np.maximum(ellipses[:, 4:6], np.sqrt(variance)[:, None])
-    deviation_error = variance[:, None] / np.maximum(deviations, 1e-30) + 5 * ULP * deviations
+    deviation_error = (variance[:, None] / np.maximum(deviations, 1e-30) + 5 * ULP * deviations).max(axis=1)
     spread = (ellipses[:, 4] ** 2 - ellipses[:, 5] ** 2) / 2
     turn_error = np.minimum(variance / np.maximum(spread, 1e-30), np.pi / 2) + 8 * ULP
-    log = np.log(np.maximum(opacities / LEAST_OPACITY, 1))
-    square_error = 2 * (LOG_ERROR + 3 * ULP * (1 + log) + LOGIT_BOUND)
+    wide = wide_deviations(ellipses[:, 4:6])
+    share = np.maximum(np.prod(ellipses[:, 4:6] / wide, axis=1), LEAST_SHARE)
+    share_error = np.sum(deviation_error[:, None] / deviations * PIXEL_VARIANCE / wide**2, axis=1) + 10 * ULP
+    log = np.log(np.maximum(opacities * share / LEAST_OPACITY, 1))
+    square_error = 2 * (LOG_ERROR + 3 * ULP * (1 + log) + LOGIT_BOUND + share_error)
     reach = np.sqrt(2 * log)
     reach_error = square_error / np.maximum(reach, np.sqrt(square_error)) + 5 * ULP * reach
     lengths = half_lengths(ellipses, opacities).sum(axis=1)
     return (
-        deviation_error.sum(axis=1) * reach
-        + deviations.sum(axis=1) * reach_error
+        2 * deviation_error * reach
+        + wide.sum(axis=1) * (reach_error + 5 * ULP * reach)
         + lengths * turn_error
         + 4 * ULP * lengths
     )

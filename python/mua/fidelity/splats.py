@@ -42,15 +42,13 @@ flat in vec4 axes;
 flat in vec2 deviations;
 flat in vec4 tint;
 out vec4 color;
-vec4 cumulative(vec4 x) { return 0.5 + 0.5 * tanh(clamp(x * (0.8 + 0.035 * x * x), -20.0, 20.0)); }
 void main()
 {
     vec2 apart = vec2(gl_FragCoord.x, screen.y - gl_FragCoord.y) - axes.xy;
     vec2 at = vec2(axes.z * apart.x + axes.w * apart.y, axes.z * apart.y - axes.w * apart.x);
-    vec4 sides = cumulative(vec4(at + 0.5, at - 0.5) / deviations.xyxy);
-    vec2 mass = sides.xy - sides.zw;
-    float integral = 6.283185307179586 * deviations.x * deviations.y * mass.x * mass.y;
-    float alpha = min(tint.a * integral, MOST_ALPHA);
+    vec2 wide = sqrt(deviations * deviations + 1.0 / 12.0);
+    float share = deviations.x / wide.x * (deviations.y / wide.y);
+    float alpha = min(tint.a * share * exp(-dot(at / wide, at / wide) / 2.0), MOST_ALPHA);
     color = vec4(tint.rgb * alpha, alpha);
 }
 """.replace("MOST_ALPHA", str(MOST_ALPHA))

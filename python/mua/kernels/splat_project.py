@@ -11,6 +11,8 @@ from mua.arrays import Array
 
 LEAST_OPACITY = 1 / 255  # below it a splat changes no 8-bit image
 LEAST_VARIANCE = 1e-4  # px^2; float32 rounding of the covariance of a 30 px splat, so that a thin axis stays positive
+PIXEL_VARIANCE = 1 / 12  # px^2, of a unit square
+LEAST_SHARE = 1 / 16  # of its opacity in the middle, for which a smaller splat's quad is made
 GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
 LAST_KEY = 0xFFFE
 HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees
@@ -53,12 +55,22 @@ def half_lengths(
     ellipses: Array,  # [..., M, 6]
     opacities: Array,  # [M]
 ) -> Array:
-    """Half lengths [..., M, 2] of the quad along the ellipse's axes, pixels.
+    """Half lengths [..., M, 2] of the quad along the ellipse's axes, pixels: to where alpha falls to LEAST_OPACITY.
 
-    It reaches to where opacity x Gaussian falls to LEAST_OPACITY, and half a pixel on, for the integral over the pixel.
+    Of splats far smaller than a pixel many may add up: their quads are made as for one of LEAST_SHARE.
     """
-    reach = np.sqrt(2 * np.log(np.maximum(opacities / LEAST_OPACITY, 1)))
-    return np.asarray(ellipses[..., 4:6] * reach[:, None] + ellipses.dtype.type(0.5))
+    deviations = ellipses[..., 4:6]
+    wide = wide_deviations(deviations)
+    share = np.maximum(np.prod(deviations / wide, axis=-1), LEAST_SHARE)
+    reach = np.sqrt(2 * np.log(np.maximum(opacities * share / LEAST_OPACITY, 1)))
+    return np.asarray(wide * reach[..., None]).astype(ellipses.dtype)
+
+
+def wide_deviations(
+    deviations: Array,  # [...] pixels
+) -> Array:
+    """Standard deviations [...] of a Gaussian integrated over pixels."""
+    return np.sqrt(deviations * deviations + deviations.dtype.type(PIXEL_VARIANCE))
 
 
 def half_extents(
