@@ -1,12 +1,15 @@
 """Skeletons: plain ones, a person in T-pose with other proportions and joint axes, and motion for it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mua import rotation
+from mua.motion import retarget as retargeting
+from mua.motion.match import match_joints, require_limbs
+from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
@@ -150,3 +153,13 @@ def bone_aligned(skeleton: Skeleton, clip: Clip) -> tuple[Skeleton, Clip]:
     rotations = rotation.multiply(rotation.conjugate(above), rotation.multiply(clip.rotations, turned))
     translations = rotation.rotate(np.broadcast_to(rotation.conjugate(above), rotations.shape), clip.translations)
     return straight, Clip(clip.name, clip.rate, rotations, translations)
+
+
+def retarget(
+    source: SourceMotion, target: Skeleton, *, mapping: Mapping[str, str] | None = None, rate: float = 30.0
+) -> tuple[Clip, tuple[str, ...]]:
+    """Motion on a target whose joints are matched as those of a character are, and notes."""
+    matches = match_joints(source.skeleton, target, mapping, source_said=source.said)
+    if not mapping:
+        require_limbs(source.skeleton, target, matches)
+    return retargeting.retarget(source, target, matches, rate=rate)

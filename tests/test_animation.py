@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 from gltf_files import FLOAT_BOUND, HALF_TURN, Glb, animate, body, weighted
+from people import retarget
 
 from mua.characters.animation import Animation
 from mua.characters.read import read_animation, read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
-from mua.motion.retarget import retarget
 from mua.pose.skeleton import Skeleton
 
 # Name, parent and offset of each joint, centimetres, Z up: what stands below a node that turns and scales it.

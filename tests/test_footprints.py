@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from patches import grid_faces, joined
+from surfel_coverage import coverage
 
 from mua.rig.character import Mesh
 from mua.rig.surface_points import spread_points
 from mua.rig.texel_map import TexelMap, build_texel_map
-from mua.texture.coverage import coverage
 from mua.texture.footprints import TexelPoints
 from mua.texture.sharpness import SPREAD
 from mua.texture.surfels import Surfels, rest_surfels

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, upright, walk, world
+from people import person, retarget, upright, walk, world
 from scipy.spatial.transform import Rotation
 
 from mua.motion.joint_places import roles_by_place
 from mua.motion.match import match_joints
-from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
 from mua.pose.joint_names import roles
 from mua.pose.skeleton import Skeleton

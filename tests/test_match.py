@@ -7,7 +7,7 @@ import pytest
 from people import chain, person, upright
 
 from mua.errors import InputError
-from mua.motion.match import joint_pairs, match_joints, require_limbs, unmatched_source, unmatched_target
+from mua.motion.match import joint_pairs, match_joints, require_limbs, unmatched_target
 from mua.pose.skeleton import Skeleton
 
 
@@ -73,9 +73,8 @@ def test_lists_pairs_and_what_is_left_over() -> None:
     matches = match_joints(source, target)
     listed = [(pair.target, pair.source, pair.role) for pair in joint_pairs(source, target, matches)]
     assert listed == [("Hips", "root", "hips"), ("Spine", "lowerback", "spine")]
-    assert unmatched_target(target, matches) == ("Tail",)
-    assert unmatched_target(target, matches, weighted=[0, 1]) == ()
-    assert unmatched_source(source, matches) == ("Prop",)
+    assert unmatched_target(target, matches, [0, 2]) == ("Tail",)
+    assert unmatched_target(target, matches, [0, 1]) == ()
 
 
 def renamed(skeleton: Skeleton, **names: str) -> Skeleton:

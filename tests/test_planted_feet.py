@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from people import person, still, upright, walk, world
+from people import person, retarget, still, upright, walk, world
 
 from mua.motion.match import match_joints
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.quality import MotionQuality, measure_motion
-from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton

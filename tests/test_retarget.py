@@ -5,18 +5,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from people import bone_aligned, person, random_clip, still, upright, walk, world
+from people import bone_aligned, person, random_clip, retarget, still, upright, walk, world
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 
 from mua import rotation
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
+from mua.motion import retarget as retargeting
 from mua.motion.amass import nominal_skeleton
 from mua.motion.bvh import read_bvh
 from mua.motion.match import match_joints
 from mua.motion.quality import measure_motion
-from mua.motion.retarget import retarget, retarget_matched
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
@@ -394,7 +394,11 @@ def test_tells_which_limbs_of_the_character_nothing_moves() -> None:
         whole.bind_translations[kept],
         root=kept.index(whole.root),
     )
-    _, notes = retarget_matched(SourceMotion(armless, random_clip(armless)), whole, match_joints(armless, whole))
+    _, notes = retargeting.retarget(
+        SourceMotion(armless, random_clip(armless)), whole, match_joints(armless, whole), rate=30.0
+    )
     assert "The motion does not move left arm and right arm." in notes
-    _, notes = retarget_matched(SourceMotion(whole, random_clip(whole)), armless, match_joints(whole, armless))
+    _, notes = retargeting.retarget(
+        SourceMotion(whole, random_clip(whole)), armless, match_joints(whole, armless), rate=30.0
+    )
     assert not [note for note in notes if "moves" in note]

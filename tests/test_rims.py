@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from surfel_coverage import coverage
 
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
-from mua.texture.coverage import coverage
 from mua.texture.footprints import TexelPoints
 from mua.texture.rims import FARTHEST, WIDEST
 from mua.texture.sharpness import SPREAD

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from surfel_coverage import coverage
 from tube import HEIGHT, tube
 
 from mua import rotation
 from mua.rig.character import Mesh
 from mua.rig.texel_map import build_texel_map
-from mua.texture.coverage import coverage
 from mua.texture.footprints import TexelPoints
 from mua.texture.stretch import HOLD, SurfelStretch
 from mua.texture.surfels import SurfaceFrames, rest_surfels

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from people import retarget
 from PIL import Image
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
 
@@ -13,7 +14,6 @@ from mua.atlas.surfaces import Surfaces
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.motion.read import read_motion
-from mua.motion.retarget import retarget
 
 JOINTS = ["Hips", "Hips/Spine", "Hips/Spine/Head"]
 HEIGHTS = (0.0, 60.0, 120.0)  # of the joints above the floor, centimetres, along the stage's up axis

@@ -7,7 +7,7 @@ from mua.arrays import Array
 from mua.motion.contacts import STANDING, planted
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.strays import stray_joints
-from mua.pose.joint_names import SIDES, ancestors
+from mua.pose.joint_names import SIDES
 
 SOLES = ("foot", "toe")
 GOING = 0.2  # legs per second of the hips above standing feet from which these show how far a step carries
@@ -80,7 +80,7 @@ def _pace(rest: Rest, at: Array, source_at: Array, path: Array, *, rate: float, 
 def _mover(rest: Rest) -> int:
     """The joint whose translation moves the whole body: the skeleton's root, or hips that carry it too."""
     root, hips = rest.target.root, rest.matches.roles["hips"][0]
-    return hips if hips in ancestors(rest.target, root) else root
+    return hips if hips in rest.target.ancestors(root) else root
 
 
 def attached(rest: Rest, rotations: Array, translations: Array) -> Array:
@@ -91,7 +91,7 @@ def attached(rest: Rest, rotations: Array, translations: Array) -> Array:
     target = rest.target
     pairs = [(rest.joint(role), rest.joint(carrier)) for role, carrier in CARRIED_BY]
     for joint, limb in (*pairs, *stray_joints(rest).items()):
-        if joint is None or limb is None or limb in ancestors(target, joint) or joint in ancestors(target, limb):
+        if joint is None or limb is None or limb in target.ancestors(joint) or joint in target.ancestors(limb):
             continue
         parent = int(target.parents[joint])
         turned, at = target.world(rotations, translations)

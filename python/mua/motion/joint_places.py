@@ -11,7 +11,6 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.motion.trunk import degrees, unit
-from mua.pose.joint_names import ancestors
 from mua.pose.skeleton import Skeleton
 
 ON_FLOOR = 0.12  # of the height: how near to the lowest joint a leg ends
@@ -47,7 +46,7 @@ def roles_by_place(skeleton: Skeleton) -> dict[str, str]:
     if len(hips) != 1:
         return {}
     leg = max(legs, key=lambda pair: pair.length)
-    above = [pair for pair in pairs if pair.trunk != leg.trunk and leg.trunk in ancestors(skeleton, pair.trunk)]
+    above = [pair for pair in pairs if pair.trunk != leg.trunk and leg.trunk in skeleton.ancestors(pair.trunk)]
     arms = [pair for pair in above if at[pair.first[-1], 1] > floor and pair.length > ARM * height]
     if not arms:
         return {}
@@ -111,7 +110,7 @@ def _named(skeleton: Skeleton, at: Array, height: float, leg: _Limbs, arm: _Limb
         assert segments is not None
         left = np.cross(Y, ahead) @ (at[segments[0]] - at[leg.trunk]) > 0
         found |= {joint: f"{'left' if left else 'right'} {part}" for joint, part in zip(segments, parts, strict=False)}
-    way = [arm.trunk, *ancestors(skeleton, arm.trunk)]
+    way = [arm.trunk, *skeleton.ancestors(arm.trunk)]
     found |= dict.fromkeys(way[: way.index(leg.trunk)], "spine")
     found |= _neck_and_head(skeleton, at, arm, found)
     return {skeleton.names[joint]: role for joint, role in sorted(found.items())}

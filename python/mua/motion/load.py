@@ -8,7 +8,7 @@ from mua.errors import InputError
 from mua.motion.match import Matches, match_joints, require_limbs
 from mua.motion.planted_feet import Feet, plant_feet
 from mua.motion.read import read_motion
-from mua.motion.retarget import retarget_matched
+from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
@@ -104,7 +104,7 @@ def _put_on(
         matches = match_joints(source.skeleton, skeleton, mapping, source_said=source.said, target_said=said)
         if refuse:
             require_limbs(source.skeleton, skeleton, matches)
-        clip, notes = retarget_matched(source, skeleton, matches, rate=rate)
+        clip, notes = retarget(source, skeleton, matches, rate=rate)
         clip, held = plant_feet(source, skeleton, clip, matches, feet=feet)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.joint_places import roles_by_place
-from mua.pose.joint_names import FINGERS, NAMESPACE, SIDES, Roles, ancestors
+from mua.pose.joint_names import FINGERS, NAMESPACE, SIDES, Roles
 from mua.pose.joint_names import roles as find_roles
 from mua.pose.skeleton import Skeleton
 
@@ -138,7 +138,7 @@ def _asked(skeleton: Skeleton, found: Roles, limb: tuple[str, ...]) -> tuple[str
     if upper not in found or lower in found:
         return limb
     known = {joint for joints in found.values() for joint in joints}
-    below = [joint for joint in range(len(skeleton.names)) if found[upper][-1] in ancestors(skeleton, joint)]
+    below = [joint for joint in range(len(skeleton.names)) if found[upper][-1] in skeleton.ancestors(joint)]
     return limb if any(joint not in known and not END.search(skeleton.names[joint]) for joint in below) else limb[:1]
 
 
@@ -173,25 +173,10 @@ def joint_pairs(source: Skeleton, target: Skeleton, matches: Matches) -> tuple[J
 def unmatched_target(
     target: Skeleton,
     matches: Matches,
-    weighted: Iterable[int] | Array | None = None,  # joints that carry skin weight; all where not given
+    weighted: Iterable[int] | Array,  # joints that carry skin weight
 ) -> tuple[str, ...]:
-    """Names of the target's joints that nothing moves."""
-    joints = range(len(target.names)) if weighted is None else sorted(int(joint) for joint in weighted)
-    return tuple(target.names[joint] for joint in joints if joint not in matches.chains)
-
-
-def unmatched_source(source: Skeleton, matches: Matches) -> tuple[str, ...]:
-    """Names of the source's joints that move nothing; ends of chains, which only mark a length, are left out."""
-    used = {joint for first, last in matches.chains.values() for joint in _between(source, first, last)}
-    parents = set(source.parents.tolist())
-    return tuple(name for joint, name in enumerate(source.names) if joint not in used and joint in parents)
-
-
-def _between(skeleton: Skeleton, first: int, last: int) -> list[int]:
-    chain = [last]
-    while chain[-1] != first and skeleton.parents[chain[-1]] >= 0:
-        chain.append(int(skeleton.parents[chain[-1]]))
-    return chain if chain[-1] == first else [first, last]
+    """Names of those joints of the target that nothing moves."""
+    return tuple(target.names[joint] for joint in sorted(map(int, weighted)) if joint not in matches.chains)
 
 
 def _match_equal_names(source: Skeleton, target: Skeleton) -> dict[int, tuple[int, int]]:

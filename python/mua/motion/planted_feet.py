@@ -21,7 +21,7 @@ from mua.motion.rest import Rest, rest_of
 from mua.motion.source import SourceMotion
 from mua.motion.trunk import degrees, unit
 from mua.pose.clip import Clip
-from mua.pose.joint_names import SIDES, ancestors
+from mua.pose.joint_names import SIDES
 from mua.pose.skeleton import Skeleton
 
 Feet = Literal["auto", "keep", "plant"]
@@ -74,7 +74,7 @@ def _legs(target: Skeleton, matches: Matches) -> list[_Leg]:
     for side in SIDES:
         thigh, shin = (matches.joint(f"{side} {part}") for part in ("thigh", "shin"))
         foot, toe = (matches.ends(f"{side} {part}") for part in ("foot", "toe"))
-        if thigh is None or shin is None or foot is None or thigh not in ancestors(target, shin):
+        if thigh is None or shin is None or foot is None or thigh not in target.ancestors(shin):
             continue
         found.append(_Leg(thigh, shin, foot[0], (foot,) if toe is None else (toe, foot)))
     return found
@@ -163,7 +163,7 @@ def _bent(skeleton: Skeleton, leg: _Leg, local: Array, turned: Array, at: Array,
     since = {leg.thigh: swing, leg.shin: rotation.multiply(swing, fold), leg.foot: None}
     result = local.copy()
     for joint, turn in since.items():
-        above = next((j for j in ancestors(skeleton, joint) if j in since), None)
+        above = next((j for j in skeleton.ancestors(joint) if j in since), None)
         carried = since[above] if above is not None else None
         parent = int(skeleton.parents[joint])
         before = turned[:, parent] if parent >= 0 else np.broadcast_to(np.array([1.0, 0, 0, 0]), turned[:, joint].shape)

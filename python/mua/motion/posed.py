@@ -18,7 +18,7 @@ from mua.arrays import Array
 from mua.motion.contacts import planted
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.trunk import AROUND, AT_EASE, Trunk, degrees, leaned, nearest_axis, trunk_of, unit
-from mua.pose.joint_names import FINGERS, ROLES, ancestors
+from mua.pose.joint_names import FINGERS, ROLES
 
 UPRIGHT = 0.75  # quantile of uprightness from which a frame shows how the trunk is at ease
 PRIOR = 0.1  # weight of the axis that a straight limb would bend about, against that seen while it bends
@@ -205,7 +205,7 @@ def _world(frames: _Frames, joint: int, found: dict[int, Array]) -> Array:
     part = next((role for role, joints in frames.rest.matches.roles.items() if joint in joints), "")
     side, _, part = part.rpartition(" ")
     carriers = (frames.rest.joint(f"{side} {_CARRIERS.get(part)}"), frames.rest.joint("hips"))
-    chain = [*ancestors(frames.rest.target, joint), *carriers]
+    chain = [*frames.rest.target.ancestors(joint), *carriers]
     above = next((joint for joint in chain if joint in found), None)
     if above is None:
         return np.tile(IDENTITY, (len(frames.at), 1))

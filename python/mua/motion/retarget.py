@@ -18,7 +18,7 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.floor import placed
-from mua.motion.match import Matches, match_joints, missing_limbs, require_limbs
+from mua.motion.match import Matches, missing_limbs
 from mua.motion.posed import posed_calibrations
 from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
 from mua.motion.source import SourceMotion
@@ -37,29 +37,11 @@ TELLING = (
 )
 
 
-def retarget(
-    source: SourceMotion,
-    target: Skeleton,
-    *,
-    mapping: Mapping[str, str] | None = None,
-    rate: float = 30.0,
-) -> tuple[Clip, tuple[str, ...]]:
+def retarget(source: SourceMotion, target: Skeleton, matches: Matches, *, rate: float) -> tuple[Clip, tuple[str, ...]]:
     """Return the motion of `source` on `target` at `rate` frames per second, and notes worth telling the user.
 
-    mapping: target joint names to source joint names, before any match by name. Joints that nothing matches keep their
-    bind rotation. Errors: InputError if an arm, a leg or the spine is not matched and no `mapping` is given, or if
-    `mapping` names an unknown joint.
+    Joints that nothing matches keep their bind rotation; limbs of that kind are noted.
     """
-    matches = match_joints(source.skeleton, target, mapping, source_said=source.said)
-    if not mapping:
-        require_limbs(source.skeleton, target, matches)
-    return retarget_matched(source, target, matches, rate=rate)
-
-
-def retarget_matched(
-    source: SourceMotion, target: Skeleton, matches: Matches, *, rate: float = 30.0
-) -> tuple[Clip, tuple[str, ...]]:
-    """The same for joints that are matched already; limbs that are not are noted."""
     rest = rest_of(source.skeleton, target, matches)
     clip = resample(source.clip, rate)
     turned, at = source.skeleton.world(clip.rotations, clip.translations)

@@ -1,7 +1,6 @@
 """Joints of a character that nothing moves and that hang on no moved joint: the trunk has to take them along."""
 
 from mua.motion.rest import Rest
-from mua.pose.joint_names import ancestors
 
 TRUNK = ("hips", "spine")
 
@@ -15,10 +14,10 @@ def stray_joints(rest: Rest) -> dict[int, int]:
     trunk = [joint for role in TRUNK for joint in rest.matches.roles.get(role, ()) if joint in chains]
     if not trunk:
         return {}
-    carrying = {above for joint in chains for above in ancestors(target, joint)}
+    carrying = {above for joint in chains for above in target.ancestors(joint)}
     moved = carrying | set(chains)
     strays: dict[int, int] = {}
     for joint, parent in enumerate(target.parents.tolist()):
-        if joint not in moved and parent in carrying and not {parent, *ancestors(target, parent)} & set(chains):
+        if joint not in moved and parent in carrying and not {parent, *target.ancestors(parent)} & set(chains):
             strays[joint] = min(trunk, key=lambda j: float(((rest.target_at[j] - rest.target_at[joint]) ** 2).sum()))
     return strays

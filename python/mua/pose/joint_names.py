@@ -155,7 +155,7 @@ def _keep_to_limbs(skeleton: Skeleton, chains: Roles) -> None:
         side, _, part = role.rpartition(" ")
         below = chains.get(f"{side} {_BELOW.get(part)}")
         if below:
-            way = set(ancestors(skeleton, below[0]))
+            way = set(skeleton.ancestors(below[0]))
             kept = tuple(joint for joint in joints if joint in way)
             chains[role] = kept or joints
 
@@ -166,7 +166,7 @@ def _settle_legs(skeleton: Skeleton, chains: Roles) -> None:
     So is a leg that hangs on what carries the other one too: it is a leg of one bone.
     """
     shins = [chains[role][0] for role in (f"{side} shin" for side in SIDES) if role in chains]
-    carrying = set.intersection(*(set(ancestors(skeleton, joint)) for joint in shins)) if len(shins) == 2 else set()
+    carrying = set.intersection(*(set(skeleton.ancestors(joint)) for joint in shins)) if len(shins) == 2 else set()
     for side in SIDES:
         shin, foot = (chains.get(f"{side} {part}", ()) for part in ("shin", "foot"))
         if f"{side} thigh" not in chains and (len(shin) > 1 or (shin and skeleton.parents[shin[0]] in carrying)):
@@ -182,17 +182,17 @@ def _settle_trunk(skeleton: Skeleton, chains: Roles) -> None:
     legs = [chains[role][0] for role in ("left thigh", "right thigh") if role in chains]
     arms = [chains[role][0] for role in ("left upper_arm", "right upper_arm") if role in chains]
     spine = chains.get("spine", ())
-    carrying = set.intersection(*(set(ancestors(skeleton, joint)) for joint in legs)) if len(legs) == 2 else set()
+    carrying = set.intersection(*(set(skeleton.ancestors(joint)) for joint in legs)) if len(legs) == 2 else set()
     below = tuple(joint for joint in spine if joint in carrying)
     if below and "hips" not in chains:
         chains["hips"] = below
     hips = chains.get("hips", (skeleton.root,))
     if carrying and not carrying & set(hips):
-        above = set.intersection(carrying, ancestors(skeleton, hips[0]))
+        above = set.intersection(carrying, skeleton.ancestors(hips[0]))
         hips = (max(above), *hips) if above else hips
     chains["hips"] = hips
     spine = tuple(joint for joint in spine if joint not in hips)
-    reach = set.union(*(set(ancestors(skeleton, joint)) for joint in arms)) if arms else set(spine)
+    reach = set.union(*(set(skeleton.ancestors(joint)) for joint in arms)) if arms else set(spine)
     beyond = tuple(joint for joint in spine if joint not in reach) if reach & set(spine) else ()
     if len(beyond) > 1 and "neck" not in chains and "head" not in chains:
         chains["neck"], chains["head"] = beyond[:-1], beyond[-1:]
@@ -206,14 +206,6 @@ def _settle_trunk(skeleton: Skeleton, chains: Roles) -> None:
 def _one_chain(skeleton: Skeleton, joints: list[int]) -> tuple[int, ...]:
     chain = joints[:1]
     for joint in joints[1:]:
-        if chain[-1] in ancestors(skeleton, joint):
+        if chain[-1] in skeleton.ancestors(joint):
             chain.append(joint)
     return tuple(chain)
-
-
-def ancestors(skeleton: Skeleton, joint: int) -> list[int]:
-    """Joints above a joint, the nearest first."""
-    found = []
-    while (joint := int(skeleton.parents[joint])) >= 0:
-        found.append(joint)
-    return found

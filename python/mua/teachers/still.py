@@ -3,6 +3,7 @@
 import numpy as np
 
 from mua import rotation
+from mua.arrays import Array
 from mua.pose.clip import Stretches
 from mua.pose.skeleton import Pose
 from mua.rig.build import build_rig
@@ -19,19 +20,17 @@ from mua.texture.surfels import SurfaceFrames
 
 
 class StillTeacher:
-    """Splats of a character that skinning alone moves, in the colours of its textures."""
+    """Splats of a character that skinning alone moves, in the colours of its textures; `rig` is what they stand on."""
 
     def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000) -> None:
+        """Prepare a texture of `texels` x `texels`."""
         mesh = character.mesh
-        self.rig, _ = build_rig(character, texels=texels, template_vertices=template_vertices)
+        self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
         self._character = character
         self._skinning = Skinning(character.skin_indices, character.skin_weights)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
         self._texels = SurfaceTexels(character, self.rig)
-        count = len(mesh.vertices)
-        self._coarse = np.zeros((len(self.rig.mesh.vertices), 3))
-        self._unlit = Light(gain=np.ones((count, 3)), sheen=np.zeros((count, 3)))
 
     def frame(
         self,
@@ -41,18 +40,29 @@ class StillTeacher:
         """One pose; its splats turn and stretch with the surface as the simulated ones do."""
         character = self._character
         joints = character.skeleton.skinning(pose.rotations, pose.translations)
-        dual = self._skinning(joints)
         bind = character.mesh.vertices
         shape = bind if stretches is None else stretched(character, stretches, 0, bind)
-        moved = self._skinning.linear(joints, shape)
+        return self._whole(pose, joints, self._skinning(joints), self._skinning.linear(joints, shape))
+
+    def _whole(self, pose: Pose, joints: Array, dual: Array, moved: Array) -> TeacherFrame:
+        """The frame whose dense surface, posed by `dual` [V, 8], lies at `moved` [V, 3]."""
+        bind = self._character.mesh.vertices
         canonical = transform(rotation.dual_inverse(dual), moved)
+        coarse = self._coarse(canonical - bind)
         turn, strain = self._surface(moved)
         turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)
         turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
-        texture = self._texels.texture(
-            canonical - bind, self._coarse, turn=turn, moved=moved, strain=strain, light=self._unlit
-        )
-        mesh = self.rig.mesh.vertices.astype(np.float32)
+        light = self._light(joints, dual, moved, turn)
+        texture = self._texels.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
+        mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)
         places = self._texels.places
         straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=canonical, places=places)
         return TeacherFrame(pose=pose, mesh=mesh, texture=texture)
+
+    def _coarse(self, displacement: Array) -> Array:
+        """What of a displacement [V, 3] the canonical mesh takes on, [T, 3]; the texels' offsets take the rest."""
+        return np.zeros_like(displacement[self._template])
+
+    def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:
+        """Light on the surface at `moved` [V, 3], in canonical space."""
+        return Light(gain=np.ones_like(moved), sheen=np.zeros_like(moved))

@@ -1,115 +1,22 @@
 """The JSON of a glTF file as objects of pygltflib: each field that is read is checked, absent ones are None.
 
-pygltflib's own parser takes fields of any kind, and ten times as long for a file of many clips.
+pygltflib's own parser takes fields of any kind, and ten times as long for a file of many clips. The kinds that its
+structures declare are those that are checked.
 """
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from functools import cache
+from typing import Any, TypeAlias, Union, get_args, get_origin, get_type_hints
 
 import pygltflib
 
-Kind: TypeAlias = "type | str | list[Kind]"  # a type, an object of FIELDS by its name, or an array of either
+Kind: TypeAlias = "type | list[Kind]"  # a type, a structure of pygltflib, or an array of either
 
-NUMBERS: list[Kind] = [float]
-INDICES: list[Kind] = [int]
-
-# What is read of each object (glTF 2.0, chapter 5). Fields that are not listed are not looked at.
-FIELDS: dict[str, dict[str, Kind]] = {
-    "glTF": {
-        "scene": int,
-        "scenes": ["scene"],
-        "nodes": ["node"],
-        "meshes": ["mesh"],
-        "skins": ["skin"],
-        "animations": ["animation"],
-        "accessors": ["accessor"],
-        "bufferViews": ["bufferView"],
-        "buffers": ["buffer"],
-        "materials": ["material"],
-        "textures": ["texture"],
-        "images": ["image"],
-        "samplers": ["sampler"],
-        "extensionsUsed": [str],
-        "extensionsRequired": [str],
-    },
-    "scene": {"nodes": INDICES},
-    "node": {
-        "name": str,
-        "mesh": int,
-        "skin": int,
-        "children": INDICES,
-        "matrix": NUMBERS,
-        "translation": NUMBERS,
-        "rotation": NUMBERS,
-        "scale": NUMBERS,
-        "weights": NUMBERS,
-    },
-    "mesh": {"name": str, "primitives": ["primitive"], "weights": NUMBERS},
-    "primitive": {
-        "attributes": "attributes",
-        "indices": int,
-        "material": int,
-        "mode": int,
-        "targets": ["attributes"],
-    },
-    "skin": {"joints": INDICES, "inverseBindMatrices": int},
-    "animation": {"name": str, "channels": ["channel"], "samplers": ["keys"]},
-    "channel": {"sampler": int, "target": "target"},
-    "target": {"node": int, "path": str},
-    "keys": {"input": int, "output": int, "interpolation": str},
-    "accessor": {
-        "bufferView": int,
-        "byteOffset": int,
-        "componentType": int,
-        "normalized": bool,
-        "count": int,
-        "type": str,
-        "sparse": "sparse",
-        "min": NUMBERS,
-        "max": NUMBERS,
-    },
-    "sparse": {"count": int, "indices": "sparse part", "values": "sparse part"},
-    "sparse part": {"bufferView": int, "byteOffset": int, "componentType": int},
-    "bufferView": {"buffer": int, "byteOffset": int, "byteLength": int, "byteStride": int},
-    "buffer": {"uri": str, "byteLength": int},
-    "material": {
-        "name": str,
-        "alphaMode": str,
-        "alphaCutoff": float,
-        "emissiveFactor": NUMBERS,
-        "emissiveTexture": "textureInfo",
-        "pbrMetallicRoughness": "pbrMetallicRoughness",
-    },
-    "pbrMetallicRoughness": {"baseColorFactor": NUMBERS, "baseColorTexture": "textureInfo"},
-    "textureInfo": {"index": int, "texCoord": int},
-    "texture": {"source": int, "sampler": int},
-    "image": {"uri": str, "bufferView": int},
-    "sampler": {"wrapS": int, "wrapT": int, "magFilter": int},
+UNREAD = {  # fields that are not looked at
+    *("asset", "cameras", "camera", "extras", "skeleton", "mimeType", "minFilter", "doubleSided", "metallicFactor"),
+    *("roughnessFactor", "metallicRoughnessTexture", "normalTexture", "occlusionTexture"),
 }
-STRUCTURES: dict[str, type] = {
-    "glTF": pygltflib.GLTF2,
-    "scene": pygltflib.Scene,
-    "node": pygltflib.Node,
-    "mesh": pygltflib.Mesh,
-    "primitive": pygltflib.Primitive,
-    "skin": pygltflib.Skin,
-    "animation": pygltflib.Animation,
-    "channel": pygltflib.AnimationChannel,
-    "target": pygltflib.AnimationChannelTarget,
-    "keys": pygltflib.AnimationSampler,
-    "accessor": pygltflib.Accessor,
-    "sparse": pygltflib.Sparse,
-    "sparse part": pygltflib.AccessorSparseIndices,
-    "bufferView": pygltflib.BufferView,
-    "buffer": pygltflib.Buffer,
-    "material": pygltflib.Material,
-    "pbrMetallicRoughness": pygltflib.PbrMetallicRoughness,
-    "textureInfo": pygltflib.TextureInfo,
-    "texture": pygltflib.Texture,
-    "image": pygltflib.Image,
-    "sampler": pygltflib.Sampler,
-}
-ATTRIBUTES, EXTENSIONS = "attributes", "extensions"  # objects whose names are free: of indices, and of objects
+UNDECLARED: dict[type, dict[str, Kind]] = {pygltflib.Node: {"weights": [float]}}
 WORDS = {int: "a whole number", float: "a number", str: "a string", bool: "true or false", dict: "an object"}
 
 
@@ -125,25 +32,44 @@ class Names:
         return None
 
 
-def read_object(raw: Any, kind: str = "glTF", where: str = "") -> Any:
-    """The object `raw` of a kind of FIELDS; raises ValueError that names the field which is of another kind.
+class Extensions(Names):
+    """The extensions of an object: an object by each name."""
+
+
+FREE: dict[type, type] = {pygltflib.Attributes: int, Extensions: dict}  # what stands by each name of such objects
+
+
+def read_object(raw: Any, kind: type = pygltflib.GLTF2, where: str = "") -> Any:
+    """The object `raw` as a structure of pygltflib; raises ValueError that names the field which is of another kind.
 
     Extensions stay dictionaries of dictionaries: whoever reads one checks what is in it.
     """
     if not isinstance(raw, dict):
         raise ValueError(f"{where} is {_short(raw)}, expected an object")
-    free = {ATTRIBUTES: int, EXTENSIONS: dict}
-    known = dict.fromkeys(raw, free[kind]) if kind in free else FIELDS[kind] | {"extensions": EXTENSIONS}
+    known = dict.fromkeys(raw, FREE[kind]) if kind in FREE else _declared(kind)
     fields = {
         name: _value(raw[name], wanted, f"{where}.{name}" if where else name)
         for name, wanted in known.items()
         if raw.get(name) is not None
     }
-    if kind in free:
+    if kind in FREE:
         return Names(fields)
-    found = STRUCTURES[kind]()
+    found = kind()
     vars(found).update(dict.fromkeys(vars(found)) | dict.fromkeys(known) | fields)
     return found
+
+
+@cache
+def _declared(structure: type) -> Mapping[str, Kind]:
+    """The kinds of the fields of a structure that are read."""
+    kinds = {name: _kind(hint) for name, hint in get_type_hints(structure).items() if name not in UNREAD}
+    return kinds | {"extensions": Extensions} | UNDECLARED.get(structure, {})
+
+
+def _kind(hint: Any) -> Kind:
+    if get_origin(hint) is Union:  # with None
+        hint = get_args(hint)[0]
+    return [_kind(get_args(hint)[0])] if get_origin(hint) is list else hint
 
 
 def _value(raw: Any, kind: Kind, where: str) -> Any:
@@ -151,9 +77,9 @@ def _value(raw: Any, kind: Kind, where: str) -> Any:
         if not isinstance(raw, list):
             raise ValueError(f"{where} is {_short(raw)}, expected an array")
         return [_value(item, kind[0], f"{where}[{index}]") for index, item in enumerate(raw)]
-    if isinstance(kind, str):
+    if kind not in WORDS:
         found = read_object(raw, kind, where)
-        return vars(found) if kind == EXTENSIONS else found
+        return vars(found) if kind is Extensions else found
     if kind is int and isinstance(raw, float) and raw.is_integer():  # some exporters write 3.0 for 3
         return int(raw)
     accepted = (int, float) if kind is float else kind
