@@ -13,7 +13,7 @@ from mua import rotation
 from mua.baking.portrait import THREE_QUARTER, portrait
 from mua.decode import decode_clip_frame
 from mua.motion.facing import front_of
-from mua.motion.load import load_motion
+from mua.motion.load import load_motions
 from mua.pose.skeleton import Skeleton
 
 ROUNDING = 1e-6  # radians
@@ -93,7 +93,7 @@ def test_a_figure_that_is_no_person_faces_as_its_root_has_turned() -> None:
 @pytest.mark.parametrize("name", ["motion/dab.bvh", "motion/jumping.bvh", "motion/cmu/01_03.bvh"])
 def test_toes_of_captured_motion_point_to_the_front(shared_data: SharedData, name: str) -> None:
     skeleton = person()
-    (clip,), _ = load_motion(shared_data.path(name), skeleton, mapping=None, rate=30)
+    clip = load_motions(shared_data.path(name), skeleton, mapping=None, rate=30)[0].clip
     front = front_of(skeleton, clip.rotations[0], clip.translations[0])
     _, at = skeleton.world(clip.rotations[0], clip.translations[0])
     toes = [at[skeleton.names.index(f"{side}ToeBase")] - at[skeleton.names.index(f"{side}Foot")] for side in SIDES]

@@ -9,7 +9,7 @@ from bvh_files import BVH
 
 from mua import rotation
 from mua.errors import InputError
-from mua.motion.load import counted, load_motion, same_joints
+from mua.motion.load import counted, load_motions, same_joints
 from mua.motion.read import read_motion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
@@ -31,7 +31,7 @@ def twice_as_large(skeleton: Skeleton) -> Skeleton:
 def test_takes_motion_on_the_same_joints_as_it_stands(motion: Path) -> None:
     source = read_motion(motion)[0]
     assert same_joints(source.skeleton, source.skeleton)
-    clips, _ = load_motion(motion, source.skeleton, mapping=None, rate=20.0)
+    clips = [one.clip for one in load_motions(motion, source.skeleton, mapping=None, rate=20.0)]
     assert [(clip.rate, len(clip)) for clip in clips] == [(20.0, 5)]
     np.testing.assert_allclose(clips[0].rotations[::2], source.clip.rotations, atol=1e-12)
 
@@ -39,7 +39,8 @@ def test_takes_motion_on_the_same_joints_as_it_stands(motion: Path) -> None:
 def test_puts_motion_on_joints_of_other_names_by_a_mapping(motion: Path) -> None:
     source = read_motion(motion)[0]
     other = twice_as_large(source.skeleton)
-    clips, _ = load_motion(motion, other, mapping={"j0": "hips", "j1": "spine"}, rate=10.0)
+    loaded = load_motions(motion, other, mapping={"j0": "hips", "j1": "spine"}, rate=10.0)
+    clips = [one.clip for one in loaded]
     assert len(clips[0]) == 3
     turned = rotation.multiply(rotation.conjugate(clips[0].rotations[0, 1]), clips[0].rotations[2, 1])
     assert np.degrees(2 * np.arccos(abs(turned[0]))) == pytest.approx(20, abs=1e-6)
@@ -48,7 +49,7 @@ def test_puts_motion_on_joints_of_other_names_by_a_mapping(motion: Path) -> None
 def test_refuses_motion_whose_joints_match_none_and_names_the_file(motion: Path) -> None:
     source = read_motion(motion)[0]
     with pytest.raises(InputError, match=r"wave\.bvh"):
-        load_motion(motion, twice_as_large(source.skeleton), mapping=None, rate=10.0)
+        load_motions(motion, twice_as_large(source.skeleton), mapping=None, rate=10.0)
 
 
 def test_what_several_clips_bring_is_said_once_with_their_number() -> None:

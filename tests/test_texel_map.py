@@ -8,7 +8,6 @@ from patches import grid_faces, grid_points
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
-from mua.rig.surface_points import points_on_surface
 from mua.rig.texel_map import TexelMap, build_texel_map
 
 # A barycentric is a quotient of areas of a few float64 operations, then rounded to float32.
@@ -128,21 +127,3 @@ def test_more_candidates_than_fit_at_once_give_the_same_map(monkeypatch: pytest.
     pieces = build_texel_map(mesh, 16)
     assert np.array_equal(whole.triangles, pieces.triangles)
     assert whole.claimed_twice == pieces.claimed_twice
-
-
-def test_points_on_surface_fall_back_to_the_nearest_covered_texel() -> None:
-    whole = build_texel_map(grid_mesh(1), 8)
-    half = build_texel_map(flat_mesh(np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 8.0]]), np.array([[0, 1, 2]])), 8)
-    triangles, barycentrics = points_on_surface(whole, half)
-    assert triangles.shape == (64,)
-    columns = np.einsum("nk,k->n", barycentrics, [0.0, 0.5, 0.0]).reshape(8, 8) * 8
-    rows_and_columns = np.divmod(half.texels, 8)
-    np.testing.assert_allclose(columns[rows_and_columns], rows_and_columns[1] + 0.5, rtol=0, atol=POSITION_BOUND)
-    assert np.all(columns[:, 5:] <= 4)
-
-
-def test_points_on_surface_of_an_empty_template_are_none() -> None:
-    empty = build_texel_map(flat_mesh(np.empty((0, 2)), np.empty((0, 3), np.int32)), 4)
-    triangles, barycentrics = points_on_surface(empty, build_texel_map(grid_mesh(1), 4))
-    assert triangles.shape == (0,)
-    assert barycentrics.shape == (0, 3)

@@ -1,7 +1,7 @@
 """What a scene file holds of a character, before it becomes one surface on rigid joints; the readers fill it."""
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -35,6 +35,13 @@ def wrapped(index: Array, count: int, wrap: Wrap) -> Array:
         there = index % (2 * count)
         return np.minimum(there, 2 * count - 1 - there)
     return np.clip(index, 0, count - 1)
+
+
+def upwards(node: int, parents: Array) -> Iterator[int]:
+    """A node or joint, its parent, and so on to the top."""
+    while node >= 0:
+        yield node
+        node = int(parents[node])
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +94,10 @@ class Scene:
     motions: tuple[Motion, ...]
     notes: tuple[str, ...]
     roles: Mapping[int, str] = field(default_factory=dict)  # node to body part, where the file itself says it
+
+    def upwards(self, node: int) -> Iterator[int]:
+        """The node, its parent, and so on to the top."""
+        return upwards(node, self.parents)
 
     def masses(self, skin: int) -> Array:
         """The summed weights [n] of each joint of a skin."""

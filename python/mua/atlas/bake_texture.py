@@ -1,10 +1,9 @@
 """Carries textures over from the UVs that a file came with to the UVs of the atlas."""
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
-from mua.atlas.filtering import bilinear, bled, reduced
+from mua.atlas.filtering import bilinear, bled, filled, reduced
 from mua.atlas.opacity import cut_out
 from mua.atlas.pictures import multiplied
 from mua.rig.charts import areas
@@ -40,7 +39,7 @@ def bake_texture(
         picture[texels.texels] = multiplied(picture[texels.texels], factors)
     empty = np.ones((texels.size, texels.size), bool)
     empty.flat[texels.texels] = False
-    return _fill_from_nearest(picture.reshape(texels.size, texels.size, 4), empty)
+    return filled(picture.reshape(texels.size, texels.size, 4), empty)
 
 
 def _averaged(
@@ -68,14 +67,3 @@ def _sample(
     columns = wrapped(first[:, 0], width, wraps[0]), wrapped(first[:, 0] + 1, width, wraps[0])
     rows = wrapped(first[:, 1], height, wraps[1]), wrapped(first[:, 1] + 1, height, wraps[1])
     return np.rint(bilinear(image, rows, columns, place - first)).astype(np.uint8)
-
-
-def _fill_from_nearest(
-    picture: Array,  # [S, S, 4]
-    empty: Array,  # [S, S] bool
-) -> Array:
-    """The picture with every empty texel replaced by the nearest that is not."""
-    if empty.all() or not empty.any():
-        return picture
-    rows, columns = distance_transform_edt(empty, return_distances=False, return_indices=True)
-    return picture[rows, columns]

@@ -29,11 +29,18 @@ def bled(
     image: Array,  # [h, w, 4] uint8
 ) -> Array:
     """The picture with each clear texel in the colour of the nearest that is not, and as clear as before."""
-    clear = image[..., 3] < CLEAR
-    if clear.all() or not clear.any():
-        return image
-    rows, columns = distance_transform_edt(clear, return_distances=False, return_indices=True)
-    return np.dstack([image[rows, columns, :3], image[..., 3]])
+    return np.dstack([filled(image[..., :3], image[..., 3] < CLEAR), image[..., 3]])
+
+
+def filled(
+    picture: Array,  # [h, w, c]
+    empty: Array,  # [h, w] bool
+) -> Array:
+    """The picture with every empty texel replaced by the nearest that is not."""
+    if empty.all() or not empty.any():
+        return picture
+    rows, columns = distance_transform_edt(empty, return_distances=False, return_indices=True)
+    return np.asarray(picture[rows, columns])
 
 
 def bilinear(

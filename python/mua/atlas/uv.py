@@ -158,8 +158,13 @@ def _cut(
     source: _Source,
     anew: Array,  # [F] bool
 ) -> Array:
-    """New UVs [n, 3, 2] in the unit square for the faces that need them."""
-    flat = unwrap(source.surfaces.vertices, source.surfaces.faces[anew])
+    """New UVs [n, 3, 2] in the unit square, cut and flattened by xatlas, for the faces that need them."""
+    kept, index = np.unique(source.surfaces.faces[anew], return_inverse=True)
+    atlas = xatlas.Atlas()
+    atlas.add_mesh(source.surfaces.vertices[kept].astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
+    atlas.generate()
+    _, corners, uv = atlas.get_mesh(0)
+    flat = uv[corners].astype(np.float64) * (atlas.width, atlas.height)
     return flat / max(flat.max(), np.finfo(float).tiny)
 
 
@@ -213,19 +218,6 @@ def _character(source: _Source, layout: _Layout, size: int) -> Character:
         source=surfaces.source,
         roles=surfaces.roles,
     )
-
-
-def unwrap(
-    vertices: Array,  # [V, 3] metres
-    faces: Array,  # [F, 3]
-) -> Array:
-    """Cut and flatten a surface with xatlas: [F, 3, 2], all charts in one plane without overlap."""
-    kept, index = np.unique(faces, return_inverse=True)
-    atlas = xatlas.Atlas()
-    atlas.add_mesh(vertices[kept].astype(np.float32), index.reshape(-1, 3).astype(np.uint32))
-    atlas.generate()
-    _, flat, uv = atlas.get_mesh(0)
-    return uv[flat].astype(np.float64) * (atlas.width, atlas.height)
 
 
 def _numbered(

@@ -67,12 +67,7 @@ def rotations_of(matrices: Array) -> Array:
 def _joint_nodes(scene: Scene) -> Array:
     """Nodes of all skins, and those of their ancestors that a clip moves."""
     kept = {int(node) for skin in scene.skins for node in skin.joints}
-    ancestors = set()
-    for node in kept:
-        parent = int(scene.parents[node])
-        while parent >= 0 and parent not in ancestors:
-            ancestors.add(parent)
-            parent = int(scene.parents[parent])
+    ancestors = {above for node in kept for above in scene.upwards(node)}
     return np.array(sorted(kept | {node for node in ancestors - kept if _is_animated(scene, node)}))
 
 
@@ -90,10 +85,7 @@ def _is_animated(scene: Scene, node: int) -> bool:
 
 
 def _kept_parent(scene: Scene, node: int, index: dict[int, int]) -> int:
-    parent = int(scene.parents[node])
-    while parent >= 0 and parent not in index:
-        parent = int(scene.parents[parent])
-    return index.get(parent, -1)
+    return next((index[above] for above in scene.upwards(int(scene.parents[node])) if above in index), -1)
 
 
 def _bind_matrices(
@@ -194,10 +186,9 @@ def _rest_space(
 
 def _moved_with(scene: Scene, skin: Skin, mass: Array, bound: dict[int, Array], index: dict[int, int]) -> Array | None:
     """How far [4, 4] the nearest bound joint above a skin stands from its rest pose; None where none is bound above."""
-    node = int(skin.joints[int(np.argmax(mass))])
-    while node >= 0 and index.get(node) not in bound:
-        node = int(scene.parents[node])
-    return bound[index[node]] @ np.linalg.inv(scene.rest[node]) if node >= 0 else None
+    above = scene.upwards(int(skin.joints[int(np.argmax(mass))]))
+    node = next((node for node in above if index.get(node) in bound), None)
+    return None if node is None else bound[index[node]] @ np.linalg.inv(scene.rest[node])
 
 
 def _spaces(scene: Scene, skin: Skin, mass: Array) -> tuple[Array, Array]:
@@ -219,10 +210,7 @@ def _upright_space(
     """
     spaces, used = _spaces(scene, skin, mass)
     scale = np.abs(np.linalg.det(spaces[:, :3, :3])) ** (1 / 3)
-    top = ancestor = int(skin.joints[used[0]])
-    while ancestor >= 0:
-        top = ancestor if ancestor in kept else top
-        ancestor = int(scene.parents[ancestor])
+    top = [node for node in scene.upwards(int(skin.joints[used[0]])) if node in kept][-1]
     frame = int(scene.parents[top])
     frame_matrix = scene.rest[frame] if frame >= 0 else np.eye(4)
     frame_rotation = rotations_of(frame_matrix)

@@ -11,6 +11,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.characters.bind_pose import Bind, rotations_of
 from mua.characters.rigid_motion import RigidMotion, local_offsets
+from mua.scene import upwards
 
 MOVES = 1e-3  # of the character's size: a joint's offset that changes less does not count as animated
 LEAVES = 0.02  # of the character's size: a joint that strays more from its place beside another is not carried by it
@@ -27,7 +28,7 @@ def find_root(names: list[str], bind: Bind, *, motions: list[RigidMotion]) -> in
     for motion in motions:
         offsets = local_offsets(motion.rotations, motion.positions, bind.parents)
         moved |= np.ptp(offsets, axis=0).max(axis=-1) > MOVES * _size(bind)
-    if moved[_with_ancestors(trunk, bind.parents)].any():
+    if moved[[*upwards(trunk, bind.parents)]].any():
         return trunk
     highest = [int(j) for j in np.flatnonzero(moved) if below[j] >= body]
     hips = [j for j, name in enumerate(names) if is_hips(name) and below[j] >= body]
@@ -73,7 +74,7 @@ def _by_clips(bind: Bind, root: int, stray: "_Stray") -> tuple[Array, Array]:
     Controls, which then carry nothing, are left out. A joint that keeps to no other stays where the file has it, if
     that is in the body; else the whole file's hierarchy stays.
     """
-    above = [_with_ancestors(j, bind.parents) for j in range(len(bind.parents))]
+    above = [[*upwards(j, bind.parents)] for j in range(len(bind.parents))]
     carries = mass_below(bind) > 0 if bind.mass.any() else bind.trusted
     weighted = np.flatnonzero(bind.trusted & carries).tolist()
     orphans = {j for j in weighted if not _is_carried(j, int(bind.parents[j]), bind, stray)}
@@ -108,8 +109,8 @@ def _led(bind: Bind, parents: Array, root: int, stray: "_Stray") -> Array:
 
     Such a joint goes where it strays least. What keeps its place beside a joint above the root stays there.
     """
-    leads = _with_ancestors(root, parents)
-    body = [j for j in range(len(parents)) if root in _with_ancestors(j, parents)]
+    leads = [*upwards(root, parents)]
+    body = [j for j in range(len(parents)) if root in upwards(j, parents)]
     carries = mass_below(bind) > 0
     led = parents.copy()
     for joint in np.flatnonzero(carries).tolist():
@@ -165,7 +166,7 @@ def _holder(joint: int, holders: list[int], bind: Bind, stray: "_Stray") -> int:
 
 def _ordered(bind: Bind, parents: Array, kept: Array) -> Bind:
     """The kept [J] joints under their new parents [J], parents before children."""
-    above = [[a for a in _with_ancestors(j, parents) if kept[a]] for j in range(len(parents))]
+    above = [[a for a in upwards(j, parents) if kept[a]] for j in range(len(parents))]
     order = sorted(np.flatnonzero(kept).tolist(), key=lambda j: [*reversed(above[j])])
     rank = {j: n for n, j in enumerate(order)}
     found = np.array([rank[above[j][1]] if len(above[j]) > 1 else -1 for j in order], np.int32)
@@ -173,15 +174,6 @@ def _ordered(bind: Bind, parents: Array, kept: Array) -> Bind:
         name: getattr(bind, name)[order] for name in ("nodes", "matrices", "stretch", "places", "mass", "trusted")
     }
     return Bind(parents=found, **columns)
-
-
-def _with_ancestors(joint: int, parents: Array) -> list[int]:
-    """The joint, its parent, and so on to the top."""
-    found = []
-    while joint >= 0:
-        found.append(int(joint))
-        joint = int(parents[joint])
-    return found
 
 
 def _size(bind: Bind) -> float:

@@ -8,6 +8,7 @@ from mua.arrays import Array
 
 LOW = 0.06  # of the leg: how far above its lowest a standing point may be
 SLOW = 0.35  # legs per second along the floor: faster points do not stand
+ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
 STANDING = 0.05  # quantile over frames of a point's height that counts as standing
 SHORTEST = 0.1  # seconds: a shorter contact is a passing foot
 
@@ -38,3 +39,14 @@ def spans(held: Array) -> Iterator[tuple[int, int]]:
     """Begin and end of every run of true values in [F] bool."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], held, [False]]).astype(int)))
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+
+
+def floor_of(at: Array) -> float:
+    """Height of the floor that a rest pose [J, 3] stands on: 0 where its lowest joint is near to it."""
+    lowest = float(at[:, 1].min())
+    return 0.0 if abs(lowest) < ON_FLOOR * np.ptp(at[:, 1]) else lowest
+
+
+def standing(heights: Array) -> float:
+    """What counts as standing of heights [F, P] of feet: the lower one's in the lowest frames."""
+    return float(np.quantile(heights.min(axis=1), STANDING))

@@ -4,7 +4,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import STANDING, planted
+from mua.motion.contacts import floor_of, planted, standing
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.motion.strays import stray_joints
 from mua.pose.joint_names import SIDES
@@ -12,7 +12,6 @@ from mua.pose.joint_names import SIDES
 SOLES = ("foot", "toe")
 GOING = 0.2  # legs per second of the hips above standing feet from which these show how far a step carries
 LIKELY = 1.5  # times the ratio of the legs: paces beyond it come from feet that do not stand
-ON_FLOOR = 0.1  # of the height: a rest pose whose lowest joint is this near to 0 stands on the floor
 LOWEST = 0.25  # of the leg: a clip higher above the floor than this never stands and stays where it is
 
 
@@ -140,12 +139,11 @@ def _lift(rest: Rest, at: Array, source_at: Array | None, scale: float, leg: flo
     soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
     if not soles:
         return 0.0, []
-    floor = 0.0 if _stands(rest.target_at) else rest.target_at[:, 1].min()
-    height = _standing(at[:, soles, 1] - (rest.target_at[soles, 1] - floor))
+    height = standing(at[:, soles, 1] - rest.target_at[soles, 1]) + floor_of(rest.target_at)
     expected = 0.0
-    if source_at is not None and _stands(rest.source_at):
+    if source_at is not None and floor_of(rest.source_at) == 0:
         feet = [rest.matches.chains[joint][0] for joint in soles]
-        expected = scale * _standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
+        expected = scale * standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
         if expected < -LOWEST * leg:  # a path that starts at the origin, not on the floor
             expected = 0.0
     elif height > LOWEST * leg:
@@ -154,13 +152,3 @@ def _lift(rest: Rest, at: Array, source_at: Array | None, scale: float, leg: flo
     if expected > LOWEST * leg:
         notes.append(f"its feet never come nearer to the floor than {expected:.2f} m; the height is kept.")
     return expected - height, notes
-
-
-def _standing(heights: Array) -> float:
-    """What counts as standing of heights [F, P] of feet: the lower one's in the lowest frames."""
-    return float(np.quantile(heights.min(axis=1), STANDING))
-
-
-def _stands(at: Array) -> bool:
-    """Whether a rest pose [J, 3] stands on the floor at height 0."""
-    return bool(abs(at[:, 1].min()) < ON_FLOOR * np.ptp(at[:, 1]))

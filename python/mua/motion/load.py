@@ -25,7 +25,7 @@ class LoadedMotion:
     notes: tuple[str, ...]  # worth telling the user, a sentence each
 
 
-def load_motion(
+def load_motions(
     path: Path,
     skeleton: Skeleton,
     *,
@@ -33,27 +33,13 @@ def load_motion(
     rate: float,  # frames per second of the clips returned
     said: Mapping[str, str] | None = None,  # joint of `skeleton` to role, where the character's file itself says it
     feet: Feet = "auto",  # whether standing feet are held in place
-) -> tuple[list[Clip], tuple[str, ...]]:
-    """The clips of a motion file, or of every file of a directory, on `skeleton`, and notes of each clip for the user.
+    refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
+) -> list[LoadedMotion]:
+    """The clips of a motion file, or of every file of a directory, on `skeleton`, each with what it was made from.
 
     Motion on the very same skeleton is taken as it stands; any other is retargeted.
     Errors: InputError naming the file where it cannot be read or moves no arm, leg or spine of the character.
     """
-    loaded = load_motions(path, skeleton, mapping=mapping, rate=rate, said=said, feet=feet)
-    return [motion.clip for motion in loaded], tuple(note for motion in loaded for note in motion.notes)
-
-
-def load_motions(
-    path: Path,
-    skeleton: Skeleton,
-    *,
-    mapping: Mapping[str, str] | None,
-    rate: float,
-    said: Mapping[str, str] | None = None,
-    feet: Feet = "auto",
-    refuse: bool = True,  # whether motion that moves no arm, leg or spine of the character is an error, else a note
-) -> list[LoadedMotion]:
-    """The same, each clip with the motion that it was made from and the joints that were matched."""
     return [
         _put_on(path, source, skeleton, mapping=mapping, rate=rate, said=said, feet=feet, refuse=refuse and not mapping)
         for source in read_motion(path)

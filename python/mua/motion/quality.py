@@ -7,7 +7,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import STANDING, planted, speed
+from mua.motion.contacts import floor_of, planted, speed, standing
 from mua.motion.match import Matches
 from mua.motion.pair import Pair, Side
 from mua.motion.source import SourceMotion
@@ -21,7 +21,6 @@ SEGMENTS = {  # limbs compared: where they begin and end
     for limb, end in (("upper_arm", "forearm"), ("forearm", "hand"), ("thigh", "shin"), ("shin", "foot"))
 }
 Y = np.array([0.0, 1, 0])
-ON_FLOOR = 0.1  # of the height: a bind pose whose lowest joint is this near to 0 stands on the floor
 LIMB_BOUND = 10.0  # degrees of a limb's median from which a sentence says so
 FACING_BOUND = 10.0  # degrees between facing and travel, more than the source has, from which a sentence says so
 FORWARD = 45.0  # degrees between the source's facing and travel up to which it counts as going forward
@@ -157,13 +156,7 @@ def _feet_height(side: Side) -> float | None:
     soles = side.soles()
     if not soles:
         return None
-    return float(np.quantile(np.min(side.at[:, soles, 1] - side.rest_at[soles, 1], axis=1), STANDING)) + _floor(side)
-
-
-def _floor(side: Side) -> float:
-    """Height of the floor that the bind pose stands on: 0 where its lowest joint is near to it."""
-    lowest = float(side.rest_at[:, 1].min())
-    return 0.0 if abs(lowest) < ON_FLOOR * np.ptp(side.rest_at[:, 1]) else lowest
+    return standing(side.at[:, soles, 1] - side.rest_at[soles, 1]) + floor_of(side.rest_at)
 
 
 def _slide(pair: Pair) -> tuple[float | None, float | None]:

@@ -7,8 +7,8 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.pose.joint_names import SIDES
 
-SIDES = ("left", "right")
 WIDE = 0.1  # of the way between the shoulders: collar bones that begin farther apart than this show left and right
 AT_EASE = np.radians(5)  # by which people's shoulder joints are behind their hip joints while they stand upright
 HANGING = 60.0  # degrees from straight down within which legs of a standing body point

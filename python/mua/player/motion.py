@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mua.asset.avatar import Avatar
 from mua.errors import InputError
-from mua.motion.load import counted, load_motion, unique_names
+from mua.motion.load import counted, load_motions, unique_names
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 
@@ -23,8 +23,9 @@ def player_clips(
     """
     rate = avatar.encoding.rate
     if motion is not None:
-        clips, notes = load_motion(motion, avatar.rig.skeleton, mapping=mapping, rate=rate)
-        return unique_names(clips), counted(notes, clips)
+        loaded = load_motions(motion, avatar.rig.skeleton, mapping=mapping, rate=rate)
+        clips = [one.clip for one in loaded]
+        return unique_names(clips), counted([note for one in loaded for note in one.notes], clips)
     if not avatar.clips:
         raise InputError(f"{file} holds no clips; mua-view needs one to pose the avatar")
     return [resample(clip, rate) for clip in avatar.clips], ()

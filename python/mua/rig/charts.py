@@ -5,8 +5,16 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from mua.arrays import Array
+from mua.rig.character import Mesh
 
 SPECK = 4 / 512**2  # UV area, 4 texels of a map of 512, below which a fold is no chart
+
+
+def charts_of(mesh: Mesh) -> Array:
+    """The UV chart [F] of each face."""
+    pairs = np.stack([mesh.faces, mesh.uv_faces], axis=-1).reshape(-1, 2)
+    nodes = np.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
+    return find_charts(nodes, mesh.uv[mesh.uv_faces])
 
 
 def find_charts(

@@ -1,12 +1,10 @@
-"""Points of triangle meshes: spread evenly, those of texels, or the nearest of a triangle."""
+"""Points of triangle meshes: spread evenly, or the nearest of a triangle."""
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
 from mua.rig.charts import areas
-from mua.rig.texel_map import TexelMap
 
 
 def spread_points(mesh: Mesh, count: int) -> tuple[Array, Array]:
@@ -19,27 +17,6 @@ def spread_points(mesh: Mesh, count: int) -> tuple[Array, Array]:
     folded = a + b > 1
     a, b = np.where(folded, 1 - a, a), np.where(folded, 1 - b, b)
     return triangles, np.stack([1 - a - b, a, b], axis=1)
-
-
-def points_on_surface(texels: TexelMap, dense: TexelMap) -> tuple[Array, Array]:
-    """Give every valid texel of a template a point on the dense surface that the template stands for.
-
-    Where the dense map leaves a texel empty (decimation moves chart borders by fractions of a texel) the nearest
-    texel that it covers lends its point.
-
-    Returns triangles [N] int32 into the dense faces and barycentrics [N, 3] float32, in the order of `texels`.
-    """
-    if not texels.texels.size:
-        return np.empty(0, np.int32), np.empty((0, 3), np.float32)
-    row_of_texel = np.full(dense.size * dense.size, -1, np.int64)
-    row_of_texel[dense.texels] = np.arange(len(dense.texels))
-    rows = row_of_texel[texels.texels]
-    empty = rows < 0
-    if empty.any():
-        covered = np.stack(np.divmod(dense.texels, dense.size), axis=1)
-        wanted = np.stack(np.divmod(texels.texels[empty], texels.size), axis=1)
-        rows[empty] = cKDTree(covered).query(wanted)[1]
-    return dense.triangles[rows], dense.barycentrics[rows]
 
 
 def interpolate(

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
-from mua.rig.charts import find_charts, signed_areas
+from mua.rig.charts import charts_of, signed_areas
 from mua.rig.surface import FIRST, RISING, SECOND, TURNED, Surface, block_triangles, blocks, runs_of, strips_of
 from mua.rig.texel_map import TexelMap
 
@@ -29,7 +29,7 @@ def triangulate(mesh: Mesh, texels: TexelMap) -> Surface:
         return Surface(np.empty(0, np.uint8), np.empty(0, np.int32))
     mesh = replace(mesh, vertices=mesh.vertices.astype(np.float64), uv=mesh.uv.astype(np.float64))
     places = _sum3(texels.barycentrics[:, :, None] * mesh.vertices[mesh.faces[texels.triangles]])
-    charts = find_charts(_nodes(mesh), mesh.uv[mesh.uv_faces])
+    charts = charts_of(mesh)
     corners = blocks(texels)
     codes = _codes(mesh, texels, corners, places=places, charts=charts)
     inner = block_triangles(corners, codes)
@@ -42,12 +42,6 @@ def _sum3(
     terms: Array,  # [P, 3, ...]
 ) -> Array:
     return np.asarray(terms[:, 0] + terms[:, 1] + terms[:, 2])
-
-
-def _nodes(mesh: Mesh) -> Array:
-    """Corners [F, 3] numbered so that they are equal where vertex and UV are."""
-    pairs = np.stack([mesh.faces, mesh.uv_faces], axis=-1).reshape(-1, 2)
-    return np.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
 
 
 def _codes(

@@ -13,7 +13,7 @@ import warp as wp
 
 from mua import rotation
 from mua.arrays import Array
-from mua.teachers.light import Light
+from mua.teachers.teacher import Light
 from mua.teachers.warp_start import start
 
 DEVICE = "cpu"

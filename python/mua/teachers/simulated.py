@@ -21,14 +21,13 @@ from mua.rig.character import Character
 from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale, fit_bones
 from mua.teachers.folds import Folds
-from mua.teachers.light import Light
 from mua.teachers.looseness import estimate_looseness
 from mua.teachers.shading import shade, visibility
 from mua.teachers.simulation import Simulation
 from mua.teachers.skinning import transform
 from mua.teachers.smoothing import low_pass
 from mua.teachers.still import StillTeacher
-from mua.teachers.teacher import TeacherFrame
+from mua.teachers.teacher import Light, TeacherFrame
 from mua.texture.surfels import vertex_normals
 
 COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets

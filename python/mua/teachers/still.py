@@ -11,10 +11,9 @@ from mua.rig.character import Character
 from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale
 from mua.teachers.chords import straighten
-from mua.teachers.light import Light
 from mua.teachers.skinning import Skinning, transform
 from mua.teachers.smoothing import TURN_WAVELENGTH, low_pass
-from mua.teachers.teacher import TeacherFrame
+from mua.teachers.teacher import Light, TeacherFrame
 from mua.teachers.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames
 

@@ -1,4 +1,4 @@
-"""The teacher protocol: anything that yields pose, canonical mesh and Gaussian texture, frame by frame."""
+"""The teacher protocol: anything that yields pose, canonical mesh and Gaussian texture, frame by frame; its light."""
 
 from collections.abc import Container, Iterator
 from dataclasses import dataclass
@@ -8,6 +8,14 @@ from mua.arrays import Array
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.rig.rig import Rig
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """Light that a surface sends out, by vertex, in world space."""
+
+    gain: Array  # [V, 3 rgb] display value over albedo
+    sheen: Array  # [V, 3 xyz] change of display value with the unit direction from camera to surface
 
 
 @dataclass(frozen=True, eq=False)

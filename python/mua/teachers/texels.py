@@ -7,9 +7,8 @@ from mua.arrays import Array
 from mua.channels import CHANNELS, SH_C0, SH_C1
 from mua.rig.character import Character
 from mua.rig.rig import Rig
-from mua.rig.surface_points import points_on_surface
 from mua.rig.texel_map import TexelMap, build_texel_map
-from mua.teachers.light import Light
+from mua.teachers.teacher import Light
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.deconvolution import deconvolved
 from mua.texture.sh import LINEAR
@@ -29,7 +28,9 @@ class SurfaceTexels:
 
     def __init__(self, character: Character, rig: Rig) -> None:
         mesh, texels = character.mesh, rig.texels
-        triangles, barycentrics = points_on_surface(texels, build_texel_map(mesh, texels.size))
+        dense = build_texel_map(mesh, texels.size)
+        rows = np.searchsorted(dense.texels, texels.texels)  # those of the rig are among them
+        triangles, barycentrics = dense.triangles[rows], dense.barycentrics[rows]
         corners = mesh.faces[triangles]
         self._dense = _weights(corners, barycentrics, len(mesh.vertices))
         self._coarse = _weights(rig.mesh.faces[texels.triangles], texels.barycentrics, len(rig.mesh.vertices))

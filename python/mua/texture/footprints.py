@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
-from mua.rig.charts import areas, find_charts
+from mua.rig.charts import areas, charts_of
 from mua.rig.surface_points import face_normals, interpolate, spread_points
 
 SLIT = 2.5  # times its texel's footprint that the step to a neighbour may span; a longer one crosses a slit in a chart
@@ -141,13 +141,6 @@ def spreads(
     away = np.einsum("sc,sck->sk", samples.places[~samples.bare] - points.places[texel], frames[texel])
     count = np.maximum(np.bincount(texel, minlength=len(frames)), FEW)
     return np.stack([np.sqrt(np.bincount(texel, column**2, len(frames)) / count) for column in away.T], axis=1)
-
-
-def charts_of(mesh: Mesh) -> Array:
-    """The UV chart [F] of each face."""
-    pairs = np.stack([mesh.faces, mesh.uv_faces], axis=-1).reshape(-1, 2)
-    nodes = np.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
-    return find_charts(nodes, mesh.uv[mesh.uv_faces])
 
 
 def neighbours(texels: Array, size: int) -> tuple[tuple[Array, Array], tuple[Array, Array]]:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mua.arrays import Array
-from mua.texture.footprints import Samples, TexelPoints, charts_of, neighbours
+from mua.rig.charts import charts_of
+from mua.texture.footprints import Samples, TexelPoints, neighbours
 
 SIDES = 4  # neighbours of a texel that does not lie at a border
 SHARE = 0.87  # of the width of a texel's surface, that counts as the step to a neighbour: an outline is sharp

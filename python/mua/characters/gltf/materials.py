@@ -1,6 +1,6 @@
 """Base colour of glTF materials: picture, factor, opacity, glow, and what they read of a mesh's vertices."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -30,21 +30,18 @@ class Coordinates:
     """What a material reads of a mesh's vertices: which TEXCOORD set, moved how, and their colours."""
 
     texcoord: int = 0
-    matrix: Array | None = None  # [2, 3] affine map of (u, v, 1); None leaves them as they are
+    matrix: Array = field(default_factory=lambda: np.eye(2, 3))  # affine map of (u, v, 1)
     needed: bool = False  # there is a picture, which they place
     opaque: bool = True
     vertex_colors: bool = True  # COLOR_0 is multiplied in
 
     def apply(self, uv: Array) -> Array:
         """Move texture coordinates [T, 2]."""
-        return uv if self.matrix is None else uv @ self.matrix[:, :2].T + self.matrix[:, 2]
+        return np.asarray(uv @ self.matrix[:, :2].T + self.matrix[:, 2])
 
     def agrees(self, other: "Coordinates") -> bool:
         """Whether another texture lies at the same place of the surface."""
-        same = (self.matrix is None and other.matrix is None) or (
-            self.matrix is not None and other.matrix is not None and np.allclose(self.matrix, other.matrix)
-        )
-        return self.texcoord == other.texcoord and bool(same)
+        return self.texcoord == other.texcoord and np.allclose(self.matrix, other.matrix)
 
 
 def read_materials(document: Document, findings: Findings) -> tuple[tuple[Material, ...], tuple[Coordinates, ...]]:

@@ -4,7 +4,7 @@ UsdPreviewSurface specification (https://openusd.org/release/spec_usdpreviewsurf
 glTF; texture coordinates, whose v points up in USD, are turned by whoever reads them.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,7 @@ class Look:
 
     material: Material
     primvar: str | None = None
-    matrix: Array | None = None
+    matrix: Array = field(default_factory=lambda: np.eye(2, 3))
     needed: bool = False  # there is a picture, which the coordinates place
     color_primvar: str | None = None  # of the mesh, multiplied in
     opacity_primvar: str | None = None
@@ -61,9 +61,8 @@ def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, findings: Findings
 
 def _same_place(look: Look, other: Look) -> bool:
     """Whether two textures lie at the same place of the surface."""
-    here, there = (np.eye(2, 3) if one.matrix is None else one.matrix for one in (look, other))
     wraps = [(one.material.wrap_u, one.material.wrap_v) for one in (look, other)]
-    return look.primvar == other.primvar and wraps[0] == wraps[1] and bool(np.allclose(here, there))
+    return look.primvar == other.primvar and wraps[0] == wraps[1] and np.allclose(look.matrix, other.matrix)
 
 
 def _surface_look(name: str, shader: UsdShade.Shader, path: Path) -> Look:
@@ -123,7 +122,7 @@ def _textured(name: str, texture: UsdShade.Shader, path: Path) -> Look:
     image = _picture(texture, path)
     wraps = [WRAPS.get(_constant(texture, wrap, "repeat"), "repeat") for wrap in ("wrapS", "wrapT")]
     reader = _source(texture, "st")
-    matrix = None
+    matrix = np.eye(2, 3)
     if reader is not None and reader.GetIdAttr().Get() == "UsdTransform2d":
         angle = np.radians(_constant(reader, "rotation", 0.0))
         (su, sv), (du, dv) = _constant(reader, "scale", (1, 1)), _constant(reader, "translation", (0, 0))

@@ -74,7 +74,7 @@ def read_part(
     if not np.isfinite(points).all():
         raise InputError(f"{where}.points holds a number that is not finite")
     topology = _topology(mesh, len(points), where, chosen=chosen)
-    uv, uv_corners = _texture_coordinates(mesh, look, len(points), corners=topology.corners, where=where)
+    uv = _texture_coordinates(mesh, look, topology, where)
     if uv is None and look.needed:
         findings.add(
             "Meshes without the texture coordinates that their material asks for: {}.", mesh.GetPrim().GetName()
@@ -87,8 +87,8 @@ def read_part(
         group=skin,
         positions=points,
         faces=topology.corners[topology.triangles],
-        uv=np.zeros((0, 2)) if uv is None else uv,
-        uv_faces=np.full_like(topology.triangles, -1) if uv is None else uv_corners[topology.triangles],
+        uv=np.zeros((0, 2)) if uv is None else uv.reshape(-1, 2),
+        uv_faces=np.full_like(topology.triangles, -1) if uv is None else np.arange(uv.size // 2).reshape(-1, 3),
         material=material,
         skin=skin,
         joints=joints,
@@ -133,23 +133,16 @@ def _colors(mesh: UsdGeom.Mesh, look: Look, topology: _Topology, where: str) -> 
     return None if (rgba == 1).all() else rgba
 
 
-def _texture_coordinates(
-    mesh: UsdGeom.Mesh, look: Look, points: int, *, corners: Array, where: str
-) -> tuple[Array | None, Array]:
-    """UVs [T, 2] with v down, and the one of each face corner."""
+def _texture_coordinates(mesh: UsdGeom.Mesh, look: Look, topology: _Topology, where: str) -> Array | None:
+    """UVs [F, 3, 2] of the triangles' corners, v down; None where there are none."""
     primvars = UsdGeom.PrimvarsAPI(mesh)
     names = [look.primvar] if look.primvar else ["st", "UVMap", "st0", "map1"]
     primvar = next((found for name in names if (found := primvars.FindPrimvarWithInheritance(name)).HasValue()), None)
     if primvar is None:
-        return None, corners
-    uv = np.array(primvar.ComputeFlattened(NO_TIME), float).reshape(-1, 2)
-    per_corner = primvar.GetInterpolation() == UsdGeom.Tokens.faceVarying
-    expected = len(corners) if per_corner else points
-    if len(uv) != expected or not np.isfinite(uv).all():
-        raise InputError(f"{where}.{primvar.GetName()} holds {len(uv)} values, expected {expected} finite ones")
-    if look.matrix is not None:
-        uv = uv @ look.matrix[:, :2].T + look.matrix[:, 2]
-    return np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1), np.arange(len(corners)) if per_corner else corners
+        return None
+    uv = topology.corner_values(primvar, 2, where)
+    uv = uv @ look.matrix[:, :2].T + look.matrix[:, 2]
+    return np.stack([uv[..., 0], 1 - uv[..., 1]], axis=-1)
 
 
 def _influences(target: UsdSkel.SkinningQuery, points: int, where: str, *, bones: int) -> tuple[Array, Array]:
