@@ -8,21 +8,23 @@ import pytest
 from rich.console import Console
 
 from mua.baking.evaluate import Errors, Picture, held_out_errors
-from mua.baking.report import HELD_OUT, Stored, as_json, closing, markdown, table
+from mua.baking.report import HELD_OUT, Stored, as_json, closing, markdown, missed, table
 from mua.cli.display import Display
 from mua.pose.clip import Clip
 from mua.recording import RecordedClip, WholeFrame
 
 
-def errors(miss: float, frames: int = 2) -> Errors:
-    """Of a teacher that is one everywhere and a student that misses it by so much; the mean is nought."""
+def errors(student: float, frames: int = 2, *, bands: float | None = None, best: float | None = None) -> Errors:
+    """Of a teacher that is one everywhere; student, bands and bases miss it by so much, the latter else as the student."""
     rest = Clip("a", 30.0, np.zeros((1, 1, 4)), np.zeros((1, 1, 3)))
     clip = RecordedClip(rest.name, 30.0, rest.rotations, rest.translations, False, np.zeros(1, np.int64), True)
     frame = WholeFrame(clip, 0, np.ones((4, 3), np.float32), np.ones((5, 23), np.float32))
-    nought, near = (Picture(np.full((5, 23), v), np.full((4, 3), v)) for v in (0.0, 1 - miss))
+    misses = {"mean": 1, "bands": bands or student, "best": best or student, "student": student}
     counted = Errors()
     for _ in range(frames):
-        counted.add(frame, {"mean": nought, "bands": near, "best": near, "student": near})
+        counted.add(
+            frame, {name: Picture(np.full((5, 23), 1 - v), np.full((4, 3), 1 - v)) for name, v in misses.items()}
+        )
     return counted
 
 
@@ -58,6 +60,10 @@ def test_a_single_held_out_clip_is_said_once() -> None:
 def test_files_hold_all_held_out_clips_together_too() -> None:
     assert f"| {HELD_OUT} (4) | SH |" in markdown(GROUPS, teacher="a formula")
     assert '"held_out": {\n  "frames": 4' in as_json(GROUPS, teacher="a formula", held_out={"walk": 8, "dance": 0})
+
+
+def test_what_the_student_misses_is_split_by_cause() -> None:
+    assert missed(errors(0.3, best=0.2, bands=0.1), "SH") == ("1.0 %", "3.0 %", "5.0 %")  # differences of squares
 
 
 def test_the_last_lines_say_what_the_file_holds() -> None:

@@ -38,17 +38,22 @@ namespace UnityEngine.Rendering
 
         private Command[] commands = new Command[64];
         private byte[] payload = new byte[1024];
-        private int count, used;
+        private readonly string[] open = new string[8]; // samples, each within the one before
+        private int count, used, depth;
 
         public string name { get; set; }
 
         public void Dispose() { Clear(); }
         public void Release() { Dispose(); }
         public void Clear() { count = used = 0; }
-        public void BeginSample(string name) { }
-        public void EndSample(string name) { }
-        public void BeginSample(Unity.Profiling.ProfilerMarker marker) { }
-        public void EndSample(Unity.Profiling.ProfilerMarker marker) { }
+        public void BeginSample(string name) { open[depth++] = name; }
+        public void EndSample(string name)
+        {
+            if (depth == 0 || open[--depth] != name)
+                throw new InvalidOperationException("the sample " + name + " ends, but did not begin last");
+        }
+        public void BeginSample(Unity.Profiling.ProfilerMarker marker) { BeginSample(marker.Name); }
+        public void EndSample(Unity.Profiling.ProfilerMarker marker) { EndSample(marker.Name); }
         public void SetInstanceMultiplier(uint multiplier) { Append(new Command { Kind = Kind.Multiplier, X = (int)multiplier }); }
 
         public void SetComputeIntParam(ComputeShader computeShader, int nameID, int val)
@@ -160,6 +165,8 @@ namespace UnityEngine.Rendering
 
         internal void Run()
         {
+            if (depth > 0)
+                throw new InvalidOperationException("the sample " + open[depth - 1] + " does not end");
             for (int i = 0; i < count; i++)
                 Run(ref commands[i]);
         }
@@ -220,8 +227,10 @@ namespace Unity.Profiling
     {
         public struct AutoScope : IDisposable { public void Dispose() { } }
 
-        public ProfilerMarker(string name) { }
-        public ProfilerMarker(ProfilerCategory category, string name, LowLevel.MarkerFlags flags) { }
+        internal readonly string Name;
+
+        public ProfilerMarker(string name) { Name = name; }
+        public ProfilerMarker(ProfilerCategory category, string name, LowLevel.MarkerFlags flags) { Name = name; }
         public void Begin() { }
         public void End() { }
         public AutoScope Auto() { return new AutoScope(); }

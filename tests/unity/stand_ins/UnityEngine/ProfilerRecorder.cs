@@ -24,21 +24,23 @@ namespace Unity.Profiling
 
     public struct ProfilerRecorder : IDisposable
     {
+        private readonly bool started;
         private string name;
 
         public ProfilerRecorder(string statName, int capacity = 1, ProfilerRecorderOptions options = ProfilerRecorderOptions.Default)
         {
             StandIns.Markers.Open++;
             name = statName;
+            started = (options & ProfilerRecorderOptions.StartImmediately) != 0;
         }
 
         public static ProfilerRecorder StartNew(ProfilerCategory category, string statName, int capacity = 1, ProfilerRecorderOptions options = ProfilerRecorderOptions.Default)
         {
-            return new ProfilerRecorder(statName, capacity, options);
+            return new ProfilerRecorder(statName, capacity, options | ProfilerRecorderOptions.StartImmediately);
         }
 
         public bool Valid { get { return name != null && StandIns.Markers.Samples.ContainsKey(name); } }
-        public int Count { get { return StandIns.Markers.Samples[name].Length; } }
+        public int Count { get { return started ? StandIns.Markers.Samples[name].Length : 0; } }
         public long LastValue { get { return Count == 0 ? 0 : GetSample(Count - 1).Value; } }
         public ProfilerRecorderSample GetSample(int index) { return new ProfilerRecorderSample { Value = StandIns.Markers.Samples[name][index] }; }
         public void Dispose()
