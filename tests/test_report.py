@@ -15,7 +15,7 @@ from mua.recording import RecordedClip, WholeFrame
 
 
 def errors(student: float, frames: int = 2, *, bands: float | None = None, best: float | None = None) -> Errors:
-    """Of a teacher that is one everywhere; student, bands and bases miss it by so much, the latter else as the student."""
+    """Of a teacher that is one everywhere; bands, bases and student miss it by so much. The mean is nought."""
     rest = Clip("a", 30.0, np.zeros((1, 1, 4)), np.zeros((1, 1, 3)))
     clip = RecordedClip(rest.name, 30.0, rest.rotations, rest.translations, False, np.zeros(1, np.int64), True)
     frame = WholeFrame(clip, 0, np.ones((4, 3), np.float32), np.ones((5, 23), np.float32))
