@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from compared import HELD_OUT, STEPS, trained
+from compared import HELD_OUT, SETTINGS, STEPS, trained
 from synthetic_avatar import synthetic_rig
 
 from mua import rotation
@@ -12,6 +12,7 @@ from mua.compare.motion import motion_of
 from mua.compare.system import Budget, TrainingFrames
 from mua.pose.clip import Clip
 from mua.recording import Recording
+from mua.student.distil import prepare
 
 
 @pytest.mark.parametrize("size", [2, 7, 16])
@@ -55,6 +56,12 @@ def test_posed_meshes_forget_where_the_body_stands_and_looks(
     )
     torch.testing.assert_close(one.posed, other.posed, rtol=0, atol=1e-4)
     assert float((one.posed[5] - one.posed[0]).abs().max()) > 0.01
+
+
+def test_systems_see_the_teachers_mesh(smooth_recording: Recording, smooth_frames: TrainingFrames) -> None:
+    meshes = prepare(smooth_recording, SETTINGS)[1].meshes
+    missed = (smooth_frames.motion.canonical - meshes).square().sum()
+    assert missed < 0.01 * (meshes - meshes.mean(dim=0)).square().sum()
 
 
 def test_held_out_frames_are_predicted(smooth_recording: Recording, smooth_frames: TrainingFrames) -> None:
