@@ -24,10 +24,12 @@ def about_y(skeleton: Skeleton, degrees: float) -> Skeleton:
     return replace(skeleton, bind_translations=turn.apply(skeleton.bind_translations))
 
 
+@pytest.mark.parametrize("beside", [0, 3])
 @pytest.mark.parametrize("turn", [0, 180, 90])
 @pytest.mark.parametrize("arms_down", [0, 50])
-def test_tells_the_limbs_of_a_person_who_stands(turn: float, arms_down: float) -> None:
+def test_tells_the_limbs_of_a_person_who_stands(turn: float, arms_down: float, beside: float) -> None:
     whole = about_y(person(arms_down=arms_down, legs_apart=8), turn)
+    whole.bind_translations[whole.root] += [beside, 0, beside]
     expected = {
         whole.names[joint]: role
         for role, joints in roles(whole).items()

@@ -3,6 +3,7 @@
 import subprocess
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import mutant_tests
@@ -157,6 +158,9 @@ def test_faults_meet_the_tests_that_enter_their_function() -> None:
     assert order("a.cs", "") == "ab"
     tests.append(a_test("tests/test_f.py", 1, "folder/old.cs"))
     assert order("folder/new.cs", "") == "f"  # since the tests were watched
+    many = [replace(tests[0], name=f"tests/test_b.py::test[{k}]", seconds=k, fixtures={}) for k in range(3)]
+    found = seeing(Mutant("a.py", "sign", 0, 1, "", "f"), [*many, a_test("tests/test_z.py", 9, "a.py\tf")], {})
+    assert [test.seconds for test in found] == [0, 1, 9, 2]
     tests[0] = a_test("tests/test_b.py", 3, "a.py\tf", fixtures={"trained": BOUND})
     assert order("a.py", "f", caught) == "acb"  # slow ones last
     parted = [a_test(f"tests/test_{name}.py", 1, "AvatarPose.cs") for name in ("drawn", "pose", "avatar_pose")]

@@ -207,6 +207,14 @@ def test_an_opacity_threshold_makes_a_mask(character: Path) -> None:
     assert (material.alpha_mode, material.alpha_cutoff) == ("mask", 0.25)
 
 
+def test_a_textured_mesh_without_coordinates_is_named(character: Path) -> None:
+    def bare(stage: Usd.Stage) -> None:
+        UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/Man/Body")).RemovePrimvar("st")
+
+    notes = read_surfaces(edited(character, bare)).notes
+    assert any("without the texture coordinates that their material asks for: Body" in note for note in notes)
+
+
 def test_texture_inside_a_package_is_read(tmp_path: Path, character: Path) -> None:
     package = tmp_path / "man.usdz"
     UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(character)), str(package))

@@ -95,6 +95,10 @@ def test_the_command_tells_what_is_gone_and_fails(
     monkeypatch.setattr("sys.argv", ["check_engine_api.py", "--all", "--engine", OLDEST, str(ENGINE)])
     assert check_engine_api.main() == 0
     assert f"same: {member}" in capsys.readouterr().out
+    monkeypatch.setattr("sys.argv", ["check_engine_api.py", str(tmp_path / "gone")])
+    with pytest.raises(SystemExit):
+        check_engine_api.main()
+    assert "gone: no such folder" in capsys.readouterr().err
 
 
 def test_members_that_only_a_newer_engine_has_are_used_there(csharp: CSharp) -> None:
