@@ -17,7 +17,15 @@ from mua.recording import Recording
 from mua.student.coarse import mesh_pca
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
-from mua.student.local import Parts, body_parts, carriers, joint_steps, sample_locality, sample_owners, texture_locality
+from mua.student.local import (
+    Parts,
+    body_parts,
+    joint_steps,
+    nearest_encoded,
+    sample_locality,
+    sample_owners,
+    texture_locality,
+)
 from mua.student.model import Alphas
 from mua.student.regress import fit_local, whitening
 from mua.student.targets import Targets
@@ -48,7 +56,7 @@ def test_steps_pass_over_joints_that_are_not_encoded() -> None:
 
 
 def test_a_joint_that_is_not_encoded_is_carried_by_the_one_above_it() -> None:
-    assert carriers(BODY, [HIPS, SPINE, SHIN]).tolist() == [0, 0, 1, 1, 1, 0, 2]
+    assert nearest_encoded(BODY, [HIPS, SPINE, SHIN]).tolist() == [0, 0, 1, 1, 1, 0, 2]
 
 
 def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_step() -> None:

@@ -122,7 +122,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "not finite": (lambda: AVATAR.decode(_turned(np.nan)), "rotations of clip 'wave': a value is not finite"),
     "rows of several lengths": (
         lambda: AVATAR.decode([mua.Pose([[1.0, 0, 0, 0], [1.0]], np.zeros((3, 3)))] * 3),  # type: ignore[arg-type]
-        "rotations of a pose: no array",
+        "rotations of a pose: not an array",
     ),
     "text as rotations": (
         lambda: AVATAR.decode([mua.Pose(np.full((3, 4), "a"), np.zeros((3, 3)))] * 3),

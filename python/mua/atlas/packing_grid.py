@@ -7,7 +7,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.atlas.chart_shapes import GUTTER, Shape, grown
-from mua.atlas.taken_cells import TakenCells, beside, each_bit, first_bits, places
+from mua.atlas.occupancy import Occupancy, beside, each_bit, first_bits, places
 
 GRID = 512  # cells along the square that is meant to be filled
 ROOM = 1.25  # cells along the whole grid, over those of the square
@@ -41,7 +41,7 @@ class PackingGrid:
         """`longest` cells are the longest run of any shape; `count` of the smallest fit, however many these are."""
         self.reach = GRID
         self._side = int(ROOM * max(GRID, LEAST * np.sqrt(count)))
-        self._taken = TakenCells(self._side, longest)
+        self._taken = Occupancy(self._side, longest)
         self._near = np.zeros((self._side + 2 * FARTHEST,) * 2, np.uint8)  # FARTHEST cells wider on all sides
         for by in NEAR:
             self._near[FARTHEST : FARTHEST + by] += 1

@@ -25,9 +25,9 @@ from mua.memory import release_memory
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
-from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.template import make_template
+from mua.rig.texel_binding import bind_texels
 from mua.teachers.simulated import SimulatedTeacher
 
 
@@ -90,7 +90,7 @@ def _record(order: Order, character: Character, planned: list[PlannedClip], list
     """The teacher's recording, taken up where an earlier run of the same order left it."""
     directory = order.work / f"recording-{recording_key(order, character, planned)}"
     listener.stage("recording")
-    for sentence in carry_texels(character, make_template(character), size=order.settings.texels).notes:
+    for sentence in bind_texels(character, make_template(character), size=order.settings.texels).notes:
         listener.note(sentence)
     total = sum(len(clip.wanted) for clip in planned)
     record_by_workers(

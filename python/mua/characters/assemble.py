@@ -10,7 +10,7 @@ from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.correction import check_scales, corrected
-from mua.characters.findings import UNHELD, Findings
+from mua.characters.messages import UNHELD, Messages
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.errors import InputError
 from mua.rig.character import MAX_INFLUENCES
@@ -90,13 +90,13 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
 
 def _rigid_parts(scene: Scene) -> tuple[str, ...]:
     """A sentence on the meshes that only hang on a joint: a hat, a weapon, a robot's limbs."""
-    findings = Findings()
+    messages = Messages()
     for part in scene.parts:
         if scene.skins[part.skin].rigid:
-            findings.add(
+            messages.add(
                 "Meshes that are attached rigidly to a joint (--leave-out NAME leaves one out): {}.", part.node
             )
-    return findings.notes()
+    return messages.notes()
 
 
 def limit_influences(

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.arrays import Array
+from mua.characters.rest_pose import plausible_rest
 from mua.characters.skin_groups import alike, grouped
-from mua.characters.taken_pose import taken_pose
 from mua.scene import Scene, Skin
 
 ANIMATED = 1e-4  # change of a local matrix, relative to the character, below which a node counts as static
@@ -44,7 +44,7 @@ def bind_pose(scene: Scene) -> Bind:
         np.add.at(mass, [index[int(node)] for node in skin.joints], scene.masses(s))
     binds = _file_binds(scene, index)
     if binds is None:
-        scene = replace(scene, rest=taken_pose(scene, nodes))
+        scene = replace(scene, rest=plausible_rest(scene, nodes))
         binds = _rest_binds(scene, index)
     matrices, trusted = _bind_matrices(scene, nodes, *binds, index=index, parents=parents)
     stretch = _stretch(scene.rest[nodes] @ np.linalg.inv(matrices))

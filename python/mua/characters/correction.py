@@ -9,7 +9,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.characters.bind_pose import Bind
 from mua.characters.figure_size import LEAST, MOST
-from mua.characters.lying import turn_to_stand
+from mua.characters.upright import upright_rotation
 from mua.errors import InputError
 from mua.scene import Scene
 
@@ -58,7 +58,7 @@ def corrected(
     """The scene at a plausible height in metres, upright and facing +Z."""
     correction = np.eye(4)
     told = []
-    upright = turn_to_stand(scene, bind) if stand else None
+    upright = upright_rotation(scene, bind) if stand else None
     if upright is not None:
         correction[:3, :3] = upright
         points, bind = points @ upright.T, replace(bind, places=bind.places @ upright.T)

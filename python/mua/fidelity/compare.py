@@ -13,7 +13,7 @@ from mua.decode import pose_splats
 from mua.fidelity.canvas import opened
 from mua.fidelity.measure import Agreement, agreement, together, worst_place
 from mua.fidelity.painter import Painter
-from mua.fidelity.posing import Moment, Poser, carriers, skinned
+from mua.fidelity.posing import Moment, Poser, dominant_joints, skinned
 from mua.fidelity.splats import SplatPainter
 from mua.pose.clip import Clip
 from mua.rig.character import Character
@@ -106,7 +106,7 @@ class _Studio:
         self._scene, self._poser = source.scene, poser
         self._paint_source = Painter(context, source.scene.parts, source.scene.materials, screen=SCREEN)
         self._paint_splats = SplatPainter(context, SCREEN)
-        self._carriers = np.concatenate([carriers(source.scene, part) for part in source.scene.parts])
+        self._dominant_joints = np.concatenate([dominant_joints(source.scene, part) for part in source.scene.parts])
 
     def pictured(self, teacher: StillTeacher, moment: Moment, views: dict[str, float]) -> PoseFidelity:
         """One pose, drawn from all `views`."""
@@ -132,4 +132,4 @@ class _Studio:
         screen = (clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN
         away = np.linalg.norm(screen - (np.array(place) + 0.5), axis=1)
         about = np.flatnonzero(away <= max(NEAR_BY, float(away.min())))
-        return self._scene.node_names[int(self._carriers[about[np.argmin(clip[about, 3])]])]
+        return self._scene.node_names[int(self._dominant_joints[about[np.argmin(clip[about, 3])]])]

@@ -92,7 +92,7 @@ def skinned(scene: Scene, part: Part, nodes: Array) -> Array:
     return placed
 
 
-def carriers(scene: Scene, part: Part) -> Array:
+def dominant_joints(scene: Scene, part: Part) -> Array:
     """The node [N] that each of a part's vertices follows most."""
     heaviest = np.argmax(part.weights, axis=1)[:, None]
     return np.asarray(scene.skins[part.skin].joints[np.take_along_axis(part.joints, heaviest, axis=1)[:, 0]])

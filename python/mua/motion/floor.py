@@ -5,8 +5,8 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.motion.contacts import floor_of, planted, standing
+from mua.motion.detached import detached_joints
 from mua.motion.rest import IDENTITY, Rest, Y
-from mua.motion.strays import stray_joints
 from mua.pose.joint_names import SIDES
 
 SOLES = ("foot", "toe")
@@ -89,7 +89,7 @@ def attached(rest: Rest, rotations: Array, translations: Array) -> Array:
     """
     target = rest.target
     pairs = [(rest.joint(role), rest.joint(carrier)) for role, carrier in CARRIED_BY]
-    for joint, limb in (*pairs, *stray_joints(rest).items()):
+    for joint, limb in (*pairs, *detached_joints(rest).items()):
         if joint is None or limb is None or limb in target.ancestors(joint) or joint in target.ancestors(limb):
             continue
         parent = int(target.parents[joint])

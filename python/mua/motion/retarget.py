@@ -17,12 +17,12 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.motion.detached import detached_joints
 from mua.motion.floor import placed
 from mua.motion.match import Matches, missing_limbs
 from mua.motion.posed import posed_calibrations
 from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
 from mua.motion.source import SourceMotion
-from mua.motion.strays import stray_joints
 from mua.motion.trunk import SIDES, stands, unit
 from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of
@@ -104,7 +104,7 @@ def _local_rotations(rest: Rest, calibrations: Mapping[int, Array], moved: Array
         else:
             local[:, joint] = target.bind_rotations[joint]
             turned[:, joint] = rotation.multiply(above, local[:, joint])
-    for joint, carrier in stray_joints(rest).items():
+    for joint, carrier in detached_joints(rest).items():
         since = rotation.multiply(turned[:, carrier], rotation.conjugate(rest.target_turned[carrier]))
         wanted = rotation.multiply(since, rest.target_turned[joint])
         local[:, joint] = rotation.multiply(rotation.conjugate(turned[:, target.parents[joint]]), wanted)

@@ -1,10 +1,10 @@
 """From a dense character to the rig of its student: template and texel map."""
 
 from mua.arrays import Array
-from mua.rig.carriers import carry_texels
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.template import make_template
+from mua.rig.texel_binding import bind_texels
 
 
 def build_rig(character: Character, *, texels: int, template_vertices: int = 5000) -> tuple[Rig, Array]:
@@ -18,6 +18,6 @@ def build_rig(character: Character, *, texels: int, template_vertices: int = 500
         mesh=template.mesh,
         skin_indices=template.skin_indices,
         skin_weights=template.skin_weights,
-        texels=carry_texels(character, template, size=texels).kept,
+        texels=bind_texels(character, template, size=texels).kept,
     )
     return rig, template.source_vertices

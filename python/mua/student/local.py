@@ -58,7 +58,7 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
     steps = joint_steps(rig.skeleton, seen)
     steps[:, 0] = np.minimum(steps[:, 0], 1)  # the root, where the body goes and how it leans, is near every part
     weights = np.zeros((len(rig.mesh.vertices), len(seen)))
-    carrier = carriers(rig.skeleton, seen)
+    carrier = nearest_encoded(rig.skeleton, seen)
     np.add.at(weights, (np.arange(len(weights))[:, None], carrier[rig.skin_indices]), rig.skin_weights)
     texels = rig.texels
     corners = weights[rig.mesh.faces[texels.triangles]]  # [N, 3, P]
@@ -83,7 +83,7 @@ def joint_steps(skeleton: Skeleton, seen: list[int]) -> Array:
     """
     steps = np.full((len(seen), len(seen)), len(seen))  # more than any way along the tree
     np.fill_diagonal(steps, 0)
-    carrier = carriers(skeleton, seen)
+    carrier = nearest_encoded(skeleton, seen)
     for column, joint in enumerate(seen[1:], start=1):
         parent = int(skeleton.parents[joint])
         above = carrier[parent] if parent >= 0 else 0
@@ -93,7 +93,7 @@ def joint_steps(skeleton: Skeleton, seen: list[int]) -> Array:
     return steps
 
 
-def carriers(skeleton: Skeleton, seen: list[int]) -> Array:
+def nearest_encoded(skeleton: Skeleton, seen: list[int]) -> Array:
     """For each joint [J] the column of the nearest of `seen` at or above it; the first where there is none."""
     columns = np.zeros(len(skeleton.parents), dtype=np.int64)
     for joint, parent in enumerate(skeleton.parents):  # parents come before children

@@ -6,8 +6,8 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.characters.findings import Findings
 from mua.characters.gltf.document import Document
+from mua.characters.messages import Messages
 from mua.scene import Motion
 
 RATE = 30.0  # frames per second that clips of a file are sampled at
@@ -54,24 +54,24 @@ def read_animations(
 ) -> tuple[tuple[Motion, ...], tuple[str, ...]]:
     """All clips of a file that move one of `nodes`, and a sentence for each that is left out."""
     index = {node: n for n, node in enumerate(nodes)}
-    motions, findings = [], Findings()
+    motions, messages = [], Messages()
     for a, animation in enumerate(document.gltf.animations or []):
         name = animation.name or f"animation{a}"
         tracks = _tracks(document, animation, f"animations[{a}]", index=index)
         if _morphs(document, animation, f"animations[{a}]"):
-            findings.add("Animated morph targets, such as facial expressions, are left out in these clips: {}.", name)
+            messages.add("Animated morph targets, such as facial expressions, are left out in these clips: {}.", name)
         if not tracks:
-            findings.add("Clips that move no joint are left out: {}.", name)
+            messages.add("Clips that move no joint are left out: {}.", name)
             continue
         start = min(times[0] for _, _, times, _, _ in tracks)
         end = max(times[-1] for _, _, times, _, _ in tracks)
         if end - start < 0.5 / RATE:
-            findings.add("Clips of a single pose are left out: {}.", name)
+            messages.add("Clips of a single pose are left out: {}.", name)
             continue
         frames = start + np.arange(int(np.floor((end - start) * RATE + 1e-3)) + 1) / RATE
         local = _local(document, tracks, frames, nodes=nodes, rest=rest)
         motions.append(Motion(name, RATE, chain(local, parents)))
-    return tuple(motions), findings.notes()
+    return tuple(motions), messages.notes()
 
 
 def _morphs(document: Document, animation: Any, where: str) -> bool:

@@ -7,9 +7,9 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.atlas import pictures
-from mua.characters.findings import Findings
 from mua.characters.gltf.document import Document
 from mua.characters.gltf.vrm import is_toon
+from mua.characters.messages import Messages
 from mua.scene import AlphaMode, Material, Wrap
 
 WRAPS: dict[int, Wrap] = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
@@ -44,20 +44,20 @@ class Coordinates:
         return self.texcoord == other.texcoord and np.allclose(self.matrix, other.matrix)
 
 
-def read_materials(document: Document, findings: Findings) -> tuple[tuple[Material, ...], tuple[Coordinates, ...]]:
-    """All materials of a file, then one for primitives that name none; what is not drawn goes to `findings`."""
+def read_materials(document: Document, messages: Messages) -> tuple[tuple[Material, ...], tuple[Coordinates, ...]]:
+    """All materials of a file, then one for primitives that name none; what is not drawn goes to `messages`."""
     materials = document.gltf.materials or []
-    pairs = [_material(document, index, material, findings) for index, material in enumerate(materials)]
+    pairs = [_material(document, index, material, messages) for index, material in enumerate(materials)]
     pairs.append((Material("default", pictures.flat(np.ones(4))), Coordinates()))
     variants = (document.gltf.extensions or {}).get(VARIANTS, {}).get("variants")
     for variant in variants if isinstance(variants, list) else []:
         name = variant.get("name") if isinstance(variant, dict) else variant
-        findings.add("The file's material variants are left out, its default is drawn: {}.", str(name))
+        messages.add("The file's material variants are left out, its default is drawn: {}.", str(name))
     read, coordinates = zip(*pairs, strict=True)
     return read, coordinates
 
 
-def _material(document: Document, index: int, material: Any, findings: Findings) -> tuple[Material, Coordinates]:
+def _material(document: Document, index: int, material: Any, messages: Messages) -> tuple[Material, Coordinates]:
     where = f"materials[{index}]"
     factor, texture = _base_color(material)
     factor = np.asarray(factor, float)
@@ -65,7 +65,7 @@ def _material(document: Document, index: int, material: Any, findings: Findings)
         raise document.error(f"{where} has the base colour factor {factor.tolist()}, expected four numbers")
     name = material.name or f"material{index}"
     if UNLIT in (material.extensions or {}) and not is_toon(material):
-        findings.add("Unlit materials are shaded like the others: {}.", name)
+        messages.add("Unlit materials are shaded like the others: {}.", name)
     image, wraps, reads = pictures.flat(factor), REPEAT, Coordinates()
     if texture is not None:
         image, wraps = _picture(document, texture, f"{where} base colour texture")
@@ -77,7 +77,7 @@ def _material(document: Document, index: int, material: Any, findings: Findings)
         if not glow_reads.needed or (reads.agrees(glow_reads) and wraps == glow_wraps):
             image = pictures.glowing(image, glow)
         else:
-            findings.add("Emission with another UV mapping than the base colour is left out, in materials: {}.", name)
+            messages.add("Emission with another UV mapping than the base colour is left out, in materials: {}.", name)
     read = _with_opacity(Material(name, image, *wraps), material, document, where)
     opaque = read.alpha_mode == "opaque"
     return read, replace(reads, opaque=opaque, vertex_colors=not is_toon(material))

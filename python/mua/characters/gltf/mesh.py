@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
-from mua.characters.findings import Findings
 from mua.characters.gltf.compression import decode_draco
 from mua.characters.gltf.document import Document
 from mua.characters.gltf.materials import Coordinates
 from mua.characters.gltf.nodes import node_name
+from mua.characters.messages import Messages
 from mua.scene import Part
 
 DRACO = "KHR_draco_mesh_compression"
@@ -24,9 +24,9 @@ def read_parts(
     skin: int,
     bones: int,
     coordinates: tuple[Coordinates, ...],
-    findings: Findings,
+    messages: Messages,
 ) -> list[Part]:
-    """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `findings`."""
+    """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `messages`."""
     source = document.gltf.nodes[node]
     mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
     name = mesh.name or f"mesh{source.mesh}"
@@ -36,7 +36,7 @@ def read_parts(
         where = f"meshes[{source.mesh}].primitives[{p}]"
         mode = TRIANGLES if primitive.mode is None else primitive.mode
         if mode not in (TRIANGLES, STRIP, FAN):
-            findings.add("Points and lines are left out, of meshes: {}.", name)
+            messages.add("Points and lines are left out, of meshes: {}.", name)
             continue
         material = len(coordinates) - 1 if primitive.material is None else primitive.material
         if not 0 <= material < len(coordinates):
@@ -47,10 +47,10 @@ def read_parts(
         joints, weights = _influences(document, geometry, where, bones=bones, rigid=rigid)
         uv = geometry.get(f"TEXCOORD_{coordinates[material].texcoord}")
         if uv is None and coordinates[material].needed:
-            findings.add("Meshes without the texture coordinates that their material asks for: {}.", name)
+            messages.add("Meshes without the texture coordinates that their material asks for: {}.", name)
         positions = geometry["POSITION"].astype(float)
         if primitive.targets:
-            findings.add("Morph targets keep their weights of the rest pose, in meshes: {}.", name)
+            messages.add("Morph targets keep their weights of the rest pose, in meshes: {}.", name)
             positions += _morphed(document, primitive.targets, morphs, where, count=len(positions))
         parts.append(
             Part(

@@ -10,7 +10,6 @@ import numpy as np
 from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, bare_animation
 from mua.characters.assemble import assemble
-from mua.characters.findings import UNHELD, Findings
 from mua.characters.gltf.animation import chain, moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
 from mua.characters.gltf.holders import Holders
@@ -18,6 +17,7 @@ from mua.characters.gltf.materials import read_materials
 from mua.characters.gltf.mesh import read_parts
 from mua.characters.gltf.nodes import Tree, below, local_matrix, node_name, read_tree
 from mua.characters.gltf.vrm import Vrm, read_vrm
+from mua.characters.messages import UNHELD, Messages
 from mua.pose.joint_names import limb_count
 from mua.scene import Part, Scene, Skin
 
@@ -59,33 +59,33 @@ def read_gltf_animation(path: Path) -> Animation:
 def _meshes(document: Document, tree: Tree) -> Scene:
     """All that the file shows and that hangs on a joint, and a sentence on what is left out."""
     vrm = read_vrm(document)
-    findings = Findings()
-    materials, coordinates = read_materials(document, findings)
+    messages = Messages()
+    materials, coordinates = read_materials(document, messages)
     skins = _skins(document)
     holders = Holders(document, tree, [*vrm.bones.values(), *(int(node) for skin in skins for node in skin.joints)])
     parts: list[Part] = []
-    for node in _drawn(document, tree, vrm, findings):
+    for node in _drawn(document, tree, vrm, messages):
         skin = document.gltf.nodes[node].skin
         if skin is None:
             holder = holders.of(node)
             if holder is None:
-                findings.add(UNHELD, node_name(document, node))
+                messages.add(UNHELD, node_name(document, node))
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
             skin = len(skins) - 1
         else:
             document.item("skins", skin, field=f"nodes[{node}].skin")
         count = len(skins[skin].joints)
-        parts += read_parts(document, node, skin=skin, bones=count, coordinates=coordinates, findings=findings)
+        parts += read_parts(document, node, skin=skin, bones=count, coordinates=coordinates, messages=messages)
     used = sorted({part.skin for part in parts})
     parts = [replace(part, skin=used.index(part.skin)) for part in parts]
     bones = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them
     kept = [skins[s] for s in used] + ([replace(bones, rigid=True)] if parts and vrm.bones else [])
     scene = _scene(document, tree, kept, vrm=vrm)
-    return replace(scene, parts=tuple(parts), materials=materials, notes=(*vrm.notes, *findings.notes(), *scene.notes))
+    return replace(scene, parts=tuple(parts), materials=materials, notes=(*vrm.notes, *messages.notes(), *scene.notes))
 
 
-def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list[int]:
+def _drawn(document: Document, tree: Tree, vrm: Vrm, messages: Messages) -> list[int]:
     """The nodes with a mesh that a viewer shows, parents first."""
     drawn = []
     for node in tree.order:
@@ -93,13 +93,13 @@ def _drawn(document: Document, tree: Tree, vrm: Vrm, findings: Findings) -> list
         if source.mesh is None:
             continue
         if node not in tree.shown:
-            findings.add("Meshes of other scenes than the file's first are left out: {}.", node_name(document, node))
+            messages.add("Meshes of other scenes than the file's first are left out: {}.", node_name(document, node))
             continue
         if INSTANCES in (source.extensions or {}):
-            findings.add("Instanced meshes are drawn once: {}.", node_name(document, node))
+            messages.add("Instanced meshes are drawn once: {}.", node_name(document, node))
         flat = source.skin is None and abs(np.linalg.det(tree.world[node][:3, :3])) < np.finfo(np.float32).tiny
         if flat or node in tree.hidden or node in vrm.hidden_nodes or source.mesh in vrm.hidden_meshes:
-            findings.add("Meshes that the file hides are left out: {}.", node_name(document, node))
+            messages.add("Meshes that the file hides are left out: {}.", node_name(document, node))
             continue
         drawn.append(node)
     return drawn

@@ -14,7 +14,7 @@ from pxr import Ar, Sdf, Usd, UsdGeom, UsdShade
 
 from mua.arrays import Array
 from mua.atlas import pictures
-from mua.characters.findings import Findings
+from mua.characters.messages import Messages
 from mua.errors import InputError
 from mua.scene import Material, Wrap
 
@@ -34,8 +34,8 @@ class Look:
     opacity_primvar: str | None = None
 
 
-def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, findings: Findings) -> Look:
-    """The look of a mesh or of one of its subsets `prim`; what is not drawn goes to `findings`."""
+def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, messages: Messages) -> Look:
+    """The look of a mesh or of one of its subsets `prim`; what is not drawn goes to `messages`."""
     material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     shader = material.ComputeSurfaceSource()[0] if material else None
     if not shader:
@@ -52,7 +52,7 @@ def read_look(mesh: UsdGeom.Mesh, prim: Usd.Prim, path: Path, findings: Findings
             look = replace(textured, material=replace(textured.material, image=image), color_primvar=look.color_primvar)
         elif not _same_place(look, textured):
             sentence = "Emission with another UV mapping than the base colour is left out, in materials: {}."
-            findings.add(sentence, look.material.name)
+            messages.add(sentence, look.material.name)
             return look
     if not picture[..., :3].any():
         return look

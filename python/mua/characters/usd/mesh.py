@@ -7,7 +7,7 @@ import numpy as np
 from pxr import Usd, UsdGeom, UsdShade, UsdSkel
 
 from mua.arrays import Array
-from mua.characters.findings import Findings
+from mua.characters.messages import Messages
 from mua.characters.usd.materials import Look
 from mua.errors import InputError
 from mua.scene import Part
@@ -66,7 +66,7 @@ def read_part(
     skin: int,
     bones: int,
     material: int,
-    findings: Findings,
+    messages: Messages,
 ) -> Part:
     """The chosen faces of a mesh on a skin of `bones` joints; an InputError names an attribute that does not fit."""
     where = f"{path}: {mesh.GetPath()}"
@@ -76,7 +76,7 @@ def read_part(
     topology = _topology(mesh, len(points), where, chosen=chosen)
     uv = _texture_coordinates(mesh, look, topology, where)
     if uv is None and look.needed:
-        findings.add(
+        messages.add(
             "Meshes without the texture coordinates that their material asks for: {}.", mesh.GetPrim().GetName()
         )
     joints, weights = np.zeros((len(points), 1), int), np.ones((len(points), 1))

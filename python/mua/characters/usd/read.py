@@ -12,7 +12,7 @@ from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.characters.animation import Animation, bare_animation
 from mua.characters.assemble import assemble
-from mua.characters.findings import UNHELD, Findings
+from mua.characters.messages import UNHELD, Messages
 from mua.characters.usd.materials import read_look
 from mua.characters.usd.mesh import read_part, subsets
 from mua.characters.usd.rigid import Movers, find_movers
@@ -62,8 +62,8 @@ def _opened(path: Path) -> Usd.Stage:
 
 def _meshes(stage: Usd.Stage, path: Path) -> Scene:
     """All that the stage shows and that hangs on a joint, and a sentence on what is left out."""
-    findings = Findings()
-    drawn = _drawn(stage, findings)
+    messages = Messages()
+    drawn = _drawn(stage, messages)
     nodes: list[_Nodes] = []
     skins: list[Skin] = []
     held: list[tuple[Usd.Prim, UsdSkel.SkinningQuery | None]] = []  # one for each skin
@@ -79,16 +79,16 @@ def _meshes(stage: Usd.Stage, path: Path) -> Scene:
     for mesh in drawn.values():
         holder = movers.holder(mesh)
         if holder is None:
-            findings.add(UNHELD, mesh.GetName())
+            messages.add(UNHELD, mesh.GetName())
             continue
         skins.append(_rigid_skin(mesh, movers, holder))
         held.append((mesh, None))
-    parts, materials = _parts(held, skins, path, findings)
+    parts, materials = _parts(held, skins, path, messages)
     scene = _scene(stage, nodes, skins, name=path.stem)
-    return replace(scene, parts=parts, materials=materials, notes=findings.notes())
+    return replace(scene, parts=parts, materials=materials, notes=messages.notes())
 
 
-def _drawn(stage: Usd.Stage, findings: Findings) -> dict[object, Usd.Prim]:
+def _drawn(stage: Usd.Stage, messages: Messages) -> dict[object, Usd.Prim]:
     """The meshes that a render of the stage shows, by path; those that it hides are told."""
     drawn = {}
     for prim in stage.Traverse(PREDICATE):
@@ -96,9 +96,9 @@ def _drawn(stage: Usd.Stage, findings: Findings) -> dict[object, Usd.Prim]:
             continue
         shown = UsdGeom.Imageable(prim)
         if shown.ComputeVisibility(NO_TIME) == UsdGeom.Tokens.invisible:
-            findings.add("Meshes that the file hides are left out: {}.", prim.GetName())
+            messages.add("Meshes that the file hides are left out: {}.", prim.GetName())
         elif shown.ComputePurpose() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy):
-            findings.add("Guide and proxy meshes are left out: {}.", prim.GetName())
+            messages.add("Guide and proxy meshes are left out: {}.", prim.GetName())
         else:
             drawn[prim.GetPath()] = prim
     return drawn
@@ -111,18 +111,18 @@ def _rigid_skin(mesh: Usd.Prim, movers: Movers, holder: int) -> Skin:
 
 
 def _parts(
-    held: list[tuple[Usd.Prim, UsdSkel.SkinningQuery | None]], skins: list[Skin], path: Path, findings: Findings
+    held: list[tuple[Usd.Prim, UsdSkel.SkinningQuery | None]], skins: list[Skin], path: Path, messages: Messages
 ) -> tuple[tuple[Part, ...], tuple[Material, ...]]:
     parts: list[Part] = []
     materials: list[Material] = []
     for s, (prim, target) in enumerate(held):
         mesh = UsdGeom.Mesh(prim)
         if target is not None and target.HasBlendShapes():
-            findings.add("Blend shapes are left out, of meshes: {}.", prim.GetName())
+            messages.add("Blend shapes are left out, of meshes: {}.", prim.GetName())
         for owner, faces in subsets(mesh):
-            look = read_look(mesh, owner, path, findings)
+            look = read_look(mesh, owner, path, messages)
             at = {"skin": s, "bones": len(skins[s].joints), "material": len(materials)}
-            parts.append(read_part(mesh, look, path, target=target, chosen=faces, findings=findings, **at))
+            parts.append(read_part(mesh, look, path, target=target, chosen=faces, messages=messages, **at))
             materials.append(look.material)
     return tuple(parts), tuple(materials)
 

@@ -8,10 +8,10 @@ from patches import grid_faces, grid_points, joined
 from tube import tube
 
 from mua.arrays import Array
-from mua.rig.carriers import carry_texels
 from mua.rig.character import Character, Mesh
 from mua.rig.surface_points import interpolate, nearest_barycentrics
 from mua.rig.template import Template, make_template
+from mua.rig.texel_binding import bind_texels
 from mua.rig.texel_map import TexelMap, build_texel_map
 from mua.teachers.simulated import SimulatedTeacher
 
@@ -56,7 +56,7 @@ def test_each_texel_stays_on_its_own_sheet_though_decimation_moves_the_charts_bo
     template = make_template(character, vertices=60)
     under = build_texel_map(template.mesh, SIZE)
     assert on_other_joint(character, template, under).any()  # what the texture alone says
-    carried = carry_texels(character, template, size=SIZE)
+    carried = bind_texels(character, template, size=SIZE)
     assert not on_other_joint(character, template, carried.texels).any()
     assert carried.moved > 0
     assert carried.cost.max() < 0.01
@@ -65,7 +65,7 @@ def test_each_texel_stays_on_its_own_sheet_though_decimation_moves_the_charts_bo
 
 def test_every_texel_of_the_dense_surface_is_carried_by_a_point_of_a_triangle() -> None:
     character = two_sheets()
-    carried = carry_texels(character, make_template(character, vertices=60), size=SIZE)
+    carried = bind_texels(character, make_template(character, vertices=60), size=SIZE)
     assert np.array_equal(carried.texels.texels, build_texel_map(character.mesh, SIZE).texels)
     assert (carried.texels.barycentrics >= 0).all()
     np.testing.assert_allclose(carried.texels.barycentrics.sum(axis=1), 1, atol=1e-6)
@@ -73,7 +73,7 @@ def test_every_texel_of_the_dense_surface_is_carried_by_a_point_of_a_triangle() 
 
 def test_a_mesh_that_is_its_own_template_carries_its_texels_where_they_are() -> None:
     character = two_sheets()
-    carried = carry_texels(character, make_template(character), size=SIZE)
+    carried = bind_texels(character, make_template(character), size=SIZE)
     dense = build_texel_map(character.mesh, SIZE)
     assert np.array_equal(carried.texels.triangles, dense.triangles)
     assert carried.moved == 0
@@ -91,9 +91,9 @@ def test_what_nothing_carries_is_counted() -> None:
         source_vertices=whole.source_vertices,
         source_uv=whole.source_uv,
     )
-    carried = carry_texels(character, template, size=SIZE)
+    carried = bind_texels(character, template, size=SIZE)
     lost = character.mesh.faces[build_texel_map(character.mesh, SIZE).triangles, 0] >= (CELLS + 1) ** 2
-    assert np.array_equal(carried.strays, lost)
+    assert np.array_equal(carried.unbound, lost)
     assert np.array_equal(carried.kept.texels, carried.texels.texels[~lost])
     assert carried.notes[0].startswith(f"{np.count_nonzero(lost):,} of {len(lost):,} texels are left out")
 
@@ -105,11 +105,11 @@ def test_what_moves_just_as_its_carrier_may_be_farther_from_it() -> None:
     first = whole.source_vertices[whole.mesh.faces[:, 0]] < (CELLS + 1) ** 2
     held = whole.mesh.faces[~first | (whole.mesh.vertices[whole.mesh.faces, 0].max(axis=1) <= 0.5)]
     template = replace(whole, mesh=Mesh(whole.mesh.vertices, held, whole.mesh.uv, held))
-    carried = carry_texels(character, template, size=SIZE)
+    carried = bind_texels(character, template, size=SIZE)
     dense = build_texel_map(character.mesh, SIZE)
     at = interpolate(character.mesh.vertices, character.mesh.faces[dense.triangles], dense.barycentrics)
     own = (at[:, 2] < GAP / 2) & (at[:, 0] > 0.5 + 0.04)  # of the sheet and beyond what is near at any rate
-    kept = ~carried.strays[own]
+    kept = ~carried.unbound[own]
     assert np.array_equal(kept, at[own, 0] - 0.5 <= 0.15)
     assert kept.any()
     assert not on_other_joint(character, template, carried.kept).any()
@@ -125,7 +125,7 @@ def test_no_texels_are_carried_by_nothing() -> None:
     character = two_sheets()
     nowhere = Mesh(character.mesh.vertices, character.mesh.faces, 0 * character.mesh.uv, character.mesh.uv_faces)
     empty = Character("none", character.skeleton, nowhere, character.skin_indices, character.skin_weights, np.zeros(0))
-    carried = carry_texels(empty, make_template(empty), size=SIZE)
+    carried = bind_texels(empty, make_template(empty), size=SIZE)
     assert len(carried.texels.texels) == len(carried.cost) == 0
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from mua.arrays import Array
 from mua.atlas.chart_shapes import Shape, ways
-from mua.atlas.taken_cells import TakenCells, beside, each_bit, first_bits, places
+from mua.atlas.occupancy import Occupancy, beside, each_bit, first_bits, places
 
 SIDE = 37
 
@@ -23,7 +23,7 @@ def hit_at(taken: Array, mask: Array, row: int, column: int) -> bool:
 def test_a_shape_is_blocked_where_it_hits_what_is_taken(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mask = rng.random((rng.integers(1, 9), rng.integers(1, 19))) < 0.5
-    taken, cells = TakenCells(SIDE, longest=20), np.zeros((SIDE, SIDE), bool)
+    taken, cells = Occupancy(SIDE, longest=20), np.zeros((SIDE, SIDE), bool)
     for _ in range(3):
         block = rng.random((5, 6)) < 0.3
         row, column = rng.integers(0, SIDE - 6, 2).tolist()

@@ -11,7 +11,7 @@ from mua.arrays import Array
 BITS = 8  # of a byte
 
 
-class TakenCells:
+class Occupancy:
     """The cells of a square."""
 
     def __init__(self, side: int, longest: int) -> None:

@@ -1,4 +1,4 @@
-"""Which triangle of a template carries each texel of the dense surface that the template stands for.
+"""Binds each texel of the dense surface to a triangle of the template that stands for it.
 
 The texels are those of the dense surface. Decimation moves the borders of charts and bridges what lies near in
 space, so that the triangle under a texel in the texture may belong to another piece of surface, or move with other
@@ -26,7 +26,7 @@ ANYWHERE = 10.0  # of the figure's size: what moves alike comes before all that 
 OTHER_PIECE = 0.02  # of the figure's size: what another UV piece counts for, as pieces part where surfaces end
 OTHER_SIDE = 0.05  # of the figure's size: what a triangle counts for that faces the other way
 ACCEPTED = 0.004  # of the figure's size: the triangle under a texel that carries it no worse is taken without a search
-FAR = 0.03  # of the figure's size, 5 cm on a person: a texel that is carried worse is a stray
+FAR = 0.03  # of the figure's size, 5 cm on a person: a texel that is carried worse is left out
 FAR_ALIKE = 0.15  # of the figure's size, likewise where the carrier moves just as the texel does: its offset is long
 ALIKE = 1e-3  # of the figure's size: what moves apart by less moves alike
 CANDIDATES = 12  # points of the template that a texel chooses from
@@ -45,14 +45,14 @@ class Carried:
     alike: Array  # [N] bool: the carrier moves just as the texel does, wherever it is
 
     @property
-    def strays(self) -> Array:
+    def unbound(self) -> Array:
         """[N] bool, texels that nothing of the template carries well."""
         return self.cost > np.where(self.alike, FAR_ALIKE, FAR)
 
     @property
     def kept(self) -> TexelMap:
-        """The texels without the strays."""
-        held, texels = ~self.strays, self.texels
+        """The texels that are bound well."""
+        held, texels = ~self.unbound, self.texels
         return replace(
             texels,
             texels=texels.texels[held],
@@ -62,17 +62,17 @@ class Carried:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A sentence on the strays, where there are any."""
-        strays = int(np.count_nonzero(self.strays))
-        if not strays:
+        """A sentence on the unbound texels, if there are any."""
+        unbound = int(np.count_nonzero(self.unbound))
+        if not unbound:
             return ()
         return (
-            f"{strays:,} of {len(self.cost):,} texels are left out: no part of the template lies near them and "
+            f"{unbound:,} of {len(self.cost):,} texels are left out: no part of the template lies near them and "
             f"moves as they do.",
         )
 
 
-def carry_texels(character: Character, template: Template, *, size: int) -> Carried:
+def bind_texels(character: Character, template: Template, *, size: int) -> Carried:
     """Give each texel of a character's `size` x `size` texture the triangle of the template that carries it."""
     dense, under = build_texel_map(character.mesh, size), build_texel_map(template.mesh, size)
     if not len(dense.texels):

@@ -1,4 +1,4 @@
-"""A person who lies in the bind pose is made to stand; nobody else is turned."""
+"""A person who lies in the bind pose is turned upright; nobody else is turned."""
 
 from dataclasses import replace
 

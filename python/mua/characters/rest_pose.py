@@ -1,7 +1,7 @@
-"""A rest pose that is a passing moment is no pose to bind a character in: the start of a clip then serves instead.
+"""Replaces a rest pose that is an arbitrary moment of a clip by the start of a clip.
 
-Some files are saved in the middle of a clip, with a head that looks backwards, say. Only where the skins do not tell
-in which pose they were bound does this matter.
+Some files are saved in the middle of a clip, with a head that looks backwards, say. This matters only if the skins do
+not state the bind pose.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from mua.scene import Scene
 TURNED_ABOUT = np.cos(np.radians(120))  # a joint that most clips begin further than this from the rest pose
 
 
-def taken_pose(
+def plausible_rest(
     scene: Scene,
     nodes: Array,  # [J] int nodes of the scene that are joints
 ) -> Array:
@@ -23,8 +23,8 @@ def taken_pose(
     turned, rest = (_local(worlds, scene.parents)[:, nodes] for worlds in (firsts, scene.rest[None]))
     if (np.median(_cosines(turned, rest), axis=0) > TURNED_ABOUT).all():
         return scene.rest
-    likeness = [float(_cosines(turned, one[None]).sum()) for one in turned]
-    return np.asarray(firsts[int(np.argmax(likeness))])
+    similarity = [float(_cosines(turned, one[None]).sum()) for one in turned]
+    return np.asarray(firsts[int(np.argmax(similarity))])
 
 
 def _local(worlds: Array, parents: Array) -> Array:

@@ -5,8 +5,8 @@ from mua.motion.rest import Rest
 TRUNK = ("hips", "spine")
 
 
-def stray_joints(rest: Rest) -> dict[int, int]:
-    """The topmost stray joints of the target, each with the joint of hips and spine that is nearest to it at rest.
+def detached_joints(rest: Rest) -> dict[int, int]:
+    """The topmost detached joints of the target, each with the joint of hips and spine that is nearest to it at rest.
 
     Joints on the way from the root to a matched joint are none: where they stand, all others do.
     """
@@ -16,8 +16,8 @@ def stray_joints(rest: Rest) -> dict[int, int]:
         return {}
     carrying = {above for joint in chains for above in target.ancestors(joint)}
     moved = carrying | set(chains)
-    strays: dict[int, int] = {}
+    detached: dict[int, int] = {}
     for joint, parent in enumerate(target.parents.tolist()):
         if joint not in moved and parent in carrying and not {parent, *target.ancestors(parent)} & set(chains):
-            strays[joint] = min(trunk, key=lambda j: float(((rest.target_at[j] - rest.target_at[joint]) ** 2).sum()))
-    return strays
+            detached[joint] = min(trunk, key=lambda j: float(((rest.target_at[j] - rest.target_at[joint]) ** 2).sum()))
+    return detached

@@ -1,4 +1,4 @@
-"""A person who lies in the bind pose: nobody is bound to a mesh so, but files say another up axis than they have."""
+"""Turns a person upright who lies in the bind pose because the file states a wrong up axis."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ ALONG = 30.0  # degrees from a level axis within which it lies
 Y = np.array([0.0, 1, 0])
 
 
-def turn_to_stand(scene: Scene, bind: Bind) -> Array | None:
+def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
     """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not tell a person."""
     found = _roles(scene, bind)
     body = [_upright(found, places) for places in (bind.places, scene.rest[bind.nodes, :3, 3])]

@@ -1,17 +1,17 @@
-"""What a reader leaves out or changes, gathered into one sentence for each kind of thing."""
+"""What a reader leaves out or changes, as one sentence for each kind of thing."""
 
 UNHELD = "Meshes that no joint moves are left out: {}."
 SHOWN = 8  # names that a sentence lists before it counts the rest
 
 
-class Findings:
-    """Names by the sentence that is told of them; the sentence holds {} where they stand."""
+class Messages:
+    """Sentences with {} for the names that each of them is about."""
 
     def __init__(self) -> None:
         self._names: dict[str, list[str]] = {}
 
     def add(self, sentence: str, name: str) -> None:
-        """Tell `sentence` of `name` too; a name that was there already counts once."""
+        """Add `name` to `sentence`; a name counts once."""
         names = self._names.setdefault(sentence, [])
         if name not in names:
             names.append(name)
