@@ -13,9 +13,17 @@ from mua.asset import write
 from mua.asset.count import flops, synthesis
 from mua.asset.flatbuffer import Tree
 from mua.asset.read import load
-from mua.bench import work
+from mua.bench import counts, work
 from mua.bench.random_avatar import random_avatar
 from mua.bench.work import Work, frame_work
+from mua.camera import orbit
+from mua.decode import decode_clip_frame
+from mua.gpu import Device
+from mua.kernels.splat_project import half_lengths
+from mua.player.buffers import AvatarBuffers
+from mua.player.frame import AvatarFrame
+from mua.player.splats import SplatFrame
+from mua.rendering import projected
 from mua.student.settings import preset
 
 PAPER_TEXELS = 300_000  # paper, Animatable Coarse Geometry
@@ -167,3 +175,31 @@ def test_refuses_in_one_sentence(arguments: tuple[str, ...], said: str) -> None:
 def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
     write(tmp_path / "still.muaavatar", replace(synthetic_avatar(), clips=()))
     assert "holds no clips" in process("bench", tmp_path / "still.muaavatar", "--frames", "1").sentence
+
+
+def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
+    output = tmp_path / "counts.json"
+    process("bench", avatar_file, "--counts", "--json", output)
+    told = json.loads(output.read_text())
+    assert told["dispatches"] == {"decode": 30, "pose": 8, "rest": 7}
+    assert told["bytes"]["peak_frame"] == sum(kernel["bytes"] for kernel in told["kernels"].values())
+    assert told["bytes"]["pose"] + told["bytes"]["decode"] == told["bytes"]["peak_frame"]
+    assert told["triangles"]["2.2"] == 2 * told["splats"]
+    assert 0 < told["fragments"]["2.2"] < told["fragments"]["1.0"] < told["fragments"]["0.6"]
+    assert all(overdraw >= 1 for overdraw in told["overdraw"].values())
+
+
+def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path) -> None:
+    frame = SplatFrame(device, [AvatarFrame(device, AvatarBuffers(device, avatar_file))])
+    avatar, clip = frame.avatars[0].avatar.avatar, frame.avatars[0].avatar.avatar.clips[0]
+    window = avatar.encoding.frames(0)
+    commands = device.commands()
+    frame.avatars[0].decode(commands, clip.rotations[window], clip.translations[window])
+    camera = orbit(avatar.bounds, screen=(160, 200))
+    frame.sort(commands, [camera])
+    commands.submit()
+    found = counts.fragments(device, frame.sorted, camera).sum()
+    posed = decode_clip_frame(avatar, clip, frame=0, dtype=np.float64)
+    seen = projected(posed, camera)
+    lengths = half_lengths(seen.ellipses, seen.opacities)
+    assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the picture

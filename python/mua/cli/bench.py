@@ -25,6 +25,7 @@ from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu
     from mua.bench.measure import Measured, Timing
+    from mua.gpu import Device
 
 COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
@@ -39,6 +40,9 @@ def bench(
     frames: Annotated[int, typer.Option(min=1, help="Number of frames to measure.")] = 20,
     size: Annotated[str, typer.Option(help="Picture size per eye in pixels: WIDTHxHEIGHT or one number.")] = "1024",
     stereo: Annotated[bool, typer.Option(help="Render two eyes.")] = False,
+    counts: Annotated[
+        bool, typer.Option("--counts", help="Count bytes, operations, dispatches and fragments; measure no time.")
+    ] = False,
     output: Annotated[Path | None, typer.Option("--json", help="JSON file to write the figures to.")] = None,
 ) -> None:
     """Measure time, memory traffic and operations of each kernel in a frame of FILE."""
@@ -57,6 +61,9 @@ def bench(
         path = file or Path(scratch) / "random.muaavatar"
         if preset_name is not None:
             write(path, random_avatar(preset(preset_name)))
+        if counts:
+            _count(opened, path, output)
+            return
         measured = measure(opened, path, frames=frames, screen=screen, eyes=eyes)
     if output is not None:
         files.write_bytes(output, json.dumps(as_json(measured), indent=2).encode() + b"\n")
@@ -65,6 +72,26 @@ def bench(
         console.print(part)
     if output is not None:
         console.print(output, highlight=False, soft_wrap=True)
+
+
+def _count(device: "Device", path: Path, output: Path | None) -> None:
+    """Print what a frame must do, and write it where that was asked for."""
+    from mua.bench.counts import as_json, count
+
+    counted = count(device, path)
+    figures = as_json(counted)
+    if output is not None:
+        files.write_bytes(output, json.dumps(figures, indent=2).encode() + b"\n")
+    table = Table("frame", "MB", "MFLOP", "dispatches", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    for name in ("decode", "pose", "peak_frame"):
+        moved, done = figures["bytes"][name] / 1e6, figures["operations"][name] / 1e6
+        table.add_row(name.replace("_", " "), f"{moved:.1f}", f"{done:.0f}", str(figures["dispatches"].get(name, "")))
+    table.add_row("rest", "", "", str(counted.rest_dispatches))
+    views = Table("metres", "triangles", "fragments", "overdraw", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    for seen in counted.drawn:
+        views.add_row(str(seen.distance), f"{seen.triangles:,}", f"{seen.fragments:,}", f"{seen.overdraw:.1f}")
+    for part in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views):
+        printer().print(part)
 
 
 def run() -> None:

@@ -32,13 +32,18 @@ class SortedSplats:
 class SplatRenderer:
     """The pipeline that draws splats into targets of one format."""
 
-    def __init__(self, device: Device, color_format: str, *, depth_format: str | None = None) -> None:
-        """With a depth format, what the pass drew before hides the splats whose centre lies behind it."""
+    def __init__(
+        self, device: Device, color_format: str, *, depth_format: str | None = None, fragment: str = "SplatFrag"
+    ) -> None:
+        """With a depth format, what the pass drew before hides the splats whose centre lies behind it.
+
+        The fragment CountFrag adds 1 to red in place of drawing.
+        """
         self.color_format = color_format
         self._pipeline = device.pipeline(
             SHADER,
             "SplatVert",
-            "SplatFrag",
+            fragment,
             color_format=color_format,
             depth_format=depth_format,
             blend=True,

@@ -17,6 +17,12 @@ SplatVaryings SplatVert(uint vertex : SV_VertexID)
     return splatVertex(vertex, eye, screen, view_projection, order, splats);
 }
 
+// How many splats are drawn at a pixel.
+float4 CountFrag(SplatVaryings varyings) : SV_Target
+{
+    return float4(1, 0, 0, 0);
+}
+
 float4 SplatFrag(SplatVaryings varyings) : SV_Target
 {
     return splatFragment(varyings);
