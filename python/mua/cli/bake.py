@@ -5,18 +5,15 @@ from typing import Annotated, Any
 
 import typer
 
-from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode
 from mua.baking.bake import bake as mua_bake
 from mua.baking.options import read_order
-from mua.baking.order import DeviceName
-from mua.cli.choice import choice
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.cli.options import lent_by
+from mua.cli.training_options import BOTH
 from mua.errors import InputError
 from mua.motion.planted_feet import Feet
-from mua.student.settings import PRESETS, RECIPES
 
 # Of each argument of mua.bake what a terminal takes, and its help; names and defaults are those of mua.bake.
 OPTIONS = {
@@ -33,8 +30,8 @@ OPTIONS = {
             help="Motion file, or directory of motion files; may be repeated.", show_default="the character's own clips"
         ),
     ],
-    "output": Annotated[Path, typer.Option("--output", "-o", help="Avatar file to write.")],
-    "preset": Annotated[str, choice(tuple(PRESETS), "--preset", help="Size of the student; paper needs a GPU.")],
+    "output": BOTH["output"],
+    "preset": BOTH["preset"],
     "frames": Annotated[
         int | None,
         typer.Option(
@@ -53,10 +50,7 @@ OPTIONS = {
             show_default="the end of every clip",
         ),
     ],
-    "clips": Annotated[
-        list[str],
-        typer.Option(help="Clip to store for playback; may be repeated. Also: all, none, or a number of clips."),
-    ],
+    "clips": BOTH["clips"],
     "leave_out": Annotated[
         list[str],
         typer.Option(help="Mesh, node or material of the character file to leave out; may be repeated."),
@@ -84,17 +78,10 @@ OPTIONS = {
     ],
     "scale": Annotated[float | None, typer.Option(help="Factor by which to multiply the size in the character file.")],
     "height": Annotated[float | None, typer.Option(help="Height to scale the character to, in metres.")],
-    "recipe": Annotated[
-        str,
-        choice(
-            RECIPES,
-            "--recipe",
-            help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
-        ),
-    ],
-    "storage": Annotated[Storage, typer.Option(help="Number type of the stored bases and weights.")],
-    "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
-    "device": Annotated[DeviceName, typer.Option(help="Where to train the student.")],
+    "recipe": BOTH["recipe"],
+    "storage": BOTH["storage"],
+    "seed": BOTH["seed"],
+    "device": BOTH["device"],
     "jobs": Annotated[
         int | None, typer.Option(help="Number of processes that record.", show_default="one per CPU core")
     ],
