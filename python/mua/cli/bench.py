@@ -13,6 +13,7 @@ from rich.text import Text
 
 from mua import files
 from mua.asset.write import write
+from mua.bench.devices import DEVICES, model_device
 from mua.bench.work import Work
 from mua.camera import EYE_DISTANCE
 from mua.cli.choice import choice
@@ -27,6 +28,7 @@ if TYPE_CHECKING:  # loads wgpu
     from mua.bench.measure import Measured, Timing
     from mua.gpu import Device
 
+SIZE = "1024"  # pixels
 COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
 
@@ -38,16 +40,21 @@ def bench(
     ] = None,
     device: Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")] = None,
     frames: Annotated[int, typer.Option(min=1, help="Number of frames to measure.")] = 20,
-    size: Annotated[str, typer.Option(help="Picture size per eye in pixels: WIDTHxHEIGHT or one number.")] = "1024",
+    size: Annotated[str, typer.Option(help="Picture size per eye in pixels: WIDTHxHEIGHT or one number.")] = SIZE,
     stereo: Annotated[bool, typer.Option(help="Render two eyes.")] = False,
     counts: Annotated[
         bool, typer.Option("--counts", help="Count bytes, operations, dispatches and fragments; measure no time.")
     ] = False,
+    model: Annotated[
+        str | None, choice(tuple(DEVICES), "--model", help="Model a frame's milliseconds on a device that is not here.")
+    ] = None,
     output: Annotated[Path | None, typer.Option("--json", help="JSON file to write the figures to.")] = None,
 ) -> None:
     """Measure time, memory traffic and operations of each kernel in a frame of FILE."""
     if (file is None) == (preset_name is None):
         raise InputError("mua-bench measures a FILE or a --preset; expected one of the two")
+    if model is not None:
+        model_device(model)
     screen, eyes = parse_screen(size), EYE_DISTANCE if stereo else None
     if file is not None:
         require_file(file)
@@ -61,6 +68,9 @@ def bench(
         path = file or Path(scratch) / "random.muaavatar"
         if preset_name is not None:
             write(path, random_avatar(preset(preset_name)))
+        if model is not None:
+            _model(opened, path, model, frames, output)
+            return
         if counts:
             _count(opened, path, output)
             return
@@ -91,6 +101,25 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
     for seen in counted.drawn:
         views.add_row(str(seen.distance), f"{seen.triangles:,}", f"{seen.fragments:,}", f"{seen.overdraw:.1f}")
     for part in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views):
+        printer().print(part)
+
+
+def _model(device: "Device", path: Path, name: str, frames: int, output: Path | None) -> None:
+    """Print what a frame would take elsewhere, and what it takes here."""
+    from mua.bench.counts import count
+    from mua.bench.instructions import fragment_instructions
+    from mua.bench.measure import measure
+    from mua.bench.model import model
+    from mua.cli.model_table import measured_line, model_json, model_legend, model_table
+
+    chosen, instructions = model_device(name), fragment_instructions()
+    modelled = model(chosen, count(device, path), instructions)
+    measured = measure(device, path, frames=frames, screen=parse_screen(SIZE), eyes=None)
+    if output is not None:
+        figures = model_json(name, chosen, instructions, modelled, measured)
+        files.write_bytes(output, json.dumps(figures, indent=2).encode() + b"\n")
+    legend = (*model_legend(chosen, instructions), measured_line(measured))
+    for part in (model_table(modelled), *map(Text, legend)):
         printer().print(part)
 
 

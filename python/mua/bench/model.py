@@ -1,0 +1,103 @@
+"""How long a frame would take on a device that is not at hand: counts over published rates, with their uncertainty.
+
+    a kernel    the longer of its bytes over the bandwidth and its operations over the rate
+    triangles   of every eye, over the triangles a second, once for each pass
+    fragments   instructions over their rate, in blocks of 2 x 2 pixels that run whole where a triangle touches one
+
+Stages follow one another, without gaps between dispatches. No avatar hides another.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from mua.bench.counts import POSED, Counts, Drawn
+from mua.bench.devices import ModelDevice
+from mua.bench.work import PROJECT_EYE, Work
+
+ENDS = ("best", "likely", "worst")
+TRIANGLES = 2  # of a splat
+# A triangle that is half of a square of side s has the perimeter (2 + sqrt 2) s, and a convex shape turned at random is
+# on average as wide as its perimeter over pi. Grown by a pixel along either axis, it covers as much as the blocks do.
+BLOCK_EDGE = TRIANGLES * 2 * (2 + np.sqrt(2)) / np.pi  # of both triangles, for each unit of s
+BLOCK_CORNER = TRIANGLES  # pixels
+FIXED = 16  # instructions of a fragment for interpolation and blending, assumed
+
+
+@dataclass(frozen=True)
+class Stages:
+    """Milliseconds of a displayed frame."""
+
+    decode: float  # only in frames that decode
+    pose: float  # to sorted splats
+    triangles: float
+    fragments: float
+    rest: float
+
+    @property
+    def plain(self) -> float:
+        """Of a frame that does not decode."""
+        return self.pose + self.triangles + self.fragments + self.rest
+
+    @property
+    def whole(self) -> float:
+        """Of a frame that decodes everything."""
+        return self.decode + self.plain
+
+
+@dataclass(frozen=True)
+class Modelled:
+    """One avatar or several from one distance."""
+
+    distance: float  # metres
+    avatars: int
+    eyes: int
+    ends: dict[str, Stages]  # by ENDS
+
+    @property
+    def likely(self) -> Stages:
+        return self.ends["likely"]
+
+
+def model(device: ModelDevice, counts: Counts, instructions: int) -> list[Modelled]:
+    """1 and 3 avatars, one eye and both, from all distances; `instructions` are those of a fragment."""
+    modelled = []
+    for avatars, eyes, seen in product((1, 3), (1, 2), counts.drawn):
+        ends = {end: _stages(device, counts, seen, avatars, eyes, instructions, end) for end in ENDS}
+        modelled.append(Modelled(seen.distance, avatars, eyes, ends))
+    return modelled
+
+
+def _stages(
+    device: ModelDevice, counts: Counts, seen: Drawn, avatars: int, eyes: int, instructions: int, end: str
+) -> Stages:
+    decode = {name: work for name, work in counts.work.items() if name not in POSED}
+    pose = {name: counts.work[name] for name in POSED}
+    project = pose["SplatProject"]
+    pose["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * counts.splats)
+    drawn = avatars * eyes
+    triangles = seen.triangles * device.passes / (1e9 * device.clock * getattr(device.triangles, end))
+    rate = 1e12 * device.peak / 2 * getattr(device.shading, end)
+    return Stages(
+        decode=avatars * kernels_ms(device, decode, end),
+        pose=avatars * kernels_ms(device, pose, end),
+        triangles=drawn * 1e3 * triangles,
+        fragments=drawn * 1e3 * shaded(seen) * (instructions + FIXED) / rate,
+        rest=getattr(device.rest, end),
+    )
+
+
+def kernels_ms(device: ModelDevice, work: Mapping[str, Work], end: str) -> float:
+    """Milliseconds of kernels one after the other."""
+    moved = 1e9 * device.bandwidth * getattr(device.copy, end)
+    computed = 1e12 * device.peak * getattr(device.compute, end)
+    return 1e3 * sum(max(each.bytes / moved, each.flops / computed) for each in work.values())
+
+
+def shaded(seen: Drawn) -> float:
+    """Fragments with those that run only to fill blocks of 2 x 2, for quads that are squares of one size."""
+    splats = seen.triangles / TRIANGLES
+    side = np.sqrt(seen.fragments / splats) if splats else 0.0
+    return float(seen.fragments + splats * (BLOCK_EDGE * side + BLOCK_CORNER) if seen.fragments else 0.0)

@@ -1,0 +1,131 @@
+"""The model of a frame on a device that is not at hand, against sums by hand."""
+
+import importlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import Commands
+
+from mua.bench.counts import POSED, Counts, Drawn
+from mua.bench.devices import DEVICES, ModelDevice, Range, model_device
+from mua.bench.instructions import count_instructions
+from mua.bench.measure import Measured, Timing
+from mua.bench.model import BLOCK_CORNER, BLOCK_EDGE, FIXED, Modelled, model, shaded
+from mua.bench.work import PROJECT_EYE, Work
+from mua.errors import InputError
+from mua.gpu import compile, sources
+
+HALF = Range(0.5, 0.5, 0.5)
+ROUND = ModelDevice("round", 2, HALF, 0.004, HALF, HALF, 0.001, Range(2, 2, 2), 2, Range(1, 1, 1), (), "nothing")
+INSTRUCTIONS = 84
+
+
+def counts(fragments: int = 4_000) -> Counts:
+    """1 MB and 1 MFLOP to decode, 0.5 MB and 3 MFLOP to pose; 1,000 splats."""
+    work = {"BlendLl": Work(1_000_000, 1_000_000), **dict.fromkeys(POSED, Work(0, 0))}
+    work["SplatProject"] = Work(500_000, 3_000_000)
+    return Counts("a", 1_000, work, 30, 8, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
+
+
+def only(modelled: list[Modelled], avatars: int, eyes: int) -> Modelled:
+    (found,) = (each for each in modelled if (each.avatars, each.eyes) == (avatars, eyes))
+    return found
+
+
+def test_a_frame_takes_what_its_counts_take_at_the_devices_rates() -> None:
+    one = only(model(ROUND, counts(), INSTRUCTIONS), 1, 1).likely
+    assert one.decode == pytest.approx(1.0)  # 1 MB at 1 GB/s; its operations at 2 GFLOPS take half as long
+    assert one.pose == pytest.approx(1.5)  # 3 MFLOP at 2 GFLOPS
+    assert one.triangles == pytest.approx(2.0)  # 2,000, twice, at 2 for each of 1,000 clocks a millisecond
+    assert one.fragments == pytest.approx(shaded(counts().drawn[0]) * 100 / 1e6)  # 84 and 16 at 1 instruction a ns
+    assert one.plain == pytest.approx(1.5 + 2 + one.fragments + 1)
+    assert one.whole == pytest.approx(one.plain + 1)
+    assert FIXED == 16
+
+
+def test_avatars_and_eyes_add_up() -> None:
+    modelled = model(ROUND, counts(), INSTRUCTIONS)
+    one, both, three = (only(modelled, *asked).likely for asked in ((1, 1), (1, 2), (3, 2)))
+    assert both.decode == one.decode
+    assert both.pose - one.pose == pytest.approx(1e3 * PROJECT_EYE * 1_000 / 2e9)
+    assert (both.triangles, both.fragments) == pytest.approx((2 * one.triangles, 2 * one.fragments))
+    assert three.decode == pytest.approx(3 * one.decode)
+    assert (three.pose, three.fragments) == pytest.approx((3 * both.pose, 3 * both.fragments))
+    assert three.rest == one.rest
+
+
+def test_blocks_of_pixels_are_those_that_squares_touch() -> None:
+    """Both triangles of random squares, laid on the grid and sampled at pixel centres."""
+    rng, side, count = np.random.default_rng(0), 6.0, 400
+    y, x = (grid[..., None] for grid in np.mgrid[:24, :24] + 0.5)
+    angle, middle = rng.uniform(0, 2 * np.pi, count), rng.uniform(11, 13, (2, count))
+    along = np.cos(angle) * (x - middle[0]) + np.sin(angle) * (y - middle[1])
+    across = np.cos(angle) * (y - middle[1]) - np.sin(angle) * (x - middle[0])
+    within = np.maximum(np.abs(along), np.abs(across)) <= side / 2
+    touched = [
+        4 * half.reshape(12, 2, 12, 2, count).any(axis=(1, 3)).sum()
+        for half in (within & (along > across), within & (along <= across))
+    ]
+    found = shaded(Drawn(1.0, 2 * count, int(within.sum()), 1.0))
+    assert found == pytest.approx(sum(touched), rel=0.05)
+    assert BLOCK_EDGE > BLOCK_CORNER
+
+
+@pytest.mark.parametrize("name", DEVICES)
+def test_more_work_takes_longer_and_ends_enclose_the_likely(name: str) -> None:
+    few, many = (model(DEVICES[name], counts(n), INSTRUCTIONS) for n in (4_000, 8_000))
+    for less, more in zip(few, many, strict=True):
+        assert less.likely.plain < more.likely.plain < more.likely.whole
+        assert less.ends["best"].plain < less.likely.plain < less.ends["worst"].plain
+    slower = replace(DEVICES[name], bandwidth=DEVICES[name].bandwidth / 1_000)
+    assert only(model(slower, counts(), INSTRUCTIONS), 1, 1).likely.decode > only(few, 1, 1).likely.decode
+
+
+@pytest.mark.parametrize("device", DEVICES.values())
+def test_every_device_names_its_sources(device: ModelDevice) -> None:
+    assert all("https://" in source for source in device.sources)
+    assert device.sources
+    assert device.assumed
+
+
+def test_an_unknown_device_is_told_which_there_are(command: Commands) -> None:
+    said = "--model is 'quest9'; expected one of quest3, adreno-x2, rtx3090"
+    with pytest.raises(InputError, match=said):
+        model_device("quest9")
+    assert said in command("bench", "--preset", "tiny", "--model", "quest9").sentence
+
+
+SHADER = """
+struct Varyings { float4 position : SV_Position; float2 offset : TEXCOORD0; };
+float4 Frag(Varyings varyings) : SV_Target
+{
+    float2 moved = varyings.offset * varyings.offset;
+    return float4(moved, exp2(dot(moved, moved)), 1 / moved.x);
+}
+"""
+
+
+def test_instructions_are_counted_by_component(tmp_path: Path) -> None:
+    path = tmp_path / "small.hlsl"
+    path.write_text(SHADER)
+    code = compile.spirv(sources.find(path), "Frag", stage="frag")
+    assert count_instructions(code) == 2 + 2 + 4 + 4  # product, dot, exponential, division
+
+
+def test_prints_the_model_beside_what_is_measured(
+    command: Commands, monkeypatch: pytest.MonkeyPatch, avatar_file: Path, tmp_path: Path
+) -> None:
+    time = Timing(1.25, 1, 2)
+    kernels = dict.fromkeys(("BlendLl", *POSED), time)
+    here = Measured("my device", "a", 1_000, 1_000, (64, 64), 1, 1, 1e9, kernels, counts().work, time)
+    monkeypatch.setattr(importlib.import_module("mua.bench.counts"), "count", lambda *_: counts())
+    monkeypatch.setattr(importlib.import_module("mua.bench.measure"), "measure", lambda *_, **__: here)
+    monkeypatch.setenv("COLUMNS", "160")
+    output = tmp_path / "model.json"
+    ran = command("bench", avatar_file, "--model", "quest3", "--json", output)
+    assert ran.status == 0, ran.err
+    assert "Measured on my device: decode 1.2 ms, pose 6.2 ms, drawing 1.2 ms" in ran.out
+    assert "modelled from counts, not measured" in ran.out
+    assert '"decode_frame"' in output.read_text()
