@@ -179,8 +179,9 @@ def test_refuses_an_avatar_without_clips(tmp_path: Path) -> None:
 
 def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
     output = tmp_path / "counts.json"
-    process("bench", avatar_file, "--counts", "--json", output)
+    ran = process("bench", avatar_file, "--counts", "--json", output)
     told = json.loads(output.read_text())
+    assert all(name in ran.out for name in (*told["kernels"], "peak frame", "2.2"))
     assert told["dispatches"] == {"decode": 30, "pose": 8, "rest": 7}
     assert told["bytes"]["peak_frame"] == sum(kernel["bytes"] for kernel in told["kernels"].values())
     assert told["bytes"]["pose"] + told["bytes"]["decode"] == told["bytes"]["peak_frame"]
