@@ -18,7 +18,9 @@ from mua.errors import InputError
 from mua.gpu import compile, sources
 
 HALF = Range(0.5, 0.5, 0.5)
-ROUND = ModelDevice("round", 2, HALF, 0.004, HALF, HALF, 0.001, Range(2, 2, 2), 2, Range(1, 1, 1), (), "nothing")
+ROUND = ModelDevice(
+    "round", 2, HALF, 0.004, HALF, HALF, 0.001, Range(2, 2, 2), Range(9, 9, 9), 2, Range(1, 1, 1), (), "nothing"
+)
 INSTRUCTIONS = 84
 
 
@@ -43,6 +45,11 @@ def test_a_frame_takes_what_its_counts_take_at_the_devices_rates() -> None:
     assert one.plain == pytest.approx(1.5 + 2 + one.fragments + 1)
     assert one.whole == pytest.approx(one.plain + 1)
     assert FIXED == 16
+
+
+def test_blending_bounds_fragments_of_few_instructions() -> None:
+    slow = replace(ROUND, pixels=TWO)
+    assert only(model(slow, counts(), 0), 1, 1).likely.fragments == pytest.approx(2.0)  # 4,000 at 2,000 a millisecond
 
 
 def test_avatars_and_eyes_add_up() -> None:

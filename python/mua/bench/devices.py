@@ -26,6 +26,7 @@ class ModelDevice:
     shading: Range  # share of half of it, as instructions, that fragments reach
     clock: float  # GHz
     triangles: Range  # a clock
+    pixels: Range  # blended in a clock
     passes: int  # over the triangles: two where a pass sorts them into tiles
     rest: Range  # milliseconds of a frame for everything else: render pipeline, resolve
     sources: tuple[str, ...]
@@ -42,6 +43,7 @@ DEVICES = {
         shading=Range(0.8, 0.5, 0.25),
         clock=0.599,
         triangles=Range(2, 1, 0.5),
+        pixels=Range(48, 24, 12),
         passes=2,
         rest=Range(1, 2, 3),
         sources=(
@@ -51,7 +53,7 @@ DEVICES = {
             "48 % of the bandwidth in a copy, of an Adreno X1: https://github.com/krrishnarraj/clpeak/issues/210",
             "0.2 TFLOPS of plain kernels: https://github.com/ggml-org/llama.cpp/pull/10693",
         ),
-        assumed="triangles a clock, share of the instructions in fragments, 2 ms of render pipeline and resolve",
+        assumed="triangles and pixels a clock, share of the instructions in fragments, 2 ms for the rest",
     ),
     "adreno-x2": ModelDevice(
         title="Snapdragon X2 Elite Extreme (Adreno X2-90)",
@@ -62,6 +64,7 @@ DEVICES = {
         shading=Range(0.8, 0.5, 0.25),
         clock=1.85,
         triangles=Range(4, 2, 1),
+        pixels=Range(64, 48, 24),
         passes=2,
         rest=Range(0.3, 0.7, 1.5),
         sources=(
@@ -69,7 +72,7 @@ DEVICES = {
             "228 GB/s; 2048 ALUs, hence 7.6 TFLOPS: "
             "https://www.notebookcheck.it/Adreno-X2-la-GPU-Snapdragon-X2-Elite-brilla-nei-benchmark-di-primo-livello.1166570.0.html",
             "48 % of the bandwidth in a copy, of an Adreno X1: https://github.com/krrishnarraj/clpeak/issues/210",
-            "2 triangles a clock, of an Adreno X1: "
+            "2 triangles and 48 pixels a clock, of an Adreno X1: "
             "https://hothardware.com/reviews/snapdragon-x-oryon-cpu-and-adreno-gpu-architecture?page=2",
         ),
         assumed="share of the operations in kernels (as a Quest 3's) and in fragments, the rest of a frame",
@@ -83,10 +86,11 @@ DEVICES = {
         shading=Range(0.8, 0.5, 0.25),
         clock=1.695,
         triangles=Range(7, 4, 2),
+        pixels=Range(112, 112, 56),
         passes=1,
         rest=Range(0.2, 0.5, 1),
         sources=(
-            "936 GB/s, 35.6 TFLOPS, 1.695 GHz: "
+            "936 GB/s, 35.6 TFLOPS, 1.695 GHz, 112 render outputs: "
             "https://holynerdvana.blogspot.com/2022/10/nvidia-geforce-rtx-3090-specifications.html",
         ),
         assumed="all shares, triangles a clock, the rest of a frame",

@@ -2,7 +2,8 @@
 
     a kernel    the longer of its bytes over the bandwidth and its operations over the rate
     triangles   of every eye, over the triangles a second, once for each pass
-    fragments   instructions over their rate, in blocks of 2 x 2 pixels that run whole where a triangle touches one
+    fragments   the longer of blending them and of their instructions over the rate; these run in blocks of 2 x 2
+                pixels, whole where a triangle touches one
 
 Stages follow one another, without gaps between dispatches. No avatar hides another.
 """
@@ -79,12 +80,13 @@ def _stages(
     pose["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * counts.splats)
     drawn = avatars * eyes
     triangles = seen.triangles * device.passes / (1e9 * device.clock * getattr(device.triangles, end))
-    rate = 1e12 * device.peak / 2 * getattr(device.shading, end)
+    computed = shaded(seen) * (instructions + FIXED) / (1e12 * device.peak / 2 * getattr(device.shading, end))
+    blended = seen.fragments / (1e9 * device.clock * getattr(device.pixels, end))
     return Stages(
         decode=avatars * kernels_ms(device, decode, end),
         pose=avatars * kernels_ms(device, pose, end),
         triangles=drawn * 1e3 * triangles,
-        fragments=drawn * 1e3 * shaded(seen) * (instructions + FIXED) / rate,
+        fragments=drawn * 1e3 * max(computed, blended),
         rest=getattr(device.rest, end),
     )
 
