@@ -18,9 +18,8 @@ from mua.errors import InputError
 from mua.gpu import compile, sources
 
 HALF = Range(0.5, 0.5, 0.5)
-ROUND = ModelDevice(
-    "round", 2, HALF, 0.004, HALF, HALF, 0.001, Range(2, 2, 2), Range(9, 9, 9), 2, Range(1, 1, 1), (), "nothing"
-)
+TWO, NINE, ONE = (Range(n, n, n) for n in (2, 9, 1))
+ROUND = ModelDevice("round", 2, HALF, 0.004, HALF, HALF, 0.001, TWO, NINE, 2, ONE, (), "nothing")
 INSTRUCTIONS = 84
 
 
