@@ -53,7 +53,7 @@ def test_devices_are_chosen_by_index_or_part_of_a_name(choice: str | None, chose
 
 @pytest.mark.usefixtures("listed")
 def test_an_unknown_device_is_told_with_those_that_there_are() -> None:
-    with pytest.raises(InputError, match=r"device nonesuch: .*; there is 0: Good 4090 \(Vulkan\), 1: Odd 7"):
+    with pytest.raises(InputError, match=r"device nonesuch: .*; expected one of 0: Good 4090 \(Vulkan\), 1: Odd 7"):
         open_device("nonesuch")
 
 

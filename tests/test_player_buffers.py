@@ -55,8 +55,16 @@ def test_shapes_are_those_of_the_avatar(device: Device, tmp_path: Path) -> None:
     for found, branch in ((buffers.geometry, avatar.geometry), (buffers.appearance, avatar.appearance)):
         assert (found.rank, *(band.rank for band in found.details)) == branch.ranks
         assert [band.size for band in found.details] == [band.mean.shape[-1] for band in branch.details]
-    np.testing.assert_array_equal(buffers.faces.read(), avatar.rig.mesh.faces.ravel())
-    np.testing.assert_array_equal(buffers.barycentrics.read(np.float32), avatar.rig.texels.barycentrics[:, :2].ravel())
+    np.testing.assert_array_equal(buffers.rig.faces.read(), avatar.rig.mesh.faces.ravel())
+    triangles, *steps = unpack_texels(buffers.rig.texels.read())
+    np.testing.assert_array_equal(triangles, avatar.rig.texels.triangles)
+    np.testing.assert_allclose(steps, avatar.rig.texels.barycentrics[:, :2].T, rtol=0, atol=0.5 / 0xFFFF + 1e-7)
+
+
+def unpack_texels(words: Array) -> tuple[Array, Array, Array]:
+    """Triangles and both barycentrics of [2 N] words."""
+    triangles, packed = words.reshape(-1, 2).T
+    return triangles, (packed & 0xFFFF) / 0xFFFF, (packed >> 16) / 0xFFFF
 
 
 def test_a_tensor_that_the_device_cannot_bind_is_named_with_its_file(tmp_path: Path) -> None:
