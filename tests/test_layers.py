@@ -9,6 +9,7 @@ from pathlib import Path
 import mua
 
 PACKAGE = Path(mua.__file__).parent
+LONGEST_CLASS = 260  # lines
 ORDER = [
     line.split("`")[1].rstrip("/")
     for line in (PACKAGE / "README.md").read_text().splitlines()
@@ -69,3 +70,13 @@ def test_a_check_of_a_gltf_file_loads_no_library_that_it_does_not_use() -> None:
     unused = "{'torch', 'warp', 'pxr'}"
     code = f"import sys, mua.cli.check; sys.exit(bool({unused} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_no_class_is_long() -> None:
+    classes = [
+        (node.end_lineno - node.lineno + 1, f"{path.name}: {node.name}")
+        for path in modules().values()
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ClassDef) and node.end_lineno
+    ]
+    assert [named for lines, named in classes if lines > LONGEST_CLASS] == []

@@ -4,6 +4,7 @@ import shutil
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import TracebackType
 
 import numpy as np
@@ -184,7 +185,7 @@ class TeacherWriter:
         try:
             if frame is not None:
                 _check_order(frame, state.frames)
-            rotations, translations = self._check_pose(pose)
+            rotations, translations = _checked_pose(pose, self._header.joints)
             self._judge(self._plausible.pose(Pose(rotations, translations)), where)
             encoded = self._encode(Pose(rotations, translations), mesh, texture, where)
         except InputError as error:
@@ -232,32 +233,11 @@ class TeacherWriter:
 
     def _take_up(self, rig: Rig) -> None:
         """Begin the recording, or read how far it is."""
-        self._begin(rig)
-        self._remove_leftovers()
+        _begin(self.directory, self._header, rig)
+        _remove_leftovers(self.directory)
         if (self.directory / REFERENCE).exists():
             self._reference = load_reference(self.directory / REFERENCE, self._header)
         self._read_shards()
-
-    def _begin(self, rig: Rig) -> None:
-        """Write header and rig of a new recording, or compare those of an old one."""
-        if not (self.directory / HEADER).exists():
-            (self.directory / SHARDS).mkdir(parents=True, exist_ok=True)
-            save_rig(self.directory / RIG, rig)
-            write_header(self.directory, self._header)
-            return
-        stored = read_header(self.directory)
-        for name, mine in vars(self._header).items():
-            theirs = getattr(stored, name)
-            if theirs != mine:
-                raise InputError(
-                    f"{self.directory / HEADER}: {name} is {theirs!r}, expected {mine!r}; record into another directory"
-                )
-
-    def _remove_leftovers(self) -> None:
-        for path in self.directory.glob(".*.part*"):
-            path.unlink()
-        for path in (self.directory / SHARDS).glob(".*.part"):
-            shutil.rmtree(path)
 
     def _read_shards(self) -> None:
         """Take up the state that the finished shards say."""
@@ -280,17 +260,6 @@ class TeacherWriter:
     def _complete(self, clip: str) -> None:
         self._clips[clip].complete = True
         self._shard.complete.append(clip)
-
-    def _check_pose(self, pose: Pose) -> tuple[Array, Array]:
-        if not isinstance(pose, Pose):
-            raise InputError(f"pose is {describe(pose)}; expected a mua.Pose")
-        rotations = _checked("pose rotations", pose.rotations, (self._header.joints, 4), np.float64)
-        translations = _checked("pose translations", pose.translations, (self._header.joints, 3), np.float64)
-        lengths = np.linalg.norm(rotations, axis=1)
-        joint = int(np.argmax(np.abs(lengths - 1)))
-        if abs(lengths[joint] - 1) > UNIT_LENGTH_ERROR:
-            raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
-        return rotations, translations
 
     def _judge(self, findings: Iterable[Finding], where: str) -> None:
         """Refuse what is certainly a mistake; warn once of each that may be one."""
@@ -352,6 +321,41 @@ class TeacherWriter:
         self._shard = Shard(self.directory / SHARDS, number, self._header)
         if number > 1:  # only the last shard's running sum is of use; a kill may have left the one before it
             (self.directory / SHARDS / shard_name(number - 2) / SUM).unlink(missing_ok=True)
+
+
+def _begin(directory: Path, header: Header, rig: Rig) -> None:
+    """Write header and rig of a new recording, or compare those of an old one."""
+    if not (directory / HEADER).exists():
+        (directory / SHARDS).mkdir(parents=True, exist_ok=True)
+        save_rig(directory / RIG, rig)
+        write_header(directory, header)
+        return
+    stored = read_header(directory)
+    for name, mine in vars(header).items():
+        theirs = getattr(stored, name)
+        if theirs != mine:
+            raise InputError(
+                f"{directory / HEADER}: {name} is {theirs!r}, expected {mine!r}; record into another directory"
+            )
+
+
+def _remove_leftovers(directory: Path) -> None:
+    for path in directory.glob(".*.part*"):
+        path.unlink()
+    for path in (directory / SHARDS).glob(".*.part"):
+        shutil.rmtree(path)
+
+
+def _checked_pose(pose: Pose, joints: int) -> tuple[Array, Array]:
+    if not isinstance(pose, Pose):
+        raise InputError(f"pose is {describe(pose)}; expected a mua.Pose")
+    rotations = _checked("pose rotations", pose.rotations, (joints, 4), np.float64)
+    translations = _checked("pose translations", pose.translations, (joints, 3), np.float64)
+    lengths = np.linalg.norm(rotations, axis=1)
+    joint = int(np.argmax(np.abs(lengths - 1)))
+    if abs(lengths[joint] - 1) > UNIT_LENGTH_ERROR:
+        raise InputError(f"pose rotation of joint {joint} has length {lengths[joint]:.4g}, expected 1")
+    return rotations, translations
 
 
 def _check_order(frame: int, expected: int) -> None:
