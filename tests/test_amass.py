@@ -53,6 +53,13 @@ def test_brings_z_up_to_y_up(tmp_path: Path) -> None:
     np.testing.assert_allclose(at[0, 0], [pelvis[0], pelvis[2], -pelvis[1]], atol=1e-12)
 
 
+def test_a_turn_about_the_vertical_stays_one(tmp_path: Path) -> None:
+    turned = np.zeros((1, 156))
+    turned[0, :3] = (Rotation.from_rotvec([0, 0, 0.7]) * Rotation.from_rotvec([np.pi / 2, 0, 0])).as_rotvec()
+    root = read_amass(write(tmp_path, poses=turned, trans=np.zeros((1, 3)))).clip.rotations[0, 0]
+    np.testing.assert_allclose(Rotation.from_quat(root, scalar_first=True).as_rotvec(), [0, 0.7, 0], atol=BOUND)
+
+
 @pytest.mark.parametrize("joints", [24, 52, 55])
 def test_rests_as_a_person_facing_z(joints: int) -> None:
     skeleton = nominal_skeleton(joints)
