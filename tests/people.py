@@ -13,6 +13,10 @@ from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
+# Chains of at most 12 joints, some 100 operations each on lengths up to 10 m, divided by bones of at least 0.1 m.
+POSITION_BOUND = 12 * 100 * 10 * np.finfo(float).eps
+ANGLE_BOUND = POSITION_BOUND / 0.1
+
 # Parents, and world positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is
 # mirrored.
 JOINTS = {

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from packed_splats import LARGEST_HALF, assert_halves, screen_covariance, unpacked
-from projected import FACES, GROUP, UNWRITTEN, Projected, Scene, Texels, held, on_steps, project_on, texels_of
-from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, TEXEL_BOUND, ULP, Bounds, exact_keys, eye_bounds
+from packed_splats import LARGEST_HALF
+from projected import FACES, GROUP, UNWRITTEN, Scene, Texels, held, on_steps, project_on, texels_of
+from projection_errors import assert_as_the_reference, covariance_of
+from splat_rounding import CENTRE_BOUND
 from test_dq_skinning import random_joints
 
 from mua import rotation
@@ -15,16 +16,11 @@ from mua.camera import NEAR, Camera, orbit
 from mua.decode import Splats
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances
-from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import (
     HIDDEN,
     LAST_KEY,
     LEAST_OPACITY,
-    eye_ellipses,
     half_extents,
-    pack_keys,
-    pack_splats,
-    pack_texels,
     splat_project,
 )
 
@@ -68,13 +64,6 @@ def pixel_of(seen_by: Camera, points: Array) -> Array:
     clip = np.concatenate([points, np.ones((len(points), 1))], axis=1) @ (seen_by.projection @ seen_by.view).T
     ndc = clip[:, :2] / clip[:, 3:]
     return (ndc * [1, -1] + 1) / 2 * SCREEN
-
-
-def covariance_of(ellipses: Array) -> Array:
-    """[M, 2, 2] from the ellipses' axes."""
-    cosine, sine, major, minor = ellipses[:, 2:6].T
-    axes = np.stack([np.stack([cosine, -sine], 1), np.stack([sine, cosine], 1)], 1)
-    return axes * np.stack([major, minor], 1)[:, None] ** 2 @ axes.swapaxes(1, 2)
 
 
 @pytest.mark.parametrize("count", COUNTS)
@@ -194,66 +183,6 @@ def test_the_box_holds_all_that_shows() -> None:
     assert np.all(extent >= visible)
 
 
-def random_splats_to_pack(count: int) -> tuple[Array, Array, Array, Array]:
-    """Centres, colours, opacities and ellipses of two eyes."""
-    rng = np.random.default_rng(count)
-    angles, deviations = rng.uniform(-np.pi, np.pi, (2, count)), rng.uniform(0.1, 50, (2, count, 2))
-    axes = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    ellipses = np.concatenate([rng.normal(size=(2, count, 2)), axes, deviations], axis=-1)
-    return rng.normal(size=(count, 3)), rng.random((count, 3)), rng.random(count), ellipses
-
-
-@pytest.mark.parametrize("count", COUNTS)
-def test_packed_splat_holds_floats_and_half_floats_in_32_bytes(count: int) -> None:
-    centres, colors, opacities, ellipses = random_splats_to_pack(count)
-    packed = pack_splats(centres, colors, opacities, ellipses)
-    assert packed.dtype == np.uint32
-    assert packed.shape == (count, 8)
-    fields = unpacked(packed)
-    np.testing.assert_array_equal(fields["centre"], centres.astype(np.float32))
-    np.testing.assert_array_equal(fields["color"], colors.astype(np.float16))
-    np.testing.assert_array_equal(fields["opacity"], opacities.astype(np.float16))
-    for eye in (0, 1):
-        axes = ellipses[eye, :, 2:4] * ellipses[eye, :, 4:5]
-        np.testing.assert_array_equal(fields["axes"][:, eye], axes.astype(np.float16))
-        np.testing.assert_array_equal(fields["minors"][:, eye], ellipses[eye, :, 5].astype(np.float16))
-
-
-def test_one_eye_stands_in_both_places_of_a_packed_splat() -> None:
-    centres, colors, opacities, ellipses = random_splats_to_pack(7)
-    one = unpacked(pack_splats(centres, colors, opacities, ellipses[:1]))
-    np.testing.assert_array_equal(one["axes"][:, 0], one["axes"][:, 1])
-    np.testing.assert_array_equal(one["minors"][:, 0], one["minors"][:, 1])
-
-
-def test_a_packed_ellipse_keeps_its_direction_and_its_size() -> None:
-    ellipses = random_splats_to_pack(503)[3]
-    fields = unpacked(pack_splats(*random_splats_to_pack(503)[:3], ellipses))
-    axes = fields["axes"][:, 0].astype(float)
-    cosine = np.sum(axes * ellipses[0, :, 2:4], axis=1) / np.linalg.norm(axes, axis=1)
-    assert np.all(np.arccos(np.minimum(cosine, 1)) < 2**-10)
-    np.testing.assert_allclose(np.linalg.norm(axes, axis=1), ellipses[0, :, 4], rtol=2**-11)
-
-
-def test_what_half_floats_cannot_hold_is_held_at_the_largest() -> None:
-    ellipse = np.array([[[0, 0, 0.6, 0.8, 1e9, 1e7]]])
-    fields = unpacked(pack_splats(np.zeros((1, 3)), np.full((1, 3), 1e9), np.ones(1), ellipse))
-    np.testing.assert_allclose(fields["axes"][0, 0].astype(float), LARGEST_HALF * np.array([0.6, 0.8]), rtol=2**-11)
-    np.testing.assert_array_equal(fields["minors"][0], [LARGEST_HALF] * 2)
-    np.testing.assert_array_equal(fields["color"], [[LARGEST_HALF] * 3])
-
-
-def test_packed_texels_hold_barycentrics_in_16_bits() -> None:
-    words = pack_texels(np.array([5, 7]), np.array([[0.25, 1, 0], [0, 0.5, 0.5]]))
-    np.testing.assert_array_equal(words, [[5, 0xFFFF4000], [7, 0x80000000]])
-
-
-@pytest.mark.parametrize("keys", [[], [7], [7, 9], [1, 2, HIDDEN]])
-def test_two_keys_lie_in_a_word(keys: list[int]) -> None:
-    found = pack_keys(np.array(keys, np.uint16)).view(np.uint16)
-    np.testing.assert_array_equal(found, keys + [HIDDEN] * (len(keys) % 2))
-
-
 def random_texels(count: int, *, scales: tuple[float, float] = (-5.2, -3.2), logit: float = 7) -> Texels:
     """On FACES, posed up to 1.9 m from the origin; some without a rotation, some on an edge, some too faint to see."""
     rng = np.random.default_rng(count)
@@ -272,55 +201,6 @@ def random_texels(count: int, *, scales: tuple[float, float] = (-5.2, -3.2), log
         on_steps(barycentrics),
         held(texture),
     )
-
-
-def assert_as_the_reference(scene: Scene, found: Projected) -> None:
-    """Places, visibility, ellipses, keys and colours, each within what float32 may take from it."""
-    exact, splats = scene.texels.splats, found.splats[: len(scene.texels)]
-    bounds = [eye_bounds(exact, c) for c in scene.cameras]
-    margin = np.max([b.margin for b in bounds], axis=0)
-    seen = found.keys[: len(exact)] != HIDDEN
-    np.testing.assert_allclose(splats["centre"], exact.centres, rtol=0, atol=CENTRE_BOUND)
-    assert seen[margin > 1].all()
-    assert not seen[margin < -1].any()
-    assert np.all(found.keys[len(exact) :] == HIDDEN)
-    for eye in (0, 1):
-        which = min(eye, len(bounds) - 1)
-        assert_ellipses(scene, scene.cameras[which], bounds[which], seen, splats, eye)
-    views = np.stack([c.view for c in scene.cameras])
-    keys, key_bound = exact_keys(exact.centres[seen], views, scene.bounds)
-    assert key_bound < 1 or not seen.any()
-    assert np.all(np.abs(found.keys[: len(exact)][seen] - keys) <= 0.5 + key_bound)
-    assert_colors(scene, splats[seen], seen)
-
-
-def assert_ellipses(scene: Scene, camera: Camera, bound: Bounds, seen: Array, splats: Array, eye: int) -> None:
-    exact = scene.texels.splats
-    covariance = covariances(exact.rotations, exact.scales)
-    ellipses = eye_ellipses(exact.centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
-    drawn = seen & (splats["minors"][:, eye] > 0)
-    assert drawn[bound.margin > 1].all()
-    assert not drawn[bound.margin < -1].any()
-    error = screen_covariance(splats[drawn], eye) - covariance_of(ellipses[drawn])
-    # The axes and their lengths are rounded on top: 8 ulp of the unit vector, 5 of each deviation, each twice; then
-    # both coordinates of the major axis and the minor deviation to half floats, at most 1/1024 off, and twice.
-    spectral = 2 * ((8 + 5) * ULP + (2**0.5 + 1) * 2**-10) * ellipses[drawn, 4] ** 2
-    assert np.all(np.linalg.norm(error, axis=(1, 2)) <= bound.variance[drawn] + spectral)
-
-
-def assert_colors(scene: Scene, splats: Array, seen: Array) -> None:
-    frame = scene.texels.splats
-    centres, sh = frame.centres[seen], frame.sh[seen]
-    camera = np.mean([c.position for c in scene.cameras], axis=0)
-    exact = splat_colors(centres, frame.texel_dq[seen], sh, camera)
-    distance = np.linalg.norm(centres - camera, axis=1)
-    # A direction: its difference, 8 ulp of a division by a norm; 12 products and sums of the turn, 8 of the colour;
-    # what the centre is off; what the turn is off, which counts twice in each of two vectors.
-    direction = ULP * ((np.abs(centres).max(axis=1, initial=0) + np.abs(camera).max()) / distance + 8)
-    direction += np.sqrt(3) * CENTRE_BOUND / distance + 4 * TEXEL_BOUND
-    bound = np.abs(sh).sum(axis=1) * (direction + 20 * ULP) + ULP
-    assert_halves(splats["color"], exact, bound[:, None])
-    assert_halves(splats["opacity"], frame.opacities[seen], OPACITY_BOUND)
 
 
 def stereo(apart: float = 0.2) -> tuple[Camera, Camera]:

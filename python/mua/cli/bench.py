@@ -17,9 +17,9 @@ from mua.bench.devices import DEVICES, model_device
 from mua.bench.work import Work
 from mua.camera import EYE_DISTANCE
 from mua.cli.choice import choice
-from mua.cli.choices import parse_screen
 from mua.cli.console import printer
 from mua.cli.failure import run_command
+from mua.cli.option_values import parse_screen
 from mua.errors import InputError
 from mua.inputs import require_file
 from mua.student.settings import PRESETS, preset

@@ -16,7 +16,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.camera import Camera
-from mua.cli.choices import is_video, parse_frame, parse_frames
+from mua.cli.option_values import is_video, parse_frame, parse_frames
 from mua.cli.view_options import Kind
 from mua.files import replacing
 from mua.player.motion import named_clip, player_clips

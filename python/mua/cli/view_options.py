@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from mua.camera import EYE_DISTANCE
-from mua.cli.choices import (
+from mua.cli.option_values import (
     EVEN,
     VIDEOS,
     is_video,

@@ -1,4 +1,4 @@
-"""Parses the values of mua-view's options."""
+"""Parses the values of options: screens, frames, azimuths, colours, names of files."""
 
 import math
 from collections.abc import Sequence
