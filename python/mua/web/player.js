@@ -1,0 +1,91 @@
+// The public interface of the browser player: load avatars, play their clips, look at them. Everything a page may use
+// stands here; the other modules of this folder are its parts.
+//
+//   const player = await createPlayer(canvas);
+//   player.onerror = (error) => say(error.message);
+//   const avatar = await player.load("avatar.muaavatar", { onProgress: (share, sentence) => bar.set(share) });
+//   player.clip = avatar.clips[0].name;
+//   player.start();
+
+import { AvatarError } from "./error.js";
+
+export { AvatarError };
+
+/**
+ * @typedef {object} Show what a picture shows, back to front; the names of mua-view --show
+ * @property {boolean} splats
+ * @property {boolean} geometry the texels' surface, lit
+ * @property {boolean} mesh the coarse mesh, lit
+ * @property {boolean} skeleton bones and joints, over all else
+ * @property {boolean} shadow on the ground
+ */
+
+/**
+ * @typedef {object} CameraState where the camera is about its target
+ * @property {number} azimuth radians; 0 faces the character, positive goes round to its left
+ * @property {number} elevation radians; positive looks down
+ * @property {number} distance metres from the target
+ * @property {[number, number, number]} target world, metres
+ * @property {number} fov vertical, radians
+ */
+
+/** @typedef {{name: string, seconds: number, frames: number}} ClipInfo */
+/** @typedef {[[number, number, number], [number, number, number]]} Box lowest and highest corner, metres */
+
+/**
+ * @typedef {object} AvatarHandle an avatar that was loaded
+ * @property {string} name
+ * @property {string} notes what the file says of itself, e.g. that its teacher was a simulated stand-in
+ * @property {ClipInfo[]} clips
+ * @property {Box} bounds about its root joint over all its clips
+ * @property {number} splats
+ * @property {[number, number, number]} place where it stands, world, metres; may be set
+ * @property {() => void} remove gives its memory back; may be called twice
+ */
+
+/**
+ * @typedef {object} LoadOptions
+ * @property {(fraction: number, sentence: string) => void} [onProgress] fraction of 0 to 1
+ */
+
+/**
+ * @typedef {object} PlayerOptions
+ * @property {[number, number, number, number]} [background] sRGB and alpha, premultiplied; transparent by default
+ * @property {"high-performance" | "low-power"} [powerPreference]
+ */
+
+/**
+ * @typedef {object} Player
+ * @property {(source: string | ArrayBuffer | File, options?: LoadOptions) => Promise<AvatarHandle>} load
+ * @property {readonly AvatarHandle[]} avatars
+ * @property {string | null} clip name of the clip that plays; null where no avatar holds one
+ * @property {number} time seconds within the clip; setting it scrubs
+ * @property {readonly ClipInfo[]} clips of the first avatar
+ * @property {boolean} playing
+ * @property {number} speed 1 plays at the recorded speed
+ * @property {CameraState} camera may be changed in place; the next picture follows
+ * @property {() => void} frameAll puts the camera where all avatars are in the picture
+ * @property {Show} show may be changed in place
+ * @property {() => Promise<void>} draw one picture now, at the canvas' size; resolves when it is drawn
+ * @property {() => void} start draws a picture for every frame of the display
+ * @property {() => void} stop
+ * @property {() => Promise<Blob>} screenshot the present picture as a PNG, its background transparent unless one was given
+ * @property {Readonly<Record<string, number>>} milliseconds of the device by stage; empty where it keeps no time
+ * @property {string} adapter what the browser says of the device
+ * @property {() => void} dispose gives all memory back; the player is of no more use
+ * @property {((error: AvatarError) => void) | null} onerror what went wrong while nobody waited
+ */
+
+/**
+ * A player that draws into a canvas.
+ * @param {HTMLCanvasElement} canvas its width and height in pixels are the caller's
+ * @param {PlayerOptions} [options]
+ * @returns {Promise<Player>}
+ * @throws {AvatarError} where the browser has no WebGPU, or no device for it
+ */
+export async function createPlayer(canvas, options = {}) {
+  if (!globalThis.navigator?.gpu)
+    throw new AvatarError("This browser has no WebGPU, which draws the avatar: use a recent Chrome, Edge or Safari.");
+  const { Engine } = await import("./engine.js");
+  return Engine.create(canvas, options);
+}
