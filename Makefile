@@ -9,7 +9,7 @@ DEMO := build/demo
 WORKERS ?= 2
 PYTEST := $(BIN)/pytest --numprocesses $(WORKERS) --dist worksteal
 
-.PHONY: demo test test-long test-wheel gallery mutants docs check package wheel setup clean
+.PHONY: demo test test-long test-web test-wheel gallery mutants docs check package wheel setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -20,6 +20,11 @@ test: setup check
 
 test-long: setup
 	$(PYTEST) -m long
+
+# The browser player in a headless browser with WebGPU on the CPU. Tests skip and name what is missing.
+test-web: setup
+	command -v npm >/dev/null && npm ci --silent --prefix tests/web || true
+	$(PYTEST) -m web
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
 test-wheel: demo

@@ -1,0 +1,137 @@
+"""Serves a site to browsers on this machine alone.
+
+Only the paths of the site are there: no directory is listed, and no other file can be reached, whatever is asked for.
+"""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from io import BufferedIOBase, BytesIO
+from pathlib import Path, PurePosixPath
+from typing import IO
+from urllib.parse import unquote, urlsplit
+
+from mua.share.site import PAGE, Content, Site
+
+LOOPBACK = "127.0.0.1"
+TYPES = {
+    ".css": "text/css; charset=utf-8",
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".json": "application/json",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".wgsl": "text/wgsl; charset=utf-8",
+}
+BINARY = "application/octet-stream"
+BLOCK = 1 << 18  # bytes that are read at once
+RANGE = re.compile(r"bytes=(\d*)-(\d*)")
+
+
+@contextmanager
+def serving(site: Site) -> Iterator[ThreadingHTTPServer]:
+    """A server on a free port of the loopback address; `serve_forever` runs it, and it is closed at the end."""
+    handler = type("Handler", (_Handler,), {"site": site})
+    server = ThreadingHTTPServer((LOOPBACK, 0), handler)
+    server.daemon_threads = True  # a browser that keeps its connection holds nobody up
+    try:
+        yield server
+    finally:
+        server.server_close()
+
+
+def address(server: ThreadingHTTPServer) -> str:
+    """Where browsers find it."""
+    return f"http://{LOOPBACK}:{server.server_port}/"
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Answers one connection."""
+
+    protocol_version = "HTTP/1.1"
+    server_version, sys_version = "mua", ""
+    site: Site
+
+    def do_GET(self) -> None:
+        self._answer(body=True)
+
+    def do_HEAD(self) -> None:
+        self._answer(body=False)
+
+    def log_message(self, format: str, *arguments: object) -> None:
+        """Say nothing: the page tells what failed."""
+
+    def _answer(self, *, body: bool) -> None:
+        """Send what a path holds, or the part of it that is asked for."""
+        path = unquote(urlsplit(self.path).path).removeprefix("/") or PAGE
+        content, port = self.site.get(path), self.connection.getsockname()[1]
+        # Another site whose name leads to this address must not read what is served here.
+        if self.headers.get("Host") not in [f"{name}:{port}" for name in (LOOPBACK, "localhost")]:
+            self._refuse(HTTPStatus.MISDIRECTED_REQUEST)
+            return
+        if content is None or (isinstance(content, Path) and not content.is_file()):
+            self._refuse(HTTPStatus.NOT_FOUND)
+            return
+        size = len(content) if isinstance(content, bytes) else content.stat().st_size
+        part = self._part(size)
+        if part is None:
+            self._refuse(HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE, {"Content-Range": f"bytes */{size}"})
+            return
+        first, end = part
+        status = HTTPStatus.OK if self._asked() is None else HTTPStatus.PARTIAL_CONTENT
+        self._begin(status, PurePosixPath(path).suffix, first, end, size)
+        if body:
+            self._send(content, first, end)
+
+    def _asked(self) -> re.Match[str] | None:
+        """The one range that is asked for; several, and other units, may be answered by the whole."""
+        found = RANGE.fullmatch(self.headers.get("Range", "").strip())
+        return found if found and (found[1] or found[2]) else None
+
+    def _part(self, size: int) -> tuple[int, int] | None:
+        """First byte and end of what is to be sent; None where there is nothing of a range."""
+        asked = self._asked()
+        if asked is None:
+            return 0, size
+        if not asked[1]:  # so many last bytes
+            first, end = max(size - int(asked[2]), 0), size
+        else:
+            first, end = int(asked[1]), min(int(asked[2]) + 1, size) if asked[2] else size
+        return (first, end) if first < end else None
+
+    def _begin(self, status: HTTPStatus, suffix: str, first: int, end: int, size: int) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", TYPES.get(suffix, BINARY))
+        self.send_header("Content-Length", str(end - first))
+        self.send_header("Accept-Ranges", "bytes")
+        if status == HTTPStatus.PARTIAL_CONTENT:
+            self.send_header("Content-Range", f"bytes {first}-{end - 1}/{size}")
+        self.send_header("Cache-Control", "no-store")  # the next run may serve another file at this address
+        self.send_header("X-Content-Type-Options", "nosniff")
+        self.end_headers()
+
+    def _send(self, content: Content, first: int, end: int) -> None:
+        try:
+            with BytesIO(content) if isinstance(content, bytes) else content.open("rb") as source:
+                _copy(source, self.wfile, first, end)
+        except (ConnectionError, TimeoutError):  # the browser went away
+            self.close_connection = True
+
+    def _refuse(self, status: HTTPStatus, headers: dict[str, str] | None = None) -> None:
+        body = f"{status.phrase}\n".encode()
+        self.send_response(status)
+        for name, value in {"Content-Type": "text/plain", "Content-Length": str(len(body)), **(headers or {})}.items():
+            self.send_header(name, value)
+        self.end_headers()
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+
+def _copy(source: IO[bytes], target: BufferedIOBase, first: int, end: int) -> None:
+    source.seek(first)
+    left = end - first
+    while left > 0 and (block := source.read(min(left, BLOCK))):
+        target.write(block)
+        left -= len(block)

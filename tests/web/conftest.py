@@ -1,0 +1,45 @@
+"""The browser of these tests. Those that use it are marked `web`, run by `make test-web`, and skip without it."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from threading import Thread
+
+import pytest
+from web.browser import Browser, Serve, lacking
+
+from mua.share.server import address, serving
+from mua.share.site import Site
+
+HERE = Path(__file__).parent
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.path.is_relative_to(HERE) and "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.web)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    if missing := lacking():
+        pytest.skip(missing)
+    opened = Browser()
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def serve() -> Iterator[Serve]:
+    """Serves a site for as long as the test runs, and gives its address."""
+    with ExitStack() as stack:
+
+        def begin(site: Site) -> str:
+            server = stack.enter_context(serving(site))
+            thread = Thread(target=server.serve_forever, args=(0.02,))
+            thread.start()
+            stack.callback(thread.join)
+            stack.callback(server.shutdown)
+            return address(server)
+
+        yield begin
