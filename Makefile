@@ -56,6 +56,7 @@ check: setup
 	$(BIN)/python tools/gen_layout.py --check
 	$(BIN)/python tools/gen_golden.py --check
 	$(BIN)/python tools/gen_spirv.py --check
+	$(BIN)/python tools/gen_wgsl.py --check
 	$(BIN)/python tools/gen_kernel_table.py --check
 	$(BIN)/python tools/gen_meta.py --check
 	$(BIN)/python tools/lint_upm.py

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import slang_output
 
+from mua.errors import InputError
 from mua.gpu import compile, glslang
 
 SLANG_STAGES = {"comp": "compute", "vert": "vertex", "frag": "fragment"}
@@ -90,8 +91,20 @@ def _fxc() -> Compiler | None:
     return Compiler("fxc", "", command)
 
 
+def run_slangc(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """slangc in a folder; raises InputError where it is not on this machine."""
+    program = _slangc()
+    if program is None:
+        raise InputError(f"the shader compiler slangc is not on this machine; {INSTALL['slang']}")
+    return subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True, check=False)
+
+
+def _slangc() -> str | None:
+    return shutil.which("slangc") or shutil.which("slangc", path=_wheel("slangtorch", "bin"))
+
+
 def _slang() -> Compiler | None:
-    program = shutil.which("slangc") or shutil.which("slangc", path=_wheel("slangtorch", "bin"))
+    program = _slangc()
     if program is None:
         return None
 

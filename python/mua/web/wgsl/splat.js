@@ -1,0 +1,227 @@
+// Generated from python/mua/player/shaders/splat.hlsl by tools/gen_wgsl.py; do not edit.
+
+/** @type {import("../shader.js").Shader} */
+export const SplatVert = {
+  ...{"stage": "vert", "entry": "SplatVert", "buffers": [{"name": "order", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "splats", "binding": 1, "read_only": true, "scalar": "uint", "stride": 16}], "constants": [{"name": "view_projection", "offset": 0, "scalar": "float", "shape": [4, 4], "strides": [4, 16], "used": true}, {"name": "screen", "offset": 64, "scalar": "float", "shape": [2], "strides": [4], "used": true}, {"name": "eye", "offset": 72, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 2, "threads": [1, 1, 1]},
+  code: `struct _MatrixStorage_float4x4_ColMajorstd140_0
+{
+    @align(16) data_0 : array<vec4<f32>, i32(4)>,
+};
+
+struct SLANG_ParameterGroup_Constants_std140_0
+{
+    @align(16) view_projection_0 : _MatrixStorage_float4x4_ColMajorstd140_0,
+    @align(16) screen_0 : vec2<f32>,
+    @align(8) eye_0 : u32,
+};
+
+@binding(2) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
+@binding(0) @group(0) var<storage, read> order_0 : array<u32>;
+
+@binding(1) @group(0) var<storage, read> splats_0 : array<vec4<u32>>;
+
+fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
+{
+    return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
+}
+
+fn unpackHalves_0( word_1 : u32) -> vec2<f32>
+{
+    return vec2<f32>(halfAt_0(word_1, u32(0)), halfAt_0(word_1, u32(1)));
+}
+
+fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
+{
+    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.0833333358168602f));
+}
+
+fn splatShare_0( deviations_1 : vec2<f32>,  wide_0 : vec2<f32>) -> f32
+{
+    return deviations_1.x / wide_0.x * (deviations_1.y / wide_0.y);
+}
+
+fn splatCorner_0( corner_0 : u32) -> vec2<f32>
+{
+    var right_0 : bool;
+    if(corner_0 == u32(1))
+    {
+        right_0 = true;
+    }
+    else
+    {
+        right_0 = corner_0 == u32(2);
+    }
+    if(right_0)
+    {
+        right_0 = true;
+    }
+    else
+    {
+        right_0 = corner_0 == u32(4);
+    }
+    var below_0 : bool;
+    if(corner_0 == u32(2))
+    {
+        below_0 = true;
+    }
+    else
+    {
+        below_0 = corner_0 == u32(4);
+    }
+    if(below_0)
+    {
+        below_0 = true;
+    }
+    else
+    {
+        below_0 = corner_0 == u32(5);
+    }
+    var _S1 : i32;
+    if(right_0)
+    {
+        _S1 = i32(1);
+    }
+    else
+    {
+        _S1 = i32(-1);
+    }
+    var _S2 : f32 = f32(_S1);
+    if(below_0)
+    {
+        _S1 = i32(1);
+    }
+    else
+    {
+        _S1 = i32(-1);
+    }
+    return vec2<f32>(_S2, f32(_S1));
+}
+
+fn splatReach_0( opacity_0 : f32,  share_0 : f32) -> f32
+{
+    return sqrt(max(2.0f * log(opacity_0 * max(share_0, 0.0625f) / 0.00392156885936856f), 0.0f));
+}
+
+struct SplatVaryings_0
+{
+    @builtin(position) position_0 : vec4<f32>,
+    @location(0) offset_0 : vec2<f32>,
+    @interpolate(flat) @location(1) color_0 : vec4<f32>,
+};
+
+fn splatVertex_0( _S3 : u32,  _S4 : u32,  _S5 : vec2<f32>,  _S6 : mat4x4<f32>) -> SplatVaryings_0
+{
+    var splat_0 : u32 = u32(2) * order_0[_S3 / u32(6)];
+    var head_0 : vec4<u32> = splats_0[splat_0];
+    var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
+    var color_1 : vec4<f32> = vec4<f32>(unpackHalves_0(head_0.w), unpackHalves_0(tail_0.x));
+    var _S7 : u32;
+    if(_S4 == u32(0))
+    {
+        _S7 = tail_0.y;
+    }
+    else
+    {
+        _S7 = tail_0.z;
+    }
+    var major_0 : vec2<f32> = unpackHalves_0(_S7);
+    var _S8 : f32 = length(major_0);
+    var _S9 : f32 = halfAt_0(tail_0.w, _S4);
+    var deviations_2 : vec2<f32> = vec2<f32>(_S8, _S9);
+    var axis_0 : vec2<f32> = major_0 / vec2<f32>(max(_S8, 1.17549435082228751e-38f));
+    var wide_1 : vec2<f32> = splatWide_0(deviations_2);
+    var share_1 : f32 = splatShare_0(deviations_2, wide_1);
+    var _S10 : f32 = color_1.w;
+    var corner_1 : vec2<f32> = splatCorner_0(_S3 % u32(6)) * vec2<f32>(splatReach_0(_S10, share_1));
+    var offset_1 : vec2<f32> = corner_1 * wide_1;
+    var _S11 : f32 = axis_0.x;
+    var _S12 : f32 = offset_1.x;
+    var _S13 : f32 = axis_0.y;
+    var _S14 : f32 = offset_1.y;
+    var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S6)));
+    var _S15 : f32 = clip_0.w;
+    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S15) + vec2<f32>(_S11 * _S12 - _S13 * _S14, _S13 * _S12 + _S11 * _S14) * vec2<f32>(2.0f, -2.0f) / _S5;
+    var depth_0 : f32 = clamp(clip_0.z / _S15, 0.0f, 1.0f);
+    var seen_0 : bool = _S9 > 0.0f;
+    var varyings_0 : SplatVaryings_0;
+    varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
+    if(seen_0)
+    {
+        varyings_0.position_0 = vec4<f32>(place_0, depth_0, 1.0f);
+    }
+    varyings_0.offset_0 = vec2<f32>(0.84932178258895874f) * corner_1;
+    varyings_0.color_0 = vec4<f32>(color_1.xyz, log2(max(_S10 * share_1, 1.17549435082228751e-38f)));
+    return varyings_0;
+}
+
+@vertex
+fn SplatVert(@builtin(vertex_index) vertex_0 : u32) -> SplatVaryings_0
+{
+    return splatVertex_0(vertex_0, Constants_0.eye_0, Constants_0.screen_0, mat4x4<f32>(Constants_0.view_projection_0.data_0[i32(0)][i32(0)], Constants_0.view_projection_0.data_0[i32(1)][i32(0)], Constants_0.view_projection_0.data_0[i32(2)][i32(0)], Constants_0.view_projection_0.data_0[i32(3)][i32(0)], Constants_0.view_projection_0.data_0[i32(0)][i32(1)], Constants_0.view_projection_0.data_0[i32(1)][i32(1)], Constants_0.view_projection_0.data_0[i32(2)][i32(1)], Constants_0.view_projection_0.data_0[i32(3)][i32(1)], Constants_0.view_projection_0.data_0[i32(0)][i32(2)], Constants_0.view_projection_0.data_0[i32(1)][i32(2)], Constants_0.view_projection_0.data_0[i32(2)][i32(2)], Constants_0.view_projection_0.data_0[i32(3)][i32(2)], Constants_0.view_projection_0.data_0[i32(0)][i32(3)], Constants_0.view_projection_0.data_0[i32(1)][i32(3)], Constants_0.view_projection_0.data_0[i32(2)][i32(3)], Constants_0.view_projection_0.data_0[i32(3)][i32(3)]));
+}
+
+`,
+};
+
+/** @type {import("../shader.js").Shader} */
+export const CountFrag = {
+  ...{"stage": "frag", "entry": "CountFrag", "buffers": [], "constants": [], "constants_binding": null, "threads": [1, 1, 1]},
+  code: `struct pixelOutput_0
+{
+    @location(0) output_0 : vec4<f32>,
+};
+
+struct pixelInput_0
+{
+    @location(0) offset_0 : vec2<f32>,
+    @interpolate(flat) @location(1) color_0 : vec4<f32>,
+};
+
+@fragment
+fn CountFrag( _S1 : pixelInput_0, @builtin(position) position_0 : vec4<f32>) -> pixelOutput_0
+{
+    var _S2 : pixelOutput_0 = pixelOutput_0( vec4<f32>(1.0f, 0.0f, 0.0f, 0.0f) );
+    return _S2;
+}
+
+`,
+};
+
+/** @type {import("../shader.js").Shader} */
+export const SplatFrag = {
+  ...{"stage": "frag", "entry": "SplatFrag", "buffers": [], "constants": [], "constants_binding": null, "threads": [1, 1, 1]},
+  code: `struct SplatVaryings_0
+{
+     position_0 : vec4<f32>,
+     offset_0 : vec2<f32>,
+    color_0 : vec4<f32>,
+};
+
+fn splatFragment_0( varyings_0 : SplatVaryings_0) -> vec4<f32>
+{
+    var _S1 : vec2<f32> = varyings_0.offset_0;
+    var _S2 : f32 = min(exp2(varyings_0.color_0.w - dot(_S1, _S1)), 0.99000000953674316f);
+    return vec4<f32>(varyings_0.color_0.xyz * vec3<f32>(_S2), _S2);
+}
+
+struct pixelOutput_0
+{
+    @location(0) output_0 : vec4<f32>,
+};
+
+struct pixelInput_0
+{
+    @location(0) offset_1 : vec2<f32>,
+    @interpolate(flat) @location(1) color_1 : vec4<f32>,
+};
+
+@fragment
+fn SplatFrag( _S3 : pixelInput_0, @builtin(position) position_1 : vec4<f32>) -> pixelOutput_0
+{
+    var _S4 : SplatVaryings_0 = SplatVaryings_0( position_1, _S3.offset_1, _S3.color_1 );
+    var _S5 : pixelOutput_0 = pixelOutput_0( splatFragment_0(_S4) );
+    return _S5;
+}
+
+`,
+};
