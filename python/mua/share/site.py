@@ -51,7 +51,7 @@ def player_site(avatars: Sequence[Path], shown: Shown, *, poster: bytes | None =
 
 def page(shown: Shown, attributes: Mapping[str, str]) -> str:
     """The player's page with so many attributes of its element, and with a title of its own."""
-    given = {**attributes, "clip": shown.clip, "show": shown.show, **shown.more}
+    given = {"clip": shown.clip, "show": shown.show, **shown.more, **attributes}
     written = "".join(f'{name}="{html.escape(value)}" ' for name, value in given.items() if value is not None)
     text = (PLAYER / PAGE).read_text(encoding="utf-8")
     titled = re.sub(r"<title>.*?</title>", lambda _: f"<title>{html.escape(shown.title)}</title>", text, count=1)

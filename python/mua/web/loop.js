@@ -1,0 +1,71 @@
+// When pictures are drawn: all that the display shows while an avatar plays and can be seen, else only what changes.
+
+const LONGEST_STEP = 0.25; // seconds that count for one picture, so that nothing leaps after a pause
+
+/** @typedef {import("./element.js").MuaAvatar} MuaAvatar */
+/** @typedef {{tick: (seconds: number) => void, fail: (error: unknown) => void}} Asks tick: with every picture while it plays */
+
+export class Loop {
+  #drawing = false;
+  #changed = false;
+  #visible = true;
+  #ticking = false;
+  #before = 0; // milliseconds of the last tick
+
+  /** @param {MuaAvatar} avatar @param {Asks} asks */
+  constructor(avatar, asks) {
+    this.avatar = avatar;
+    this.asks = asks;
+  }
+
+  /** Whether any of the element is on the screen. */
+  setVisible(/** @type {boolean} */ visible) {
+    this.#visible = visible;
+    this.pace();
+  }
+
+  get #going() {
+    return Boolean(this.avatar.player?.playing) && this.#visible && this.avatar.avatars.length > 0;
+  }
+
+  /** Start or stop, as it plays or does not. */
+  pace() {
+    const { player } = this.avatar;
+    if (!this.#going) return player?.stop();
+    player?.start();
+    if (this.#ticking) return;
+    this.#ticking = true;
+    this.#before = performance.now();
+    requestAnimationFrame((now) => this.#tick(now));
+  }
+
+  #tick(/** @type {number} */ now) {
+    this.#ticking = this.#going;
+    if (!this.#ticking) return this.pace();
+    const seconds = Math.max(now - this.#before, 0) / 1000;
+    this.#before = now;
+    this.asks.tick(Math.min(seconds, LONGEST_STEP));
+    requestAnimationFrame((then) => this.#tick(then));
+  }
+
+  /** Draw what has changed, once however often it is asked for. */
+  redraw() {
+    this.#changed = true;
+    if (this.#drawing || !this.avatar.player || this.avatar.player.playing) return;
+    this.#drawing = true;
+    requestAnimationFrame(() => void this.#drawChanged());
+  }
+
+  async #drawChanged() {
+    try {
+      while (this.#changed && this.avatar.player && !this.avatar.player.playing) {
+        this.#changed = false;
+        await this.avatar.player.draw();
+      }
+    } catch (error) {
+      this.asks.fail(error);
+    } finally {
+      this.#drawing = false;
+    }
+  }
+}

@@ -1,0 +1,28 @@
+"""The player's page with a stand-in for the engine (fake_player.js), whose avatars are lines of JSON."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from mua.share.site import PAGE, Content, Shown, page, player_files
+
+FAKE = Path(__file__).parent / "fake_player.js"
+CLIPS = [{"name": "walk", "seconds": 2.0, "frames": 60}, {"name": "wave", "seconds": 4.0, "frames": 120}]
+# The parts of the element, by what they are called in element.js.
+ELEMENT = "document.querySelector('mua-avatar')"
+SHADOW = f"{ELEMENT}.shadowRoot"
+SENTENCE = f"({SHADOW}.querySelector('.says').hidden ? '' : {SHADOW}.querySelector('.says p').textContent)"
+
+
+def avatar(name: str, clips: Sequence[object] = CLIPS) -> bytes:
+    """An avatar as the stand-in reads it."""
+    return json.dumps({"name": name, "clips": clips}).encode()
+
+
+def fake_site(attributes: dict[str, str] | None = None, **files: Content) -> dict[str, Content]:
+    """The page with so many attributes of its element, and avatars by their names."""
+    given = {"src": "hero.muaavatar"} if attributes is None else attributes
+    found = {"hero": avatar("hero"), **files}
+    site: dict[str, Content] = {**player_files(), "player.js": FAKE}
+    site |= {f"{name}.muaavatar": content for name, content in found.items()}
+    return {**site, PAGE: page(Shown("Hero"), given).encode()}
