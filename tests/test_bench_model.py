@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from commands import Commands
 
-from mua.bench.counts import POSED, Counts, Drawn
+from mua.bench.counts import Counts, Drawn, Part
 from mua.bench.devices import DEVICES, ModelDevice, Range, model_device
 from mua.bench.instructions import count_instructions
 from mua.bench.measure import Measured, Timing
 from mua.bench.model import BLOCK_CORNER, BLOCK_EDGE, FIXED, Modelled, model, shaded
-from mua.bench.work import PROJECT_EYE, Work
+from mua.bench.work import POSING, PROJECT_EYE, Work
 from mua.errors import InputError
 from mua.gpu import compile, sources
 
@@ -25,9 +25,9 @@ INSTRUCTIONS = 84
 
 def counts(fragments: int = 4_000) -> Counts:
     """1 MB and 1 MFLOP to decode, 0.5 MB and 3 MFLOP to pose; 1,000 splats."""
-    work = {"BlendLl": Work(1_000_000, 1_000_000), **dict.fromkeys(POSED, Work(0, 0))}
-    work["SplatProject"] = Work(500_000, 3_000_000)
-    return Counts("a", 1_000, work, 30, 8, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
+    decode = Part({"BlendLl": Work(1_000_000, 1_000_000)}, 22)
+    pose = Part({**dict.fromkeys(POSING, Work(0, 0)), "SplatProject": Work(500_000, 3_000_000)}, 8)
+    return Counts("a", 1_000, (decode,), pose, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
 
 
 def only(modelled: list[Modelled], avatars: int, eyes: int) -> Modelled:
@@ -124,8 +124,8 @@ def test_prints_the_model_beside_what_is_measured(
     command: Commands, monkeypatch: pytest.MonkeyPatch, avatar_file: Path, tmp_path: Path
 ) -> None:
     time = Timing(1.25, 1, 2)
-    kernels = dict.fromkeys(("BlendLl", *POSED), time)
-    here = Measured("my device", "a", 1_000, 1_000, (64, 64), 1, 1, 1e9, kernels, counts().work, time)
+    kernels = dict.fromkeys(("BlendLl", *POSING), time)
+    here = Measured("my device", "a", 1_000, 1_000, (64, 64), 1, 1, 1e9, kernels, counts().kernels, time)
     monkeypatch.setattr(importlib.import_module("mua.bench.counts"), "count", lambda *_: counts())
     monkeypatch.setattr(importlib.import_module("mua.bench.measure"), "measure", lambda *_, **__: here)
     monkeypatch.setenv("COLUMNS", "160")

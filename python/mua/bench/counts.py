@@ -3,6 +3,7 @@
 Dispatches are those that the player appends; fragments are counted by drawing.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,11 +11,10 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
-from mua.asset.read import load
-from mua.bench.work import Work, frame_work
+from mua.bench.work import NOTHING, Work, by_kernel
 from mua.camera import Camera, orbit
 from mua.errors import InputError
-from mua.gpu import Device
+from mua.gpu import Bound, Device
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import EXACT_FORMAT, SortedSplats, SplatRenderer, draw_image, image_format
@@ -27,7 +27,6 @@ SCREEN = (1680, 1760)  # pixels of one eye, as a Quest 3 has them unless told ot
 FOCAL = 790  # pixels
 DISTANCES = (2.2, 1.0, 0.6)  # metres from the figure's middle
 VISIBLE_WORD = 4  # of the arguments that splat_sort writes
-POSED = ("BlendVertices", "SplatProject", "CountDigits", "ScanDigits", "ScatterDigits")  # in every frame that poses
 
 
 @dataclass(frozen=True)
@@ -41,35 +40,42 @@ class Drawn:
 
 
 @dataclass(frozen=True)
+class Part:
+    """Dispatches that follow one another."""
+
+    kernels: dict[str, Work]  # by entry point, in frame order
+    dispatches: int
+
+    @property
+    def work(self) -> Work:
+        return sum(self.kernels.values(), NOTHING)
+
+
+@dataclass(frozen=True)
 class Counts:
     """Of one avatar before one eye, all of whose splats are in view."""
 
     avatar: str
     splats: int
-    work: dict[str, Work]  # by kernel, in frame order
-    decode_dispatches: int  # of a frame that decodes all, poses and sorts
-    pose_dispatches: int  # of a frame that poses and sorts
-    rest_dispatches: int  # of a frame in which only the camera moves
+    decode: tuple[Part, ...]  # from a window of poses to mesh and channels
+    pose: Part  # from these to sorted splats, in every frame that poses
+    rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
 
     @property
-    def decode(self) -> Work:
-        return sum((work for name, work in self.work.items() if name not in POSED), Work(0, 0))
+    def kernels(self) -> dict[str, Work]:
+        """Of a frame that decodes all, by entry point."""
+        spent: dict[str, Work] = {}
+        for part in (*self.decode, self.pose):
+            for name, work in part.kernels.items():
+                spent[name] = spent.get(name, NOTHING) + work
+        return spent
 
     @property
-    def pose(self) -> Work:
-        return sum((self.work[name] for name in POSED), Work(0, 0))
-
-
-class _Listed:
-    """Passes dispatches on, and counts them."""
-
-    def __init__(self, device: Device) -> None:
-        self.commands, self.names = device.commands(), list[str]()
-
-    def dispatch(self, kernel: Any, *arguments: Any, **constants: Any) -> None:
-        self.names.append(kernel.name)
-        self.commands.dispatch(kernel, *arguments, **constants)
+    def whole(self) -> Part:
+        """The whole decode."""
+        kernels = {name: work for name, work in self.kernels.items() if name not in self.pose.kernels}
+        return Part(kernels, sum(part.dispatches for part in self.decode))
 
 
 def count(device: Device, path: Path) -> Counts:
@@ -80,31 +86,23 @@ def count(device: Device, path: Path) -> Counts:
         raise InputError(f"{path} holds no clips; mua-bench needs one to pose the avatar")
     clip = resample(avatar.clips[0], avatar.encoding.rate)
     frame = SplatFrame(device, [AvatarFrame(device, buffers)])
-    drawn: list[Drawn] = []
-    names: list[str] = []
-    visible = 0
-    for distance in DISTANCES:
-        names, sorted_visible, seen = _draw(device, frame, clip, distance)
-        visible = max(visible, sorted_visible)
-        drawn.append(seen)
-    work = frame_work(load(path), visible=visible, eyes=1)
-    if set(names) != set(work):
-        raise InputError(f"{path}: dispatches {sorted(set(names) ^ set(work))} are not counted")
-    rest = names.index("SplatProject")
+    views = [_draw(device, frame, clip, distance) for distance in DISTANCES]
+    bound, _, _ = views[0]
+    share = max(visible for _, visible, _ in views) / frame.splat_count
+    posed, projected = (_first(bound, name) for name in ("BlendVertices", "SplatProject"))
     return Counts(
         avatar=avatar.name,
         splats=len(avatar.rig.texels.texels),
-        work=work,
-        decode_dispatches=len(names),
-        pose_dispatches=len(names) - names.index("BlendVertices"),
-        rest_dispatches=len(names) - rest,
-        drawn=tuple(drawn),
+        decode=(_part(bound[:posed], share),),
+        pose=_part(bound[posed:], share),
+        rest=len(bound) - projected,
+        drawn=tuple(drawn for _, _, drawn in views),
     )
 
 
 def as_json(counts: Counts) -> dict[str, Any]:
     """Numbers and names only; distances are metres."""
-    decode, pose = counts.decode, counts.pose
+    decode, pose = counts.whole.work, counts.pose.work
     return {
         "avatar": counts.avatar,
         "splats": counts.splats,
@@ -113,14 +111,14 @@ def as_json(counts: Counts) -> dict[str, Any]:
         "bytes": {"decode": decode.bytes, "pose": pose.bytes, "peak_frame": decode.bytes + pose.bytes},
         "operations": {"decode": decode.flops, "pose": pose.flops, "peak_frame": decode.flops + pose.flops},
         "dispatches": {
-            "decode": counts.decode_dispatches,
-            "pose": counts.pose_dispatches,
-            "rest": counts.rest_dispatches,
+            "decode": counts.whole.dispatches + counts.pose.dispatches,
+            "pose": counts.pose.dispatches,
+            "rest": counts.rest,
         },
         "triangles": {str(d.distance): d.triangles for d in counts.drawn},
         "fragments": {str(d.distance): d.fragments for d in counts.drawn},
         "overdraw": {str(d.distance): d.overdraw for d in counts.drawn},
-        "kernels": {name: {"bytes": work.bytes, "operations": work.flops} for name, work in counts.work.items()},
+        "kernels": {name: {"bytes": work.bytes, "operations": work.flops} for name, work in counts.kernels.items()},
     }
 
 
@@ -132,21 +130,32 @@ def fragments(device: Device, splats: SortedSplats, camera: Camera) -> Array:
     return draw_image(device, renderer, splats, [camera])[..., 0]
 
 
-def _draw(device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, distance: float) -> tuple[list[str], int, Drawn]:
-    """The dispatches of a frame, how many splats it sorted, and what is drawn."""
+def _part(bound: Sequence[Bound], share: float) -> Part:
+    """Dispatches where some eye sees this share of the splats."""
+    return Part(by_kernel(bound, share=share), len(bound))
+
+
+def _first(bound: Sequence[Bound], kernel: str) -> int:
+    return [each.kernel for each in bound].index(kernel)
+
+
+def _draw(
+    device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, distance: float
+) -> tuple[tuple[Bound, ...], int, Drawn]:
+    """The dispatches of a frame that decodes all, how many splats it sorted, and what is drawn."""
     (avatar,) = frame.avatars
     window = avatar.avatar.avatar.encoding.frames(0)
-    listed = _Listed(device)
-    avatar.decode(listed, clip.rotations[window], clip.translations[window])  # type: ignore[arg-type]
+    commands = device.commands()
+    avatar.decode(commands, clip.rotations[window], clip.translations[window])
     skeleton = avatar.avatar.avatar.rig.skeleton
     camera = _camera(avatar.bounds, front_of(skeleton, clip.rotations[0], clip.translations[0]), distance)
-    frame.sort(listed, [camera])  # type: ignore[arg-type]
-    listed.commands.submit()
+    frame.sort(commands, [camera])
+    commands.submit()
     visible = int(frame.arguments.read()[VISIBLE_WORD])
     at = fragments(device, frame.sorted, camera)
     whole = int(at.sum(dtype=float))
     drawn = Drawn(distance, 2 * visible, whole, whole / max(int(np.count_nonzero(at)), 1))
-    return listed.names, visible, drawn
+    return commands.bound, visible, drawn
 
 
 def _camera(

@@ -9,8 +9,7 @@ import numpy as np
 import wgpu
 
 from mua.arrays import Array
-from mua.asset.read import load
-from mua.bench.work import Work, frame_work
+from mua.bench.work import Work, by_kernel
 from mua.camera import Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
@@ -73,7 +72,7 @@ def measure(device: Device, path: Path, *, frames: int, screen: tuple[int, int],
     frame = SplatFrame(device, [AvatarFrame(device, buffers)])
     spent, visible = _compute_frames(device, frame, clip, shots, frames)
     drawn = _draw_frames(device, frame, clip, shots, frames)  # after all computing, see there
-    work = frame_work(load(path), visible=visible, eyes=len(shots[0]))
+    work = by_kernel(_compute(device, frame, clip, shots, 0).bound, share=visible / frame.splat_count)
     return Measured(
         device=str(device.adapter),
         avatar=buffers.avatar.name,

@@ -14,7 +14,7 @@ from itertools import product
 
 import numpy as np
 
-from mua.bench.counts import POSED, Counts, Drawn
+from mua.bench.counts import Counts, Drawn
 from mua.bench.devices import ModelDevice
 from mua.bench.work import PROJECT_EYE, Work
 
@@ -74,8 +74,7 @@ def model(device: ModelDevice, counts: Counts, instructions: int) -> list[Modell
 def _stages(
     device: ModelDevice, counts: Counts, seen: Drawn, avatars: int, eyes: int, instructions: int, end: str
 ) -> Stages:
-    decode = {name: work for name, work in counts.work.items() if name not in POSED}
-    pose = {name: counts.work[name] for name in POSED}
+    decode, pose = counts.whole.kernels, dict(counts.pose.kernels)
     project = pose["SplatProject"]
     pose["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * counts.splats)
     drawn = avatars * eyes

@@ -1,4 +1,4 @@
-"""Bytes moved and floating-point operations of every kernel of a frame, from the shapes of its dispatches.
+"""Bytes moved and floating-point operations of every dispatch of a frame, from what it binds and its constants.
 
 Bytes: every element that a dispatch needs, read once and written once, in the type that it has on the device; what a
 cache saves or a gather costs beyond that shows as a fraction of the copy bandwidth that is above or below the truth.
@@ -6,10 +6,11 @@ Operations: a multiply-add is two, a square root, division, exponential or compa
 out, as in mua.asset.count, whose sums the network part equals.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from mua.asset.flatbuffer import Tree
-from mua.kernels.inverse_dwt import BATCH, ROWS, texel_tiles, upsampling_taps
+from mua.gpu import Bound
+from mua.kernels.inverse_dwt import BATCH, ROWS
 
 FLOAT = UINT = 4  # bytes
 HALF = 2
@@ -19,7 +20,6 @@ KEY = 2  # bytes
 INFLUENCES = 8
 SORT_GROUP = 2048  # keys that share one histogram
 DIGITS = 256
-TILE = UINT + 16 * 2 * UINT  # bytes that say where a tile lies and which of its texels are valid
 
 # Operations of the posing kernels, counted on their references.
 BLEND_TERM = 8 + 16  # dot product with the reference of the signs, 8 multiply-adds
@@ -39,7 +39,7 @@ PROJECT_SHARED = 12 + 30 + 27 + 11  # direction, turned back, SH; key
 
 @dataclass(frozen=True)
 class Work:
-    """What a kernel must do in one frame."""
+    """What a dispatch, or several, must do in one frame."""
 
     bytes: int
     flops: int
@@ -48,136 +48,138 @@ class Work:
         return Work(self.bytes + other.bytes, self.flops + other.flops)
 
 
-def frame_work(
-    tree: Tree,  # of the file, for the sizes and stored types of its tensors
-    *,
-    visible: int,  # splats that some eye sees
-    eyes: int,
-) -> dict[str, Work]:
-    """Work of one frame by kernel entry point, in frame order; the drawing depends on overdraw and is left out."""
-    texels = int(tree["texels"]["texels"]["shape"][0])
-    return {
-        **_decode(tree),
-        "BlendVertices": blend_vertices(len(tree["skeleton"]["names"]), _shape(tree["template"]["skin_indices"])[0]),
-        "SplatProject": splat_project(tree, visible, eyes),
-        **splat_sort(texels, visible),
-    }
+NOTHING = Work(0, 0)
 
 
-def mlp_matmul(layer: Tree) -> Work:
-    """W [out, in] x + b: W, b and x read, y written; out x in multiply-adds."""
-    outputs, inputs = _shape(layer["weight"])
-    return Work(_stored(layer["weight"], layer["bias"]) + FLOAT * (inputs + outputs), 2 * outputs * inputs)
+def work_of(dispatch: Bound, *, share: float) -> Work:
+    """Work of one dispatch where some eye sees this share of the splats."""
+    return (DECODING | POSING)[dispatch.kernel](dispatch, share)
 
 
-def mlp_matmul_transposed(coarse: Tree) -> Work:
-    """The PCA mesh: basis [K, V, 3], mean and K coefficients read, 3 V coordinates written; 3 K V multiply-adds."""
-    components, vertices, _ = _shape(coarse["basis"])
-    moved = _stored(coarse["basis"], coarse["mean"]) + FLOAT * (components + 3 * vertices)
-    return Work(moved, 2 * 3 * components * vertices)
+def total(dispatches: Iterable[Bound], *, share: float) -> Work:
+    return sum((work_of(dispatch, share=share) for dispatch in dispatches), NOTHING)
 
 
-def blend_ll(branch: Tree) -> Work:
+def by_kernel(dispatches: Iterable[Bound], *, share: float) -> dict[str, Work]:
+    """Work by entry point, in the order of the first dispatch of each; the drawing is not among them."""
+    spent: dict[str, Work] = {}
+    for dispatch in dispatches:
+        spent[dispatch.kernel] = spent.get(dispatch.kernel, NOTHING) + work_of(dispatch, share=share)
+    return spent
+
+
+def mlp_matmul(dispatch: Bound, _: float) -> Work:
+    """W [out, in] x + b: W, b and x read, y written; out x in multiply-adds. The PCA mesh is such a layer too."""
+    inputs, outputs = _constants(dispatch, "inputs", "outputs")
+    return Work(_bound(dispatch, "weight", "bias") + FLOAT * (inputs + outputs), 2 * outputs * inputs)
+
+
+def blend_ll(dispatch: Bound, _: float) -> Work:
     """Mean, basis [C, R, n, n] and alpha [C, R] read, C n^2 written; C R n^2 multiply-adds."""
-    channels, rank, size, _ = _shape(branch["ll_basis"])
-    moved = _stored(branch["ll_mean"], branch["ll_basis"]) + FLOAT * channels * (rank + size**2)
+    channels, rank, size = _constants(dispatch, "channels", "rank", "size")
+    moved = _bound(dispatch, "mean", "basis") + FLOAT * channels * (rank + size**2)
     return Work(moved, 2 * channels * rank * size**2)
 
 
-def blend_detail(band: Tree) -> Work:
+def blend_detail(dispatch: Bound, _: float) -> Work:
     """Mean, h, w [3, C, R, n] and alpha read, 3 C n^2 written; alpha h: 3 C R n, its products with w: 3 C R n^2."""
-    _, channels, rank, size = _shape(band["h"])
-    moved = _stored(band["mean"], band["h"], band["w"]) + FLOAT * channels * (rank + 3 * size**2)
+    channels, rank, size = _constants(dispatch, "channels", "rank", "size")
+    moved = _bound(dispatch, "mean", "h", "w") + FLOAT * channels * (rank + 3 * size**2)
     return Work(moved, 2 * 3 * channels * rank * (size + size**2))
 
 
-def inverse_dwt(channels: int, size: int, taps: int) -> Work:
+def inverse_dwt(dispatch: Bound, _: float) -> Work:
     """Four bands [C, n, n] and two filters read, [C, 2n, 2n] written; taps (2n)^2 multiply-adds along either axis."""
+    channels, size, taps = _constants(dispatch, "channels", "size", "taps")
     moved = FLOAT * (channels * (4 * size**2 + (2 * size) ** 2) + 2 * taps)
     return Work(moved, 2 * channels * 2 * taps * (2 * size) ** 2)
 
 
-def upsample_texels(branch: Tree, upsampling: tuple[int, int], tiles: int) -> Work:
-    """LL [C, n, n], filter [reach, factor], 132 bytes for each of the tiles and static offset read; halves written.
+def upsample_texels(dispatch: Bound, _: float) -> Work:
+    """LL [C, n, n], filter, tiles and static offset read; halves of the valid texels written.
 
     Levels without details are one filter of `reach` samples for each texel; along the rows the texels of a column share
     what they need, `factor` of them to a sample.
     """
-    channels, texels = _shape(branch["static_offset"])
-    size = _shape(branch["ll_mean"])[-1] << len(branch["details"])
-    reach, factor = upsampling
-    moved = _stored(branch["static_offset"]) + TILE * tiles
-    moved += FLOAT * (channels * size**2 + reach * factor) + HALF * BATCH * _groups(channels, BATCH) * texels
+    channels, size, texels = _constants(dispatch, "channels", "size", "texel_count")
+    reach, factor = _constants(dispatch, "reach", "factor")
+    moved = _bound(dispatch, "static_offset", "tiles", "tile_rows", "upsampling") + FLOAT * channels * size**2
+    moved += HALF * BATCH * _groups(channels, BATCH) * texels
     return Work(moved, channels * texels * (2 * reach + 2 * reach // factor + 1))
 
 
-def blend_vertices(joints: int, vertices: int) -> Work:
+def blend_vertices(dispatch: Bound, _: float) -> Work:
     """Joints' dual quaternions, 8 indices and weights for each vertex read, V dual quaternions written."""
-    influences = INFLUENCES * (UINT + FLOAT)
-    moved = DUAL_QUATERNION * (joints + vertices) + influences * vertices
+    (vertices,) = _constants(dispatch, "vertex_count")
+    moved = _bound(dispatch, "joints", "indices", "weights") + DUAL_QUATERNION * vertices
     return Work(moved, vertices * (INFLUENCES * BLEND_TERM + NORMALIZE_DUAL))
 
 
-def splat_project(tree: Tree, visible: int, eyes: int) -> Work:
+def splat_project(dispatch: Bound, share: float) -> Work:
     """Vertices and faces, place and 24 half floats of each texel read; a key and a centre or 32 bytes written.
 
     Vertices and faces are gathered, and counted once.
     """
-    texels, vertices = _shape(tree["texels"]["texels"])[0], _shape(tree["coarse"]["mean"])[0]
-    shared = (DUAL_QUATERNION + 3 * FLOAT) * vertices + 3 * UINT * _shape(tree["template"]["faces"])[0]
-    texel = 2 * UINT + ROWS * BATCH * HALF + CENTRE + KEY
-    moved = shared + texels * texel + visible * (SPLAT - CENTRE)
+    texels, eyes = _constants(dispatch, "texel_count", "eyes")
+    moved = _bound(dispatch, "mesh", "vertex_dq", "faces", "texels")
+    moved += texels * (ROWS * BATCH * HALF + CENTRE + KEY) + round(share * texels) * (SPLAT - CENTRE)
     return Work(moved, texels * (SKIN + eyes * PROJECT_EYE + PROJECT_SHARED))
 
 
-def splat_sort(texels: int, visible: int) -> dict[str, Work]:
-    """Keys, then elements, counted, scanned and scattered; integers only."""
-    first, last = (UINT * DIGITS * _groups(count, SORT_GROUP) for count in (texels, visible))
-    totals = 2 * UINT * DIGITS
-    read = KEY * texels + UINT * visible
-    moved = {
-        "CountDigits": read + first + last,
-        "ScanDigits": 2 * (first + last) + totals,
-        "ScatterDigits": read + 2 * UINT * visible + first + last + totals,
-    }
-    return {name: Work(once, 0) for name, once in moved.items()}
+def count_digits(dispatch: Bound, share: float) -> Work:
+    """Keys read, then the elements of what is seen; a histogram of each group written; integers only."""
+    read, count, _ = _keys(dispatch, share)
+    return Work(read + _histograms(count), 0)
 
 
-def _decode(tree: Tree) -> dict[str, Work]:
-    """Network, mesh, subbands and synthesis."""
-    branches = (tree["geometry"], tree["appearance"])
-    taps = len(tree["wavelet"]["rec_lo"])
-    nothing = Work(0, 0)
-    layers = [layer for part in (tree["coarse"], *branches) for layer in part["mlp"]]
-    tiles = len(texel_tiles(tree["texels"]["texels"]["data"].view("<u4"), int(tree["texels"]["size"]))[0])
-    full = nothing
-    for branch in branches:
-        channels, size, _ = _shape(branch["ll_mean"])
-        full = sum((inverse_dwt(channels, size << i, taps) for i in range(len(branch["details"]))), full)
-    return {
-        "MlpMatmul": sum(map(mlp_matmul, layers), nothing),
-        "MlpMatmulTransposed": mlp_matmul_transposed(tree["coarse"]),
-        "BlendLl": sum(map(blend_ll, branches), nothing),
-        "BlendDetail": sum((blend_detail(band) for branch in branches for band in branch["details"]), nothing),
-        "InverseDwt": full,
-        "UpsampleTexels": sum((upsample_texels(b, _upsampling(tree, b), tiles) for b in branches), nothing),
-    }
+def scan_digits(dispatch: Bound, share: float) -> Work:
+    """Histograms read and written, their totals written; integers only."""
+    _, count, _ = _keys(dispatch, share)
+    return Work(2 * _histograms(count) + UINT * DIGITS, 0)
 
 
-def _upsampling(tree: Tree, branch: Tree) -> tuple[int, int]:
-    """Reach and factor of a branch's levels without details."""
-    wavelet = tree["wavelet"]
-    taps, _ = upsampling_taps(wavelet["rec_lo"], int(wavelet["levels"]) - len(branch["details"]))
-    return taps.shape[0], taps.shape[1]
+def scatter_digits(dispatch: Bound, share: float) -> Work:
+    """Keys, then elements, read with histograms and totals; elements, then the order, of what is seen written."""
+    read, count, visible = _keys(dispatch, share)
+    return Work(read + UINT * visible + _histograms(count) + UINT * DIGITS, 0)
 
 
-def _shape(tensor: Tree) -> tuple[int, ...]:
-    return tuple(int(n) for n in tensor["shape"])
+Formula = Callable[[Bound, float], Work]  # of a dispatch and the share of the splats that some eye sees
+DECODING: dict[str, Formula] = {  # once for a pose of the clip, to mesh and channels
+    "MlpMatmul": mlp_matmul,
+    "MlpMatmulTransposed": mlp_matmul,
+    "BlendLl": blend_ll,
+    "BlendDetail": blend_detail,
+    "InverseDwt": inverse_dwt,
+    "UpsampleTexels": upsample_texels,
+}
+POSING: dict[str, Formula] = {  # in every displayed frame, to sorted splats
+    "BlendVertices": blend_vertices,
+    "SplatProject": splat_project,
+    "CountDigits": count_digits,
+    "ScanDigits": scan_digits,
+    "ScatterDigits": scatter_digits,
+}
 
 
-def _stored(*tensors: Tree) -> int:
-    """Bytes of tensors as they are stored, the scales of i8 rows included."""
-    return sum(t["data"].nbytes + (t["scale"].nbytes if "scale" in t else 0) for t in tensors)
+def _keys(dispatch: Bound, share: float) -> tuple[int, int, int]:
+    """Of one pass: bytes of the keys or elements that are read, how many those are, and how many are kept."""
+    keys, second_pass = _constants(dispatch, "key_count", "second_pass")
+    visible = round(share * keys)
+    return (UINT * visible, visible, visible) if second_pass else (KEY * keys, keys, visible)
+
+
+def _histograms(count: int) -> int:
+    return UINT * DIGITS * _groups(count, SORT_GROUP)
+
+
+def _constants(dispatch: Bound, *names: str) -> tuple[int, ...]:
+    return tuple(int(dispatch.constants[name]) for name in names)
+
+
+def _bound(dispatch: Bound, *names: str) -> int:
+    """Bytes of buffers as they are stored, the scales of i8 rows included."""
+    return sum(dispatch.sizes[name] for name in names)
 
 
 def _groups(count: int, size: int) -> int:

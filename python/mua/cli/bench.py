@@ -93,13 +93,13 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
     if output is not None:
         files.write_bytes(output, json.dumps(figures, indent=2).encode() + b"\n")
     table = Table("frame", "MB", "MFLOP", "dispatches", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
-    for name, work in counted.work.items():
+    for name, work in counted.kernels.items():
         table.add_row(name, f"{work.bytes / 1e6:.1f}", f"{work.flops / 1e6:.0f}", "")
     table.add_section()
     for name in ("decode", "pose", "peak_frame"):
         moved, done = figures["bytes"][name] / 1e6, figures["operations"][name] / 1e6
         table.add_row(name.replace("_", " "), f"{moved:.1f}", f"{done:.0f}", str(figures["dispatches"].get(name, "")))
-    table.add_row("rest", "", "", str(counted.rest_dispatches))
+    table.add_row("rest", "", "", str(counted.rest))
     views = Table("metres", "triangles", "fragments", "overdraw", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for seen in counted.drawn:
         views.add_row(str(seen.distance), f"{seen.triangles:,}", f"{seen.fragments:,}", f"{seen.overdraw:.1f}")

@@ -6,10 +6,10 @@ from typing import Any
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from mua.bench.counts import POSED
 from mua.bench.devices import ModelDevice
 from mua.bench.measure import Measured
 from mua.bench.model import Modelled, Stages
+from mua.bench.work import POSING
 
 COLUMNS = (
     "avatars",
@@ -58,8 +58,8 @@ def measured_line(measured: Measured) -> str:
 
 def measured_stages(measured: Measured) -> dict[str, float]:
     """Milliseconds."""
-    pose = sum(measured.kernels[name].median for name in POSED)
-    decode = sum(timing.median for name, timing in measured.kernels.items() if name not in POSED)
+    pose = sum(measured.kernels[name].median for name in POSING)
+    decode = sum(timing.median for name, timing in measured.kernels.items() if name not in POSING)
     return {"decode": decode, "pose": pose, "draw": measured.draw.median}
 
 

@@ -2,8 +2,8 @@
 
 from mua.gpu.adapters import Adapter, adapters
 from mua.gpu.buffer import Buffer
-from mua.gpu.commands import Commands
+from mua.gpu.commands import Bound, Commands
 from mua.gpu.device import Device, open_device
 from mua.gpu.kernel import Kernel
 
-__all__ = ["Adapter", "Buffer", "Commands", "Device", "Kernel", "adapters", "open_device"]
+__all__ = ["Adapter", "Bound", "Buffer", "Commands", "Device", "Kernel", "adapters", "open_device"]

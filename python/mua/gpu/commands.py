@@ -19,7 +19,17 @@ DISPATCH_ARGUMENTS = 12  # bytes: three group counts
 
 
 @dataclass(frozen=True)
+class Bound:
+    """A dispatch as those see it who count what it costs."""
+
+    kernel: str
+    sizes: Mapping[str, int]  # bytes of its buffers, by the kernel's names for them
+    constants: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
 class _Dispatch:
+    bound: Bound
     kernel: Kernel
     group: wgpu.GPUBindGroup
     constants: bytes | None
@@ -57,6 +67,11 @@ class Commands:
             )
         self._append(kernel, (0, 0, 0), (arguments, offset), buffers, constants)
 
+    @property
+    def bound(self) -> tuple[Bound, ...]:
+        """What was appended so far, in order."""
+        return tuple(dispatch.bound for dispatch in self._dispatches)
+
     def submit(self) -> None:
         """Run all dispatches on the device, without waiting for them; may be called again to run them again."""
         dispatches = [d for d in self._dispatches if d.indirect or min(d.groups) > 0]
@@ -92,7 +107,8 @@ class Commands:
     ) -> None:
         kernel.check(buffers, constants)
         packed = kernel.bindings.pack(constants)
-        self._dispatches.append(_Dispatch(kernel, kernel.bindings.group(buffers), packed, groups, indirect))
+        bound = Bound(kernel.name, {name: buffer.size for name, buffer in buffers.items()}, constants)
+        self._dispatches.append(_Dispatch(bound, kernel, kernel.bindings.group(buffers), packed, groups, indirect))
 
     def _encode(self, encoder: wgpu.GPUCommandEncoder, dispatches: list[_Dispatch], offsets: list[int | None]) -> None:
         compute = encoder.begin_compute_pass()
