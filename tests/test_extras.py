@@ -116,7 +116,7 @@ def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) 
         assert image.size == (32, 32)
 
 
-@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect"}))
+@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"export", "inspect"}))
 def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, written: Path, avatar_file: Path) -> None:
     given = {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
     code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
@@ -151,7 +151,7 @@ def test_a_function_that_lacks_an_extra_names_it(call: str, extra: str, written:
 
 def test_a_command_that_few_ask_more_of_names_both_extras() -> None:
     assert missing_package("mua-view", "pxr.Usd") == (
-        'mua-view needs the Python package pxr, which is not here: pip install "mua[view,bake]"'
+        'mua-view needs the Python package pxr, which is not here: pip install "mua[view,export]"'
     )
 
 

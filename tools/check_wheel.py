@@ -52,6 +52,7 @@ STEPS = (
             Run(("mua-inspect", "{avatar}"), prints="GFLOPs"),
             Run(("mua-view", "{avatar}", "--reference", *SMALL, "-o", "cpu.png"), writes="cpu.png"),
             Run(("mua-view", "{avatar}", *SMALL, "-o", "gpu.png"), prints=f'{SENTENCE} "mua[view]"', status=1),
+            Run(("mua-export", "{avatar}", "-o", "a.spz"), writes="a.spz"),
             Run(("mua-bench", "{avatar}"), prints=f'{SENTENCE} "mua[view]"', status=1),
             Run(BAKE, prints=f'{SENTENCE} "mua[bake]"', status=1),
             Run(("mua-deploy", "{avatar}"), prints=f'{SENTENCE} "mua[deploy]"', status=1),

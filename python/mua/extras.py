@@ -9,6 +9,7 @@ TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "xatlas")
 VIEWING = (*READING, "glfw", "imageio_ffmpeg", "imgui_bundle", "rendercanvas", "wgpu")
 EXTRAS = {  # the smaller ones first: of several that bring a package the first is proposed
     "view": frozenset(VIEWING),
+    "export": frozenset((*READING, "pxr")),
     "train": frozenset(TRAINING),
     "bake": frozenset((*READING, *TRAINING, "pxr", "warp")),
     "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),

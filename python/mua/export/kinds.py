@@ -1,0 +1,59 @@
+"""What can be exported as what: the endings of files and what they hold."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mua.errors import InputError
+
+SPLATS = "splats"
+WHATS = (SPLATS,)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of file."""
+
+    suffix: str
+    what: str
+    clip: bool  # whether one file holds all frames
+
+
+KINDS = (  # of one ending the default comes first
+    Kind(".compressed.ply", SPLATS, clip=False),
+    Kind(".ply", SPLATS, clip=False),
+    Kind(".spz", SPLATS, clip=False),
+)
+ENDINGS = tuple(dict.fromkeys(kind.suffix for kind in KINDS))
+IN_DIRECTORY = ".ply"  # where the output is a directory
+
+
+def kind_of(output: Path, what: str | None) -> Kind:
+    """What a name asks for; raises InputError for an ending that is not known or does not hold `what`."""
+    suffix = suffix_of(output)
+    kinds = [kind for kind in KINDS if kind.suffix == suffix]
+    fitting = [kind for kind in kinds if what in (None, kind.what)]
+    if not fitting:
+        held = listed([kind.what for kind in kinds])
+        raise InputError(f"--what is {what!r}; a {suffix} file holds {held}")
+    return fitting[0]
+
+
+def suffix_of(output: Path) -> str:
+    """The ending that says which format; that of the files in a directory where `output` is to be one."""
+    if is_directory(output):
+        return IN_DIRECTORY
+    found = next((suffix for suffix in ENDINGS if output.name.lower().endswith(suffix)), None)
+    if found is None:
+        raise InputError(f"-o is {output}; expected a directory or a name that ends in {listed(ENDINGS)}")
+    return found
+
+
+def is_directory(output: Path) -> bool:
+    """Whether frames are to be written into a directory of that name."""
+    return output.is_dir() or not output.suffix
+
+
+def listed(words: Sequence[str]) -> str:
+    """Join words as in a sentence: a, b or c."""
+    return " or ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
