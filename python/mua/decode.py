@@ -10,7 +10,7 @@ from mua.arrays import Array
 from mua.channels import APPEARANCE
 from mua.kernels.blend_subbands import blend_detail, blend_ll
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
-from mua.kernels.inverse_dwt import add_static, inverse_dwt
+from mua.kernels.inverse_dwt import add_static, halve, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
 from mua.model import Branch, Mlp, Model, Wavelet
 from mua.pose.clip import Clip
@@ -104,6 +104,8 @@ def decode_branch(
             mean, h, w = (a.astype(dtype, copy=False) for a in (band.mean, band.h, band.w))
             details = blend_detail(mean, h, w, alpha_details[level])
         texture = inverse_dwt(texture, details, wavelet.rec_lo, wavelet.rec_hi)
+    for _ in range(wavelet.coarser):
+        texture = halve(texture)
     return add_static(texture, texels, branch.static.astype(dtype, copy=False))
 
 

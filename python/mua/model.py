@@ -67,12 +67,13 @@ class Coarse:
 
 @dataclass(frozen=True, eq=False)
 class Wavelet:
-    """Synthesis filters of a biorthogonal wavelet in periodization mode; texture size = LL size x 2^levels."""
+    """Synthesis filters of a biorthogonal wavelet in periodization mode; LL size x 2^(levels - coarser) texels."""
 
     name: str  # as in PyWavelets, e.g. bior4.4
     levels: int  # 4
     rec_lo: Array  # [L] float64
     rec_hi: Array  # [L] float64
+    coarser: int = 0  # times that the texture's blocks of 2 x 2 texels become one (mua.coarser)
 
 
 @dataclass(frozen=True, eq=False)

@@ -200,6 +200,8 @@ def branch_texture(avatar: Tree, branch: Tree, x: Array) -> Array:
     pairs = zip(high, branch["details"], strict=True)
     details = [b["mean"] + np.einsum("cr,scri,scrj->scij", alpha, b["h"], b["w"]) for alpha, b in pairs]
     image = pywt.waverec2([image, *map(tuple, details), *zeros], filters, mode="periodization", axes=(1, 2))
+    for _ in range(avatar.get("level", 0)):  # 9.6
+        image = (image[:, ::2, ::2] + image[:, ::2, 1::2] + image[:, 1::2, ::2] + image[:, 1::2, 1::2]) / 4
     rows, columns = np.divmod(texels["texels"], texels["size"])
     return np.asarray(image[:, rows, columns] + branch["static_offset"])
 

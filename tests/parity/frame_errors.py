@@ -44,16 +44,25 @@ class PosedFrame:
     """One frame of a clip, decoded and sorted on a device, and the reference."""
 
     def __init__(
-        self, device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, index: int, *, eyes: int, screen: int
+        self,
+        device: Device,
+        frame: SplatFrame[AvatarFrame],
+        clip: Clip,
+        index: int,
+        *,
+        eyes: int,
+        screen: int,
+        level: int = 0,
     ) -> None:
         (gpu,) = frame.avatars
         avatar = gpu.avatar.avatar
         window = avatar.encoding.frames(index)
-        self.frame, self.exact = frame, decode_clip_frame(avatar, clip, frame=index, dtype=np.float64)
+        shown = avatar.at_level(level)
+        self.frame, self.exact = frame, decode_clip_frame(shown, clip, frame=index, dtype=np.float64)
         self.cameras = cameras_of(avatar.rig, clip, eyes=eyes, screen=screen)
         self.bounds = self.exact.bounds
         commands = device.commands()
-        gpu.decode(commands, clip.rotations[window], clip.translations[window])
+        gpu.decode(commands, clip.rotations[window], clip.translations[window], level=level)
         frame.sort(commands, self.cameras)
         commands.submit()
         self.visible = int(frame.arguments.read()[VISIBLE_WORD])

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from frame_errors import PosedFrame
-from synthetic_avatar import synthetic_avatar
+from synthetic_avatar import sparse_avatar, synthetic_avatar
 
 from mua.arrays import Array
 from mua.asset import write
@@ -126,6 +126,24 @@ def test_frames_agree_with_the_reference_on_the_same_stored_values(
         assert errors.color < COLOR_BOUND
         assert errors.opacity < OPACITY_BOUND
         assert errors.key <= errors.key_bound < MOST_KEYS
+
+
+@pytest.mark.parametrize("storage", ["f32", "i8"])
+def test_coarser_levels_agree_and_the_finest_comes_back(device: Device, tmp_path: Path, storage: Storage) -> None:
+    frame = opened(device, sparse_avatar(2), tmp_path, storage=storage)
+    (gpu,) = frame.avatars
+    counts = []
+    for level in (1, 2, 0):
+        clip = gpu.avatar.avatar.clips[0]
+        posed = PosedFrame(device, frame, clip, 3, eyes=1, screen=256, level=level)
+        errors = posed.errors()
+        assert errors.position < POSITION_BOUND
+        assert errors.color < COLOR_BOUND
+        assert errors.opacity < OPACITY_BOUND
+        assert errors.key <= errors.key_bound < MOST_KEYS
+        assert len(posed.order) == posed.visible == len(posed.exact.centres)
+        counts.append(posed.visible)
+    assert counts[1] < counts[0] < counts[2]
 
 
 @pytest.mark.parametrize("eyes", [1, 2])

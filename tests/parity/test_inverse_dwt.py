@@ -9,10 +9,12 @@ from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
+from mua.coarser import MOST_TAPS
 from mua.gpu import Device
 from mua.kernels.inverse_dwt import (
     BATCH,
     add_static,
+    halve,
     inverse_dwt,
     pack_channels,
     texel_tiles,
@@ -101,6 +103,32 @@ def test_low_pass_levels_are_one_filter(name: str, levels: int) -> None:
         newest, phases = np.divmod(np.arange(factor * side) + delay, factor)
         found = sum(filtered[j, phases] * samples[(newest - j) % side] for j in range(len(filtered)))
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("levels", "coarser"), [(1, 1), (2, 1), (2, 2), (3, 1)])
+@pytest.mark.parametrize("name", ["bior1.1", "bior3.1", "bior4.4", "bior6.8"])
+def test_means_of_low_pass_levels_are_one_filter(name: str, levels: int, coarser: int) -> None:
+    filtered, delay = upsampling_taps(taps(name)[0], levels, coarser)
+    factor, means = 1 << levels - coarser, 1 << coarser
+    assert filtered.shape[1] == factor
+    for side in (1, 2, 5):
+        samples = np.random.default_rng(side).normal(size=side)
+        expected = samples
+        for _ in range(levels):
+            expected = pywt.idwt(expected, None, name, "periodization")
+        newest, phases = np.divmod(np.arange(factor * side) + delay, factor)
+        found = sum(filtered[j, phases] * samples[(newest - j) % side] for j in range(len(filtered)))
+        np.testing.assert_allclose(found, expected.reshape(-1, means).mean(axis=1), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("side", [2, 6])
+def test_a_coarser_texture_is_the_means_of_its_blocks(side: int) -> None:
+    texture = np.random.default_rng(side).normal(size=(3, side, side)).astype(np.float32)
+    found = halve(texture)
+    assert found.dtype == np.float32
+    for row, column in np.ndindex(side // 2, side // 2):
+        block = texture[:, 2 * row : 2 * row + 2, 2 * column : 2 * column + 2]
+        np.testing.assert_allclose(found[:, row, column], block.mean(axis=(1, 2)), rtol=0, atol=1e-6)
 
 
 def test_a_filter_of_zeros_is_one_sample() -> None:
@@ -206,24 +234,31 @@ def test_shader_equals_the_reference_at_the_papers_sizes(device: Device, channel
     check_level(device, bands, *taps("bior4.4"))
 
 
-def upsampling_bound(lo: Array, levels: int, largest: float, offset: float) -> float:
+def upsampling_bound(filtered: Array, largest: float, offset: float) -> float:
     """What the shader may lose: taps rounded once, and a sum of `reach` products rounded along each of two axes."""
-    filtered, _ = upsampling_taps(lo, levels)
     gain = np.abs(filtered).sum(axis=0).max() ** 2
     return float(np.finfo(np.float32).eps * (2 * (len(filtered) + 2) * gain * largest + offset))
 
 
 def check_texels(
-    device: Device, ll: Array, lo: Array, levels: int, *, count: int, storage: Storage = "f32", first_row: int = 0
+    device: Device,
+    ll: Array,
+    lo: Array,
+    levels: int,
+    *,
+    count: int,
+    storage: Storage = "f32",
+    first_row: int = 0,
+    coarser: int = 0,
 ) -> None:
     """The shader against the reference at `count` valid texels; nothing else is written."""
     channels, side, _ = ll.shape
-    rows, fine = -(-channels // BATCH), side << levels
+    rows, fine = -(-channels // BATCH), side << levels - coarser
     rng = np.random.default_rng(count)
     texels = np.sort(rng.permutation(fine * fine)[:count])
     static_offset = store(rng.normal(size=(channels, count)), storage, rows=channels)
     tiles, tile_rows = texel_tiles(texels, fine)
-    filtered, delay = upsampling_taps(lo, levels)
+    filtered, delay = upsampling_taps(lo, levels, coarser)
     reach, factor = filtered.shape
     found = run(
         device,
@@ -242,9 +277,10 @@ def check_texels(
     )["texel_channels"]
     written = slice(first_row, first_row + rows)
     halves = found[written].swapaxes(1, 2).reshape(BATCH * rows, count)
-    expected = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=static_offset.values)
+    kept = {"texels": texels, "static_offset": static_offset.values, "coarser": coarser}
+    expected = upsample_texels(ll.astype(float), lo, levels, **kept)
     largest = np.abs(static_offset.values).max(initial=0)
-    bound = upsampling_bound(lo, levels, np.abs(ll).max(initial=0), largest)
+    bound = upsampling_bound(filtered, np.abs(ll).max(initial=0), largest)
     assert_halves(halves[:channels], expected, bound)
     assert not halves[channels:].any()
     assert np.all(np.delete(found, written, axis=0) == UNTOUCHED)
@@ -260,6 +296,17 @@ def test_texel_shader_equals_the_reference(
 ) -> None:
     ll = np.random.default_rng(side).normal(size=(channels, side, side)).astype(np.float32)
     check_texels(device, ll, taps("bior4.4")[0], levels, count=count, storage=storage, first_row=2)
+
+
+@pytest.mark.parametrize(("levels", "coarser"), [(1, 1), (2, 1), (2, 2)])
+@pytest.mark.parametrize("length", [2, 10, MOST_TAPS])
+def test_texel_shader_equals_the_reference_at_coarser_levels(
+    device: Device, length: int, levels: int, coarser: int
+) -> None:
+    rng = np.random.default_rng(length)
+    for side in (3, 24):
+        ll, count = rng.normal(size=(5, side, side)).astype(np.float32), (side << levels - coarser) ** 2 // 2
+        check_texels(device, ll, rng.normal(size=length), levels, count=count, coarser=coarser)
 
 
 @pytest.mark.parametrize("levels", [0, 1, 2, 4])

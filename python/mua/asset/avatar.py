@@ -4,12 +4,13 @@ The student exports one, the writer stores it, the reader returns it and the ker
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from mua.arguments import describe, finite_array, float_type, unit_quaternions, whole_number
+from mua.coarser import at_level, coarsest
 from mua.decode import Splats, decode, decode_clip_frame
 from mua.errors import InputError
 from mua.model import Model
@@ -64,6 +65,22 @@ class Avatar(Model):
             raise InputError(f"frame is {number}; a window of poses has only frame 0")
         rotations, translations = self._window(clip)
         return decode(self, rotations, translations=translations, dtype=element)
+
+    def at_level(self, level: int) -> "Avatar":
+        """The same avatar with fewer splats: the texture has half as many texels along a side, `level` times.
+
+        0 is the avatar itself. Meant for decoding and drawing; a file holds the finest level alone.
+
+        Errors: InputError for a level that the avatar does not have.
+
+        Example:
+
+            far = avatar.at_level(1)  # a quarter of the splats
+        """
+        number, most = whole_number(level, "level"), coarsest(self)
+        if not 0 <= number <= most:
+            raise InputError(f"level is {number}; the avatar has levels 0 to {most}")
+        return self if number == 0 else replace(at_level(self, number), surface=None)
 
     def clip(self, name: str) -> Clip:
         """The clip of that name; raises InputError where there is none."""

@@ -13,6 +13,8 @@ from mua.errors import InputError
 
 def require_storable(avatar: Avatar) -> None:
     """Raises InputError that names the field of the first number that is not finite, or that no player could read."""
+    if avatar.wavelet.coarser:
+        raise InputError(f"the avatar is at level {avatar.wavelet.coarser}; expected level 0, from which others follow")
     for field, values in _reals(avatar, ""):
         held = np.abs(values) <= LARGEST  # false for nan as well
         if not held.all():

@@ -39,6 +39,14 @@ def add_static(
     return np.asarray(fine[:, rows, columns] + static_offset)
 
 
+def halve(
+    texture: Array,  # [C, 2n, 2n]
+) -> Array:
+    """The means of 2 x 2 texels [C, n, n]."""
+    channels, size, _ = texture.shape
+    return np.asarray(texture.reshape(channels, size // 2, 2, size // 2, 2).mean(axis=(2, 4), dtype=texture.dtype))
+
+
 def upsample_texels(
     ll: Array,  # [C, n, n]
     rec_lo: Array,  # [L], L even
@@ -46,10 +54,13 @@ def upsample_texels(
     *,
     texels: Array,  # [N] row * 2^levels n + column
     static_offset: Array,  # [C, N]
+    coarser: int = 0,  # times that 2 x 2 texels become one; N are valid there
 ) -> Array:
     """All levels without details and the static offset, at the valid texels, [C, N]."""
     for _ in range(levels):
         ll = inverse_dwt(ll, None, rec_lo, rec_lo)
+    for _ in range(coarser):
+        ll = halve(ll)
     return add_static(ll, texels, static_offset)
 
 
@@ -77,20 +88,25 @@ def unpack_channels(
 def upsampling_taps(
     rec_lo: Array,  # [L], L even
     levels: int,  # without details
+    coarser: int = 0,  # at most as many: times that two texels become one
 ) -> tuple[Array, int]:
-    """The filter g [S, F] that levels of low-pass synthesis are together, F = 2^levels, and its delay, in float64.
+    """The filter g [S, F] that levels of low-pass synthesis are together, and its delay, in float64.
 
-    x[p] = sum_j g[j, s] a[k - j] with F k + s = p + delay, indices wrapped: one level and then another are the taps of
-    the first, spread by two, convolved with those of the second (the noble identity of multirate filters). Zeros at
-    both ends of g are left out, since a kernel would multiply by them.
+    x[p] = sum_j g[j, s] a[k - j] with F k + s = p + delay, F = 2^(levels - coarser), indices wrapped: one level and
+    then another are the taps of the first, spread by two, convolved with those of the second (the noble identity of
+    multirate filters); means of two texels are a filter of the means of two taps. Zeros at both ends of g are left out,
+    since a kernel would multiply by them.
     """
     taps = np.ones(1)
     for _ in range(levels):
         spread = np.zeros(2 * len(taps) - 1)
         spread[::2] = taps
         taps = np.convolve(spread, np.asarray(rec_lo, dtype=np.float64))
-    factor = 1 << levels
-    delay = (factor - 1) * (len(rec_lo) // 2 - 1)
+    delay = ((1 << levels) - 1) * (len(rec_lo) // 2 - 1)
+    for _ in range(coarser):
+        even = np.concatenate([np.zeros(delay % 2), taps, np.zeros((len(taps) + delay) % 2)])
+        taps, delay = even.reshape(-1, 2).mean(axis=1), (delay + 1) // 2
+    factor = 1 << levels - coarser
     used = np.flatnonzero(taps)
     first, last = (min(int(used[0]), delay), int(used[-1])) if len(used) else (0, 0)
     padded = np.zeros(-(-(last + 1 - first) // factor) * factor)

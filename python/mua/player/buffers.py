@@ -1,6 +1,6 @@
 """An avatar's tensors on the device, in the type in which the file stores them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -11,14 +11,18 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.read import decode_tree, load
+from mua.asset.tensors import pack
+from mua.coarser import at_level
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
+from mua.model import Model
 from mua.rig.rig import Rig
 
 T = TypeVar("T")
+BRANCHES = ("geometry", "appearance")
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,14 @@ class UpsamplingBuffers:
 
 
 @dataclass(frozen=True)
+class BranchLevel:
+    """What is geometry's or appearance's alone of a level."""
+
+    upsampling: UpsamplingBuffers
+    static_offset: StoredBuffer
+
+
+@dataclass(frozen=True)
 class BranchBuffers:
     """Geometry or appearance; sizes are those of mua.asset.avatar.Branch."""
 
@@ -68,8 +80,6 @@ class BranchBuffers:
     ll_mean: StoredBuffer
     ll_basis: StoredBuffer
     details: tuple[BandBuffers, ...]  # coarse first
-    upsampling: UpsamplingBuffers
-    static_offset: StoredBuffer
     channels: int
     rank: int  # of LL
 
@@ -88,6 +98,21 @@ class RigBuffers(RigPlaces):
 
     skin_indices: Buffer  # [V, 8]
     skin_weights: Buffer  # [V, 8]
+
+
+@dataclass(frozen=True)
+class LevelBuffers:
+    """The texels of one level of detail (mua.coarser)."""
+
+    number: int  # 0 is the finest
+    size: int  # texels along a side
+    splat_count: int
+    places: RigPlaces
+    tile_count: int
+    tiles: Buffer  # of mua.kernels.inverse_dwt.texel_tiles
+    tile_rows: Buffer
+    geometry: BranchLevel
+    appearance: BranchLevel
 
 
 def upload_rig(device: Device, rig: Rig) -> RigBuffers:
@@ -114,7 +139,7 @@ class AvatarBuffers:
         except FormatError as error:
             raise error.inside(str(path)) from error
         self._device, self._path = device, path
-        rig, texels = self.avatar.rig, self.avatar.rig.texels
+        rig = self.avatar.rig
         self.coarse_mlp = self._mlp(tree["coarse"]["mlp"], "coarse.mlp")
         self.mesh = self._mesh(tree["coarse"])
         self.geometry = self._branch(tree, "geometry")
@@ -122,10 +147,45 @@ class AvatarBuffers:
         self.rec_lo = self._upload(self.avatar.wavelet.rec_lo.astype(np.float32), "wavelet.rec_lo")
         self.rec_hi = self._upload(self.avatar.wavelet.rec_hi.astype(np.float32), "wavelet.rec_hi")
         self.rig = self._named(lambda: upload_rig(device, rig))
+        stored = {name: self._stored(tree[name]["static_offset"], f"{name}.static_offset") for name in BRANCHES}
+        self._levels = [self._level(self.avatar, self.rig, stored)]
+        self._coarser: Model = self.avatar  # that the last of the levels was made of
+
+    def level(self, number: int) -> LevelBuffers:
+        """A level of detail, at most mua.coarser.coarsest of the avatar; made when it is first asked for.
+
+        Errors: InputError naming the file, where a tensor is more than the device can bind.
+        """
+        while len(self._levels) <= number:
+            self._coarser = at_level(self._coarser, 1)
+            texels = self._coarser.rig.texels
+            words = pack_texels(texels.triangles, texels.barycentrics)
+            places = RigPlaces(self.rig.faces, self._upload(words, "texels"))
+            statics = {name: self._packed(getattr(self._coarser, name).static, name) for name in BRANCHES}
+            self._levels.append(self._level(self._coarser, places, statics))
+        return self._levels[number]
+
+    def _level(self, avatar: Model, places: RigPlaces, statics: Mapping[str, StoredBuffer]) -> LevelBuffers:
+        texels, coarser = avatar.rig.texels, avatar.wavelet.coarser
         tiles, tile_rows = texel_tiles(texels.texels, texels.size)
-        self.tile_count = len(tiles)
-        self.tiles = self._upload(tiles, "texels.texels")
-        self.tile_rows = self._upload(tile_rows, "texels.texels")
+        geometry, appearance = (
+            BranchLevel(self._upsampling(len(getattr(avatar, name).details), coarser), statics[name])
+            for name in BRANCHES
+        )
+        return LevelBuffers(
+            number=coarser,
+            size=texels.size,
+            splat_count=len(texels.texels),
+            places=places,
+            tile_count=len(tiles),
+            tiles=self._upload(tiles, "texels.texels"),
+            tile_rows=self._upload(tile_rows, "texels.texels"),
+            geometry=geometry,
+            appearance=appearance,
+        )
+
+    def _packed(self, static: Array, name: str) -> StoredBuffer:
+        return self._stored(pack(static), f"{name}.static_offset")
 
     def _mlp(self, layers: list[Tree], path: str) -> tuple[LayerBuffers, ...]:
         return tuple(self._layer(layer, f"{path}[{i}]") for i, layer in enumerate(layers))
@@ -149,8 +209,6 @@ class AvatarBuffers:
             ll_mean=self._stored(branch["ll_mean"], f"{name}.ll_mean"),
             ll_basis=self._stored(branch["ll_basis"], f"{name}.ll_basis"),
             details=tuple(self._band(band, f"{name}.details[{i}]") for i, band in enumerate(branch["details"])),
-            upsampling=self._upsampling(len(expanded.details)),
-            static_offset=self._stored(branch["static_offset"], f"{name}.static_offset"),
             channels=expanded.channels,
             rank=expanded.ranks[0],
         )
@@ -160,9 +218,10 @@ class AvatarBuffers:
         rank, size = (int(n) for n in band["h"]["shape"][2:])
         return BandBuffers(mean, h, w, rank, size)
 
-    def _upsampling(self, dynamic: int) -> UpsamplingBuffers:
+    def _upsampling(self, dynamic: int, coarser: int) -> UpsamplingBuffers:
         """Of the levels beyond the `dynamic` ones that have details."""
-        taps, delay = upsampling_taps(self.avatar.wavelet.rec_lo, self.avatar.wavelet.levels - dynamic)
+        wavelet = self.avatar.wavelet
+        taps, delay = upsampling_taps(wavelet.rec_lo, wavelet.levels - dynamic, coarser)
         reach, factor = taps.shape
         return UpsamplingBuffers(self._upload(taps.astype(np.float32), "wavelet.rec_lo"), factor, reach, delay)
 

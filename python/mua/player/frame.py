@@ -9,7 +9,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.gpu import Buffer, Commands, Device
 from mua.kernels.inverse_dwt import BATCH, ROWS
-from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, LayerBuffers
+from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, BranchLevel, LayerBuffers, RigPlaces
 from mua.pose.descriptor import describe_window
 
 FLOAT = 4  # bytes
@@ -27,13 +27,21 @@ class AvatarFrame:
 
     def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
         """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
-        rig = avatar.avatar.rig
-        self.avatar, self.rig = avatar, avatar.rig
-        self.splat_count = len(rig.texels.texels)
-        self.vertex_count = len(rig.mesh.vertices)
+        self.avatar, self.level = avatar, avatar.level(0)  # of the last decode
+        self.vertex_count = len(avatar.avatar.rig.mesh.vertices)
         self.bounds = avatar.avatar.bounds  # [2, 3] world box of the last decode, metres
         self._load_kernels(device)
         self._create_buffers(device)
+
+    @property
+    def rig(self) -> RigPlaces:
+        """Where the texels of the last decode lie on the mesh."""
+        return self.level.places
+
+    @property
+    def splat_count(self) -> int:
+        """Of the last decode; the buffers hold the finest level."""
+        return self.level.splat_count
 
     def _load_kernels(self, device: Device) -> None:
         self._mlp_matmul = device.kernel("mlp_matmul.compute", "MlpMatmul")
@@ -50,7 +58,8 @@ class AvatarFrame:
         branches = (self.avatar.geometry, self.avatar.appearance)
         layers = [*self.avatar.coarse_mlp, *(layer for branch in branches for layer in branch.mlp)]
         activations = FLOAT * max(layer.outputs for layer in layers)
-        texture = FLOAT * max(b.channels * (avatar.rig.texels.size // b.upsampling.factor) ** 2 for b in branches)
+        low = avatar.rig.texels.size >> avatar.wavelet.levels
+        texture = FLOAT * max(b.channels * (low << len(b.details)) ** 2 for b in branches)
         details = [3 * b.channels * d.size**2 for b in branches for d in b.details]
         self.descriptor = buffer(FLOAT * avatar.encoding.width, name="descriptor")
         self.activations = tuple(buffer(activations, name=f"activations {i}") for i in range(2))
@@ -69,15 +78,17 @@ class AvatarFrame:
         rotations: Array,  # [k, J, 4] local joint rotations, newest first
         translations: Array,  # [k, J, 3] local joint translations, metres
         place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
+        level: int = 0,  # of detail, 0 being the finest
     ) -> None:
         """Append the dispatches from a window of poses to channels and posed vertices.
 
         What depends on the pose alone is written to the device at once: submit before the next decode.
         """
+        self.level = self.avatar.level(level)
         self._write_pose(rotations, translations, place)
         self._coarse(commands)
-        self._branch(commands, self.avatar.geometry, first_row=0)
-        self._branch(commands, self.avatar.appearance, first_row=ROWS // 2)
+        self._branch(commands, self.avatar.geometry, self.level.geometry, first_row=0)
+        self._branch(commands, self.avatar.appearance, self.level.appearance, first_row=ROWS // 2)
         self._pose(commands)
 
     def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
@@ -123,7 +134,7 @@ class AvatarFrame:
             relu=0,
         )
 
-    def _branch(self, commands: Commands, branch: BranchBuffers, *, first_row: int) -> None:
+    def _branch(self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, *, first_row: int) -> None:
         """Coefficients, LL, level by level as long as there are details; then the valid texels to `texel_channels`."""
         alpha = self._mlp(commands, branch.mlp)
         levels = len(branch.details)
@@ -136,7 +147,7 @@ class AvatarFrame:
             self._synthesise(commands, branch, ll, fine, size)
             offset += branch.channels * band.rank
             size *= 2
-        self._upsample(commands, branch, size, first_row)
+        self._upsample(commands, branch, shown, size, first_row)
 
     def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
         commands.dispatch(
@@ -186,21 +197,23 @@ class AvatarFrame:
             taps=len(self.avatar.avatar.wavelet.rec_lo),
         )
 
-    def _upsample(self, commands: Commands, branch: BranchBuffers, size: int, first_row: int) -> None:
+    def _upsample(
+        self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, size: int, first_row: int
+    ) -> None:
         """All levels without details, from planes of `size`, and the static offset, at the valid texels."""
-        upsampling = branch.upsampling
+        upsampling = shown.upsampling
         commands.dispatch(
             self._upsample_texels,
-            (self.avatar.tile_count, 1, groups(branch.channels, BATCH)),
+            (self.level.tile_count, 1, groups(branch.channels, BATCH)),
             {
                 "ll": self.textures[0],
                 "upsampling": upsampling.taps,
-                "tiles": self.avatar.tiles,
-                "tile_rows": self.avatar.tile_rows,
-                "static_offset": branch.static_offset.words,
+                "tiles": self.level.tiles,
+                "tile_rows": self.level.tile_rows,
+                "static_offset": shown.static_offset.words,
                 "texel_channels": self.texel_channels,
             },
-            static_offset_layout=branch.static_offset.layout,
+            static_offset_layout=shown.static_offset.layout,
             channels=branch.channels,
             size=size,
             factor=upsampling.factor,
@@ -216,8 +229,8 @@ class AvatarFrame:
             (groups(self.vertex_count, SKINNED), 1, 1),
             {
                 "joints": self.joints,
-                "indices": self.rig.skin_indices,
-                "weights": self.rig.skin_weights,
+                "indices": self.avatar.rig.skin_indices,
+                "weights": self.avatar.rig.skin_weights,
                 "vertex_dq": self.vertex_dq,
             },
             vertex_count=self.vertex_count,

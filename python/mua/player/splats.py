@@ -33,7 +33,9 @@ class Posed(Protocol):
     @property
     def rig(self) -> RigPlaces: ...
 
-    splat_count: int
+    @property
+    def splat_count(self) -> int: ...  # at most that of its first frame
+
     mesh: Buffer  # [V, 3] canonical vertices
     vertex_dq: Buffer  # [V, 8]
     texel_channels: Buffer  # [6, N, 4] halves
@@ -53,12 +55,25 @@ class SplatFrame(Generic[P]):
     def __init__(self, device: Device, avatars: Sequence[P]) -> None:
         """One avatar at least. Errors: InputError where there are too many splats, for the device or for the sort."""
         self.avatars = tuple(avatars)
-        *firsts, count = accumulate((a.splat_count + a.splat_count % 2 for a in avatars), initial=0)
-        if count > MOST_SPLATS:
-            raise InputError(f"{count} splats of all avatars; expected at most {MOST_SPLATS}")
-        self.first_splats, self.splat_count = tuple(firsts), count  # each avatar's first is even
+        if self.splat_count > MOST_SPLATS:
+            raise InputError(f"{self.splat_count} splats of all avatars; expected at most {MOST_SPLATS}")
         self._load_kernels(device)
         self._create_buffers(device)
+
+    @property
+    def splat_count(self) -> int:
+        """Of all avatars, as many as they have decoded, each rounded up to an even number."""
+        return self._starts[-1]
+
+    @property
+    def first_splats(self) -> tuple[int, ...]:
+        """Each avatar's first; they are even."""
+        return self._starts[:-1]
+
+    @property
+    def _starts(self) -> tuple[int, ...]:
+        counts = (avatar.splat_count + avatar.splat_count % 2 for avatar in self.avatars)
+        return tuple(accumulate(counts, initial=0))
 
     def _load_kernels(self, device: Device) -> None:
         self._splat_project = device.kernel("splat_project.compute", "SplatProject")
