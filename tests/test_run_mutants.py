@@ -125,12 +125,22 @@ def test_tests_see_what_fixtures_and_child_processes_meet(tree: Path, tmp_path: 
     assert seen == {"a": {"larger", "halved"}, "b": {"larger"}, "c": {"unseen"}}
 
 
-def test_a_fault_that_never_ends_is_stopped(tree: Path, tmp_path: Path, checkout: Checkout) -> None:
-    (tree / "tests" / "test_code_.py").write_text("import time\ndef test_it():\n    time.sleep(600)\n")
+BURN = "import subprocess, sys\ndef test_it():\n    subprocess.run([sys.executable, '-c', 'while True: pass'])\n"
+
+
+@pytest.mark.parametrize("never_ends", ["import time\ndef test_it():\n    time.sleep(600)\n", BURN])
+def test_a_fault_that_never_ends_is_stopped(tree: Path, never_ends: str, checkout: Checkout) -> None:
+    (tree / "tests" / "test_code_.py").write_text(never_ends)
     checkout.refresh(tree)
-    assert checkout.pytest(["tests/test_code_.py"], seconds=2)[0] is None
+    assert checkout.pytest(["tests/test_code_.py"], seconds=2, waiting=3)[0] is None
     (checkout.root / "tests" / "test_code_.py").write_text("def test_it():\n    assert False\n")
     assert checkout.pytest(["tests/test_code_.py"], seconds=60)[0] == ["tests/test_code_.py::test_it"]
+
+
+def test_only_cpu_time_counts_whatever_else_the_machine_does(tree: Path, checkout: Checkout) -> None:
+    (tree / "tests" / "test_code_.py").write_text("import time\ndef test_it():\n    time.sleep(4)\n")
+    checkout.refresh(tree)
+    assert checkout.pytest(["tests/test_code_.py"], seconds=3)[0] == []
 
 
 def a_test(file: str, seconds: float, *places: str, fixtures: dict[str, float] | None = None) -> SeenTest:
@@ -198,3 +208,14 @@ def test_every_listed_fault_stands_where_the_list_says() -> None:
             if reason(mutant, path.read_text(), [entry])
         ]
         assert found, entry
+
+
+def test_comments_after_a_line_do_not_matter_to_the_list() -> None:
+    for path, sign in (("a.py", "#"), ("a.hlsl", "//")):
+        text = f"reach = 2 {sign} texels\n"
+        entry = {"file": path, "operator": "constant", "reason": "so", "becomes": "reach = 3"}
+        mutant = Mutant(path, "constant", 8, 9, "3")
+        for line in ("reach = 2", f"reach = 2 {sign} metres"):
+            assert reason(mutant, text, [{**entry, "line": line}]) == "so"
+        assert reason(mutant, text, [{**entry, "line": "reach = 1"}]) == ""
+        assert reason(mutant, text, [{**entry, "line": "reach = 2", "becomes": "reach = 4"}]) == ""

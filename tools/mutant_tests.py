@@ -43,6 +43,7 @@ IMPORTED = (  # slow ones of those that tests import; none of this repository, w
     *("moderngl", "xatlas", "imgui_bundle"),
 )
 BOUND = 40  # seconds of CPU that the tests of one fault may take
+WAITING = 60  # seconds that they may spend without using the CPU
 T, R = TypeVar("T"), TypeVar("R")
 
 
@@ -101,17 +102,26 @@ class Checkout:
         )
 
     def pytest(
-        self, files: Iterable[str], tests: Iterable[str] = (), *, seconds: float, watch: Path | None = None
+        self,
+        files: Iterable[str],
+        tests: Iterable[str] = (),
+        *,
+        seconds: float,  # of CPU time
+        waiting: float = WAITING,  # seconds without any
+        watch: Path | None = None,
     ) -> tuple[list[str] | None, str]:
         """Tests of some files that fail, None where the time was over, and what was printed."""
         printed = self.folder / "printed.txt"
         printed.unlink(missing_ok=True)
         environment = {} if watch is None else self._watching(watch)
-        order = {"files": [*files], "tests": [*tests], "seconds": int(seconds), "environment": environment}
+        order = {
+            **{"files": [*files], "tests": [*tests], "environment": environment, "seconds": seconds},
+            **{"waiting": waiting, "watch": watch is not None, "printed": str(printed)},
+        }
         stdin, stdout = self._worker.stdin, self._worker.stdout
         assert stdin is not None
         assert stdout is not None
-        stdin.write(json.dumps({**order, "watch": watch is not None, "printed": str(printed)}) + "\n")
+        stdin.write(json.dumps(order) + "\n")
         stdin.flush()
         answer = json.loads(stdout.readline())
         return None if answer["over"] else answer["failed"], printed.read_text(errors="replace")

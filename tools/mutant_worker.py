@@ -7,8 +7,10 @@ import importlib
 import json
 import os
 import resource
+import select
 import signal
 import sys
+import time
 from collections.abc import Generator
 from contextlib import suppress
 from pathlib import Path
@@ -78,24 +80,46 @@ def answer(order: dict[str, Any]) -> dict[str, Any]:
     child = os.fork()
     if child == 0:
         os.setsid()
-        _limit(order["seconds"])
+        _limit()
         for descriptor in (1, 2):
             os.dup2(os.open(order["printed"], os.O_WRONLY | os.O_CREAT | os.O_APPEND), descriptor)
         result.write_text(json.dumps(run(order)))
         os._exit(0)
     try:
-        _, status = os.waitpid(child, 0)
+        over = _outlasts(child, order["seconds"], order["waiting"])
     finally:
         with suppress(ProcessLookupError):
             os.killpg(child, signal.SIGKILL)  # what a test leaves running too
-    over = os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGXCPU)
+        os.waitpid(child, 0)
     return {"over": over, "failed": json.loads(result.read_text()) if result.is_file() else ["no test ended"]}
 
 
-def _limit(seconds: int) -> None:
-    """Let a fault that never ends, or asks for ever more memory, harm nobody."""
-    signal.alarm(seconds)
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))  # of children too
+def _outlasts(child: int, seconds: float, waiting: float) -> bool:
+    """Whether a process with its children takes more CPU time, which no other work changes, or waits longer."""
+    used, changed, ended = 0.0, time.monotonic(), os.pidfd_open(child)
+    try:
+        while not select.select([ended], [], [], 1)[0]:
+            if (now := _cpu_seconds(child)) != used:
+                used, changed = now, time.monotonic()
+            if used > seconds or time.monotonic() - changed > waiting:
+                return True
+    finally:
+        os.close(ended)
+    return False
+
+
+def _cpu_seconds(session: int) -> float:
+    """What the processes of a session and those that they waited for have taken."""
+    ticks = 0
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            words = stat.read_text().rpartition(")")[2].split()
+            ticks += sum(map(int, words[11:15])) if int(words[3]) == session else 0
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def _limit() -> None:
+    """Let a fault that asks for ever more memory harm nobody."""
     resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")

@@ -4,9 +4,9 @@
     python tools/run_mutants.py --seed 7 --language hlsl --number 40
     python tools/run_mutants.py --file python/mua/rotation.py
 
-Each fault meets only tests that see its place, up to the first failure or a minute of CPU time. Which these are is
-recorded once in build/mutants and then kept; `--record` does it anew. Faults that do not compile count apart, and so do
-those that tools/mutants.toml names, with a reason, as no change of behaviour.
+Each fault meets only tests that see its place, up to the first failure or some CPU time. Which these are is recorded
+once in build/mutants and then kept; `--record` does it anew. Faults that do not compile count apart, and so do those
+that tools/mutants.toml names, with a reason, as no change of behaviour.
 """
 
 import argparse
@@ -74,13 +74,19 @@ def drawn(language: str, seed: int, only: str = "") -> Iterator[Mutant]:
 
 def reason(mutant: Mutant, text: str, known: list[dict[str, str]]) -> str:
     """Why a fault changes no behaviour, where the list says so."""
-    _, before, after = mutant.lines(text)
+    before, after = (uncommented(line) for line in mutant.lines(text)[1:])
     for entry in known:
+        said = {key: uncommented(value) for key, value in entry.items() if key in ("line", "starts", "becomes")}
         same = fnmatch.fnmatchcase(mutant.path, entry["file"]) and mutant.operator == entry["operator"]
-        same = same and before.startswith(entry.get("starts", "")) and entry.get("line", before) == before
-        if same and entry.get("becomes", after) == after:
+        same = same and before.startswith(said.get("starts", "")) and said.get("line", before) == before
+        if same and said.get("becomes", after) == after:
             return entry["reason"]
     return ""
+
+
+def uncommented(line: str) -> str:
+    """A line without the comment that ends it."""
+    return re.sub(r"(?:^|\s+)(?:# |//\s?).*", "", line)
 
 
 def tried(mutant: Mutant, checkout: Checkout, tests: list[SeenTest], caught: Counter[tuple[str, str]]) -> Outcome:
@@ -107,7 +113,7 @@ def tried(mutant: Mutant, checkout: Checkout, tests: list[SeenTest], caught: Cou
 def _judged(mutant: Mutant, checkout: Checkout, tests: list[SeenTest]) -> Outcome:
     chosen, seconds = afforded(tests)
     files = dict.fromkeys(test.file for test in chosen)
-    failed, printed = checkout.pytest(files, [test.name for test in chosen], seconds=60 + 8 * seconds)
+    failed, printed = checkout.pytest(files, [test.name for test in chosen], seconds=60 + 4 * seconds)
     if failed is None:
         return Outcome(mutant, TIMED_OUT, f"in {len(chosen)} tests")
     if not failed:
