@@ -135,3 +135,24 @@ def test_prints_the_model_beside_what_is_measured(
     assert "Measured on my device: decode 1.2 ms, pose 6.2 ms, drawing 1.2 ms" in ran.out
     assert "modelled from counts, not measured" in ran.out
     assert '"decode_frame"' in output.read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("quest3", {"bandwidth": "64 GB/s", "clock": "599 MHz"}),
+        ("adreno-x2", {"bandwidth": "228 GB/s", "clock": "1.85 GHz", "peak": "7.6 TFLOPS"}),
+        ("rtx3090", {"bandwidth": "936 GB/s", "clock": "1.695 GHz", "peak": "35.6 TFLOPS"}),
+    ],
+)
+def test_figures_of_a_device_are_those_of_its_sources(name: str, said: dict[str, str]) -> None:
+    told = " ".join(DEVICES[name].sources)
+    for figure, words in said.items():
+        assert words in told
+        number, unit = words.split()
+        assert getattr(DEVICES[name], figure) == pytest.approx(float(number) * (1e-3 if unit == "MHz" else 1))
+
+
+def test_the_peak_of_a_slower_clock_is_as_much_lower() -> None:
+    assert "3.7 TFLOPS at 719 MHz" in " ".join(DEVICES["quest3"].sources)
+    assert DEVICES["quest3"].peak == pytest.approx(3.7 * 599 / 719, rel=0.01)

@@ -14,6 +14,7 @@ from mua.baking.portrait import THREE_QUARTER, portrait
 from mua.decode import decode_clip_frame
 from mua.motion.facing import front_of
 from mua.motion.load import load_motions
+from mua.motion.rest import frame
 from mua.pose.skeleton import Skeleton
 
 ROUNDING = 1e-6  # radians
@@ -31,6 +32,11 @@ def named(skeleton: Skeleton, old: str, new: str) -> Skeleton:
     """The same skeleton with words of its names exchanged."""
     swapped = (name.replace(old, "?").replace(new, old).replace("?", new) for name in skeleton.names)
     return replace(skeleton, names=tuple(swapped))
+
+
+def test_a_body_frame_has_left_up_and_forward_as_columns() -> None:
+    up, left = np.array([0, 1.0, 0]), np.array([0.8, 0.6, 0])  # a slanting left is made square to up
+    np.testing.assert_allclose(frame(up, left), np.eye(3), atol=1e-15)  # +X left, +Y up, +Z forward
 
 
 @pytest.mark.parametrize("axes", [None, 0, 1])

@@ -50,3 +50,18 @@ def test_the_paper_recipe_is_the_papers() -> None:
     assert with_recipe(PRESETS["tiny"], "closed-form") == PRESETS["tiny"]
     with pytest.raises(InputError, match="recipe: 'fast' is unknown"):
         with_recipe(PRESETS["tiny"], "fast")
+
+
+def test_bases_learn_at_the_rate_of_the_mlp_and_nothing_decays(tmp_path: Path) -> None:
+    """The first step of Adam moves every weight by its rate, so that two rates end as far apart as they are."""
+    students = []
+    for lr in (1e-3, 3e-3):
+        one_step = replace(RANDOM.finetune, steps=1, lr=lr)
+        settings = replace(RANDOM, regression=replace(RANDOM.regression, steps=1), finetune=one_step)
+        students.append(train_in(tmp_path / str(lr), settings))
+    slow, fast = (dict(student.geometry.named_parameters()) for student in students)
+    apart = {name: (fast[name] - slow[name]).detach().abs() for name in slow}
+    for name in (name for name in apart if name.startswith("mlp")):
+        assert apart[name].max() == pytest.approx(2e-3, rel=1e-2)
+    for factor in (apart["d3.h"], apart["d3.w"], apart["d2.h"], apart["d2.w"]):  # by the root of a channel's weight
+        assert factor.max() ** 2 / apart["ll_basis"].max() == pytest.approx(2e-3, rel=1e-2)

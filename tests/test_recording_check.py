@@ -40,7 +40,10 @@ def recorded(
 
 
 def doubts(recording: Recording) -> list[str]:
-    return [finding.sentence for finding in check(recording).findings]
+    """What may be meant so, which is told and refuses nothing."""
+    findings = check(recording).findings
+    assert not any(finding.certain for finding in findings)
+    return [finding.sentence for finding in findings]
 
 
 def test_says_what_is_there_and_leaves_a_picture_of_three_frames_and_nothing_else(

@@ -233,6 +233,15 @@ def test_a_rest_pose_that_is_a_frame_of_the_motion_is_not_taken_for_standing() -
     assert median_apart(target, found, expected) < ESTIMATE_BOUND
 
 
+def test_a_figure_that_stands_still_in_a_pose_that_is_not_upright_is_taken_as_it_is() -> None:
+    source, target = person(), person(size=1.1, axes=2)
+    clip = walk(source)
+    held = replace(clip, rotations=clip.rotations[[10] * 5], translations=clip.translations[[10] * 5])
+    found, _ = retarget(SourceMotion(resting_in(source, held, 0), held), target)
+    expected, _ = retarget(SourceMotion(source, held), target)
+    assert angle(bone(target, found, "Hips", "Spine"), bone(target, expected, "Hips", "Spine")) < np.radians(10)
+
+
 def test_rotations_are_copied_between_rigs_of_one_maker_whatever_the_rest_pose() -> None:
     source, target = person(axes=1), person(size=1.1, axes=1)
     plain = walk(person())

@@ -28,7 +28,7 @@ def on_a_root(skeleton: Skeleton, *, moved: tuple[str, ...]) -> Skeleton:
     """The same skeleton below a root, with a joint in its belly that nothing moves; `moved` hang on the root."""
     names = ("Root", *skeleton.names, "Belly")
     parents = np.concatenate([[-1], skeleton.parents + 1, [0]]).astype(np.int32)
-    turns = np.concatenate([[[1.0, 0, 0, 0]], skeleton.bind_rotations, [[1.0, 0, 0, 0]]])
+    turns = np.concatenate([[[1.0, 0, 0, 0]], skeleton.bind_rotations, [[0.5, 0.5, -0.5, 0.5]]])
     shifts = np.concatenate([np.zeros((1, 3)), skeleton.bind_translations, [[0, 1.05, 0.1]]])
     found = Skeleton(names, parents, turns, shifts, root=0)
     for joint in moved:

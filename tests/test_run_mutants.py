@@ -128,6 +128,26 @@ def test_tests_see_what_fixtures_and_child_processes_meet(tree: Path, tmp_path: 
 BURN = "import subprocess, sys\ndef test_it():\n    subprocess.run([sys.executable, '-c', 'while True: pass'])\n"
 
 
+FULL = """
+import resource
+from code_ import halved, larger
+
+def test_it():
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1, hard))
+    halved(2)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    larger(1, 2)
+"""
+
+
+def test_tests_on_a_full_disk_are_watched_too(tree: Path, tmp_path: Path, checkout: Checkout) -> None:
+    (tree / "tests" / "test_code_.py").write_text(FULL)
+    checkout.refresh(tree)
+    [test] = record([checkout], tmp_path / "seen")
+    assert test.places == {f"python/code_.py\t{function}" for function in ("<module>", "halved", "larger")}
+
+
 @pytest.mark.parametrize("never_ends", ["import time\ndef test_it():\n    time.sleep(600)\n", BURN])
 def test_a_fault_that_never_ends_is_stopped(tree: Path, never_ends: str, checkout: Checkout) -> None:
     (tree / "tests" / "test_code_.py").write_text(never_ends)

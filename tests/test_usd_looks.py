@@ -77,6 +77,12 @@ def test_glow_lights_a_dark_material(plain: Path) -> None:
     np.testing.assert_array_equal(read_surfaces(edited(plain, glow)).materials[0].image[0, 0], [255, 127, 0, 255])
 
 
+def test_a_material_without_a_colour_has_that_of_the_specification(plain: Path) -> None:
+    picture = read_surfaces(edited(plain, surface)).materials[0].image[0, 0]
+    assert (picture[:3] == round(255 * (1.055 * 0.18 ** (1 / 2.4) - 0.055))).all()  # 0.18 of light, in sRGB
+    assert picture[3] == 255
+
+
 def test_material_that_reads_colours_of_points_gets_them(plain: Path) -> None:
     def reader(stage: Usd.Stage) -> None:
         shader = surface(stage)

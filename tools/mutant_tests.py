@@ -5,6 +5,7 @@ Of Python the functions that were entered are kept, in child processes too; of C
 
 import hashlib
 import json
+import math
 import os
 import re
 import shutil
@@ -42,7 +43,9 @@ IMPORTED = (  # slow ones of those that tests import; none of this repository, w
     *("wgpu", "typer", "rich.table", "trimesh", "pygltflib", "pxr.Usd", "PIL.Image", "matplotlib.pyplot", "pywt"),
     *("moderngl", "xatlas", "imgui_bundle"),
 )
-BOUND = 40  # seconds of CPU that the tests of one fault may take
+BOUND = 240  # seconds of CPU that the tests of one fault may take
+SLOW = 10  # seconds beyond which a test comes behind others
+LEAST_SECONDS = 0.3  # that any test takes
 WAITING = 60  # seconds that they may spend without using the CPU
 T, R = TypeVar("T"), TypeVar("R")
 
@@ -210,8 +213,8 @@ def _digest(path: Path) -> str:
 def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str], int]) -> list[SeenTest]:
     """The tests that can notice a fault, those that are likely to first.
 
-    That is those named after the file, then, slow ones last, those that `caught` most in its folder, then the fastest;
-    of a parametrised test two, and the others behind all else.
+    That is those named after the file, then, slow ones last, those that `caught` most in its folder, then those that
+    are fast and see little else; of a parametrised test two, and the others behind all else.
     """
     within, folder = f"{mutant.path}\t", folder_of(mutant)
     scope = within + mutant.scope if mutant.path.endswith(".py") else mutant.path
@@ -224,7 +227,8 @@ def seeing(mutant: Mutant, tests: list[SeenTest], caught: Mapping[tuple[str, str
     def rank(test: SeenTest) -> tuple[float, bool, int, float]:
         words, seconds = _words(test.file), test.seconds + sum(test.fixtures.values())
         alike = len(own & words) / len(own | words)
-        return -alike, seconds > BOUND / 4, -caught.get((folder, test.function), 0), seconds
+        cost = max(seconds, LEAST_SECONDS) * math.sqrt(len(test.places))
+        return -alike, seconds > SLOW, -caught.get((folder, test.function), 0), cost
 
     variants = Counter[str]()
 

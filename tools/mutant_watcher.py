@@ -8,7 +8,7 @@ import os
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
@@ -24,12 +24,16 @@ class Watcher:
         self._context = os.environ.setdefault("MUTANTS_CONTEXT", "")  # child processes go on in that of their parent
         self._seen: dict[object, object] = {}
         self._told = 0.0  # seconds
+        self._held = b""
         sys.addaudithook(self._opened)
         sys.settrace(self._entered)
         threading.settrace(self._entered)
 
     def _note(self, *words: str) -> None:
-        os.write(self._out, ("\t".join((self._context, *words)) + "\n").encode())
+        self._held += ("\t".join((self._context, *words)) + "\n").encode()
+        with suppress(OSError):  # a test may let no file grow: what it meets is written after it
+            os.write(self._out, self._held)
+            self._held = b""
 
     def _entered(self, frame: FrameType, event: str, argument: object) -> None:
         code = frame.f_code

@@ -209,7 +209,7 @@ def test_eyes_differ(device: Device) -> None:
 
 def on_device(
     device: Device,
-    ellipses: Array,
+    ellipses: Array,  # [N, 6] of both eyes, or [E, N, 6]
     colors: Array,
     opacities: Array,
     order: Array,
@@ -217,7 +217,9 @@ def on_device(
     screen: tuple[int, int],
     depth: Array | float = 2.0,  # [N] metres
 ) -> SortedSplats:
-    """Splats as the shaders would leave them for one eye, which looks along -Z."""
+    """Splats as the shaders would leave them for eyes at one place that look along -Z."""
+    packed = ellipses if ellipses.ndim == 3 else ellipses[None]
+    ellipses = packed[0]
     (camera,) = facing(screen)
     ndc = (2 * ellipses[:, :2] / screen - 1) * [1, -1]
     focal, skew = np.diagonal(camera.projection)[:2], camera.projection[:2, 2]
@@ -225,7 +227,7 @@ def on_device(
     centres = np.concatenate([(ndc + skew) / focal * away, -away], axis=1)
     arguments = np.array([6 * len(order), 1, 0, 0, len(order)], np.uint32)
     return SortedSplats(
-        splats=device.buffer(pack_splats(centres, colors, opacities, ellipses[None]), name="splats"),
+        splats=device.buffer(pack_splats(centres, colors, opacities, packed), name="splats"),
         order=device.buffer(order.astype(np.uint32), name="order"),
         arguments=device.buffer(arguments, name="arguments", indirect=True),
     )
@@ -279,6 +281,17 @@ def test_shader_integrates_a_splat_as_the_reference(
     from_edge = np.abs(np.abs([along, across]) - half_lengths(ellipses, opacities)[0][:, None, None]).min(axis=0)
     certain = from_edge > RASTER_GRID  # nearer, a pixel may count as in or as out
     assert np.all((np.abs(found - exact) <= integration_bound(exact, 0.875, *deviations))[certain])
+
+
+def test_each_eye_draws_its_own_ellipse(device: Device) -> None:
+    screen = (16, 16)
+    level, upright = ([8.0, 8, 1, 0, 4, 1], [8.0, 8, 0, 1, 3, 2])
+    ellipses, colors, opacities = np.array([[level], [upright]]), np.array([[0.25, 0.75, 1.5]]), np.array([0.875])
+    splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen)
+    found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, 2 * facing(screen))
+    for eye, picture in enumerate(np.split(found, 2, axis=1)):
+        exact = splat_draw(ellipses[eye], colors, opacities, np.zeros(1, int), screen=screen)
+        np.testing.assert_allclose(picture, exact, rtol=0, atol=integration_bound(exact, 0.875, 3, 1).max())
 
 
 def test_shader_leaves_no_splat_quite_opaque(device: Device) -> None:

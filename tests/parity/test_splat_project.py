@@ -7,7 +7,7 @@ import pytest
 from packed_splats import LARGEST_HALF
 from projected import FACES, GROUP, UNWRITTEN, Scene, Texels, held, on_steps, project_on, texels_of
 from projection_errors import assert_as_the_reference, covariance_of
-from splat_rounding import CENTRE_BOUND
+from splat_rounding import CENTRE_BOUND, ULP
 from test_dq_skinning import random_joints
 
 from mua import rotation
@@ -306,6 +306,14 @@ def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device)
     texels = Texels(vertex_dq, np.zeros((3, 3), np.float32), FACES[:1], np.zeros(4, int), barycentrics, held(texture))
     found = project_on(device, Scene(texels, (camera(),), BOX))
     np.testing.assert_allclose(found.splats["centre"], texels.splats.centres, rtol=0, atol=CENTRE_BOUND / 0.8)
+
+
+def test_hlsl_reaches_the_corners_of_triangles(device: Device) -> None:
+    corners, turn = 64 * np.eye(3, dtype=np.float32), np.tile(np.float32([1, 0, 0, 0]), (3, 1))
+    vertex_dq = np.concatenate([turn, np.zeros((3, 4), np.float32)], axis=1)
+    texels = Texels(vertex_dq, corners, FACES[:1], np.zeros(3, int), np.eye(3), held(np.zeros((3, 23))))
+    found = project_on(device, Scene(texels, (camera(),), BOX)).splats["centre"][:3]
+    np.testing.assert_allclose(found, corners[FACES[0]], rtol=0, atol=64 * 8 * ULP)
 
 
 def test_hlsl_keeps_rotations_that_cancel_and_scales_beyond_any_finite(device: Device) -> None:

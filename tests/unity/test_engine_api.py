@@ -150,3 +150,28 @@ def test_declarations_are_read_as_a_compiler_reads_them(tmp_path: Path) -> None:
     assert members["k_Other"].number == "4"
     assert types["A.B.Holder`1.Told"].kind == "delegate"
     assert [member.number for member in types["A.B.Holder`1.Kind"].members] == ["0", "5", "5+1"]
+
+
+INHERITED = """
+namespace A
+{
+    public class Plain : Near, Elsewhere<int> { }
+    public class Elsewhere<T> { public T given; }
+    public class Near { public int kept; internal int hidden; }
+}
+namespace C.D { public class Near { public int other; } }
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "outcome"),
+    [("kept", "int", "same"), ("kept", "float", "different"), ("given", "int", "same"), ("given", "!0", "different"),
+     ("hidden", "int", "different"), ("other", "int", "absent")],
+)  # fmt: skip
+def test_members_are_those_of_the_types_that_a_type_inherits_from(
+    tmp_path: Path, name: str, value: str, outcome: str
+) -> None:
+    (tmp_path / "Source.cs").write_text(INHERITED)
+    types = csharp_source.read([tmp_path], set())
+    used = Used("field", "A.Plain", name, is_static=False, value=value, parameters=())
+    assert look_up(types, used).outcome == outcome
