@@ -6,7 +6,7 @@ import gen_layout
 import pytest
 
 
-def test_the_layouts_of_both_readers_are_those_of_the_schema(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_layouts_of_all_readers_are_those_of_the_schema(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["gen_layout.py", "--check"])
     gen_layout.main()
 

@@ -1,11 +1,12 @@
-"""Generate the layouts of both readers from schemas/muaavatar.fbs; --check says whether they are up to date.
+"""Generate the layouts of all readers from schemas/muaavatar.fbs; --check says whether they are up to date.
 
 They are data: which fields each table has, in slot order. python/mua/asset/flatbuffer.py reads and writes by layout.py,
-unity-package's Parser.cs reads by Layouts.cs. Only the grammar that the schema uses is understood; anything else stops
-with its line.
+unity-package's Parser.cs reads by Layouts.cs, the browser player's parser.js by layout.js. Only the grammar that the
+schema uses is understood; anything else stops with its line.
 """
 
 import argparse
+import json
 import re
 import sys
 from pathlib import Path
@@ -14,6 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = ROOT / "schemas" / "muaavatar.fbs"
 LAYOUT = ROOT / "python" / "mua" / "asset" / "layout.py"
 LAYOUTS = ROOT / "unity-package" / "Runtime" / "Format" / "Layouts.cs"
+LAYOUT_JS = ROOT / "python" / "mua" / "web" / "format" / "layout.js"
 KINDS = {
     "bool": "Flag",
     "ubyte": "U8",
@@ -131,11 +133,44 @@ def field_csharp(source: str, enums: dict[str, list[str]]) -> str:
     return f"new Field({arguments})"
 
 
+JAVASCRIPT = """// Generated from schemas/muaavatar.fbs by tools/gen_layout.py; do not edit.
+
+export const IDENTIFIER = "{identifier}";
+export const ROOT = "{root}";
+
+/** @type {{Record<string, string[]>}} */
+export const ENUMS = {enums};
+
+/** @type {{Record<string, import("./parser.js").Field[]>}} */
+export const TABLES = {{
+{tables}
+}};
+"""
+
+
+def generate_javascript() -> str:
+    """The same data for the browser player's reader."""
+    identifier, enums, tables, root = parse(SCHEMA.read_text())
+    listed = [f"  {name}: [\n{fields_javascript(fields)}  ]," for name, fields in tables.items()]
+    return JAVASCRIPT.format(identifier=identifier, root=root, enums=json.dumps(enums), tables="\n".join(listed))
+
+
+def fields_javascript(sources: list[str]) -> str:
+    """Fields as JavaScript source, a line each, from their Python source."""
+    lines = []
+    for source in sources:
+        name, kind, *options = source.removeprefix("Field(").removesuffix(")").split(", ")
+        named = [option.replace("=", ": ").replace("True", "true") for option in options]
+        lines.append(f"    {{ {', '.join([f'name: {name}', f'kind: {kind}', *named])} }},\n")
+    return "".join(lines)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
     check = parser.parse_args().check
-    for path, text in ((LAYOUT, generate()), (LAYOUTS, generate_csharp())):
+    written = ((LAYOUT, generate()), (LAYOUTS, generate_csharp()), (LAYOUT_JS, generate_javascript()))
+    for path, text in written:
         if not check:
             path.write_text(text)
         elif path.read_text() != text:

@@ -1,12 +1,291 @@
-// State of a player and the loop that draws it.
+// State of a player, the loop that draws it, and what it does when the device is lost.
 
+import { framing, FOV } from "./camera.js";
+import { framesAt, sample } from "./clip.js";
 import { AvatarError } from "./error.js";
+import { load } from "./load.js";
+import { groundHeight } from "./overlays.js";
+import { Renderer } from "./renderer.js";
+import { world } from "./skeleton.js";
 
-/** @implements {import("./player.js").Player} */
+/** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
+/** @typedef {import("./player.js").ClipInfo} ClipInfo */
+/** @typedef {import("./player.js").PlayerOptions} PlayerOptions */
+/** @typedef {import("./format/read.js").Avatar} Avatar */
+/** @typedef {import("./format/read.js").Clip} Clip */
+/** @typedef {{avatar: Avatar, handle: AvatarHandle, slot: import("./renderer.js").Slot, grounds: Map<string, number>}} Entry */
+
+const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
+const LONGEST_STEP = 0.25; // seconds by which one picture may move the time: a hidden tab does not catch up
+
 export class Engine {
-  /** @returns {Promise<import("./player.js").Player>} */
-  static async create(/** @type {HTMLCanvasElement} */ canvas, /** @type {import("./player.js").PlayerOptions} */ options) {
-    void canvas, options;
-    throw new AvatarError("The browser player is not built yet.");
+  /** @returns {Promise<Engine>} */
+  static async create(/** @type {HTMLCanvasElement} */ canvas, /** @type {PlayerOptions} */ options) {
+    const engine = new Engine(canvas, options);
+    engine.renderer = await engine.opened();
+    return engine;
   }
+
+  constructor(/** @type {HTMLCanvasElement} */ canvas, /** @type {PlayerOptions} */ options) {
+    this.canvas = canvas;
+    this.options = options;
+    /** @type {Renderer | null} */
+    this.renderer = null; // while a lost device is being replaced
+    /** @type {Entry[]} */
+    this.entries = [];
+    /** @type {import("./player.js").CameraState} */
+    this.camera = { azimuth: 0, elevation: 0, distance: 3.5, target: [0, 1, 0], fov: FOV };
+    /** @type {import("./player.js").Show} */
+    this.show = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true };
+    this.playing = true;
+    this.speed = 1;
+    /** @type {((error: AvatarError) => void) | null} */
+    this.onerror = null;
+    /** @type {string | null} */
+    this.chosen = null;
+    this.seconds = 0;
+    this.request = 0; // of the next picture; 0 where the loop stands
+    this.before = 0; // time of the last step, milliseconds
+    this.drawn = ""; // what the canvas shows
+    this.disposed = false;
+  }
+
+  /** A renderer whose device, where it is lost, is replaced. */
+  async opened() {
+    const renderer = await Renderer.open(this.canvas, this.options);
+    const since = performance.now();
+    renderer.device.gpu.lost.then(({ reason }) => {
+      if (reason !== "destroyed" && !this.disposed && this.renderer === renderer)
+        this.recover(performance.now() - since);
+    });
+    renderer.device.gpu.onuncapturederror = ({ error }) =>
+      this.tell(new AvatarError(`The graphics device refused: ${error.message}`));
+    return renderer;
+  }
+
+  /** Open another device and upload all avatars again. */
+  async recover(/** @type {number} */ lasted) {
+    this.renderer = null;
+    this.drawn = "";
+    try {
+      if (lasted < STUMBLE)
+        throw new AvatarError("The graphics device was lost twice at once; reload the page to try again.");
+      const renderer = await this.opened();
+      for (const entry of this.entries) entry.slot = await renderer.add(entry.avatar);
+      this.renderer = renderer;
+    } catch (error) {
+      this.stop();
+      this.tell(asAvatarError(error, "The graphics device was lost and did not come back"));
+    }
+  }
+
+  tell(/** @type {AvatarError} */ error) {
+    if (this.onerror) this.onerror(error);
+    else console.error(error);
+  }
+
+  /** @returns {Promise<AvatarHandle>} */
+  async load(
+    /** @type {string | ArrayBuffer | File} */ source,
+    /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {} } = {},
+  ) {
+    const avatar = await load(source, onProgress);
+    if (!this.renderer || this.disposed) throw new AvatarError("The graphics device is away; try again in a moment.");
+    onProgress(0.95, "Uploading the avatar");
+    const slot = await this.renderer.add(avatar);
+    const entry = { avatar, slot, grounds: new Map(), handle: this.handleOf(avatar) };
+    this.entries.push(entry);
+    if (this.entries.length === 1) this.frameAll();
+    onProgress(1, "Ready");
+    return entry.handle;
+  }
+
+  /** @returns {AvatarHandle} */
+  handleOf(/** @type {Avatar} */ avatar) {
+    const [low, high] = [avatar.bounds.slice(0, 3), avatar.bounds.slice(3)].map((corner) => Array.from(corner));
+    const { name, notes } = avatar;
+    /** @type {AvatarHandle} */
+    const handle = {
+      name,
+      notes,
+      clips: clipsOf(avatar),
+      bounds: /** @type {import("./player.js").Box} */ ([low, high]),
+      splats: avatar.texels.texels.length,
+      place: [0, 0, 0],
+      remove: () => this.remove(handle),
+    };
+    return handle;
+  }
+
+  remove(/** @type {AvatarHandle} */ handle) {
+    const entry = this.entries.find((one) => one.handle === handle);
+    if (!entry) return;
+    this.entries = this.entries.filter((one) => one !== entry);
+    this.renderer?.remove(entry.slot);
+  }
+
+  get avatars() {
+    return this.entries.map((entry) => entry.handle);
+  }
+
+  get clips() {
+    return this.entries[0]?.handle.clips ?? [];
+  }
+
+  get clip() {
+    return this.clips.find(({ name }) => name === this.chosen)?.name ?? this.clips[0]?.name ?? null;
+  }
+
+  set clip(name) {
+    if (name !== this.clip) this.seconds = 0;
+    this.chosen = name;
+  }
+
+  get time() {
+    return this.seconds;
+  }
+
+  set time(seconds) {
+    const { seconds: length } = this.clips.find(({ name }) => name === this.clip) ?? { seconds: 0 };
+    this.seconds = length > 0 && Number.isFinite(seconds) ? ((seconds % length) + length) % length : 0;
+  }
+
+  get milliseconds() {
+    return this.renderer?.timing.milliseconds ?? {};
+  }
+
+  get adapter() {
+    return this.renderer?.device.name ?? "";
+  }
+
+  get bytes() {
+    return this.renderer?.bytes ?? 0;
+  }
+
+  frameAll() {
+    const boxes = this.entries.map((entry) => this.boxOf(entry));
+    if (!boxes.length) return;
+    const box = [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
+    Object.assign(this.camera, framing(box, this.camera, this.screen));
+  }
+
+  /** @returns {[number, number]} */
+  get screen() {
+    return [Math.max(this.canvas.width, 1), Math.max(this.canvas.height, 1)];
+  }
+
+  /** World box of an avatar in the present frame. */
+  boxOf(/** @type {Entry} */ { avatar, handle }) {
+    const { skeleton, encoding } = avatar;
+    const clip = this.clipOf(avatar);
+    const pose = clip
+      ? sample(skeleton, clip, this.frameOf(avatar, clip), encoding.rate)
+      : { rotations: skeleton.bindRotations, translations: skeleton.bindTranslations };
+    const { places } = world(skeleton, pose);
+    const root = 3 * skeleton.root;
+    return Array.from(avatar.bounds, (value, i) => value + places[root + (i % 3)] + handle.place[i % 3]);
+  }
+
+  /** What an avatar plays: the clip that was chosen, its first one where it has none of that name. */
+  clipOf(/** @type {Avatar} */ avatar) {
+    return avatar.clips.find(({ name }) => name === this.clip) ?? avatar.clips[0];
+  }
+
+  frameOf(/** @type {Avatar} */ { encoding }, /** @type {Clip} */ clip) {
+    return Math.floor(this.seconds * encoding.rate + 1e-6) % framesAt(clip, encoding.rate);
+  }
+
+  /** What a picture shows now; an avatar without clips stands in its bind pose. @returns {import("./renderer.js").Posed[]} */
+  posed() {
+    return this.entries.map((entry) => {
+      const { avatar, slot, grounds, handle } = entry;
+      const clip = this.clipOf(avatar) ?? stillClip(avatar);
+      const ground = this.show.shadow ? (grounds.get(clip.name) ?? groundHeight(avatar, clip)) : 0;
+      if (this.show.shadow) grounds.set(clip.name, ground);
+      return { slot, clip, frame: this.frameOf(avatar, clip), place: [...handle.place], ground };
+    });
+  }
+
+  async draw() {
+    this.drawNow();
+    await this.renderer?.device.gpu.queue.onSubmittedWorkDone();
+  }
+
+  drawNow() {
+    if (this.renderer && this.canvas.width && this.canvas.height) this.renderer.draw(this.posed(), this);
+  }
+
+  async screenshot() {
+    if (!this.renderer) throw new AvatarError("The graphics device is away; try again in a moment.");
+    return this.renderer.picture(this.posed(), this);
+  }
+
+  start() {
+    if (this.request || this.disposed) return;
+    this.before = performance.now();
+    this.drawn = "";
+    this.request = requestAnimationFrame((now) => this.step(now));
+  }
+
+  stop() {
+    cancelAnimationFrame(this.request);
+    this.request = 0;
+  }
+
+  /** One turn of the loop, which draws where anything changed. */
+  step(/** @type {number} */ now) {
+    this.request = requestAnimationFrame((next) => this.step(next));
+    const passed = Math.min(Math.max(now - this.before, 0) / 1000, LONGEST_STEP);
+    this.before = now;
+    if (this.playing) this.time += passed * this.speed;
+    const frames = this.entries.map(({ avatar, handle }) => {
+      const clip = this.clipOf(avatar);
+      return [handle.name, clip?.name, clip && this.frameOf(avatar, clip), handle.place];
+    });
+    const wanted = JSON.stringify([this.camera, this.show, this.screen, frames]);
+    if (wanted === this.drawn || !this.renderer) return;
+    try {
+      this.drawNow();
+      this.drawn = wanted;
+    } catch (error) {
+      this.stop();
+      this.tell(asAvatarError(error, "The avatar cannot be drawn"));
+    }
+  }
+
+  dispose() {
+    if (this.disposed) return;
+    this.stop();
+    this.disposed = true;
+    for (const { slot } of this.entries.splice(0)) slot.memory.free();
+    this.renderer?.destroy();
+    this.renderer = null;
+  }
+}
+
+/** @returns {ClipInfo[]} */
+function clipsOf(/** @type {Avatar} */ { clips, encoding }) {
+  return clips.map((clip) => {
+    const frames = framesAt(clip, encoding.rate);
+    return { name: clip.name, frames, seconds: frames / encoding.rate };
+  });
+}
+
+/** One frame of the bind pose. @returns {Clip} */
+function stillClip(/** @type {Avatar} */ { skeleton, encoding }) {
+  const at = (/** @type {number} */ joint) => skeleton.bindTranslations.subarray(3 * joint, 3 * joint + 3);
+  return {
+    name: "",
+    rate: encoding.rate,
+    frames: 1,
+    rotations: Float32Array.from(skeleton.bindRotations),
+    translation: Float32Array.from(at(skeleton.root)),
+    translations: Float32Array.from(Array.from(skeleton.translated).flatMap((joint) => [...at(joint)])),
+  };
+}
+
+function asAvatarError(/** @type {unknown} */ error, /** @type {string} */ what) {
+  return error instanceof AvatarError
+    ? error
+    : new AvatarError(`${what}: ${error instanceof Error ? error.message : error}`);
 }

@@ -71,6 +71,7 @@ export { AvatarError };
  * @property {() => void} stop
  * @property {() => Promise<Blob>} screenshot the present picture as a PNG, its background transparent unless one was given
  * @property {Readonly<Record<string, number>>} milliseconds of the device by stage; empty where it keeps no time
+ * @property {number} bytes of the device's memory that it holds
  * @property {string} adapter what the browser says of the device
  * @property {() => void} dispose gives all memory back; the player is of no more use
  * @property {((error: AvatarError) => void) | null} onerror what went wrong while nobody waited

@@ -1,0 +1,74 @@
+// A camera that turns about its target. Matrices are row-major and act on columns; eye space is right-handed, Y up, looking
+// along -Z. References: python/mua/camera.py, python/mua/player/viewpoint.py.
+
+/** @typedef {import("./player.js").CameraState} CameraState */
+/**
+ * @typedef {object} Camera
+ * @property {number[]} view [4, 4] world to eye, metres
+ * @property {number[]} projection [4, 4] eye to clip, z of -w to w
+ * @property {number[]} viewProjection [4, 4] world to clip, z of 0 to w
+ * @property {number[]} position world, metres
+ * @property {[number, number]} screen width and height, pixels
+ * @property {number} near metres
+ */
+
+export const FOV = Math.PI / 6; // vertical; a portrait lens
+const NEAR = 0.02; // metres, at most
+const NEAR_SHARE = 0.01; // of the distance of what is looked at: so near a small figure is seen whole
+const FILL = 0.92; // of the picture's half size, that the framed box reaches
+
+/** The view of a state on a screen. @param {CameraState} state @param {[number, number]} screen @returns {Camera} */
+export function cameraOf({ azimuth, elevation, distance, target, fov }, screen) {
+  const turn = rotation(azimuth, elevation);
+  const moved = turn.map((row, axis) => -dot(row, target) - (axis === 2 ? distance : 0));
+  const view = [...turn.flatMap((row, axis) => [...row, moved[axis]]), 0, 0, 0, 1];
+  const near = Math.min(NEAR, NEAR_SHARE * distance);
+  const focal = 1 / Math.tan(fov / 2);
+  const projection = [(focal * screen[1]) / screen[0], 0, 0, 0, 0, focal, 0, 0, 0, 0, -1, -2 * near, 0, 0, -1, 0];
+  const position = [0, 1, 2].map((axis) => -turn.reduce((sum, row, i) => sum + row[axis] * moved[i], 0));
+  const depth = projection.map((value, i) => (i >= 8 && i < 12 ? (value + projection[i + 4]) / 2 : value));
+  return { view, projection, viewProjection: product(depth, view), position, screen, near };
+}
+
+/**
+ * The distance from which all of a box is in the picture.
+ * @param {number[]} box lowest then highest corner @param {CameraState} state of which azimuth, elevation and fov count
+ * @param {[number, number]} screen
+ */
+export function framing(box, { azimuth, elevation, fov }, screen) {
+  const turn = rotation(azimuth, elevation);
+  const half = [0, 1, 2].map((axis) => (box[3 + axis] - box[axis]) / 2);
+  const focal = 1 / Math.tan(fov / 2);
+  const slopes = [(FILL * screen[0]) / (screen[1] * focal), FILL / focal];
+  let distance = 0;
+  for (let corner = 0; corner < 8; corner++) {
+    const [x, y, z] = turn.map((row) =>
+      dot(
+        row,
+        half.map((length, axis) => (corner & (1 << axis) ? length : -length)),
+      ),
+    );
+    distance = Math.max(distance, z + Math.max(Math.abs(x) / slopes[0], Math.abs(y) / slopes[1]));
+  }
+  const target = /** @type {[number, number, number]} */ ([0, 1, 2].map((axis) => (box[axis] + box[3 + axis]) / 2));
+  return { target, distance: distance || NEAR };
+}
+
+/** Rows of the rotation from the world to the eye. */
+function rotation(/** @type {number} */ azimuth, /** @type {number} */ elevation) {
+  const [c, s] = [Math.cos(azimuth), Math.sin(azimuth)];
+  const [up, down] = [Math.cos(elevation), Math.sin(elevation)];
+  return [
+    [c, 0, -s],
+    [-down * s, up, -down * c],
+    [up * s, down, up * c],
+  ];
+}
+
+/** @param {number[]} a @param {number[]} b */
+const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+
+/** Matrices [4, 4], row by row. */
+function product(/** @type {number[]} */ a, /** @type {number[]} */ b) {
+  return a.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[i - (i % 4) + k] * b[4 * k + (i % 4)], 0));
+}

@@ -1,0 +1,158 @@
+// The graphics device: buffers, and the memory through which constants travel.
+
+import { AvatarError } from "./error.js";
+
+const ALIGNMENT = 256; // bytes; no device asks for more between the constants of two dispatches
+const CAPACITY = 1 << 18; // bytes: a thousand dispatches may wait for one submit
+const RAISED_LIMITS = ["maxBufferSize", "maxStorageBufferBindingSize"]; // as much as the device has
+const LEAST_BUFFERS = 8; // that one stage binds
+
+/** An open device, counting what it holds. */
+export class Device {
+  /** @throws {AvatarError} where the browser has none */
+  static async open(/** @type {import("./player.js").PlayerOptions} */ options = {}) {
+    const adapter = await navigator.gpu.requestAdapter({
+      powerPreference: options.powerPreference ?? "high-performance",
+    });
+    if (!adapter)
+      throw new AvatarError(
+        "The browser offers no graphics device through WebGPU: its list of supported devices may leave this one out.",
+      );
+    const limits = /** @type {Record<string, number>} */ (/** @type {unknown} */ (adapter.limits));
+    if (limits.maxStorageBuffersPerShaderStage < LEAST_BUFFERS)
+      throw new AvatarError(
+        `A shader may bind ${limits.maxStorageBuffersPerShaderStage} buffers on this device; the avatar needs ${LEAST_BUFFERS}.`,
+      );
+    /** @type {GPUFeatureName[]} */
+    const features = adapter.features.has("timestamp-query") ? ["timestamp-query"] : [];
+    const requiredLimits = Object.fromEntries(RAISED_LIMITS.map((name) => [name, limits[name]]));
+    const gpu = await adapter.requestDevice({ requiredFeatures: features, requiredLimits });
+    return new Device(adapter, gpu);
+  }
+
+  constructor(/** @type {GPUAdapter} */ adapter, /** @type {GPUDevice} */ gpu) {
+    const { vendor, architecture, description } = adapter.info;
+    this.name = description || [vendor, architecture].filter(Boolean).join(" ");
+    this.gpu = gpu;
+    this.timestamps = gpu.features.has("timestamp-query");
+    this.uniforms = new Uniforms(gpu);
+    this.bytes = 0; // that buffers of `buffer` hold
+    /** @type {Map<unknown, unknown>} */
+    this.known = new Map();
+  }
+
+  /**
+   * A buffer of an array's bytes, or of so many zero bytes.
+   * @param {ArrayBufferView | number} content
+   * @param {string} label
+   * @param {GPUBufferUsageFlags} [more] usage beside storage and copies
+   */
+  buffer(content, label, more = 0) {
+    const bytes = typeof content === "number" ? content : content.byteLength;
+    const size = Math.max(Math.ceil(bytes / 16) * 16, 16); // an element may have 16, and no buffer is empty
+    const most = Math.min(this.gpu.limits.maxBufferSize, this.gpu.limits.maxStorageBufferBindingSize);
+    if (size > most)
+      throw new AvatarError(`${label}: ${size} bytes are more than the ${most} that this device can bind.`);
+    const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST | GPUBufferUsage.COPY_SRC | more;
+    const buffer = this.gpu.createBuffer({ label, size, usage });
+    this.bytes += size;
+    if (typeof content !== "number") this.write(buffer, content);
+    return buffer;
+  }
+
+  /** Overwrite a buffer's beginning before what is submitted next. */
+  write(/** @type {GPUBuffer} */ buffer, /** @type {ArrayBufferView} */ content) {
+    const whole = content.byteLength - (content.byteLength % 4);
+    this.gpu.queue.writeBuffer(buffer, 0, content.buffer, content.byteOffset, whole);
+    if (whole === content.byteLength) return;
+    const rest = new Uint8Array(4);
+    rest.set(new Uint8Array(content.buffer, content.byteOffset + whole, content.byteLength - whole));
+    this.gpu.queue.writeBuffer(buffer, whole, rest);
+  }
+
+  free(/** @type {GPUBuffer} */ buffer) {
+    this.bytes -= buffer.size;
+    buffer.destroy();
+  }
+
+  /** What was made for a key, once. @template T @param {unknown} key @param {() => T} make @returns {T} */
+  once(key, make) {
+    if (!this.known.has(key)) this.known.set(key, make());
+    return /** @type {T} */ (this.known.get(key));
+  }
+}
+
+/** Buffers that go together: of one avatar, say. */
+export class Memory {
+  constructor(/** @type {Device} */ device) {
+    this.device = device;
+    /** @type {GPUBuffer[]} */
+    this.held = [];
+    /** @type {GPUTexture[]} */
+    this.textures = [];
+  }
+
+  /** As Device.buffer. */
+  buffer(
+    /** @type {ArrayBufferView | number} */ content,
+    /** @type {string} */ label,
+    /** @type {GPUBufferUsageFlags} */ more = 0,
+  ) {
+    const made = this.device.buffer(content, label, more);
+    this.held.push(made);
+    return made;
+  }
+
+  /** A texture to draw into. @param {number[]} size width and height, pixels @param {GPUTextureFormat} format @param {GPUTextureUsageFlags} [more] */
+  texture(size, format, more = 0) {
+    const made = this.device.gpu.createTexture({ size, format, usage: GPUTextureUsage.RENDER_ATTACHMENT | more });
+    this.textures.push(made);
+    return made;
+  }
+
+  /** May be called twice. */
+  free() {
+    for (const buffer of this.held.splice(0)) this.device.free(buffer);
+    for (const texture of this.textures.splice(0)) texture.destroy();
+  }
+}
+
+/** A ring of constants: what was placed stays until CAPACITY more bytes were, by then long submitted. */
+class Uniforms {
+  constructor(/** @type {GPUDevice} */ gpu) {
+    this.buffer = gpu.createBuffer({
+      label: "constants",
+      size: CAPACITY,
+      usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST,
+    });
+    this.queue = gpu.queue;
+    this.staged = new DataView(new ArrayBuffer(CAPACITY));
+    this.first = 0; // of what is not uploaded yet
+    this.next = 0;
+  }
+
+  /** The offset at which an entry point's constants will be. */
+  place(/** @type {import("./shader.js").Packer} */ packer, /** @type {import("./shader.js").Values} */ values) {
+    if (this.next + packer.size > CAPACITY) {
+      this.upload();
+      this.first = this.next = 0;
+    }
+    const at = this.next;
+    packer.pack(this.staged, at, values);
+    this.next = Math.ceil((at + packer.size) / ALIGNMENT) * ALIGNMENT;
+    return at;
+  }
+
+  /** Before a submit. */
+  upload() {
+    if (this.next > this.first)
+      this.queue.writeBuffer(
+        this.buffer,
+        this.first,
+        this.staged.buffer,
+        this.first,
+        Math.min(this.next, CAPACITY) - this.first,
+      );
+    this.first = this.next;
+  }
+}

@@ -1,0 +1,148 @@
+// A `.muaavatar` file: every offset, shape, range and value is checked before an avatar leaves here, with the code, field
+// and sentence of the Python reader. Reference: python/mua/asset/read.py.
+
+import { checksum } from "./checksum.js";
+import { readBranch, readCoarse, readWavelet } from "./model.js";
+import { general, shortest } from "./numbers.js";
+import { fault, parse } from "./parser.js";
+import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, refuse, translated, unit } from "./rig.js";
+import { reals } from "./tensors.js";
+
+/** @typedef {import("./parser.js").Tree} Tree */
+/** @typedef {import("./rig.js").Skeleton} Skeleton */
+
+const GEOMETRY_CHANNELS = 11;
+const APPEARANCE_CHANNELS = 12;
+const MAX_WINDOW = 16;
+const LEAST_RATE = 1; // frames per second
+const LARGEST_RATE = 1000;
+const MAX_FRAMES = 2 ** 20; // of a clip at the encoding's rate
+const MAX_ADDED = 2 ** 24; // joints in all frames that clips gain at the encoding's rate
+const LEAST_SCALE = 1e-6; // of a descriptor's number
+const PNG_SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
+
+/** @typedef {ReturnType<typeof read>} Avatar what a file holds; arrays are views of its bytes where they can be */
+/** @typedef {ReturnType<typeof readClip>} Clip */
+/** @typedef {ReturnType<typeof readEncoding>} Encoding */
+
+/** The avatar in a file's bytes. @throws {import("../error.js").AvatarError} that names the field */
+export function read(/** @type {ArrayBuffer} */ content) {
+  const { tree, crcAt } = parse(content);
+  checkSum(content, tree, crcAt);
+  return decode(tree);
+}
+
+function checkSum(/** @type {ArrayBuffer} */ content, /** @type {Tree} */ tree, /** @type {number | undefined} */ at) {
+  if (at === undefined) throw fault("missing", "crc32", "the field is required and absent");
+  const found = checksum(new Uint8Array(content), at);
+  const hex = (/** @type {number} */ sum) => sum.toString(16).padStart(8, "0");
+  if (found !== tree.crc32) {
+    const sentence = `${hex(tree.crc32)}, but the content gives ${hex(found)}: the file is damaged`;
+    throw fault("checksum", "crc32", sentence);
+  }
+}
+
+function decode(/** @type {Tree} */ tree) {
+  const skeleton = readSkeleton(tree.skeleton);
+  const joints = skeleton.names.length;
+  const encoding = readEncoding(tree.encoding, skeleton);
+  const wavelet = readWavelet(tree.wavelet);
+  const coarse = readCoarse(tree.coarse, encoding.width);
+  const template = readTemplate(tree.template, coarse.vertices, joints);
+  const texels = readTexels(tree.texels, template.faces.length / 3);
+  const side = Math.floor(texels.size / 2 ** wavelet.levels);
+  const of = { count: texels.texels.length, width: encoding.width, size: side };
+  const geometry = readBranch(tree.geometry, "geometry", GEOMETRY_CHANNELS, of);
+  const appearance = readBranch(tree.appearance, "appearance", APPEARANCE_CHANNELS, of);
+  if (texels.size % 2 ** wavelet.levels)
+    throw refuse("texels.size", `${texels.size} does not halve ${wavelet.levels} times`);
+  if (Math.max(geometry.details.length, appearance.details.length) > wavelet.levels)
+    throw refuse("geometry.details", `more levels of detail than the wavelet's ${wavelet.levels}`);
+  const clips = readClips(tree.clips, skeleton, encoding.rate);
+  const bounds = readBounds(tree.bounds);
+  const { name, producer, notes } = /** @type {Record<string, string>} */ (tree);
+  const thumbnail = readThumbnail(tree.thumbnail);
+  const surface = readSurface(tree.surface, texels);
+  const model = { skeleton, encoding, wavelet, coarse, template, texels, geometry, appearance, surface };
+  return { name, producer, notes, ...model, clips, bounds, thumbnail };
+}
+
+function readEncoding(/** @type {Tree} */ tree, /** @type {Skeleton} */ skeleton) {
+  const { root, names } = skeleton;
+  const joints = besideRoot(tree.joints, "encoding.joints", names.length, root);
+  const moved = translated(tree, "encoding.translated", names.length, root);
+  if (!moved.every((joint) => skeleton.translated.includes(joint)))
+    throw refuse("encoding.translated", "joints must be among the skeleton's translated ones");
+  const window = /** @type {number} */ (tree.window);
+  if (window < 1 || window > MAX_WINDOW)
+    throw refuse("encoding.window", `${window} frames, expected 1 to ${MAX_WINDOW}`);
+  const rate = readRate(tree, "encoding.rate");
+  const width = window * (9 + 6 * joints.length + 3 * moved.length);
+  const scale = reals(tree.scale, "encoding.scale", [width]).values;
+  const least = scale.reduce((a, b) => Math.min(a, b), Infinity);
+  if (least < Math.fround(LEAST_SCALE))
+    throw refuse("encoding.scale", `${shortest(least)}, expected ${scientificWhole(LEAST_SCALE)} or more`);
+  const mean = reals(tree.mean, "encoding.mean", [width]).values;
+  return { joints, translated: moved, window, rate, heading: Boolean(tree.heading), width, mean, scale };
+}
+
+const scientificWhole = (/** @type {number} */ value) => general(value, 6);
+
+function readRate(/** @type {Tree} */ tree, /** @type {string} */ path) {
+  const rate = /** @type {number} */ (tree.rate);
+  if (!(rate >= LEAST_RATE && rate <= LARGEST_RATE))
+    throw refuse(path, `${shortest(rate)} frames per second, expected ${LEAST_RATE} to ${LARGEST_RATE}`);
+  return rate;
+}
+
+function readClips(/** @type {Tree[]} */ trees, /** @type {Skeleton} */ skeleton, /** @type {number} */ encodingRate) {
+  let added = 0;
+  return trees.map((tree, i) => {
+    const clip = readClip(tree, `clips[${i}]`, skeleton);
+    const times = Math.max(encodingRate / clip.rate, 1);
+    added += (times - 1) * clip.frames * skeleton.names.length;
+    if (times * clip.frames > MAX_FRAMES || added > MAX_ADDED) {
+      const [rate, ours] = [clip.rate, encodingRate].map((one) => general(one, 6));
+      const sentence = `${clip.frames} frames at a rate of ${rate}, too many for the encoding's rate of ${ours}`;
+      throw refuse(`clips[${i}].rotations`, sentence);
+    }
+    return clip;
+  });
+}
+
+function readClip(/** @type {Tree} */ tree, /** @type {string} */ path, /** @type {Skeleton} */ skeleton) {
+  const { values: rotations, shape } = unit(tree.rotations, `${path}.rotations`, [null, skeleton.names.length, 4]);
+  const frames = shape[0];
+  if (!frames) throw refuse(`${path}.rotations`, "a clip needs at least one frame");
+  const translation = reals(tree.translation, `${path}.translation`, [frames, 3]).values;
+  const moved = skeleton.translated.length;
+  if (!tree.translations && moved)
+    throw fault("missing", `${path}.translations`, `absent, but the skeleton names ${moved} translated joints`);
+  const translations = tree.translations
+    ? reals(tree.translations, `${path}.translations`, [frames, moved, 3]).values
+    : new Float32Array();
+  return {
+    name: /** @type {string} */ (tree.name),
+    rate: readRate(tree, `${path}.rate`),
+    frames,
+    rotations,
+    translation,
+    translations,
+  };
+}
+
+function readBounds(/** @type {Tree} */ tensor) {
+  const bounds = reals(tensor, "bounds", [2, 3]).values;
+  const [low, high] = [Array.from(bounds.subarray(0, 3)), Array.from(bounds.subarray(3))];
+  if (low.some((value, axis) => value > high[axis])) {
+    const [lowest, highest] = [low, high].map((corner) => `[${corner.map(shortest).join(", ")}]`);
+    throw refuse("bounds", `lowest corner ${lowest} above highest ${highest}`);
+  }
+  return bounds;
+}
+
+function readThumbnail(/** @type {Uint8Array} */ content) {
+  if (content.length && !PNG_SIGNATURE.every((byte, i) => content[i] === byte))
+    throw refuse("thumbnail", "the content is no PNG");
+  return content;
+}

@@ -1,0 +1,148 @@
+// Skeleton, template, texels and surface of a file, checked. Reference: python/mua/asset/read.py.
+
+import { normalized } from "../rotation.js";
+import { bindInverse } from "../skeleton.js";
+import { blocks, blockTriangles } from "../surface.js";
+import { general, scientific } from "./numbers.js";
+import { fault } from "./parser.js";
+import { indices, reals } from "./tensors.js";
+
+/** @typedef {import("./parser.js").Tree} Tree */
+
+const UNIT_BOUND = 2e-3; // a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
+const WEIGHT_BOUND = 1e-4;
+const BIND_BOUND = 1e-4; // metres and quaternion components: f32 forward kinematics over a deep chain
+const INFLUENCES = 8; // joints of a vertex
+const MAX_SIZE = 4096;
+const SLACK = 2 ** -21; // the third barycentric is a rounded difference
+const END = -1; // of a strip
+
+export const refuse = (/** @type {string} */ field, /** @type {string} */ sentence) => fault("value", field, sentence);
+
+/** @typedef {ReturnType<typeof readSkeleton>} Skeleton */
+
+export function readSkeleton(/** @type {Tree} */ tree) {
+  /** @type {string[]} */
+  const names = tree.names;
+  const count = names.length;
+  const parents = indices(tree.parents, "skeleton.parents", [count], -1, count);
+  const late = parents.findIndex((parent, joint) => parent >= joint);
+  if (late >= 0) throw refuse("skeleton.parents", `joint ${late} stands before its parent ${parents[late]}`);
+  const root = /** @type {number} */ (tree.root);
+  if (root >= count) throw refuse("skeleton.root", `${root}, but there are ${count} joints`);
+  const { values: turned } = unit(tree.bind_rotations, "skeleton.bind_rotations", [count, 4]);
+  const bindRotations = Float64Array.from(turned);
+  for (let at = 0; at < bindRotations.length; at += 4) normalized(bindRotations, at);
+  const bindTranslations = Float64Array.from(
+    reals(tree.bind_translations, "skeleton.bind_translations", [count, 3]).values,
+  );
+  const stated = reals(tree.bind_inverse, "skeleton.bind_inverse", [count, 8]).values;
+  const skeleton = { names, parents, root, bindRotations, bindTranslations };
+  const inverse = bindInverse(skeleton);
+  const gap = bindGap(stated, inverse);
+  if (gap > BIND_BOUND)
+    throw refuse("skeleton.bind_inverse", `differs by ${scientific(gap)} from the inverse of the bind pose`);
+  return { ...skeleton, inverse, translated: translated(tree, "skeleton.translated", count, root) };
+}
+
+/** The larger of what two sets of dual quaternions, which may have either sign number by number, differ by. */
+function bindGap(/** @type {Float32Array} */ stated, /** @type {Float64Array} */ inverse) {
+  return inverse.reduce((most, v, i) => Math.max(most, Math.min(Math.abs(stated[i] - v), Math.abs(stated[i] + v))), 0);
+}
+
+/** Unit quaternions [..., 4] as stored. @param {Tree} tensor @param {string} path @param {(number | null)[]} shape */
+export function unit(tensor, path, shape) {
+  const found = reals(tensor, path, shape);
+  let worst = 1;
+  for (let at = 0; at < found.values.length; at += 4) {
+    const length = Math.hypot(found.values[at], found.values[at + 1], found.values[at + 2], found.values[at + 3]);
+    if (Math.abs(length - 1) > Math.abs(worst - 1)) worst = length;
+  }
+  if (Math.abs(worst - 1) > UNIT_BOUND) throw refuse(path, `a quaternion of length ${general(worst, 4)}, expected 1`);
+  return found;
+}
+
+/** Joints beside the root that move in their parents; none where the table names none. */
+export function translated(
+  /** @type {Tree} */ tree,
+  /** @type {string} */ path,
+  /** @type {number} */ count,
+  /** @type {number} */ root,
+) {
+  return tree.translated ? besideRoot(tree.translated, path, count, root) : new Int32Array();
+}
+
+/** Ascending joints without the root. */
+export function besideRoot(
+  /** @type {Tree} */ tensor,
+  /** @type {string} */ path,
+  /** @type {number} */ count,
+  /** @type {number} */ root,
+) {
+  const joints = indices(tensor, path, [null], 0, count);
+  if (joints.some((joint, i) => i > 0 && joint <= joints[i - 1]) || joints.includes(root))
+    throw refuse(path, "joints must ascend and leave out the root");
+  return joints;
+}
+
+/** @typedef {ReturnType<typeof readTemplate>} Template */
+
+export function readTemplate(/** @type {Tree} */ tree, /** @type {number} */ count, /** @type {number} */ joints) {
+  const uv = reals(tree.uv, "template.uv", [null, 2]);
+  const faces = indices(tree.faces, "template.faces", [null, 3], 0, count);
+  indices(tree.uv_faces, "template.uv_faces", [faces.length / 3, 3], 0, uv.shape[0]);
+  const weights = reals(tree.skin_weights, "template.skin_weights", [count, INFLUENCES]).values;
+  checkWeights(weights, count);
+  const skinIndices = indices(tree.skin_indices, "template.skin_indices", [count, INFLUENCES], 0, joints);
+  return { faces, skinIndices, skinWeights: weights };
+}
+
+/** Each vertex's weights are 0 or more, sum to 1, and begin with the largest. */
+function checkWeights(/** @type {Float32Array} */ weights, /** @type {number} */ count) {
+  let [worst, sumOfWorst, negative, rising] = [0, 1, false, -1];
+  for (let vertex = 0; vertex < count; vertex++) {
+    let sum = 0;
+    for (let at = INFLUENCES * vertex; at < INFLUENCES * (vertex + 1); at++) {
+      sum += weights[at];
+      negative ||= weights[at] < 0;
+      if (rising < 0 && at % INFLUENCES && weights[at] > weights[at - 1]) rising = vertex;
+    }
+    if (Math.abs(sum - 1) > Math.abs(sumOfWorst - 1)) [worst, sumOfWorst] = [vertex, sum];
+  }
+  const field = "template.skin_weights";
+  if (negative || Math.abs(sumOfWorst - 1) > WEIGHT_BOUND)
+    throw refuse(field, `weights of vertex ${worst} sum to ${general(sumOfWorst, 4)} or one is negative`);
+  if (rising >= 0) throw refuse(field, `weights of vertex ${rising} do not begin with the largest`);
+}
+
+/** @typedef {ReturnType<typeof readTexels>} Texels */
+
+export function readTexels(/** @type {Tree} */ tree, /** @type {number} */ faces) {
+  const size = /** @type {number} */ (tree.size);
+  if (size < 1 || size > MAX_SIZE) throw refuse("texels.size", `${size}, expected 1 to ${MAX_SIZE}`);
+  const texels = indices(tree.texels, "texels.texels", [null], 0, size * size);
+  if (texels.some((texel, i) => i > 0 && texel <= texels[i - 1])) throw refuse("texels.texels", "texels must ascend");
+  const triangles = indices(tree.triangles, "texels.triangles", [texels.length], 0, faces);
+  const barycentrics = reals(tree.barycentrics, "texels.barycentrics", [texels.length, 2]).values;
+  let least = 0;
+  for (let at = 0; at < barycentrics.length; at += 2) {
+    const third = 1 - Math.fround(barycentrics[at] + barycentrics[at + 1]);
+    least = Math.min(least, barycentrics[at], barycentrics[at + 1], third);
+  }
+  if (least < -SLACK) throw refuse("texels.barycentrics", `${general(least, 3)}, expected 0 to 1`);
+  return { size, texels, triangles, barycentrics: barycentrics.map((share) => Math.max(share, 0)) };
+}
+
+/** @typedef {NonNullable<ReturnType<typeof readSurface>>} SurfaceCode */
+
+export function readSurface(/** @type {Tree | undefined} */ tree, /** @type {Texels} */ texels) {
+  if (!tree) return null;
+  const runs = /** @type {Uint8Array} */ (tree.runs);
+  const corners = blocks(texels);
+  const codes = runs.reduce((count, run) => count + (run >> 4) + 1, 0);
+  if (codes !== corners.length / 4)
+    throw fault("shape", "surface.runs", `${codes} codes, expected ${corners.length / 4}`);
+  if (blockTriangles(corners, runs).some((corner) => corner < 0))
+    throw refuse("surface.runs", "a triangle has a corner that is no valid texel");
+  return { runs, strips: indices(tree.strips, "surface.strips", [null], END, 2 * texels.texels.length) };
+}

@@ -1,0 +1,70 @@
+// What the kernels read of a file that it does not hold in that form. References: python/mua/kernels/inverse_dwt.py and
+// splat_project.py.
+
+const TILE = 16; // texels along a side
+const LARGEST_BARYCENTRIC = 65535;
+
+/** Where texels lie on the mesh, [N, 2] words: the triangle, two barycentrics of 16 bits each. */
+export function texelWords(/** @type {import("./format/rig.js").Texels} */ { triangles, barycentrics }) {
+  const words = new Uint32Array(2 * triangles.length);
+  for (let i = 0; i < triangles.length; i++) {
+    const [first, second] = [0, 1].map((k) => toEven(barycentrics[2 * i + k] * LARGEST_BARYCENTRIC));
+    words[2 * i] = triangles[i];
+    words[2 * i + 1] = (first | (second << 16)) >>> 0;
+  }
+  return words;
+}
+
+/** The nearest whole number, the even one of two. */
+function toEven(/** @type {number} */ value) {
+  const below = Math.floor(value);
+  const above = value - below > 0.5 || (value - below === 0.5 && below % 2 === 1);
+  return above ? below + 1 : below;
+}
+
+/**
+ * Tiles of 16 x 16 texels that hold a valid one: row << 16 | column of each, ascending; and of each of its rows the place
+ * in `texels` of the first that it holds, and its columns as bits.
+ */
+export function texelTiles(/** @type {{texels: Int32Array, size: number}} */ { texels, size }) {
+  const across = Math.ceil(size / TILE);
+  const slots = new Int32Array(across * across).fill(-1);
+  for (const texel of texels) slots[tileOf(texel, size, across)] = 0;
+  /** @type {number[]} */
+  const tiles = [];
+  slots.forEach((slot, tile) => {
+    if (slot < 0) return;
+    slots[tile] = tiles.length;
+    tiles.push(Math.floor(tile / across) * 65536 + (tile % across));
+  });
+  const rows = new Uint32Array(2 * TILE * tiles.length);
+  texels.forEach((texel, place) => {
+    const line = 2 * (TILE * slots[tileOf(texel, size, across)] + (Math.floor(texel / size) % TILE));
+    if (!rows[line + 1]) rows[line] = place;
+    rows[line + 1] |= 1 << ((texel % size) % TILE);
+  });
+  return { tiles: Uint32Array.from(tiles), rows };
+}
+
+function tileOf(/** @type {number} */ texel, /** @type {number} */ size, /** @type {number} */ across) {
+  return Math.floor(Math.floor(texel / size) / TILE) * across + Math.floor((texel % size) / TILE);
+}
+
+/** The filter [reach, factor] that so many levels of low-pass synthesis are together, and its delay. */
+export function upsamplingTaps(/** @type {Float64Array} */ recLo, /** @type {number} */ levels) {
+  let taps = [1];
+  for (let level = 0; level < levels; level++) {
+    const wider = new Array(2 * (taps.length - 1) + recLo.length).fill(0);
+    taps.forEach((tap, i) => recLo.forEach((other, k) => (wider[2 * i + k] += tap * other)));
+    taps = wider;
+  }
+  const factor = 2 ** levels;
+  const delay = (factor - 1) * (recLo.length / 2 - 1);
+  const used = taps.flatMap((tap, i) => (tap ? [i] : []));
+  const first = used.length ? Math.min(used[0], delay) : 0;
+  const last = used.length ? used[used.length - 1] : 0;
+  const reach = Math.ceil((last + 1 - first) / factor);
+  const padded = new Array(reach * factor).fill(0);
+  taps.slice(first, last + 1).forEach((tap, i) => (padded[i] = tap));
+  return { taps: padded, factor, reach, delay: delay - first };
+}

@@ -1,0 +1,158 @@
+// A device and what it holds of the avatars, and the pictures that it draws of them. A lost device's renderer is left behind
+// and another one made.
+
+import { cameraOf } from "./camera.js";
+import { AvatarBuffers } from "./buffers.js";
+import { window } from "./clip.js";
+import { Device, Memory } from "./device.js";
+import { AvatarError } from "./error.js";
+import { AvatarFrame } from "./frame.js";
+import { Overlays } from "./overlays.js";
+import { readPicture } from "./picture.js";
+import { COLOR, DEPTH, Scene } from "./scene.js";
+import { SplatFrame } from "./splats.js";
+import { Timing } from "./timing.js";
+
+/** @typedef {import("./format/read.js").Avatar} Avatar */
+/** @typedef {import("./format/read.js").Clip} Clip */
+/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, shown: string}} Slot an avatar on the device */
+/** @typedef {{slot: Slot, clip: Clip, frame: number, place: number[], ground: number}} Posed what a picture shows of one */
+/** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show}} Look */
+
+export class Renderer {
+  /** @returns {Promise<Renderer>} */
+  static async open(
+    /** @type {HTMLCanvasElement} */ canvas,
+    /** @type {import("./player.js").PlayerOptions} */ options,
+  ) {
+    const device = await Device.open(options);
+    try {
+      return new Renderer(device, canvas, options);
+    } catch (error) {
+      device.gpu.destroy();
+      throw error;
+    }
+  }
+
+  constructor(
+    /** @type {Device} */ device,
+    /** @type {HTMLCanvasElement} */ canvas,
+    /** @type {import("./player.js").PlayerOptions} */ options,
+  ) {
+    const context = /** @type {GPUCanvasContext | null} */ (/** @type {unknown} */ (canvas.getContext("webgpu")));
+    if (!context) throw new AvatarError("The canvas is in use for something else; the player needs one of its own.");
+    this.device = device;
+    this.canvas = canvas;
+    this.context = context;
+    context.configure({ device: device.gpu, format: COLOR, alphaMode: "premultiplied" });
+    this.scene = new Scene(device, options.background ?? [0, 0, 0, 0]);
+    this.timing = new Timing(device);
+    this.shared = new Memory(device); // the splats of all avatars
+    /** @type {Slot[]} */
+    this.slots = [];
+    /** @type {SplatFrame | null} */
+    this.splats = null;
+  }
+
+  /** Upload an avatar. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
+  async add(/** @type {Avatar} */ avatar) {
+    const { gpu } = this.device;
+    const memory = new Memory(this.device);
+    gpu.pushErrorScope("out-of-memory");
+    /** @type {Slot | null} */
+    let slot = null;
+    try {
+      const frame = new AvatarFrame(new AvatarBuffers(memory, avatar));
+      slot = { memory, frame, overlays: new Overlays(memory, frame, { color: COLOR, depth: DEPTH }), shown: "" };
+      this.rearrange([...this.slots, slot]);
+    } finally {
+      const lacking = await gpu.popErrorScope();
+      if (lacking || !slot) memory.free();
+      if (lacking) {
+        this.rearrange(this.slots.filter((one) => one !== slot));
+        throw new AvatarError(`${avatar.name}: the graphics device has too little free memory for this avatar.`);
+      }
+    }
+    return slot;
+  }
+
+  remove(/** @type {Slot} */ slot) {
+    this.rearrange(this.slots.filter((one) => one !== slot));
+    slot.memory.free();
+  }
+
+  /** Room for the splats of all avatars that are there from now on. */
+  rearrange(/** @type {Slot[]} */ slots) {
+    const shared = new Memory(this.device);
+    try {
+      const frames = slots.map((slot) => slot.frame);
+      const splats = slots.length ? new SplatFrame(shared, frames) : null;
+      this.shared.free();
+      [this.shared, this.splats, this.slots] = [shared, splats, slots];
+    } catch (error) {
+      shared.free();
+      throw error;
+    }
+  }
+
+  /** Draw on to the canvas. */
+  draw(/** @type {Posed[]} */ posed, /** @type {Look} */ look) {
+    this.submit(this.context.getCurrentTexture(), posed, look);
+  }
+
+  /** The same picture as a PNG. @returns {Promise<Blob>} */
+  async picture(/** @type {Posed[]} */ posed, /** @type {Look} */ look) {
+    const memory = new Memory(this.device);
+    const { width, height } = this.canvas;
+    const target = memory.texture([width, height], COLOR, GPUTextureUsage.COPY_SRC);
+    this.submit(target, posed, look);
+    try {
+      return await readPicture(this.device, target);
+    } finally {
+      memory.free();
+    }
+  }
+
+  submit(/** @type {GPUTexture} */ target, /** @type {Posed[]} */ posed, /** @type {Look} */ { camera: state, show }) {
+    const { device, timing, splats } = this;
+    const camera = cameraOf(state, [target.width, target.height]);
+    const encoder = device.gpu.createCommandEncoder();
+    this.pose(encoder, posed);
+    if (splats) {
+      const pass = encoder.beginComputePass({ label: "sort", timestampWrites: timing.of("sort") });
+      splats.sort(pass, camera);
+      pass.end();
+    }
+    const overlays = posed.map(({ slot }) => slot.overlays);
+    this.scene.draw(encoder, target, { frame: splats, overlays, camera, show }, timing.of("draw"));
+    const then = timing.end(encoder);
+    device.uniforms.upload();
+    device.gpu.queue.submit([encoder.finish()]);
+    then();
+  }
+
+  /** Decode what shows another frame or stands elsewhere than before. */
+  pose(/** @type {GPUCommandEncoder} */ encoder, /** @type {Posed[]} */ posed) {
+    const pass = encoder.beginComputePass({ label: "decode", timestampWrites: this.timing.of("decode") });
+    for (const { slot, clip, frame, place, ground } of posed) {
+      const shown = [clip.name, frame, ...place].join();
+      if (slot.shown === shown) continue;
+      const { skeleton, encoding } = slot.frame.buffers.avatar;
+      slot.frame.decode(pass, window(skeleton, clip, frame, encoding), place);
+      slot.overlays.pose(ground + place[1]);
+      slot.shown = shown;
+    }
+    pass.end();
+  }
+
+  /** Bytes of buffers that the device holds. */
+  get bytes() {
+    return this.device.bytes;
+  }
+
+  destroy() {
+    this.rearrange([]);
+    this.context.unconfigure();
+    this.device.gpu.destroy();
+  }
+}

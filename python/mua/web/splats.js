@@ -1,0 +1,98 @@
+// All avatars' splats together: the dispatches from posed texels to the splats that are seen, back to front, a plain list in
+// the order of the kernels. Reference: python/mua/player/splats.py.
+
+import { AvatarError } from "./error.js";
+import { FLOAT, groups } from "./frame.js";
+import { kernelsOf } from "./kernel.js";
+import { SplatProject } from "./wgsl/splat_project.js";
+import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";
+
+/** @typedef {import("./frame.js").AvatarFrame} AvatarFrame */
+/** @typedef {import("./camera.js").Camera} Camera */
+
+const MOST_SPLATS = 1 << 24; // that the elements of the sort can tell apart
+const SPLAT_WORDS = 8;
+const PROJECTED = 256; // texels of a group of SplatProject
+const SORTED = 2048; // keys of a group of the sort
+const DIGITS = 256; // values of 8 bits
+const ARGUMENTS = 5; // words: of the draw, and how many splats are seen
+export const KERNELS = { SplatProject, CountDigits, ScanDigits, ScatterDigits };
+
+/** One sort for all avatars, so that those that stand among each other blend rightly. */
+export class SplatFrame {
+  constructor(/** @type {import("./device.js").Memory} */ memory, /** @type {AvatarFrame[]} */ avatars) {
+    this.avatars = avatars;
+    /** @type {number[]} */
+    this.firstSplats = []; // each avatar's first is even
+    this.splatCount = 0;
+    for (const avatar of avatars) {
+      this.firstSplats.push(this.splatCount);
+      this.splatCount += avatar.splatCount + (avatar.splatCount % 2);
+    }
+    if (this.splatCount > MOST_SPLATS)
+      throw new AvatarError(`${this.splatCount} splats of all avatars; expected at most ${MOST_SPLATS}`);
+    this.kernels = kernelsOf(memory.device, KERNELS);
+    const count = this.splatCount;
+    this.splats = memory.buffer(4 * SPLAT_WORDS * count, "splats");
+    this.keys = memory.buffer((FLOAT * count) / 2, "keys");
+    this.digitCounts = memory.buffer(FLOAT * DIGITS * groups(count, SORTED), "digit_counts");
+    this.digitTotals = memory.buffer(FLOAT * DIGITS, "digit_totals");
+    this.arguments = memory.buffer(FLOAT * ARGUMENTS, "arguments", GPUBufferUsage.INDIRECT);
+    this.halfSorted = memory.buffer(FLOAT * count, "half_sorted");
+    this.order = memory.buffer(FLOAT * count, "order");
+  }
+
+  /** Append the dispatches from posed texels to `order`, the splats that a camera sees, back to front. */
+  sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera} */ camera) {
+    this.avatars.forEach((avatar, i) => this.project(pass, avatar, this.firstSplats[i], camera));
+    this.sortDigit(pass, this.keys, this.halfSorted, 0);
+    this.sortDigit(pass, this.halfSorted, this.order, 1);
+  }
+
+  /** World box of what was posed last: lowest then highest corner, metres. */
+  box() {
+    const boxes = this.avatars.map((avatar) => avatar.bounds);
+    return [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((box) => box[i])));
+  }
+
+  /** @param {GPUComputePassEncoder} pass @param {AvatarFrame} avatar @param {number} firstSplat @param {Camera} camera */
+  project(pass, avatar, firstSplat, camera) {
+    const box = this.box();
+    this.kernels.SplatProject.dispatch(
+      pass,
+      [groups(avatar.splatCount, PROJECTED), 1, 1],
+      {
+        mesh: avatar.mesh,
+        faces: avatar.buffers.faces,
+        texels: avatar.buffers.texels,
+        texel_channels: avatar.texelChannels,
+        vertex_dq: avatar.vertexDq,
+        splats: this.splats,
+        keys: this.keys,
+      },
+      {
+        view: [...camera.view, ...camera.view],
+        projection: [...camera.projection, ...camera.projection],
+        camera: [...camera.position, 1],
+        bounds_low: [...box.slice(0, 3), 1],
+        bounds_high: [...box.slice(3), 1],
+        screen: camera.screen,
+        near: camera.near,
+        eyes: 1,
+        texel_count: avatar.splatCount,
+        first_splat: firstSplat,
+      },
+    );
+  }
+
+  /** One pass of the sort, from the splats' keys to elements, or from those to the order. @param {GPUComputePassEncoder} pass @param {GPUBuffer} keys @param {GPUBuffer} sorted @param {number} second_pass */
+  sortDigit(pass, keys, sorted, second_pass) {
+    const blocks = [groups(this.splatCount, SORTED), 1, 1];
+    const counts = { digit_counts: this.digitCounts, arguments: this.arguments };
+    const totals = { ...counts, digit_totals: this.digitTotals };
+    const constants = { second_pass, key_count: this.splatCount, instances: 1 };
+    this.kernels.CountDigits.dispatch(pass, blocks, { keys, ...counts }, constants);
+    this.kernels.ScanDigits.dispatch(pass, [DIGITS, 1, 1], totals, constants);
+    this.kernels.ScatterDigits.dispatch(pass, blocks, { keys, ...totals, sorted }, constants);
+  }
+}

@@ -1,0 +1,18 @@
+// Fetches and reads an avatar away from the page's own thread: takes a source, answers progress, then the avatar, whose
+// bytes change hands without a copy, or what is wrong with it.
+
+import { AvatarError } from "./error.js";
+import { loadHere } from "./load.js";
+
+self.onmessage = async ({ data: source }) => {
+  try {
+    const avatar = await loadHere(source, (fraction, sentence) =>
+      self.postMessage({ progress: { fraction, sentence } }),
+    );
+    self.postMessage({ avatar }, { transfer: [avatar.thumbnail.buffer] });
+  } catch (error) {
+    if (!(error instanceof AvatarError)) throw error;
+    const { message, code, field } = error;
+    self.postMessage({ told: { message, code, field } });
+  }
+};
