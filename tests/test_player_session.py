@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import wgpu
 
 from mua import rotation
 from mua.cli.view_options import Asked, look_of
@@ -82,3 +83,35 @@ def test_another_clip_is_seen_from_the_same_side(device: Device, avatar_files: t
 def test_refuses_a_clip_that_is_not_there(device: Device, avatar_files: tuple[Path, ...]) -> None:
     with pytest.raises(InputError, match="--clip is 'run'"):
         Session(device, Source(avatar_files, clip="run"), look_of(Asked(), None), color_format="rgba8unorm")
+
+
+def test_shows_the_level_asked_for_and_the_next_one_on_demand(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    playing = session(device, Source(avatar_files, frame=2), level="16")
+    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+    target = device.wgpu.create_texture(size=(64, 64, 1), format="rgba8unorm", usage=usage)
+    shown = []
+    for _ in range(5):
+        playing.draw(target)
+        shown.append(playing.level)
+        playing.next_level()
+    assert shown[0] == shown[4] == "16 texels"
+    assert shown[1] == "8 texels"
+    assert shown[2].startswith("auto level: ")
+    assert shown[3] == "32 texels"
+
+
+def test_the_detailed_geometry_is_of_the_finest_level(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    playing = session(device, Source(avatar_files, frame=2), level="8")
+    target = device.wgpu.create_texture(
+        size=(64, 64, 1), format="rgba8unorm", usage=wgpu.TextureUsage.RENDER_ATTACHMENT
+    )
+    playing.draw(target)
+    coarse = playing.splats
+    playing.toggle("geometry")
+    playing.draw(target)
+    assert playing.splats > 2 * coarse
+    assert playing.level == "32 texels"
+
+
+def test_a_level_that_is_not_there_is_a_note(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    assert "no level of 384 texels but 32, 16, 8" in " ".join(session(device, Source(avatar_files), level="384").notes)

@@ -21,6 +21,7 @@ VALUES = {  # one of every option that says what is seen, and where it ends up i
     "stereo": True,
     "background": "#204060",
     "show": "skeleton",
+    "level": "384",
 }
 
 
@@ -46,6 +47,9 @@ def test_no_option_is_forgotten() -> None:
         (None, {"turntable": True}, "--turntable: no -o is given; expected -o with a name that ends in .mp4"),
         (None, {"background": "transparent"}, "--background is transparent, but the window cannot be"),
         (None, {"show": "hat"}, "--show is 'hat'"),
+        (None, {"level": "low"}, "--level is 'low'; expected auto, full or a number of texels such as 384"),
+        (None, {"level": "0"}, "--level is '0'"),
+        ("v.png", {"level": "192", "show": "splats,geometry"}, "--level is 192 and --show has geometry"),
         *[(None, {"size": size}, f"--size is '{size}'") for size in ("0", "10x20x30", "9999", "-5")],
         (None, {"background": "nocolour"}, "--background is 'nocolour'"),
         (None, {"zoom": 0.0}, "--zoom is 0; expected 0.03 to 100"),

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
+from mua.player.levels import AUTO, FULL
 from mua.player.motion import require_frame
 from mua.player.viewpoint import FARTHEST, NEAREST
 from mua.pose.clip import Clip
@@ -55,6 +56,15 @@ def parse_zoom(zoom: float) -> float:
     if not 1 / FARTHEST <= zoom <= 1 / NEAREST:
         raise InputError(f"--zoom is {zoom:g}; expected {1 / FARTHEST:.2f} to {1 / NEAREST:g}")
     return zoom
+
+
+def parse_level(level: str, *, geometry: bool) -> str | int:
+    """`auto`, `full` or texels along a side; `geometry` where the surface is shown, which only the finest level has."""
+    if level not in (AUTO, FULL) and not (level.isdecimal() and 0 < int(level) <= LARGEST):
+        raise InputError(f"--level is {level!r}; expected {AUTO}, {FULL} or a number of texels such as 384")
+    if geometry and level.isdecimal():
+        raise InputError(f"--level is {level} and --show has geometry, which only the finest level has")
+    return int(level) if level.isdecimal() else level
 
 
 def parse_ipd(metres: float) -> float:

@@ -110,6 +110,13 @@ def view(
             show_default=f"{IN_FILES.show}; window {IN_WINDOW.show}",
         ),
     ] = None,
+    level: Annotated[
+        str | None,
+        typer.Option(
+            help="Level of detail: full, texels along a side such as 384, or auto: fewer when seen from afar.",
+            show_default=f"{IN_FILES.level}, window {IN_WINDOW.level}",
+        ),
+    ] = None,
     reference: Annotated[
         bool, typer.Option("--reference", help="Compute on the CPU with numpy; needs no graphics device.")
     ] = False,
@@ -125,7 +132,7 @@ def view(
     }
     given |= {"--reference": reference, "--device": device, "--mapping": mapping, "--motion": motion}
     check_fitting(kind, output, given)
-    asked = Asked(size, azimuth, elevation, zoom, look_at, orbit, follow, stereo, ipd, background, show)
+    asked = Asked(size, azimuth, elevation, zoom, look_at, orbit, follow, stereo, ipd, background, show, level)
     look = look_of(asked, output)
     if reference and look.toggles != Toggles():
         raise InputError(f"--show is {show!r}; --reference draws only splats")

@@ -19,11 +19,11 @@ from mua.camera import Camera
 from mua.cli.option_values import is_video, parse_frame, parse_frames
 from mua.cli.view_options import Kind
 from mua.files import replacing
+from mua.player.levels import FULL, Levels
 from mua.player.motion import named_clip, player_clips
 from mua.player.picture import Reference, over
 from mua.player.shot import Look, film, full_turn
 from mua.player.source import Source
-from mua.player.toggles import Toggles
 from mua.pose.clip import Clip
 
 Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
@@ -52,7 +52,7 @@ def write(
 
     Errors: InputError where the avatar cannot be read or shown, or holds no such clip, frame or joint.
     """
-    with _opened(source.files[0], device, look.toggles, reference=reference) as (avatar, painter):
+    with _opened(source.files[0], device, look, reference=reference) as (avatar, painter):
         clip = _chosen(avatar, source)
         take = _take(kind, clip, avatar, source, look, frames=frames)
         paint = painter(clip)
@@ -63,12 +63,13 @@ def write(
 
 @contextmanager
 def _opened(
-    file: Path, device: str | None, toggles: Toggles, *, reference: bool
+    file: Path, device: str | None, look: Look, *, reference: bool
 ) -> Iterator[tuple[Avatar, Callable[[Clip], Painter]]]:
     """The avatar, and what paints frames of a clip of it, for as long as the device is open."""
     if reference:
         avatar = read(file)
-        yield avatar, lambda clip: Reference(avatar, clip).picture
+        levels = _levels(avatar, look)
+        yield avatar, lambda clip: Reference(avatar, clip, levels=levels).picture
         return
     from mua.gpu import open_device  # here, as all that needs a device: pictures by the CPU do without
     from mua.player.buffers import AvatarBuffers
@@ -76,7 +77,16 @@ def _opened(
 
     with closing(open_device(device)) as opened:
         buffers = AvatarBuffers(opened, file)
-        yield buffers.avatar, lambda clip: Offscreen(opened, buffers, clip, toggles).picture
+        levels = _levels(buffers.avatar, look)
+        yield buffers.avatar, lambda clip: Offscreen(opened, buffers, clip, look.toggles, levels=levels).picture
+
+
+def _levels(avatar: Avatar, look: Look) -> Levels:
+    """What chooses the level of detail; that there is none to choose goes to standard error."""
+    levels = Levels(avatar, FULL if look.toggles.geometry else look.level)  # the surface has but one
+    if levels.note:
+        typer.echo(levels.note, err=True)
+    return levels
 
 
 def _chosen(avatar: Avatar, source: Source) -> Clip:

@@ -14,12 +14,14 @@ from mua.cli.option_values import (
     parse_angle,
     parse_color,
     parse_ipd,
+    parse_level,
     parse_screen,
     parse_zoom,
     require_format,
 )
 from mua.errors import InputError
 from mua.inputs import require_file, require_motion
+from mua.player.levels import AUTO, FULL
 from mua.player.shot import Look, Shot
 from mua.player.toggles import parse_toggles
 
@@ -43,10 +45,11 @@ class Defaults:
     background: str
     show: str
     follow: bool
+    level: str
 
 
-IN_FILES = Defaults(size="640x960", background="white", show="splats", follow=False)
-IN_WINDOW = Defaults(size="1280x860", background="#edf0f2", show="splats,shadow", follow=True)
+IN_FILES = Defaults(size="640x960", background="white", show="splats", follow=False, level=FULL)
+IN_WINDOW = Defaults(size="1280x860", background="#edf0f2", show="splats,shadow", follow=True, level=AUTO)
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class Asked:
     ipd: float | None = None
     background: str | None = None
     show: str | None = None
+    level: str | None = None
 
 
 def kind_of(output: Path | None, *, turntable: bool) -> Kind:
@@ -125,4 +129,5 @@ def look_of(asked: Asked, output: Path | None) -> Look:
         look_at=asked.look_at,
     )
     color = parse_color(asked.background or left_out.background, output)
-    return Look(shot, parse_toggles(asked.show or left_out.show), color)
+    toggles = parse_toggles(asked.show or left_out.show)
+    return Look(shot, toggles, color, parse_level(asked.level or left_out.level, geometry=toggles.geometry))

@@ -52,6 +52,7 @@ KEYS: dict[str, tuple[str, str, Callable[[Session], None]]] = {
     "c": ("c", "next clip", _next_clip),
     "s": ("s", "stereo", _flip("stereo")),
     "f": ("f", "follow", _flip("follow")),
+    "l": ("l", "next level of detail", lambda session: session.next_level()),
     "r": ("r", "reset the view", _reframe),
     "t": ("t", "time the kernels", _flip("timed")),
 }
@@ -80,7 +81,7 @@ def _sources(session: Session) -> None:
     changed, chosen = imgui.combo("clip", names.index(session.clip.name), names)
     if changed:
         session.choose_clip(session.clips[chosen])
-    imgui.text_disabled(f"{session.splats:,} splats")
+    imgui.text_disabled(f"{session.splats:,} splats, {session.level}")
     for sentence in filter(None, (session.failure, *session.notes)):
         imgui.push_style_color(imgui.Col_.text, WARNING)
         imgui.text_wrapped(sentence)

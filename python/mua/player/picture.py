@@ -1,7 +1,7 @@
 """Pictures by the CPU reference, and what both ways of drawing share; needs no graphics device."""
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.camera import Camera
 from mua.decode import decode_clip_frame
+from mua.player.levels import Levels
 from mua.pose.clip import Clip
 from mua.rendering import render_premultiplied, to_bytes
 
@@ -16,13 +17,17 @@ from mua.rendering import render_premultiplied, to_bytes
 class Reference:
     """The splats of the same pictures by the CPU reference; each eye sees its own colours."""
 
-    def __init__(self, avatar: Avatar, clip: Clip) -> None:
-        """`clip` is at the rate of the avatar's encoding."""
-        self._decode = lru_cache(maxsize=1)(lambda index: decode_clip_frame(avatar, clip, frame=index))
+    def __init__(self, avatar: Avatar, clip: Clip, *, levels: Levels | None = None) -> None:
+        """`clip` is at the rate of the avatar's encoding; `levels` choose the level of detail, the finest if None."""
+        self._clip, self._levels = clip, levels
+        at_level = cache(avatar.at_level)
+        self._decode = lru_cache(maxsize=1)(lambda index, level: decode_clip_frame(at_level(level), clip, frame=index))
 
     def picture(self, index: int, cameras: Sequence[Camera]) -> Array:
         """As Offscreen.picture."""
-        return np.hstack([render_premultiplied(self._decode(index), camera) for camera in cameras])
+        pose = self._clip.rotations[index], self._clip.translations[index]
+        level = 0 if self._levels is None else self._levels.choose(*pose, cameras)
+        return np.hstack([render_premultiplied(self._decode(index, level), camera) for camera in cameras])
 
 
 def over(

@@ -15,6 +15,7 @@ from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
 from mua.player.frame import AvatarFrame
+from mua.player.levels import AUTO, Levels, Wanted
 from mua.player.motion import named_clip, player_clips, require_frame
 from mua.player.overlays import ground_height
 from mua.player.scene import CLEAR, Scene
@@ -39,6 +40,8 @@ class Stage:
         background = CLEAR if look.background is None else (*look.background, 1.0)
         self.scene = Scene(device, self.frame, color_format=color_format, background=background)
         self.rig, self.encoding, self.bounds = avatar.avatar.rig, avatar.avatar.encoding, avatar.avatar.bounds
+        self.levels = Levels(avatar.avatar, look.level)
+        self.notes += (self.levels.note,) if self.levels.note else ()
         self.focus = None if look.shot.look_at is None else find_focus(self.rig, look.shot.look_at)
         self._grounds: dict[str, float] = {}
 
@@ -95,13 +98,19 @@ class Session:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What retargeting has to tell."""
+        """What retargeting and the level of detail have to tell."""
         return self._stage.notes
 
     @property
     def splats(self) -> int:
         """How many this avatar has."""
         return self._stage.frame.splat_count
+
+    @property
+    def level(self) -> str:
+        """What chooses the level of detail, and how many texels along a side are shown."""
+        levels, shown = self._stage.levels, self._stage.frame.avatars[0].level.size
+        return f"{levels.wanted} level: {shown} texels" if isinstance(levels.wanted, str) else f"{shown} texels"
 
     @property
     def can_time(self) -> bool:
@@ -142,6 +151,16 @@ class Session:
             if self.view is not None:
                 self.view = replace(self.view, azimuth=self.view.azimuth + self.turning * seconds)
 
+    def choose_level(self, wanted: Wanted) -> None:
+        """Show this avatar at another level of detail: AUTO, FULL or one of its sizes."""
+        self._stage.levels.wanted = wanted
+
+    def next_level(self) -> None:
+        """The next coarser level of detail; after the coarsest, by the distance again."""
+        wanted: tuple[Wanted, ...] = (AUTO, *self._stage.levels.sizes)
+        now = self._stage.levels.wanted
+        self.choose_level(wanted[((wanted.index(now) if now in wanted else 1) + 1) % len(wanted)])
+
     def toggle(self, name: str) -> None:
         """Show or hide one of Toggles."""
         self.toggles = replace(self.toggles, **{name: not getattr(self.toggles, name)})
@@ -153,9 +172,10 @@ class Session:
         commands = self._device.commands(timed=self.timed and self.can_time)
         window = self._stage.encoding.frames(self.index)
         rotations, translations = self._clip.rotations[window], self._clip.translations[window]
-        shown = (self.file, self._clip.name, self.index)
+        level = 0 if self.toggles.geometry else self._stage.levels.choose(rotations[0], translations[0], cameras)
+        shown = (self.file, self._clip.name, self.index, level)
         if shown != self._drawn:
-            self._stage.frame.avatars[0].decode(commands, rotations, translations)
+            self._stage.frame.avatars[0].decode(commands, rotations, translations, level=level)
             self._stage.scene.pose(rotations[0], translations[0], ground=self._stage.ground(self._clip))
         self._stage.frame.sort(commands, cameras)
         commands.submit()

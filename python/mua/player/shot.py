@@ -9,6 +9,7 @@ from mua.camera import Camera, stereo
 from mua.errors import InputError
 from mua.motion.facing import front_of
 from mua.player.focus import find_focus
+from mua.player.levels import FULL, Wanted
 from mua.player.toggles import Toggles
 from mua.player.viewpoint import Viewpoint, framing
 from mua.pose.clip import Clip
@@ -44,6 +45,7 @@ class Look:
     shot: Shot
     toggles: Toggles
     background: Color | None  # None: transparent
+    level: Wanted = FULL  # of detail
 
 
 def film(shot: Shot, rig: Rig, clip: Clip) -> list[tuple[Camera, ...]]:
