@@ -162,6 +162,12 @@ def test_an_avatar_is_made_below_the_object_clicked_and_can_be_undone(story: Sto
     assert [thing[0] for thing in story("MakesObject")["object"]] == ["parent", "MUA Avatar"]
 
 
+def test_a_second_avatar_has_another_name_and_lies_in_the_stage_that_is_open(story: Story, sound: Path) -> None:
+    told = story("MakesTwins", sound)
+    assert [thing[0] for thing in told["object"]] == ["parent", "Walking Woman", "Walking Woman (1)", "Walking Woman"]
+    assert told["staged"] == [["Walking Woman"], ["Walking Woman"]]
+
+
 def test_an_avatar_is_dropped_into_the_scene(story: Story, sound: Path) -> None:
     told = story("Drops", sound)
     assert (told["hover"], told["other"], told["drop"]) == ([["Copy", "0"]], [["None"]], [["Copy"]])

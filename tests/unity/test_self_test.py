@@ -262,6 +262,13 @@ def test_a_bench_measures_every_frame(story: Story, streaming: Path) -> None:
     assert set(report["stages"][0]["gpu"]) == {2}
 
 
+def test_a_bench_whose_report_cannot_be_written_says_so_and_ends(story: Story) -> None:
+    ran = story("CannotWrite", *BENCH)
+    assert (ran.said["over"], ran.said["exit"]) == (["True"], ["0"])
+    [warned] = ran.said["Warning"]
+    assert "bench.json could not be written: " in warned
+
+
 def test_a_device_without_timings_leaves_them_out(story: Story, streaming: Path) -> None:
     story("Plays", *BENCH)
     report = json.loads((streaming / "bench.json").read_text())

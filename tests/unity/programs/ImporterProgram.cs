@@ -96,6 +96,16 @@ namespace Mua.Editor
             Tell();
         }
 
+        private static void MakesTwins()
+        {
+            Place(files);
+            var parent = new GameObject("parent");
+            Menu("GameObject/MUA Avatar", new MenuCommand(null));
+            Menu("GameObject/MUA Avatar", new MenuCommand(null));
+            Menu("GameObject/MUA Avatar", new MenuCommand(parent));
+            Tell();
+        }
+
         private static void Drops()
         {
             Place(files);
@@ -213,6 +223,7 @@ namespace Mua.Editor
             Say("selected", Selection.activeObject == null ? "" : Selection.activeObject.name);
             Dialogs.Shown.ForEach(message => Say("dialog", message));
             Undone.Created.ForEach(name => Say("undo", name));
+            Undone.Staged.ForEach(name => Say("staged", name));
             Scenes.Saved.ForEach(path => Say("saved", path));
         }
 

@@ -137,6 +137,12 @@ namespace Mua
             Plays();
         }
 
+        private static void CannotWrite()
+        {
+            Machine.Paths(streaming, streaming + "/nowhere");
+            Plays();
+        }
+
         private static void LooksDown()
         {
             Transform eye = new GameObject("eye").AddComponent<Camera>().transform;

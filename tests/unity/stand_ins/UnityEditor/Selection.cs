@@ -1,6 +1,9 @@
 // Stand-in. Source: Unity 6000.0 scripting reference, Selection, Undo, MenuCommand, GameObjectUtility, SceneAsset, SceneView.
+using System;
 using System.Collections.Generic;
+using System.Linq;
 using UnityEngine;
+using Object = UnityEngine.Object;
 
 namespace UnityEditor
 {
@@ -25,7 +28,16 @@ namespace UnityEditor
             child.transform.SetParent(parent.transform, false);
             child.transform.SetLocalPositionAndRotation(Vector3.zero, Quaternion.identity);
         }
-        public static void EnsureUniqueNameForSibling(GameObject self) { }
+        public static void EnsureUniqueNameForSibling(GameObject self)
+        {
+            string stem = self.name;
+            Transform parent = self.transform.parent;
+            Func<Transform, bool> isTwin = at => at.parent == parent && at.gameObject != self && at.name == self.name;
+#pragma warning disable 0618 // deprecated from 6000.4 on
+            for (int number = 1; Object.FindObjectsByType<Transform>(FindObjectsSortMode.None).Any(isTwin); number++)
+                self.name = stem + " (" + number + ")";
+#pragma warning restore 0618
+        }
     }
 
     public class SceneAsset : Object { }
@@ -39,5 +51,8 @@ namespace StandIns
     public static class Undone
     {
         public static readonly List<string> Created = new List<string>();
+
+        /// <summary>Objects that were placed in the stage that is open, the scene or a prefab.</summary>
+        public static readonly List<string> Staged = new List<string>();
     }
 }

@@ -94,6 +94,7 @@ namespace StandIns
     public static class Recorder
     {
         private static readonly Dictionary<int, GraphicsBuffer> Alive = new Dictionary<int, GraphicsBuffer>();
+        internal static readonly List<Material> Materials = new List<Material>();
         private static readonly Dictionary<int, string> Names = new Dictionary<int, string>();
         private static StreamWriter lines, paused;
         private static FileStream binary;
@@ -104,15 +105,22 @@ namespace StandIns
         public static int Renders { get; private set; }
         public static long UploadedBytes { get; private set; }
         public static bool IsOn { get { return lines != null; } }
-        public static int AliveCount { get { return Alive.Count; } }
 
-        /// <summary>Names of the buffers that nobody has disposed.</summary>
+        /// <summary>Buffers and materials that nobody has disposed and no change of scene takes away.</summary>
+        public static int AliveCount { get { return Alive.Count + AliveMaterials().Count; } }
+
+        /// <summary>Names of these.</summary>
         public static string AliveNames()
         {
-            List<string> names = new List<string>();
+            List<string> names = AliveMaterials().ConvertAll(material => material.name);
             foreach (int id in Alive.Keys)
                 names.Add(Names.ContainsKey(id) ? Names[id] : "unnamed");
             return string.Join(", ", names.ToArray());
+        }
+
+        private static List<Material> AliveMaterials()
+        {
+            return Materials.FindAll(material => material != null && (material.hideFlags & HideFlags.DontSave) != 0);
         }
 
         /// <summary>Write from here on to `path`.json and `path`.bin, until Stop.</summary>

@@ -36,6 +36,7 @@ namespace UnityEngine
                 throw new ArgumentNullException("shader");
             this.shader = shader;
             name = shader.name;
+            StandIns.Recorder.Materials.Add(this);
         }
 
         public Shader shader { get; set; }
