@@ -157,6 +157,25 @@ def test_a_fault_that_never_ends_is_stopped(tree: Path, never_ends: str, checkou
     assert checkout.pytest(["tests/test_code_.py"], seconds=60)[0] == ["tests/test_code_.py::test_it"]
 
 
+LATE = """
+from code_ import larger
+
+def test_it():
+    larger(2, 1)
+    raise TimeoutError
+"""
+
+
+def test_a_test_that_is_late_without_the_fault_too_has_not_caught_it(
+    tree: Path, tmp_path: Path, checkout: Checkout
+) -> None:
+    checkout.refresh(tree)
+    tests = record([checkout], tmp_path / "seen")
+    (checkout.root / "tests" / "test_code_.py").write_text(LATE)  # the machine is busy now
+    [found] = run(iter(mutants(tree / "python/code_.py", tree)[:1]), 1, [checkout], tests)
+    assert found.result == SURVIVED
+
+
 def test_only_cpu_time_counts_whatever_else_the_machine_does(tree: Path, checkout: Checkout) -> None:
     (tree / "tests" / "test_code_.py").write_text("import time\ndef test_it():\n    time.sleep(4)\n")
     checkout.refresh(tree)

@@ -19,12 +19,12 @@ import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
 from mutant_sites import Mutant, mutants
-from mutant_tests import Checkout, SeenTest, afforded, folder_of, record, seeing, spread
+from mutant_tests import BOUND, Checkout, SeenTest, afforded, folder_of, record, seeing, spread
 
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / "build" / "mutants"
@@ -39,6 +39,7 @@ LANGUAGES = {
     "csharp": ("unity-package/Runtime/**/*.cs", "unity-package/Editor/**/*.cs", "unity-package/Samples~/**/*.cs"),
 }
 NOT_COMPILED = re.compile(r"error CS\d{4}|: \w+ does not compile: |^ERROR: .*\d+:\d+: ", re.MULTILINE)
+WAITED = re.compile(r"\btimed out\b|\bTimeout", re.IGNORECASE)
 CAUGHT, TIMED_OUT, SURVIVED, EQUAL, UNCOMPILED = "caught", "timed out", "survived", "equivalent", "does not compile"
 
 
@@ -101,27 +102,34 @@ def tried(mutant: Mutant, checkout: Checkout, tests: list[SeenTest], caught: Cou
             return Outcome(mutant, UNCOMPILED, str(error))
     if not all_tests:
         return Outcome(mutant, SURVIVED, "no test sees it")
-    path.write_text(mutated, encoding="utf-8")
-    os.utime(path, (mutant.start + 1, mutant.start + 1))  # of its own, or Python might take the compiled former one
-    try:
-        return _judged(mutant, checkout, all_tests)
-    finally:
-        path.write_text(text, encoding="utf-8")
-        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+    outcome, waited = Outcome(mutant, SURVIVED, ""), True
+    while waited and all_tests:
+        path.write_text(mutated, encoding="utf-8")
+        os.utime(path, (mutant.start + 1, mutant.start + 1))  # of its own, or Python might take the compiled former one
+        try:
+            outcome, waited = _judged(mutant, checkout, all_tests)
+        finally:
+            path.write_text(text, encoding="utf-8")
+            os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+        if waited and checkout.pytest([outcome.by.split("::")[0]], [outcome.by], seconds=BOUND)[0] == []:
+            return outcome  # only with the fault
+        all_tests = [test for test in all_tests if test.name != outcome.by]
+    return replace(outcome, result=SURVIVED) if waited else outcome
 
 
-def _judged(mutant: Mutant, checkout: Checkout, tests: list[SeenTest]) -> Outcome:
+def _judged(mutant: Mutant, checkout: Checkout, tests: list[SeenTest]) -> tuple[Outcome, bool]:
+    """What comes of a fault, and whether a test failed that waited too long, as on a busy machine it may without it."""
     chosen, seconds = afforded(tests)
     files = dict.fromkeys(test.file for test in chosen)
     failed, printed = checkout.pytest(files, [test.name for test in chosen], seconds=60 + 4 * seconds)
     if failed is None:
-        return Outcome(mutant, TIMED_OUT, f"in {len(chosen)} tests")
+        return Outcome(mutant, TIMED_OUT, f"in {len(chosen)} tests"), False
     if not failed:
         left = f"; {len(tests) - len(chosen)} slower ones were not run" if len(chosen) < len(tests) else ""
-        return Outcome(mutant, SURVIVED, f"{len(chosen)} tests pass{left}")
+        return Outcome(mutant, SURVIVED, f"{len(chosen)} tests pass{left}"), False
     if not mutant.path.endswith(".py") and (error := NOT_COMPILED.search(printed)):
-        return Outcome(mutant, UNCOMPILED, printed[error.start() :].splitlines()[0])
-    return Outcome(mutant, CAUGHT, failed[0])
+        return Outcome(mutant, UNCOMPILED, printed[error.start() :].splitlines()[0]), False
+    return Outcome(mutant, CAUGHT, failed[0]), "::" in failed[0] and bool(WAITED.search(printed))
 
 
 def run(waiting: Iterator[Mutant], number: int, checkouts: list[Checkout], tests: list[SeenTest]) -> list[Outcome]:
