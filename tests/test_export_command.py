@@ -11,9 +11,9 @@ from splat_viewer import read_by_gaussforge, read_ply
 from synthetic_avatar import synthetic_avatar
 
 import mua
-from mua.cli import export_files
 from mua.cli.export_files import parse_numbers
 from mua.errors import InputError
+from mua.export import formats
 from mua.export.sequence import file_names, write_all
 
 FRAMES = 7  # of the synthetic avatar's clip
@@ -79,7 +79,7 @@ def test_a_sequence_that_fails_leaves_nothing_behind(
             raise InputError("no more")
         return b"x"
 
-    monkeypatch.setitem(export_files.SPLAT_FORMATS, ".ply", fail_at_the_third)
+    monkeypatch.setitem(formats.SPLAT_FORMATS, ".ply", fail_at_the_third)
     (tmp_path / "f_0.ply").write_bytes(b"old")
     ended = command("export", avatar_file, "-o", tmp_path / "f_%d.ply")
     assert ended.sentence == "error: no more"

@@ -116,9 +116,10 @@ def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) 
         assert image.size == (32, 32)
 
 
-@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"export", "inspect"}))
+@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect"}))
 def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, written: Path, avatar_file: Path) -> None:
     given = {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
+    given["export"] = (avatar_file, "-o", "a.glb")
     code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
     ended = run_bare(code, *given.get(name, (avatar_file,)))
     told = re.fullmatch(

@@ -50,7 +50,11 @@ def export(
         choice(AXES, "--axes", help="Upward axis of splats; by default what most viewers of the format expect."),
     ] = None,
 ) -> None:
-    """Export frames of FILE for other programs: splats as .ply, .compressed.ply or .spz."""
+    """Export frames of FILE for other programs.
+
+    Splats as .ply, .compressed.ply, .spz, .usd, or .glb (by KHR_gaussian_splatting, a draft); the posed mesh and the
+    skeleton with its motion as .glb or .usd; the detailed geometry likewise; motion as .bvh.
+    """
     require_file(file)
     if motion is not None:
         require_motion(motion)

@@ -1,9 +1,10 @@
 """The files that mua-export writes."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import typer
 from rich.console import Console
@@ -11,24 +12,17 @@ from rich.progress import track
 
 from mua.asset.read import read
 from mua.errors import InputError
-from mua.export.compressed_ply import compressed_ply_bytes
+from mua.export.formats import Y_DOWN, frame_content, held, write_clip
 from mua.export.frames import ExportFrames
 from mua.export.kinds import Kind, is_directory
-from mua.export.ply import ply_bytes
 from mua.export.sequence import file_names, write_all
-from mua.export.splats import HALF_TURN_Z, WorldSplats, turned, world_splats
-from mua.export.spz import spz_bytes
+from mua.files import replacing
 from mua.motion.mapping import read_mapping
 from mua.player.motion import named_clip, player_clips
 from mua.pose.clip import Clip
 
-Y_DOWN = (".ply", ".compressed.ply")  # which viewers take for Y down, as 3D Gaussian Splatting writes them
+T = TypeVar("T")
 NUMBERS = re.compile(r"(\d+)|(\d*):(\d*)(?::(?:0*([1-9]\d*))?)?")
-SPLAT_FORMATS: dict[str, Callable[[WorldSplats], bytes]] = {
-    ".ply": ply_bytes,
-    ".compressed.ply": compressed_ply_bytes,
-    ".spz": spz_bytes,
-}
 
 
 @dataclass(frozen=True)
@@ -47,11 +41,17 @@ def write(output: Path, kind: Kind, source: Source, *, frames: str | None, axes:
     Errors: InputError where the avatar cannot be read, holds no such clip or frame, or nothing can be written.
     """
     exported = _frames(output, kind, source, frames)
-    down = kind.suffix in Y_DOWN if axes is None else axes == "y-down"
-    paths = _paths(output, kind, exported.numbers)
-    contents = (_splat_file(exported, number, kind.suffix, down=down) for number in exported.numbers)
-    write_all(zip(paths, _with_progress(contents, output, len(paths)), strict=True))
-    typer.echo(_told(paths, f"{len(exported.avatar.rig.texels.texels):,} splats"))
+    if kind.clip:
+        paths = [output]
+        with replacing(output) as temporary:
+            posed = _with_progress(map(exported.splats, exported.numbers), output, len(exported.numbers))
+            write_clip(kind, temporary, exported, posed)
+    else:
+        paths = _paths(output, kind, exported.numbers)
+        down = kind.suffix in Y_DOWN if axes is None else axes == "y-down"
+        contents = (frame_content(kind, exported, number, down=down) for number in exported.numbers)
+        write_all(zip(paths, _with_progress(contents, output, len(paths)), strict=True))
+    typer.echo(_told(paths, held(kind, exported)))
 
 
 def parse_numbers(text: str, clip: Clip) -> range:
@@ -77,6 +77,8 @@ def _frames(output: Path, kind: Kind, source: Source, frames: str | None) -> Exp
     for note in notes:
         typer.echo(note, err=True)
     clip = named_clip(clips, source.clip, source=source.motion or source.file)
+    if kind.clip and "%" in output.name:
+        raise InputError(f"-o is {output}; a {kind.suffix} file of {kind.what} holds all frames, expected a plain name")
     many = kind.clip or is_directory(output) or "%" in output.name
     if frames is None:
         return ExportFrames(avatar, clip, range(len(clip) if many else 1))
@@ -99,22 +101,17 @@ def _paths(output: Path, kind: Kind, numbers: range) -> list[Path]:
     return [output]
 
 
-def _splat_file(exported: ExportFrames, number: int, suffix: str, *, down: bool) -> bytes:
-    splats = world_splats(exported.splats(number))
-    return SPLAT_FORMATS[suffix](turned(splats, HALF_TURN_Z) if down else splats)
-
-
-def _with_progress(contents: Iterator[bytes], output: Path, count: int) -> Iterator[bytes]:
-    """The same contents, with a bar in a terminal."""
+def _with_progress(contents: Iterator[T], output: Path, count: int) -> Iterator[T]:
+    """The same, with a bar in a terminal."""
     console = Console(stderr=True)
     hidden = count == 1 or not console.is_terminal
     return iter(track(contents, description=output.name, total=count, console=console, disable=hidden))
 
 
-def _told(paths: list[Path], held: str) -> str:
+def _told(paths: list[Path], content: str) -> str:
     """What was written, for the last line."""
     size = sum(path.stat().st_size for path in paths)
     shown = f"{size / 1e6:.1f} MB" if size >= 1e5 else f"{size / 1e3:.1f} KB"
     if len(paths) == 1:
-        return f"{paths[0]}: {held}, {shown}"
-    return f"{paths[0]} to {paths[-1].name}: {len(paths)} files of {held}, {shown}"
+        return f"{paths[0]}: {content}, {shown}"
+    return f"{paths[0]} to {paths[-1].name}: {len(paths)} files of {content}, {shown}"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from mua.errors import InputError
 
-SPLATS = "splats"
-WHATS = (SPLATS,)
+SPLATS, MESH, GEOMETRY, SKELETON = "splats", "mesh", "geometry", "skeleton"
+WHATS = (SPLATS, MESH, GEOMETRY, SKELETON)
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,17 @@ class Kind:
     clip: bool  # whether one file holds all frames
 
 
+USD = (".usd", ".usda", ".usdc")
 KINDS = (  # of one ending the default comes first
     Kind(".compressed.ply", SPLATS, clip=False),
     Kind(".ply", SPLATS, clip=False),
     Kind(".spz", SPLATS, clip=False),
+    Kind(".glb", MESH, clip=True),
+    Kind(".glb", SKELETON, clip=True),
+    Kind(".glb", GEOMETRY, clip=False),
+    Kind(".glb", SPLATS, clip=False),
+    *(Kind(suffix, what, clip=True) for suffix in USD for what in (MESH, SKELETON, GEOMETRY, SPLATS)),
+    Kind(".bvh", SKELETON, clip=True),
 )
 ENDINGS = tuple(dict.fromkeys(kind.suffix for kind in KINDS))
 IN_DIRECTORY = ".ply"  # where the output is a directory

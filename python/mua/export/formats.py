@@ -1,0 +1,76 @@
+"""From what is asked for to what a file holds; libraries are loaded for the formats that need them."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from mua.decode import Splats
+from mua.export.compressed_ply import compressed_ply_bytes
+from mua.export.frames import ExportFrames
+from mua.export.kinds import GEOMETRY, MESH, SPLATS, USD, Kind
+from mua.export.ply import ply_bytes
+from mua.export.splats import HALF_TURN_Z, WorldSplats, turned, world_splats
+from mua.export.spz import spz_bytes
+
+Y_DOWN = (".ply", ".compressed.ply")  # which viewers take for Y down, as 3D Gaussian Splatting writes them
+SPLAT_FORMATS: dict[str, Callable[[WorldSplats], bytes]] = {
+    ".ply": ply_bytes,
+    ".compressed.ply": compressed_ply_bytes,
+    ".spz": spz_bytes,
+}
+
+
+def frame_content(kind: Kind, frames: ExportFrames, number: int, *, down: bool) -> bytes:
+    """The content of the file of one frame; its splats with Y `down` or up."""
+    splats, name = frames.splats(number), f"{frames.avatar.name}_{number}"
+    if kind.what == GEOMETRY:
+        from mua.export.character_glb import geometry_glb
+        from mua.export.surface import detailed_mesh
+
+        return geometry_glb(splats, detailed_mesh(frames.avatar), name=name)
+    shown = world_splats(splats)
+    shown = turned(shown, HALF_TURN_Z) if down else shown
+    if kind.suffix == ".glb":
+        from mua.export.splat_glb import splat_glb
+
+        return splat_glb(shown, name=name)
+    return SPLAT_FORMATS[kind.suffix](shown)
+
+
+def write_clip(kind: Kind, path: Path, frames: ExportFrames, posed: Iterator[Splats]) -> None:
+    """Write the file of all frames; `posed` are their splats, which not every format looks at."""
+    if kind.suffix == ".bvh":
+        from mua.export.bvh import bvh_text
+
+        path.write_text(bvh_text(frames.avatar.rig.skeleton, frames.poses))
+    elif kind.suffix in USD:
+        _write_usd(kind, path, frames, posed)
+    else:
+        from mua.export.character_glb import character_glb
+        from mua.export.surface import skinned_mesh
+
+        mesh = skinned_mesh(frames.avatar, next(posed)) if kind.what == MESH else None
+        path.write_bytes(character_glb(frames, mesh))
+
+
+def _write_usd(kind: Kind, path: Path, frames: ExportFrames, posed: Iterator[Splats]) -> None:
+    from mua.export import usd
+    from mua.export.surface import detailed_mesh, skinned_mesh
+
+    if kind.what == GEOMETRY:
+        usd.write_geometry(path, frames, posed, detailed_mesh(frames.avatar))
+    elif kind.what == SPLATS:
+        usd.write_splats(path, frames, posed)
+    else:
+        usd.write_character(path, frames, skinned_mesh(frames.avatar, next(posed)) if kind.what == MESH else None)
+
+
+def held(kind: Kind, frames: ExportFrames) -> str:
+    """What a file holds, for people."""
+    rig = frames.avatar.rig
+    counts = {
+        SPLATS: f"{len(rig.texels.texels):,} splats",
+        GEOMETRY: f"detailed geometry of {len(rig.texels.texels):,} vertices",
+        MESH: f"mesh of {len(rig.mesh.faces):,} triangles, {len(rig.skeleton.names)} joints",
+    }
+    what = counts.get(kind.what, f"{len(rig.skeleton.names)} joints")
+    return f"{what}, {len(frames.numbers)} frames" if kind.clip else what
