@@ -1,4 +1,4 @@
-"""Runs one kernel's parity test against a copy of the shaders, first as it is, then once for every fault.
+"""Runs one kernel's parity tests against a copy of the shaders, first as it is, then once for every fault.
 
 MUA_SHADERS=<copy> python mutate.py <kernel>      prints a JSON object: `unmutated` and each fault, with what came of it
 """
@@ -67,7 +67,7 @@ def _outcome(kernel: str) -> str:
     except InputError as error:
         return str(error)
     first = FirstFailure()
-    arguments = ["-x", "-q", "--tb=short", "-p", "no:cacheprovider", str(HERE / f"test_{kernel}.py")]
+    arguments = ["-x", "-q", "--tb=short", "-p", "no:cacheprovider", *map(str, sorted(HERE.glob(f"test_{kernel}*.py")))]
     with contextlib.redirect_stdout(io.StringIO()) as printed:
         code = pytest.main(arguments, plugins=[first])
     if code == pytest.ExitCode.OK:

@@ -250,7 +250,7 @@ FAULTS = {
         Fault(
             "groups of the second pass not by what is left",
             "second_pass != 0 ? arguments[COUNT_WORD] : key_count",
-            "key_count",
+            "max(arguments[COUNT_WORD], key_count)",
         ),
         Fault(
             "off by one in the scan of the digits",

@@ -168,8 +168,8 @@ def test_covariance_is_the_squared_axes(count: int, dtype: type) -> None:
         assert np.all(np.abs(found - expected) <= bound)
 
 
-def blend_on(device: Device, joints: Array, indices: Array, weights: Array) -> Array:
-    """[V, 8] from BlendVertices."""
+def blend_on(device: Device, joints: Array, indices: Array, weights: Array, count: int | None = None) -> Array:
+    """[V, 8] from BlendVertices, of the first `count` vertices where it is given; the rest stays NaN."""
     vertices = len(indices)
     buffers = {
         "joints": joints.astype(np.float32),
@@ -178,7 +178,8 @@ def blend_on(device: Device, joints: Array, indices: Array, weights: Array) -> A
         "vertex_dq": np.full((vertices, 8), np.nan, np.float32),
     }
     groups = (-(-vertices // GROUP), 1, 1)
-    return run(device, FILE, "BlendVertices", groups, buffers, vertex_count=vertices)["vertex_dq"]
+    blended = vertices if count is None else count
+    return run(device, FILE, "BlendVertices", groups, buffers, vertex_count=blended)["vertex_dq"]
 
 
 @pytest.mark.parametrize("influences", [1, JOINTS, 8])
@@ -190,6 +191,13 @@ def test_hlsl_blends_vertices_as_the_reference(device: Device, count: int, influ
     found = blend_on(device, joints, indices, weights)
     expected = blend_vertices(joints.astype(float), indices, weights)
     np.testing.assert_allclose(found, expected, rtol=0, atol=BLEND_BOUND)
+
+
+def test_hlsl_leaves_what_lies_behind_the_last_vertex(device: Device) -> None:
+    rng = np.random.default_rng(5)
+    indices, weights = random_influences(rng, GROUP)
+    found = blend_on(device, random_joints(rng), indices, weights, count=GROUP - 3)
+    np.testing.assert_array_equal(np.isnan(found).all(axis=1), np.arange(GROUP) >= GROUP - 3)
 
 
 def test_hlsl_keeps_rotations_that_cancel_finite(device: Device) -> None:

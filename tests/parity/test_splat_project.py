@@ -297,15 +297,17 @@ def test_hlsl_sees_all_that_lies_before_the_camera(device: Device) -> None:
 
 
 def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device) -> None:
-    """Half turns, so that the sign of a vertex decides where the sum turns to."""
-    half_turn = np.array([[1, 0, 0, 0], [-0.6, 0.8, 0, 0], [-0.6, 0, 0.8, 0]], np.float32)
+    """Each vertex lies across from both others, so that the reference decides where the sum turns to."""
+    half_turn = np.array([[1, 0, 0, 0], [-0.6, 0.8, 0, 0], [-0.6, -0.64, 0.48, 0]], np.float32)
     vertex_dq = np.concatenate([half_turn, np.zeros((3, 4), np.float32)], axis=1)
     barycentrics = on_steps(np.array([[0.5, 0.5, 0], [0, 0.5, 0.5], [0.25, 0.25, 0.5], [0.375, 0.25, 0.375]]))
     texture = np.zeros((4, 23))
     texture[:, :3], texture[:, 7:10], texture[:, 10] = [0.1, 0.2, 0.3], -4, 3
     texels = Texels(vertex_dq, np.zeros((3, 3), np.float32), FACES[:1], np.zeros(4, int), barycentrics, held(texture))
     found = project_on(device, Scene(texels, (camera(),), BOX))
-    np.testing.assert_allclose(found.splats["centre"], texels.splats.centres, rtol=0, atol=CENTRE_BOUND / 0.8)
+    np.testing.assert_allclose(
+        found.splats["centre"], texels.splats.centres, rtol=0, atol=CENTRE_BOUND / 0.7
+    )  # the least norm of a sum
 
 
 def test_hlsl_reaches_the_corners_of_triangles(device: Device) -> None:
