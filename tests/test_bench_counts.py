@@ -39,10 +39,13 @@ def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
     output = tmp_path / "counts.json"
     ran = process("bench", avatar_file, "--counts", "--json", output)
     told = json.loads(output.read_text())
-    assert all(name in ran.out for name in (*told["kernels"], "peak frame", "2.2"))
+    assert all(name in ran.out for name in (*told["kernels"], "peak frame", "part 2", "2.2"))
     assert told["dispatches"] == {"decode": 30, "pose": 8, "rest": 7}
-    assert told["bytes"]["peak_frame"] == sum(kernel["bytes"] for kernel in told["kernels"].values())
-    assert told["bytes"]["pose"] + told["bytes"]["decode"] == told["bytes"]["peak_frame"]
+    parts = [part["bytes"] for part in told["parts"]]
+    assert told["bytes"]["peak_frame"] == told["bytes"]["pose"] + max(parts)
+    assert told["bytes"]["decode"] == sum(parts)
+    assert told["bytes"]["pose"] + sum(parts) == sum(kernel["bytes"] for kernel in told["kernels"].values())
+    assert [part["dispatches"] for part in told["parts"]] == [9, 13]
     assert told["triangles"]["2.2"] == 2 * told["splats"]
     assert 0 < told["fragments"]["2.2"] < told["fragments"]["1.0"] < told["fragments"]["0.6"]
     assert all(overdraw >= 1 for overdraw in told["overdraw"].values())

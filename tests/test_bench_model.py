@@ -25,9 +25,9 @@ INSTRUCTIONS = 84
 
 def counts(fragments: int = 4_000) -> Counts:
     """1 MB and 1 MFLOP to decode, 0.5 MB and 3 MFLOP to pose; 1,000 splats."""
-    decode = Part({"BlendLl": Work(1_000_000, 1_000_000)}, 22)
+    decode = tuple(Part({"BlendLl": Work(1_000 * kilo, 1_000 * kilo)}, 11) for kilo in (400, 600))
     pose = Part({**dict.fromkeys(POSING, Work(0, 0)), "SplatProject": Work(500_000, 3_000_000)}, 8)
-    return Counts("a", 1_000, (decode,), pose, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
+    return Counts("a", 1_000, decode, pose, 7, (Drawn(1.0, 2_000, fragments, 10.0),))
 
 
 def only(modelled: list[Modelled], avatars: int, eyes: int) -> Modelled:
@@ -38,10 +38,12 @@ def only(modelled: list[Modelled], avatars: int, eyes: int) -> Modelled:
 def test_a_frame_takes_what_its_counts_take_at_the_devices_rates() -> None:
     one = only(model(ROUND, counts(), INSTRUCTIONS), 1, 1).likely
     assert one.decode == pytest.approx(1.0)  # 1 MB at 1 GB/s; its operations at 2 GFLOPS take half as long
+    assert one.part == pytest.approx(0.6)  # the larger of two
     assert one.pose == pytest.approx(1.5)  # 3 MFLOP at 2 GFLOPS
     assert one.triangles == pytest.approx(2.0)  # 2,000, twice, at 2 for each of 1,000 clocks a millisecond
     assert one.fragments == pytest.approx(shaded(counts().drawn[0]) * 100 / 1e6)  # 84 and 16 at 1 instruction a ns
     assert one.plain == pytest.approx(1.5 + 2 + one.fragments + 1)
+    assert one.spread == pytest.approx(one.plain + 0.6)
     assert one.whole == pytest.approx(one.plain + 1)
     assert FIXED == 16
 
@@ -57,7 +59,7 @@ def test_avatars_and_eyes_add_up() -> None:
     assert both.decode == one.decode
     assert both.pose - one.pose == pytest.approx(1e3 * PROJECT_EYE * 1_000 / 2e9)
     assert (both.triangles, both.fragments) == pytest.approx((2 * one.triangles, 2 * one.fragments))
-    assert three.decode == pytest.approx(3 * one.decode)
+    assert (three.decode, three.part) == pytest.approx((3 * one.decode, 3 * one.part))
     assert (three.pose, three.fragments) == pytest.approx((3 * both.pose, 3 * both.fragments))
     assert three.rest == one.rest
 
@@ -83,7 +85,7 @@ def test_blocks_of_pixels_are_those_that_squares_touch() -> None:
 def test_more_work_takes_longer_and_ends_enclose_the_likely(name: str) -> None:
     few, many = (model(DEVICES[name], counts(n), INSTRUCTIONS) for n in (4_000, 8_000))
     for less, more in zip(few, many, strict=True):
-        assert less.likely.plain < more.likely.plain < more.likely.whole
+        assert less.likely.plain < more.likely.plain < more.likely.spread < more.likely.whole
         assert less.ends["best"].plain < less.likely.plain < less.ends["worst"].plain
     slower = replace(DEVICES[name], bandwidth=DEVICES[name].bandwidth / 1_000)
     assert only(model(slower, counts(), INSTRUCTIONS), 1, 1).likely.decode > only(few, 1, 1).likely.decode

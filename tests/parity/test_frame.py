@@ -37,16 +37,11 @@ LEAST_PSNR = 50.0  # dB of a picture against the CPU rasteriser's
 FEWER_THAN = 31  # dispatches in a frame
 OPACITY = 10  # channel
 
+BRANCH_ORDER = [*["MlpMatmul"] * 3, "BlendLl", *["BlendDetail", "InverseDwt"] * 2, "UpsampleTexels"]
+PARTS_ORDER = [BRANCH_ORDER, [*["MlpMatmul"] * 3, "MlpMatmulTransposed", *BRANCH_ORDER]]  # of a decode
 FRAME_ORDER = [
-    *["MlpMatmul"] * 3,
-    "MlpMatmulTransposed",
-    *[
-        *["MlpMatmul"] * 3,
-        "BlendLl",
-        *["BlendDetail", "InverseDwt"] * 2,
-        "UpsampleTexels",
-    ]
-    * 2,
+    *PARTS_ORDER[0],
+    *PARTS_ORDER[1],
     "BlendVertices",
     "SplatProject",
     *["CountDigits", "ScanDigits", "ScatterDigits"] * 2,

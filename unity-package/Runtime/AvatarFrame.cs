@@ -114,8 +114,8 @@ namespace Mua
         {
             WriteDescriptor(rotations, translations);
             WritePose(pose, offsets, place);
-            Coarse(commands);
             Branch(commands, Avatar.Geometry, 0);
+            Coarse(commands);
             Branch(commands, Avatar.Appearance, AppearanceRow);
             Pose(commands);
             IsDecoded = true;

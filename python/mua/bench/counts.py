@@ -57,8 +57,8 @@ class Counts:
 
     avatar: str
     splats: int
-    decode: tuple[Part, ...]  # from a window of poses to mesh and channels
-    pose: Part  # from these to sorted splats, in every frame that poses
+    decode: tuple[Part, ...]  # from a window of poses to mesh and channels, each in another displayed frame
+    pose: Part  # from these to sorted splats, in every displayed frame that poses
     rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
 
@@ -70,6 +70,11 @@ class Counts:
             for name, work in part.kernels.items():
                 spent[name] = spent.get(name, NOTHING) + work
         return spent
+
+    @property
+    def peak(self) -> Work:
+        """Of the displayed frame that moves most bytes."""
+        return self.pose.work + max((part.work for part in self.decode), key=lambda work: work.bytes)
 
     @property
     def whole(self) -> Part:
@@ -87,29 +92,29 @@ def count(device: Device, path: Path) -> Counts:
     clip = resample(avatar.clips[0], avatar.encoding.rate)
     frame = SplatFrame(device, [AvatarFrame(device, buffers)])
     views = [_draw(device, frame, clip, distance) for distance in DISTANCES]
-    bound, _, _ = views[0]
     share = max(visible for _, visible, _ in views) / frame.splat_count
-    posed, projected = (_first(bound, name) for name in ("BlendVertices", "SplatProject"))
+    posed = views[0][0]
     return Counts(
         avatar=avatar.name,
         splats=len(avatar.rig.texels.texels),
-        decode=(_part(bound[:posed], share),),
-        pose=_part(bound[posed:], share),
-        rest=len(bound) - projected,
+        decode=tuple(_part(bound, share) for bound in _decode_parts(device, frame.avatars[0], clip)),
+        pose=_part(posed, share),
+        rest=len(posed) - [each.kernel for each in posed].index("SplatProject"),
         drawn=tuple(drawn for _, _, drawn in views),
     )
 
 
 def as_json(counts: Counts) -> dict[str, Any]:
     """Numbers and names only; distances are metres."""
-    decode, pose = counts.whole.work, counts.pose.work
+    works = {"decode": counts.whole.work, "pose": counts.pose.work, "peak_frame": counts.peak}
     return {
         "avatar": counts.avatar,
         "splats": counts.splats,
         "screen_pixels": list(SCREEN),
         "focal_pixels": FOCAL,
-        "bytes": {"decode": decode.bytes, "pose": pose.bytes, "peak_frame": decode.bytes + pose.bytes},
-        "operations": {"decode": decode.flops, "pose": pose.flops, "peak_frame": decode.flops + pose.flops},
+        "bytes": {name: work.bytes for name, work in works.items()},
+        "operations": {name: work.flops for name, work in works.items()},
+        "parts": [{"bytes": part.work.bytes, "dispatches": part.dispatches} for part in counts.decode],
         "dispatches": {
             "decode": counts.whole.dispatches + counts.pose.dispatches,
             "pose": counts.pose.dispatches,
@@ -135,18 +140,28 @@ def _part(bound: Sequence[Bound], share: float) -> Part:
     return Part(by_kernel(bound, share=share), len(bound))
 
 
-def _first(bound: Sequence[Bound], kernel: str) -> int:
-    return [each.kernel for each in bound].index(kernel)
+def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip) -> list[tuple[Bound, ...]]:
+    """The dispatches of a decode by displayed frame."""
+    window = avatar.avatar.avatar.encoding.frames(0)
+    avatar.begin(clip.rotations[window], clip.translations[window])
+    parts = []
+    while avatar.parts_left > 0:
+        commands = device.commands()
+        avatar.advance(commands)
+        parts.append(commands.bound)
+    return parts
 
 
 def _draw(
     device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, distance: float
 ) -> tuple[tuple[Bound, ...], int, Drawn]:
-    """The dispatches of a frame that decodes all, how many splats it sorted, and what is drawn."""
+    """The dispatches of a frame that only poses, how many splats it sorted, and what is drawn."""
     (avatar,) = frame.avatars
     window = avatar.avatar.avatar.encoding.frames(0)
-    commands = device.commands()
-    avatar.decode(commands, clip.rotations[window], clip.translations[window])
+    decoding, commands = device.commands(), device.commands()
+    avatar.decode_channels(decoding, clip.rotations[window], clip.translations[window])
+    decoding.submit()
+    avatar.repose(commands, clip.rotations[0], clip.translations[0])
     skeleton = avatar.avatar.avatar.rig.skeleton
     camera = _camera(avatar.bounds, front_of(skeleton, clip.rotations[0], clip.translations[0]), distance)
     frame.sort(commands, [camera])

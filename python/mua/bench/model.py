@@ -5,7 +5,7 @@
     fragments   the longer of blending them and of their instructions over the rate; these run in blocks of 2 x 2
                 pixels, whole where a triangle touches one
 
-Stages follow one another, without gaps between dispatches. No avatar hides another.
+Stages follow one another, without gaps between dispatches. No avatar hides another; all decode in the same frames.
 """
 
 from collections.abc import Mapping
@@ -31,7 +31,8 @@ FIXED = 16  # instructions of a fragment for interpolation and blending, assumed
 class Stages:
     """Milliseconds of a displayed frame."""
 
-    decode: float  # only in frames that decode
+    decode: float  # of all parts
+    part: float  # of a decode: that which takes longest, in a displayed frame of its own
     pose: float  # to sorted splats
     triangles: float
     fragments: float
@@ -41,6 +42,11 @@ class Stages:
     def plain(self) -> float:
         """Of a frame that does not decode."""
         return self.pose + self.triangles + self.fragments + self.rest
+
+    @property
+    def spread(self) -> float:
+        """Of a frame that decodes one part."""
+        return self.part + self.plain
 
     @property
     def whole(self) -> float:
@@ -74,7 +80,7 @@ def model(device: ModelDevice, counts: Counts, instructions: int) -> list[Modell
 def _stages(
     device: ModelDevice, counts: Counts, seen: Drawn, avatars: int, eyes: int, instructions: int, end: str
 ) -> Stages:
-    decode, pose = counts.whole.kernels, dict(counts.pose.kernels)
+    parts, pose = [kernels_ms(device, part.kernels, end) for part in counts.decode], dict(counts.pose.kernels)
     project = pose["SplatProject"]
     pose["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * counts.splats)
     drawn = avatars * eyes
@@ -82,7 +88,8 @@ def _stages(
     computed = shaded(seen) * (instructions + FIXED) / (1e12 * device.peak / 2 * getattr(device.shading, end))
     blended = seen.fragments / (1e9 * device.clock * getattr(device.pixels, end))
     return Stages(
-        decode=avatars * kernels_ms(device, decode, end),
+        decode=avatars * sum(parts),
+        part=avatars * max(parts),
         pose=avatars * kernels_ms(device, pose, end),
         triangles=drawn * 1e3 * triangles,
         fragments=drawn * 1e3 * max(computed, blended),

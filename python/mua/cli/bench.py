@@ -96,6 +96,10 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
     for name, work in counted.kernels.items():
         table.add_row(name, f"{work.bytes / 1e6:.1f}", f"{work.flops / 1e6:.0f}", "")
     table.add_section()
+    for number, part in enumerate(counted.decode, 1):
+        moved, done = part.work.bytes / 1e6, part.work.flops / 1e6
+        table.add_row(f"decode, part {number}", f"{moved:.1f}", f"{done:.0f}", str(part.dispatches))
+    table.add_section()
     for name in ("decode", "pose", "peak_frame"):
         moved, done = figures["bytes"][name] / 1e6, figures["operations"][name] / 1e6
         table.add_row(name.replace("_", " "), f"{moved:.1f}", f"{done:.0f}", str(figures["dispatches"].get(name, "")))
@@ -103,8 +107,8 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
     views = Table("metres", "triangles", "fragments", "overdraw", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for seen in counted.drawn:
         views.add_row(str(seen.distance), f"{seen.triangles:,}", f"{seen.fragments:,}", f"{seen.overdraw:.1f}")
-    for part in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views):
-        printer().print(part)
+    for shown in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views):
+        printer().print(shown)
 
 
 def _model(device: "Device", path: Path, name: str, frames: int, output: Path | None) -> None:

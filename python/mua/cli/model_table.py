@@ -16,11 +16,13 @@ COLUMNS = (
     "eyes",
     "metres",
     "decode",
+    "part",
     "pose",
     "triangles",
     "fragments",
     "rest",
     "plain frame",
+    "spread frame",
     "decode frame",
 )
 
@@ -32,7 +34,7 @@ def model_table(modelled: list[Modelled]) -> Table:
         column.justify, column.no_wrap = "right", True
     for each in modelled:
         stages = (f"{milliseconds:.1f}" for milliseconds in asdict(each.likely).values())
-        frames = (_ranged(each, name) for name in ("plain", "whole"))
+        frames = (_ranged(each, name) for name in ("plain", "spread", "whole"))
         table.add_row(str(each.avatars), str(each.eyes), f"{each.distance:g}", *stages, *frames)
     return table
 
@@ -85,7 +87,7 @@ def model_json(
 
 
 def _milliseconds(stages: Stages) -> dict[str, float]:
-    return {**asdict(stages), "plain_frame": stages.plain, "decode_frame": stages.whole}
+    return {**asdict(stages), "plain_frame": stages.plain, "spread_frame": stages.spread, "decode_frame": stages.whole}
 
 
 def _ranged(each: Modelled, frame: str) -> str:

@@ -1,5 +1,6 @@
 """One frame of an avatar: the dispatches from a window of poses to channels and posed vertices.
 
+A decode is made at once, or part by part in several displayed frames beside the channels that are shown meanwhile.
 Kept a plain list in the order of the kernels, so that unity-package/Runtime/AvatarFrame.cs reads line for line like it.
 """
 
@@ -8,69 +9,69 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.gpu import Buffer, Commands, Device
-from mua.kernels.inverse_dwt import BATCH, ROWS
-from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, BranchLevel, LayerBuffers, RigPlaces
+from mua.player.buffers import AvatarBuffers, LevelBuffers, RigPlaces
+from mua.player.channels import FLOAT, PARTS, TEXEL_CHANNELS, ChannelDecoder, ChannelSet, groups
 from mua.pose.descriptor import describe_window
 
-FLOAT = 4  # bytes
-LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
-LL_TEXELS = 64  # of a group of BlendLl
-DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
-COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
-TEXEL_CHANNELS = 2 * ROWS * BATCH  # bytes
 SKINNED = 64  # vertices of a group of BlendVertices
 IN_PLACE = rotation.dual_from_rigid(np.array([1.0, 0, 0, 0]), np.zeros(3))  # where the clip puts it
 
 
 class AvatarFrame:
-    """The buffers between the kernels, sized once and reused by every frame."""
+    """The channels that are shown and, where a decode is spread, those that are made meanwhile."""
 
     def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
         """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
-        self.avatar, self.level = avatar, avatar.level(0)  # of the last decode
-        self.vertex_count = len(avatar.avatar.rig.mesh.vertices)
-        self.bounds = avatar.avatar.bounds  # [2, 3] world box of the last decode, metres
-        self._load_kernels(device)
-        self._create_buffers(device)
+        rig = avatar.avatar.rig
+        self.avatar = avatar
+        self.vertex_count = len(rig.mesh.vertices)
+        self.bounds = avatar.avatar.bounds  # [2, 3] world box of the last pose, metres
+        self.joints = device.buffer(FLOAT * 8 * len(rig.skeleton.names), name="joints")  # [J, 8]
+        self.vertex_dq = device.buffer(FLOAT * 8 * self.vertex_count, name="vertex_dq")  # [V, 8]
+        self._device, self._decoder = device, ChannelDecoder(device, avatar)
+        self._blend_vertices = device.kernel("dq_skinning.compute", "BlendVertices")
+        self._shown = self._create_channels()
+        self._hidden: ChannelSet | None = None  # made when a decode is first begun
+        self._decoded = PARTS  # parts of the decode into `_hidden`
+
+    @property
+    def level(self) -> LevelBuffers:
+        """Of the decode that is shown."""
+        return self._shown.level
 
     @property
     def rig(self) -> RigPlaces:
-        """Where the texels of the last decode lie on the mesh."""
+        """Where the texels that are shown lie on the mesh."""
         return self.level.places
 
     @property
     def splat_count(self) -> int:
-        """Of the last decode; the buffers hold the finest level."""
+        """Of the decode that is shown; the buffers hold the finest level."""
         return self.level.splat_count
 
-    def _load_kernels(self, device: Device) -> None:
-        self._mlp_matmul = device.kernel("mlp_matmul.compute", "MlpMatmul")
-        self._mlp_matmul_transposed = device.kernel("mlp_matmul.compute", "MlpMatmulTransposed")
-        self._blend_ll = device.kernel("blend_subbands.compute", "BlendLl")
-        self._blend_detail = device.kernel("blend_subbands.compute", "BlendDetail")
-        self._inverse_dwt = device.kernel("inverse_dwt.compute", "InverseDwt")
-        self._upsample_texels = device.kernel("inverse_dwt.compute", "UpsampleTexels")
-        self._blend_vertices = device.kernel("dq_skinning.compute", "BlendVertices")
+    @property
+    def mesh(self) -> Buffer:
+        """[V, 3] canonical vertices of the decode that is shown, metres."""
+        return self._shown.mesh
 
-    def _create_buffers(self, device: Device) -> None:
-        avatar, buffer = self.avatar.avatar, device.buffer
-        splats, vertices, joints = self.splat_count, self.vertex_count, len(avatar.rig.skeleton.names)
-        branches = (self.avatar.geometry, self.avatar.appearance)
-        layers = [*self.avatar.coarse_mlp, *(layer for branch in branches for layer in branch.mlp)]
-        activations = FLOAT * max(layer.outputs for layer in layers)
-        low = avatar.rig.texels.size >> avatar.wavelet.levels
-        texture = FLOAT * max(b.channels * (low << len(b.details)) ** 2 for b in branches)
-        details = [3 * b.channels * d.size**2 for b in branches for d in b.details]
-        self.descriptor = buffer(FLOAT * avatar.encoding.width, name="descriptor")
-        self.activations = tuple(buffer(activations, name=f"activations {i}") for i in range(2))
-        self.mesh = buffer(FLOAT * 3 * vertices, name="mesh")  # [V, 3] canonical vertices
-        self.details = buffer(FLOAT * max(details, default=0), name="details")
-        self.textures = tuple(
-            buffer(texture >> 2 * i, name=f"texture {i}") for i in range(2)
-        )  # finest with details, its ll
-        self.texel_channels = buffer(TEXEL_CHANNELS * splats, name="texel_channels")  # [6, N, 4] halves
-        self.joints = buffer(FLOAT * 8 * joints, name="joints")  # [J, 8]
-        self.vertex_dq = buffer(FLOAT * 8 * vertices, name="vertex_dq")  # [V, 8]
+    @property
+    def texel_channels(self) -> Buffer:
+        """[6, N, 4] halves of the decode that is shown."""
+        return self._shown.texel_channels
+
+    @property
+    def parts_left(self) -> int:
+        """Of the decode that was begun and is not shown."""
+        return PARTS - self._decoded
+
+    def _create_channels(self) -> ChannelSet:
+        buffer = self._device.buffer
+        return ChannelSet(
+            level=self.avatar.level(0),
+            descriptor=buffer(FLOAT * self.avatar.avatar.encoding.width, name="descriptor"),
+            mesh=buffer(FLOAT * 3 * self.vertex_count, name="mesh"),
+            texel_channels=buffer(TEXEL_CHANNELS * self.avatar.level(0).splat_count, name="texel_channels"),
+        )
 
     def decode(
         self,
@@ -80,148 +81,64 @@ class AvatarFrame:
         place: Array = IN_PLACE,  # [8] rigid dual quaternion from the avatar's space to the world, metres
         level: int = 0,  # of detail, 0 being the finest
     ) -> None:
-        """Append the dispatches from a window of poses to channels and posed vertices.
+        """Append the dispatches from a window of poses to channels and posed vertices, which are shown from then on.
 
         What depends on the pose alone is written to the device at once: submit before the next decode.
         """
-        self.level = self.avatar.level(level)
+        self.decode_channels(commands, rotations, translations, level)
+        self.repose(commands, rotations[0], translations[0], place)
+
+    def decode_channels(self, commands: Commands, rotations: Array, translations: Array, level: int = 0) -> None:
+        """The same without posing: all parts of a decode."""
+        self._begin(self._shown, rotations, translations, level)
+        for part in range(PARTS):
+            self._decoder.part(commands, self._shown, part)
+
+    def begin(self, rotations: Array, translations: Array, level: int = 0) -> None:
+        """Take the window of a decode that is made part by part beside what is shown, in place of one begun before.
+
+        Errors: InputError where the device cannot hold a second set of channels.
+        """
+        self._hidden = self._hidden or self._create_channels()
+        self._begin(self._hidden, rotations, translations, level)
+        self._decoded = 0
+
+    def advance(self, commands: Commands) -> None:
+        """Append the next part of the decode that was begun."""
+        assert self._hidden is not None
+        self._decoder.part(commands, self._hidden, self._decoded)
+        self._decoded += 1
+
+    def show(self) -> None:
+        """Show the decode that was begun, all of whose parts have been appended."""
+        assert self._hidden is not None
+        self._shown, self._hidden = self._hidden, self._shown
+
+    def repose(
+        self,
+        commands: Commands,
+        rotations: Array,  # [J, 4]
+        translations: Array,  # [J, 3] metres
+        place: Array = IN_PLACE,  # [8]
+    ) -> None:
+        """Append what moves the decoded avatar into another pose."""
         self._write_pose(rotations, translations, place)
-        self._coarse(commands)
-        self._branch(commands, self.avatar.geometry, self.level.geometry, first_row=0)
-        self._branch(commands, self.avatar.appearance, self.level.appearance, first_row=ROWS // 2)
         self._pose(commands)
 
-    def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
+    def _begin(self, channels: ChannelSet, rotations: Array, translations: Array, level: int) -> None:
+        channels.level = self.avatar.level(level)
         avatar = self.avatar.avatar
-        skeleton, normalization = avatar.rig.skeleton, avatar.normalization
-        descriptor = describe_window(skeleton, avatar.encoding, rotations, translations)
-        self.descriptor.write(((descriptor - normalization.mean) / normalization.scale).astype(np.float32))
-        joints = rotation.dual_multiply(place, skeleton.skinning(rotations[0], translations[0]))
+        descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
+        normalization = avatar.normalization
+        channels.descriptor.write(((descriptor - normalization.mean) / normalization.scale).astype(np.float32))
+
+    def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
+        avatar, skeleton = self.avatar.avatar, self.avatar.avatar.rig.skeleton
+        joints = rotation.dual_multiply(place, skeleton.skinning(rotations, translations))
         self.joints.write(joints.astype(np.float32))
-        root = skeleton.world(rotations[0], translations[0])[1][skeleton.root]
+        root = skeleton.world(rotations, translations)[1][skeleton.root]
         corners = rotation.dual_transform(place, np.stack(np.meshgrid(*(avatar.bounds + root).T), axis=-1))
         self.bounds = np.stack([corners.min(axis=(0, 1, 2)), corners.max(axis=(0, 1, 2))])
-
-    def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...]) -> Buffer:
-        """What the MLP makes of the descriptor; good until the next MLP."""
-        x = self.descriptor
-        for i, layer in enumerate(mlp):
-            y = self.activations[i % 2]
-            commands.dispatch(
-                self._mlp_matmul,
-                (groups(layer.outputs, LAYER_ROWS), 1, 1),
-                {"weight": layer.weight.words, "bias": layer.bias.words, "x": x, "y": y},
-                weight_layout=layer.weight.layout,
-                bias_layout=layer.bias.layout,
-                inputs=layer.inputs,
-                outputs=layer.outputs,
-                relu=int(layer is not mlp[-1]),
-            )
-            x = y
-        return x
-
-    def _coarse(self, commands: Commands) -> None:
-        basis = self.avatar.mesh
-        coefficients = self._mlp(commands, self.avatar.coarse_mlp)
-        commands.dispatch(
-            self._mlp_matmul_transposed,
-            (groups(basis.outputs, MESH_COLUMNS), 1, 1),
-            {"weight": basis.weight.words, "bias": basis.bias.words, "x": coefficients, "y": self.mesh},
-            weight_layout=basis.weight.layout,
-            bias_layout=basis.bias.layout,
-            inputs=basis.inputs,
-            outputs=basis.outputs,
-            relu=0,
-        )
-
-    def _branch(self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, *, first_row: int) -> None:
-        """Coefficients, LL, level by level as long as there are details; then the valid texels to `texel_channels`."""
-        alpha = self._mlp(commands, branch.mlp)
-        levels = len(branch.details)
-        size = self.avatar.avatar.rig.texels.size >> self.avatar.avatar.wavelet.levels
-        self._blend_low(commands, branch, alpha, size, self.textures[levels % 2])
-        offset = branch.channels * branch.rank
-        for level, band in enumerate(branch.details):
-            ll, fine = self.textures[(levels - level) % 2], self.textures[(levels - level - 1) % 2]
-            self._blend_band(commands, branch, band, alpha, offset, size)
-            self._synthesise(commands, branch, ll, fine, size)
-            offset += branch.channels * band.rank
-            size *= 2
-        self._upsample(commands, branch, shown, size, first_row)
-
-    def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
-        commands.dispatch(
-            self._blend_ll,
-            (groups(size * size, LL_TEXELS), branch.channels, 1),
-            {"mean": branch.ll_mean.words, "basis": branch.ll_basis.words, "alpha": alpha, "blended": blended},
-            mean_layout=branch.ll_mean.layout,
-            basis_layout=branch.ll_basis.layout,
-            channels=branch.channels,
-            rank=branch.rank,
-            size=size,
-            alpha_offset=0,
-        )
-
-    def _blend_band(
-        self, commands: Commands, branch: BranchBuffers, band: BandBuffers, alpha: Buffer, alpha_offset: int, size: int
-    ) -> None:
-        tiles = groups(size, DETAIL_TILE)
-        commands.dispatch(
-            self._blend_detail,
-            (tiles, tiles, 3 * branch.channels),
-            {"mean": band.mean.words, "h": band.h.words, "w": band.w.words, "alpha": alpha, "blended": self.details},
-            mean_layout=band.mean.layout,
-            h_layout=band.h.layout,
-            w_layout=band.w.layout,
-            channels=branch.channels,
-            rank=band.rank,
-            size=size,
-            alpha_offset=alpha_offset,
-        )
-
-    def _synthesise(self, commands: Commands, branch: BranchBuffers, ll: Buffer, fine: Buffer, size: int) -> None:
-        """One level, from planes of `size` to twice that."""
-        tiles = groups(size, COARSE_TILE)
-        commands.dispatch(
-            self._inverse_dwt,
-            (tiles, tiles, branch.channels),
-            {
-                "ll": ll,
-                "details": self.details,
-                "rec_lo": self.avatar.rec_lo,
-                "rec_hi": self.avatar.rec_hi,
-                "fine": fine,
-            },
-            channels=branch.channels,
-            size=size,
-            taps=len(self.avatar.avatar.wavelet.rec_lo),
-        )
-
-    def _upsample(
-        self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, size: int, first_row: int
-    ) -> None:
-        """All levels without details, from planes of `size`, and the static offset, at the valid texels."""
-        upsampling = shown.upsampling
-        commands.dispatch(
-            self._upsample_texels,
-            (self.level.tile_count, 1, groups(branch.channels, BATCH)),
-            {
-                "ll": self.textures[0],
-                "upsampling": upsampling.taps,
-                "tiles": self.level.tiles,
-                "tile_rows": self.level.tile_rows,
-                "static_offset": shown.static_offset.words,
-                "texel_channels": self.texel_channels,
-            },
-            static_offset_layout=shown.static_offset.layout,
-            channels=branch.channels,
-            size=size,
-            factor=upsampling.factor,
-            reach=upsampling.reach,
-            delay=upsampling.delay,
-            texel_count=self.splat_count,
-            first_row=first_row,
-        )
 
     def _pose(self, commands: Commands) -> None:
         commands.dispatch(
@@ -235,8 +152,3 @@ class AvatarFrame:
             },
             vertex_count=self.vertex_count,
         )
-
-
-def groups(count: int, size: int) -> int:
-    """Groups of `size` that hold `count`."""
-    return -(-count // size)

@@ -1,7 +1,7 @@
 """What is shown beside the splats: detailed geometry, template, skeleton, cast shadow (paper, section System)."""
 
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -10,11 +10,12 @@ import numpy as np
 import wgpu
 
 from mua.arrays import Array
-from mua.asset.avatar import Avatar
 from mua.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
 from mua.player.draw import view_projection
+from mua.player.frame import AvatarFrame
+from mua.player.splats import SplatFrame
 from mua.player.surface import surface_mesh
 from mua.pose.clip import Clip
 from mua.rig.bounds import frame_boxes, margin
@@ -36,25 +37,17 @@ BELOW_GROUND = 0.1  # of these that may reach below it: captured feet stray, and
 MARGIN = 0.06  # of its size round the shadow, so that its soft edge is not cut off
 
 
-@dataclass(frozen=True)
-class PosedBuffers:
-    """What the overlays read of a frame."""
-
-    splats: Buffer  # uint4 [2 M] of all avatars
-    vertex_dq: Buffer  # float4 [2 V]
-    mesh: Buffer  # float [3 V] canonical
-    first_splat: int = 0  # of the avatar
-
-
 _Indices = tuple[wgpu.GPUBuffer, int]  # triangles' corners, and how many of these
 
 
 class Overlays:
     """Draws around the splats of one avatar."""
 
-    def __init__(self, device: Device, avatar: Avatar, posed: PosedBuffers, *, color: str, depth: str) -> None:
-        """`color` and `depth` are the formats of the target."""
-        self._device, self._avatar, self._posed = device, avatar, posed
+    def __init__(self, device: Device, frame: SplatFrame[AvatarFrame], *, color: str, depth: str) -> None:
+        """`frame` is of this avatar alone; `color` and `depth` are the formats of the target."""
+        self._device, self._frame = device, frame
+        (self._posed,) = frame.avatars
+        self._avatar = avatar = self._posed.avatar.avatar
         self._make_skeleton()
         self._template = _indices(device, avatar.rig.mesh.faces)
         self._mask = device.buffer(MASK_SIZE * MASK_SIZE, name="mask")
@@ -130,8 +123,8 @@ class Overlays:
     def draw_geometry(self, render_pass: wgpu.GPURenderPassEncoder, camera: Camera) -> None:
         """Draw the texel grid as a lit mesh."""
         rings, indices = self._surface
-        buffers = {"splats": self._posed.splats, **rings}
-        constants = {**_lit(camera, GEOMETRY_COLOR), "first_splat": self._posed.first_splat}
+        buffers = {"splats": self._frame.splats, **rings}
+        constants = {**_lit(camera, GEOMETRY_COLOR), "first_splat": self._frame.first_splats[0]}
         self._draw_surface.bind(render_pass, buffers, **constants)
         _draw_indexed(render_pass, indices)
 

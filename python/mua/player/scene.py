@@ -10,7 +10,7 @@ from mua.gpu import Device
 from mua.gpu.failure import naming
 from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye
 from mua.player.frame import AvatarFrame
-from mua.player.overlays import Overlays, PosedBuffers
+from mua.player.overlays import Overlays
 from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
 
@@ -33,9 +33,7 @@ class Scene:
         self.color_format = color_format
         self._splats = frame.sorted
         self._renderer = SplatRenderer(device, color_format, depth_format=DEPTH_FORMAT)
-        (avatar,) = frame.avatars
-        posed = PosedBuffers(frame.splats, avatar.vertex_dq, avatar.mesh, first_splat=frame.first_splats[0])
-        self._overlays = Overlays(device, avatar.avatar.avatar, posed, color=color_format, depth=DEPTH_FORMAT)
+        self._overlays = Overlays(device, frame, color=color_format, depth=DEPTH_FORMAT)
         self._depth: wgpu.GPUTexture | None = None
 
     def pose(

@@ -10,7 +10,7 @@ import wgpu
 from mua.arrays import Array
 from mua.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
-from mua.gpu import Device
+from mua.gpu import Commands, Device
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.focus import find_focus
@@ -19,6 +19,7 @@ from mua.player.levels import AUTO, Levels, Wanted
 from mua.player.motion import named_clip, player_clips, require_frame
 from mua.player.overlays import ground_height
 from mua.player.scene import CLEAR, Scene
+from mua.player.schedule import DecodeSchedule, Moment
 from mua.player.shot import GROUND, Look, eyes_of
 from mua.player.source import Source
 from mua.player.splats import SplatFrame
@@ -37,6 +38,7 @@ class Stage:
         avatar = AvatarBuffers(device, file)
         self.clips, self.notes = player_clips(avatar.avatar, file, motion=source.motion, mapping=source.mapping)
         self.frame = SplatFrame(device, [AvatarFrame(device, avatar)])
+        self.schedule = DecodeSchedule(self.frame.avatars[0])
         background = CLEAR if look.background is None else (*look.background, 1.0)
         self.scene = Scene(device, self.frame, color_format=color_format, background=background)
         self.rig, self.encoding, self.bounds = avatar.avatar.rig, avatar.avatar.encoding, avatar.avatar.bounds
@@ -78,7 +80,7 @@ class Session:
         self._clip = named_clip(self._stage.clips, source.clip, source=source.motion or self.file)
         if source.frame is not None:
             self.step(require_frame(self._clip, source.frame))
-        self._drawn: tuple[object, ...] = ()  # what the frame holds: avatar, clip, index
+        self._step = 0.0  # frames of the clip from one picture to the next, as it plays
         self.view: Viewpoint | None = None  # framed by the first draw
 
     @property
@@ -146,8 +148,9 @@ class Session:
 
     def advance(self, seconds: float) -> None:
         """Play on for so long, round and round."""
+        self._step = seconds * self.speed * self._clip.rate
         if self.playing:
-            self.time = (self.time + seconds * self.speed * self._clip.rate) % len(self._clip)
+            self.time = (self.time + self._step) % len(self._clip)
             if self.view is not None:
                 self.view = replace(self.view, azimuth=self.view.azimuth + self.turning * seconds)
 
@@ -170,19 +173,33 @@ class Session:
         width, height, _ = target.size
         cameras = self._cameras((max(width // 2, 1) if self.stereo else width, height))
         commands = self._device.commands(timed=self.timed and self.can_time)
-        window = self._stage.encoding.frames(self.index)
-        rotations, translations = self._clip.rotations[window], self._clip.translations[window]
-        level = 0 if self.toggles.geometry else self._stage.levels.choose(rotations[0], translations[0], cameras)
-        shown = (self.file, self._clip.name, self.index, level)
-        if shown != self._drawn:
-            self._stage.frame.avatars[0].decode(commands, rotations, translations, level=level)
-            self._stage.scene.pose(rotations[0], translations[0], ground=self._stage.ground(self._clip))
+        self._pose(commands, cameras)
         self._stage.frame.sort(commands, cameras)
         commands.submit()
-        self._drawn = shown
         self._stage.scene.draw(target, cameras, self.toggles)
         if self.timed and self.can_time:
             self._note(commands.milliseconds())
+
+    def _pose(self, commands: Commands, cameras: Sequence[Camera]) -> None:
+        """Append what brings the avatar to the frame that is due, and a part of decoding the one after it."""
+        stage, clip, index = self._stage, self._clip, self.index
+        rotations, translations = clip.rotations[index], clip.translations[index]
+        level = 0 if self.toggles.geometry else stage.levels.choose(rotations, translations, cameras)
+        due, following = (clip.name, index), (clip.name, self._following())
+        if stage.schedule.record(commands, due, following, self._window, level=level):
+            stage.frame.avatars[0].repose(commands, rotations, translations)
+            stage.scene.pose(rotations, translations, ground=stage.ground(clip))
+
+    def _following(self) -> int:
+        """The frame to decode ahead; this one where the clip rests or skips frames, or what is shown must be exact."""
+        exact = self.timed or self.toggles.geometry
+        if exact or not self.playing or not 0 < self._step < 1:
+            return self.index
+        return (self.index + 1) % len(self._clip)
+
+    def _window(self, moment: Moment) -> tuple[Array, Array]:
+        window = self._stage.encoding.frames(moment[1])
+        return self._clip.rotations[window], self._clip.translations[window]
 
     def _load(self, file: Path) -> Stage:
         if file not in self._stages:

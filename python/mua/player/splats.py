@@ -15,8 +15,8 @@ from mua.errors import InputError
 from mua.gpu import Buffer, Commands, Device
 from mua.kernels.splat_project import SPLAT_WORDS
 from mua.player.buffers import RigPlaces
+from mua.player.channels import FLOAT, groups
 from mua.player.draw import SortedSplats
-from mua.player.frame import FLOAT, groups
 from mua.rig.bounds import union
 
 EYES = 2  # at most
@@ -36,9 +36,13 @@ class Posed(Protocol):
     @property
     def splat_count(self) -> int: ...  # at most that of its first frame
 
-    mesh: Buffer  # [V, 3] canonical vertices
+    @property
+    def mesh(self) -> Buffer: ...  # [V, 3] canonical vertices
+
+    @property
+    def texel_channels(self) -> Buffer: ...  # [6, N, 4] halves
+
     vertex_dq: Buffer  # [V, 8]
-    texel_channels: Buffer  # [6, N, 4] halves
     bounds: Array  # [2, 3] world box, metres
 
 

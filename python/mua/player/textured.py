@@ -6,7 +6,8 @@ from mua.arrays import Array
 from mua.gpu import Commands, Device
 from mua.kernels.inverse_dwt import pack_channels
 from mua.player.buffers import upload_rig
-from mua.player.frame import FLOAT, SKINNED, TEXEL_CHANNELS, groups
+from mua.player.channels import FLOAT, TEXEL_CHANNELS, groups
+from mua.player.frame import SKINNED
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.rig.bounds import frame_boxes

@@ -1,0 +1,201 @@
+"""From a window of poses to channels: the dispatches of a decode, in parts that displayed frames can share.
+
+Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelDecoder.cs.
+"""
+
+from dataclasses import dataclass
+
+from mua.gpu import Buffer, Commands, Device
+from mua.kernels.inverse_dwt import BATCH, ROWS
+from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, BranchLevel, LayerBuffers, LevelBuffers
+
+FLOAT = 4  # bytes
+TEXEL_CHANNELS = 2 * ROWS * BATCH  # bytes
+LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
+LL_TEXELS = 64  # of a group of BlendLl
+DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
+COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
+PARTS = 2  # of a decode, that move about as many bytes: geometry; mesh and appearance
+
+
+@dataclass
+class ChannelSet:
+    """What a decode makes, the window of poses that it is made from, and the level of detail at which."""
+
+    level: LevelBuffers
+    descriptor: Buffer
+    mesh: Buffer  # [V, 3] canonical vertices
+    texel_channels: Buffer  # [6, N, 4] halves; holds the finest level
+
+
+class ChannelDecoder:
+    """The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another."""
+
+    def __init__(self, device: Device, avatar: AvatarBuffers) -> None:
+        """Errors: InputError where an intermediate buffer is more than the device can bind or hold."""
+        self.avatar = avatar
+        self._load_kernels(device)
+        self._create_buffers(device)
+
+    def _load_kernels(self, device: Device) -> None:
+        self._mlp_matmul = device.kernel("mlp_matmul.compute", "MlpMatmul")
+        self._mlp_matmul_transposed = device.kernel("mlp_matmul.compute", "MlpMatmulTransposed")
+        self._blend_ll = device.kernel("blend_subbands.compute", "BlendLl")
+        self._blend_detail = device.kernel("blend_subbands.compute", "BlendDetail")
+        self._inverse_dwt = device.kernel("inverse_dwt.compute", "InverseDwt")
+        self._upsample_texels = device.kernel("inverse_dwt.compute", "UpsampleTexels")
+
+    def _create_buffers(self, device: Device) -> None:
+        avatar, branches = self.avatar.avatar, (self.avatar.geometry, self.avatar.appearance)
+        layers = [*self.avatar.coarse_mlp, *(layer for branch in branches for layer in branch.mlp)]
+        activations = FLOAT * max(layer.outputs for layer in layers)
+        low = avatar.rig.texels.size >> avatar.wavelet.levels
+        texture = FLOAT * max(b.channels * (low << len(b.details)) ** 2 for b in branches)
+        details = [3 * b.channels * d.size**2 for b in branches for d in b.details]
+        self.activations = tuple(device.buffer(activations, name=f"activations {i}") for i in range(2))
+        self.details = device.buffer(FLOAT * max(details, default=0), name="details")
+        self.textures = tuple(
+            device.buffer(texture >> 2 * i, name=f"texture {i}") for i in range(2)
+        )  # finest with details, its ll
+
+    def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
+        """Append one of PARTS, from the descriptor of `channels` to what it makes of it."""
+        if part == 0:
+            self._branch(commands, self.avatar.geometry, channels.level.geometry, channels, first_row=0)
+        else:
+            self._coarse(commands, channels)
+            self._branch(commands, self.avatar.appearance, channels.level.appearance, channels, first_row=ROWS // 2)
+
+    def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], descriptor: Buffer) -> Buffer:
+        """What the MLP makes of the descriptor; good until the next MLP."""
+        x = descriptor
+        for i, layer in enumerate(mlp):
+            y = self.activations[i % 2]
+            commands.dispatch(
+                self._mlp_matmul,
+                (groups(layer.outputs, LAYER_ROWS), 1, 1),
+                {"weight": layer.weight.words, "bias": layer.bias.words, "x": x, "y": y},
+                weight_layout=layer.weight.layout,
+                bias_layout=layer.bias.layout,
+                inputs=layer.inputs,
+                outputs=layer.outputs,
+                relu=int(layer is not mlp[-1]),
+            )
+            x = y
+        return x
+
+    def _coarse(self, commands: Commands, channels: ChannelSet) -> None:
+        basis = self.avatar.mesh
+        coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.descriptor)
+        commands.dispatch(
+            self._mlp_matmul_transposed,
+            (groups(basis.outputs, MESH_COLUMNS), 1, 1),
+            {"weight": basis.weight.words, "bias": basis.bias.words, "x": coefficients, "y": channels.mesh},
+            weight_layout=basis.weight.layout,
+            bias_layout=basis.bias.layout,
+            inputs=basis.inputs,
+            outputs=basis.outputs,
+            relu=0,
+        )
+
+    def _branch(
+        self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, channels: ChannelSet, *, first_row: int
+    ) -> None:
+        """Coefficients, LL, level by level as long as there are details; then the valid texels to `channels`."""
+        alpha = self._mlp(commands, branch.mlp, channels.descriptor)
+        levels = len(branch.details)
+        size = self.avatar.avatar.rig.texels.size >> self.avatar.avatar.wavelet.levels
+        self._blend_low(commands, branch, alpha, size, self.textures[levels % 2])
+        offset = branch.channels * branch.rank
+        for level, band in enumerate(branch.details):
+            ll, fine = self.textures[(levels - level) % 2], self.textures[(levels - level - 1) % 2]
+            self._blend_band(commands, branch, band, alpha, offset, size)
+            self._synthesise(commands, branch, ll, fine, size)
+            offset += branch.channels * band.rank
+            size *= 2
+        self._upsample(commands, branch, shown, channels, size, first_row)
+
+    def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
+        commands.dispatch(
+            self._blend_ll,
+            (groups(size * size, LL_TEXELS), branch.channels, 1),
+            {"mean": branch.ll_mean.words, "basis": branch.ll_basis.words, "alpha": alpha, "blended": blended},
+            mean_layout=branch.ll_mean.layout,
+            basis_layout=branch.ll_basis.layout,
+            channels=branch.channels,
+            rank=branch.rank,
+            size=size,
+            alpha_offset=0,
+        )
+
+    def _blend_band(
+        self, commands: Commands, branch: BranchBuffers, band: BandBuffers, alpha: Buffer, alpha_offset: int, size: int
+    ) -> None:
+        tiles = groups(size, DETAIL_TILE)
+        commands.dispatch(
+            self._blend_detail,
+            (tiles, tiles, 3 * branch.channels),
+            {"mean": band.mean.words, "h": band.h.words, "w": band.w.words, "alpha": alpha, "blended": self.details},
+            mean_layout=band.mean.layout,
+            h_layout=band.h.layout,
+            w_layout=band.w.layout,
+            channels=branch.channels,
+            rank=band.rank,
+            size=size,
+            alpha_offset=alpha_offset,
+        )
+
+    def _synthesise(self, commands: Commands, branch: BranchBuffers, ll: Buffer, fine: Buffer, size: int) -> None:
+        """One level, from planes of `size` to twice that."""
+        tiles = groups(size, COARSE_TILE)
+        commands.dispatch(
+            self._inverse_dwt,
+            (tiles, tiles, branch.channels),
+            {
+                "ll": ll,
+                "details": self.details,
+                "rec_lo": self.avatar.rec_lo,
+                "rec_hi": self.avatar.rec_hi,
+                "fine": fine,
+            },
+            channels=branch.channels,
+            size=size,
+            taps=len(self.avatar.avatar.wavelet.rec_lo),
+        )
+
+    def _upsample(
+        self,
+        commands: Commands,
+        branch: BranchBuffers,
+        shown: BranchLevel,
+        channels: ChannelSet,
+        size: int,
+        first_row: int,
+    ) -> None:
+        """All levels without details, from planes of `size`, and the static offset, at the valid texels."""
+        level, upsampling = channels.level, shown.upsampling
+        commands.dispatch(
+            self._upsample_texels,
+            (level.tile_count, 1, groups(branch.channels, BATCH)),
+            {
+                "ll": self.textures[0],
+                "upsampling": upsampling.taps,
+                "tiles": level.tiles,
+                "tile_rows": level.tile_rows,
+                "static_offset": shown.static_offset.words,
+                "texel_channels": channels.texel_channels,
+            },
+            static_offset_layout=shown.static_offset.layout,
+            channels=branch.channels,
+            size=size,
+            factor=upsampling.factor,
+            reach=upsampling.reach,
+            delay=upsampling.delay,
+            texel_count=level.splat_count,
+            first_row=first_row,
+        )
+
+
+def groups(count: int, size: int) -> int:
+    """Groups of `size` that hold `count`."""
+    return -(-count // size)
