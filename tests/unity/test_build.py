@@ -151,6 +151,12 @@ def test_ends_the_editor_with_the_outcome(program: ProjectProgram) -> None:
     assert said(told).startswith("MUA-BUILD FAIL the command line has no -muaOutput PATH")
 
 
+@pytest.mark.parametrize(("name", "output"), [("Quest", "a.apk"), ("PC Link", "Player")])
+def test_each_command_builds_for_its_platform(program: ProjectProgram, tmp_path: Path, name: str, output: str) -> None:
+    told = program.tell("RunsWithoutModule", name, "-muaOutput", tmp_path / output)
+    assert said(told).startswith(f"MUA-BUILD FAIL This editor cannot build for {name}: ")
+
+
 def test_the_sample_has_what_the_build_looks_for() -> None:
     source = (PACKAGE / "Editor" / "PlayerSample.cs").read_text()
     name, kind, method = (

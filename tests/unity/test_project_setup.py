@@ -10,7 +10,51 @@ from test_compiles import assemblies
 XR = "com.unity.xr.management com.unity.xr.openxr"
 URP = "com.unity.render-pipelines.universal"
 PLATFORMS = {"Quest": "Android", "PcLink": "Standalone"}
-COUNT = {"Quest": 31, "PcLink": 11}  # settings of each platform in a project with URP and OpenXR
+BOTH = {  # in a project with URP and OpenXR, whose every setting was another
+    "Player > Color space": "Linear",
+    "Player > Auto graphics API for {}": "off",
+    "Graphics > Render pipeline": "UniversalRenderPipelineAsset",
+    "Graphics > Compatibility mode": "off",
+    "XR > Loader for {}": "UnityEngine.XR.OpenXR.OpenXRLoader",
+    "XR > Initialize XR on startup for {}": "on",
+    "OpenXR > Render mode for {}": "SinglePassInstanced",
+    "OpenXR > com.unity.openxr.feature.input.oculustouch for {}": "on",
+    "OpenXR > com.unity.openxr.feature.input.metaquestplus for {}": "on",
+}
+AUTO = "Player > Auto graphics API for Standalone"
+MADE = {
+    "Quest": {
+        **{name.format("Android"): value for name, value in BOTH.items()},
+        "Player > Scripting backend": "IL2CPP",
+        "Player > IL2CPP code generation": "OptimizeSpeed",
+        "Player > Managed stripping level": "Low",
+        "Player > Package name": "com.mua.player",
+        "Player > Target architectures": "ARM64",
+        "Player > Minimum API level": "AndroidApiLevel32",
+        "Player > Target API level": "AndroidApiLevel34",
+        "Player > Application entry point": "GameActivity",
+        "Player > Default orientation": "LandscapeLeft",
+        "Player > Graphics APIs for Android": "Vulkan",
+        "Player > Multithreaded rendering": "on",
+        "Player > Apply display rotation during rendering": "off",
+        "Player > Texture compression formats": "ASTC",
+        "Build > Texture compression": "ASTC",
+        "Pipeline > HDR": "off",
+        "Pipeline > MSAA": "1",
+        "Pipeline > Opaque texture": "off",
+        "Pipeline > Depth texture": "off",
+        "OpenXR > com.unity.openxr.feature.metaquest for Android": "on",
+        # the edges of the view are drawn coarser: what the player asks of the display does nothing before both are set
+        "OpenXR > com.unity.openxr.feature.foveatedrendering for Android": "on",
+        "OpenXR > Foveated rendering API for Android": "SRPFoveation",
+        "OpenXR > Late latching for Android": "off",
+    },
+    "PcLink": {
+        **{name.format("Standalone").replace(AUTO, f"{AUTO}Windows64"): value for name, value in BOTH.items()},
+        "Player > Graphics APIs for StandaloneWindows64": "Direct3D11, Direct3D12",
+        "Player > Run in background": "on",
+    },
+}
 SAVED = {  # kinds of what set-up changes, as the editor keeps only what is marked
     "Quest": "Feature MetaQuestFeature OpenXRSettings UniversalRenderPipelineAsset XRGeneralSettings",
     "PcLink": "Feature OpenXRSettings XRGeneralSettings",
@@ -27,7 +71,7 @@ def program(csharp: CSharp) -> ProjectProgram:
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_a_new_project_is_made_right_once(program: ProjectProgram, platform: str) -> None:
     told = program.tell("SetsUp", platform)
-    assert len(told["log"]) == COUNT[platform]
+    assert len(told["log"]) == len(MADE[platform])
     assert all(map(CHANGE.fullmatch, told["log"]))
     assert all(map(FAULT.fullmatch, told["before"]))
     assert "after" not in told
@@ -38,35 +82,17 @@ def test_a_new_project_is_made_right_once(program: ProjectProgram, platform: str
     assert "again" not in told
 
 
-def test_quest_gets_what_the_headset_needs(program: ProjectProgram) -> None:
-    changes = [CHANGE.fullmatch(line) for line in program.tell("SetsUp", "Quest")["log"]]
-    made = {change[1]: change[3] for change in changes if change}
-    assert made["Player > Graphics APIs for Android"] == "Vulkan"
-    assert made["Player > Scripting backend"] == "IL2CPP"
-    assert made["Player > Target architectures"] == "ARM64"
-    assert made["Player > Minimum API level"] == "AndroidApiLevel32"
-    assert made["Player > Target API level"] == "AndroidApiLevel34"
-    assert made["Player > Application entry point"] == "GameActivity"
-    assert made["Player > Package name"] == "com.mua.player"
-    assert made["XR > Loader for Android"] == "UnityEngine.XR.OpenXR.OpenXRLoader"
-    assert made["OpenXR > Render mode for Android"] == "SinglePassInstanced"
-    assert made["OpenXR > com.unity.openxr.feature.metaquest for Android"] == "on"
-    assert made["OpenXR > Late latching for Android"] == "off"
-    assert made["Pipeline > MSAA"] == "1"
-
-
-def test_a_quest_draws_the_edges_of_the_view_coarser(program: ProjectProgram) -> None:
-    """What the player asks of the display does nothing before both are set."""
-    changes = [CHANGE.fullmatch(line) for line in program.tell("SetsUp", "Quest")["log"]]
-    made = {change[1]: change[3] for change in changes if change}
-    assert made["OpenXR > com.unity.openxr.feature.foveatedrendering for Android"] == "on"
-    assert made["OpenXR > Foveated rendering API for Android"] == "SRPFoveation"
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_each_platform_gets_what_it_needs(program: ProjectProgram, platform: str) -> None:
+    changes = [CHANGE.fullmatch(line) for line in program.tell("SetsUp", platform)["log"]]
+    assert {change[1]: change[3] for change in changes if change} == MADE[platform]
 
 
 def test_the_built_in_pipeline_keeps_the_one_way_that_it_knows(program: ProjectProgram) -> None:
     told = program.tell("KeepsBuiltIn")
     assert "after" not in told
     assert told["api"] == ["Legacy"]
+    assert "Log MUA set Quality > Anti-aliasing: 4 -> 0" in told["log"]  # the most that any quality level has
 
 
 def test_an_openxr_that_fails_builds_is_too_old() -> None:

@@ -196,6 +196,12 @@ namespace Mua.Editor
             Exits(Build.Quest);
         }
 
+        private static void RunsWithoutModule(string[] arguments)
+        {
+            StandIns.Builds.Modules.Clear();
+            Exits(arguments[0] == "Quest" ? (Action)Build.Quest : Build.PcLink);
+        }
+
         private static BuildSummary Answer(string what, BuildPlayerOptions options)
         {
             Say("scenes", string.Join(" ", options.scenes));

@@ -6,7 +6,7 @@ namespace UnityEngine
 {
     public static class QualitySettings
     {
-        private static readonly int[] samples = { 0, 4 };
+        private static readonly int[] samples = { 0, 4, 0 };
         private static readonly RenderPipelineAsset[] pipelines = new RenderPipelineAsset[samples.Length];
         private static int level = 1;
 
