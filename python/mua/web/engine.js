@@ -16,6 +16,7 @@ import { world } from "./skeleton.js";
 /** @typedef {{avatar: Avatar, handle: AvatarHandle, slot: import("./renderer.js").Slot, grounds: Map<string, number>}} Entry */
 
 const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
+const AWAY = "The graphics device is away; try again in a moment.";
 const LONGEST_STEP = 0.25; // seconds by which one picture may move the time: a hidden tab does not catch up
 
 export class Engine {
@@ -73,6 +74,7 @@ export class Engine {
       const renderer = await this.opened();
       for (const entry of this.entries) entry.slot = await renderer.add(entry.avatar);
       this.renderer = renderer;
+      this.drawNow();
     } catch (error) {
       this.stop();
       this.tell(asAvatarError(error, "The graphics device was lost and did not come back"));
@@ -90,9 +92,11 @@ export class Engine {
     /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {} } = {},
   ) {
     const avatar = await load(source, onProgress);
-    if (!this.renderer || this.disposed) throw new AvatarError("The graphics device is away; try again in a moment.");
+    const { renderer } = this;
+    if (!renderer) throw new AvatarError(AWAY);
     onProgress(0.95, "Uploading the avatar");
-    const slot = await this.renderer.add(avatar);
+    const slot = await renderer.add(avatar);
+    if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
     const entry = { avatar, slot, grounds: new Map(), handle: this.handleOf(avatar) };
     this.entries.push(entry);
     if (this.entries.length === 1) this.frameAll();
@@ -216,7 +220,7 @@ export class Engine {
   }
 
   async screenshot() {
-    if (!this.renderer) throw new AvatarError("The graphics device is away; try again in a moment.");
+    if (!this.renderer) throw new AvatarError(AWAY);
     return this.renderer.picture(this.posed(), this);
   }
 

@@ -16,6 +16,7 @@ export function scientific(/** @type {number} */ value) {
 
 /** The shortest digits that give the same number again: Python's repr. */
 export function shortest(/** @type {number} */ value) {
+  if (!Number.isFinite(value)) return String(value).replace("Infinity", "inf").toLowerCase();
   const size = Math.abs(value);
   if (size && (size < 1e-4 || size >= 1e16)) {
     const [mantissa, exponent] = value.toExponential().split("e");

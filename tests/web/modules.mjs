@@ -1,0 +1,74 @@
+// What the browser player's modules that need no graphics device make of files, for tests: modules.mjs WHAT FILE...
+//   answers        a line for each file: ok, or code, field and sentence as JSON
+//   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
+//   numbers        half floats, and numbers as sentences have them
+
+import { readFileSync } from "node:fs";
+import { frameBox } from "../../python/mua/web/bounds.js";
+import { cameraOf, framing } from "../../python/mua/web/camera.js";
+import { framesAt, sample, window } from "../../python/mua/web/clip.js";
+import { describe } from "../../python/mua/web/descriptor.js";
+import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
+import { read } from "../../python/mua/web/format/read.js";
+import { expanded, half } from "../../python/mua/web/format/tensors.js";
+import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
+import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
+import { skinning, world } from "../../python/mua/web/skeleton.js";
+import { surfaceMesh } from "../../python/mua/web/surface.js";
+
+const [what, ...given] = process.argv.slice(2);
+const say = (value) => process.stdout.write(`${JSON.stringify(value)}\n`);
+const list = (values) => Array.from(values);
+
+function bytes(file) {
+  const content = readFileSync(file);
+  return content.buffer.slice(content.byteOffset, content.byteOffset + content.length);
+}
+
+function answer(content) {
+  try {
+    read(content);
+    return ["ok"];
+  } catch (error) {
+    if (error.name !== "AvatarError") throw error;
+    return [error.code, error.field, error.message];
+  }
+}
+
+function values(avatar, frames) {
+  const { skeleton, encoding, clips, texels, wavelet, geometry, surface } = avatar;
+  const { rate } = encoding;
+  const posed = frames.map((frame) => sample(skeleton, clips[0], frame, rate));
+  return {
+    frames: framesAt(clips[0], rate),
+    rotations: posed.map((pose) => list(pose.rotations)),
+    translations: posed.map((pose) => list(pose.translations)),
+    descriptors: frames.map((frame) => list(describe(skeleton, encoding, window(skeleton, clips[0], frame, encoding)))),
+    joints: posed.map((pose) => list(skinning(skeleton, world(skeleton, pose)))),
+    boxes: posed.map((pose) => frameBox(avatar, pose)),
+    ground: groundHeight(avatar, clips[0]),
+    shadow: shadowArea(list(avatar.bounds), -0.25),
+    texels: list(texelWords(texels)),
+    tiles: list(texelTiles(texels).tiles),
+    rows: list(texelTiles(texels).rows),
+    upsampling: [0, 1, 2, 3].map((levels) => upsamplingTaps(wavelet.recLo, levels)),
+    staticOffset: list(expanded(geometry.staticOffset)),
+    surface: surface && Object.values(surfaceMesh(texels, surface)).map(list),
+  };
+}
+
+function views(box) {
+  const state = { azimuth: 0.4, elevation: 0.2, fov: 0.6 };
+  const { target, distance } = framing(box, state, [96, 128]);
+  return { target, distance, ...cameraOf({ ...state, target, distance }, [96, 128]) };
+}
+
+if (what === "answers") for (const file of given) say(answer(bytes(file)));
+if (what === "truncated") {
+  const content = bytes(given[0]);
+  for (let length = 0; length < content.byteLength; length += Number(given[1])) say(answer(content.slice(0, length)));
+}
+if (what === "values") say(values(read(bytes(given[0])), given.slice(1).map(Number)));
+if (what === "views") say(views(given.map(Number)));
+if (what === "halves") say(Array.from({ length: 0x7c00 }, (_, bits) => half(bits)));
+if (what === "numbers") say(given.map(Number).map((n) => [...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]), shortest(n)]));

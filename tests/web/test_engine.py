@@ -1,0 +1,251 @@
+"""The engine in a browser: pictures beside the desktop player's, memory, a lost device, files that are wrong."""
+
+import base64
+import io
+import json
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from synthetic_avatar import synthetic_avatar, with_surface
+from web.browser import Browser, Page, Serve
+
+from mua.arrays import Array
+from mua.asset.read import read
+from mua.asset.write import encode
+from mua.camera import Camera
+from mua.gpu import Device
+from mua.player.buffers import AvatarBuffers
+from mua.player.offscreen import Offscreen
+from mua.player.picture import over
+from mua.player.toggles import Toggles
+from mua.player.viewpoint import Viewpoint
+from mua.pose.resample import resample
+from mua.share.site import player_files
+
+DEMO = Path(__file__).parents[2] / "build" / "demo" / "avatar.muaavatar"
+SCREEN = (240, 320)
+LEAST_PSNR = 45.0  # dB beside the desktop player's picture, both of 8 bits
+LOADS = 50
+GREY = (0.5, 0.5, 0.5)
+PAGE = f"<!doctype html><body><canvas width={SCREEN[0]} height={SCREEN[1]}></canvas>".encode()
+START = """(async () => {
+  const { createPlayer } = await import("./player.js");
+  globalThis.player = await createPlayer(document.querySelector("canvas"));
+  player.playing = false;
+  globalThis.faults = [];
+  player.onerror = (error) => faults.push(error.message);
+})()"""
+# A device whose loss a test can bring about.
+LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
+  globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
+  return new Promise((resolve) => { this.told = resolve; });
+} });"""
+Open = Callable[..., Page]
+
+
+@pytest.fixture
+def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
+    """A page with a player, and files beside it by name; at its end nothing is left in its console."""
+    pages: list[Page] = []
+
+    def open_page(*, before: str = "", **files: bytes) -> Page:
+        named = {f"{name}.muaavatar": content for name, content in files.items()}
+        page = browser.page(serve({**player_files(), **named, "index.html": PAGE}), before=before)
+        pages.append(page)
+        page.evaluate(START)
+        return page
+
+    yield open_page
+    for page in pages:
+        told = page.told
+        assert [line for line in told["console"] if "404" not in line] == []
+        assert told["errors"] == []
+        page.close()
+
+
+def load(page: Page, source: str = '"a.muaavatar"') -> str:
+    """Load an avatar; the sentence that says why not, or nothing."""
+    return str(
+        page.evaluate(f'player.load({source}).then((a) => {{ globalThis.avatar = a; return ""; }}, (e) => e.message)')
+    )
+
+
+def screenshot(page: Page) -> Array:
+    """The picture over grey, [H, W, 3] of 0 to 1."""
+    straight = transparent(page)
+    return np.asarray(straight[..., :3] * straight[..., 3:] + (1 - straight[..., 3:]) * GREY)
+
+
+def transparent(page: Page) -> Array:
+    """The picture, [H, W, 4] of 0 to 1."""
+    code = """player.screenshot().then((blob) => new Promise((resolve) => {
+      const reader = new FileReader();
+      reader.onload = () => resolve(reader.result);
+      reader.readAsDataURL(blob);
+    }))"""
+    content = base64.b64decode(page.evaluate(code).split(",")[1])
+    return np.asarray(Image.open(io.BytesIO(content)).convert("RGBA")) / 255
+
+
+def psnr(image: Array, exact: Array) -> float:
+    return float(-10 * np.log10(np.maximum(np.mean((image - exact) ** 2), 1e-12)))
+
+
+def desktop(device: Device, file: Path, page: Page, frame: int, toggles: Toggles) -> Array:
+    """The desktop player's picture from where the page's camera is."""
+    buffers = AvatarBuffers(device, file)
+    clip = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
+    image = Offscreen(device, buffers, clip, toggles).picture(frame, [camera_of(page)])
+    return over(image, GREY) / 255
+
+
+def camera_of(page: Page) -> Camera:
+    at = json.loads(page.evaluate("JSON.stringify(player.camera)"))
+    return Viewpoint(np.array(at["target"]), at["distance"], at["azimuth"], at["elevation"]).camera(SCREEN)
+
+
+def show(page: Page, toggles: Toggles, frame: int, rate: float) -> None:
+    names = {"splats": "splats", "geometry": "geometry", "template": "mesh", "skeleton": "skeleton", "shadow": "shadow"}
+    shown = {web: getattr(toggles, name) for name, web in names.items()}
+    page.evaluate(f"Object.assign(player.show, {json.dumps(shown)})")
+    page.evaluate(f"player.time = {frame / rate}")
+
+
+SHOWN = {
+    "splats": Toggles(),
+    "shadow": Toggles(shadow=True),
+    "geometry": Toggles(splats=False, geometry=True),
+    "all": Toggles(geometry=True, template=True, skeleton=True, shadow=True),
+}
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("small") / "a.muaavatar"
+    path.write_bytes(encode(with_surface(synthetic_avatar()), storage="i8"))
+    return path
+
+
+def test_pictures_are_those_of_the_desktop(opened: Open, device: Device, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    page.evaluate("Object.assign(player.camera, { azimuth: 0.7, elevation: 0.3 })")
+    found = {}
+    for name, toggles in SHOWN.items():
+        show(page, toggles, 3, read(small).encoding.rate)
+        found[name] = psnr(screenshot(page), desktop(device, small, page, 3, toggles))
+    assert min(found.values()) > LEAST_PSNR, found
+
+
+def test_the_demo_looks_as_on_the_desktop(opened: Open, device: Device) -> None:
+    if not DEMO.is_file():
+        pytest.skip(f"needs {DEMO}: make demo")
+    page = opened(a=DEMO.read_bytes())
+    assert load(page) == ""
+    show(page, Toggles(shadow=True), 9, read(DEMO).encoding.rate)
+    assert psnr(screenshot(page), desktop(device, DEMO, page, 9, Toggles(shadow=True))) > LEAST_PSNR
+
+
+def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:
+    page, avatar = opened(a=small.read_bytes()), read(small)
+    assert load(page) == ""
+    told = json.loads(page.evaluate("JSON.stringify({ ...avatar, clip: player.clip })"))
+    frames, rate = len(avatar.clips[0]), avatar.encoding.rate
+    clips = [{"name": avatar.clips[0].name, "frames": frames, "seconds": frames / rate}]
+    assert (told["name"], told["clips"], told["clip"]) == (avatar.name, clips, avatar.clips[0].name)
+    assert told["splats"] == len(avatar.rig.texels.texels)
+
+
+def test_time_goes_round_within_the_clip(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    seconds = page.evaluate("player.clips[0].seconds")
+    assert page.evaluate(f"(player.time = {1.25 * seconds}, player.time)") == pytest.approx(0.25 * seconds)
+    assert page.evaluate(f"(player.time = {-0.25 * seconds}, player.time)") == pytest.approx(0.75 * seconds)
+
+
+def test_playing_moves_the_time_and_the_picture(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    page.evaluate("(player.playing = true, player.speed = 0.5, player.start())")
+    page.wait("player.time > 0.02")
+    page.evaluate("player.stop()")
+    stood = page.evaluate("player.time")
+    assert page.evaluate("new Promise((resolve) => setTimeout(() => resolve(player.time), 100))") == stood
+
+
+def test_two_avatars_stand_where_they_are_placed(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    assert load(page) == ""
+    show(page, Toggles(), 0, 24.0)
+    page.evaluate("(avatar.place = [3, 0, 0], player.frameAll())")
+    alone = page.evaluate("player.camera.target[0]")
+    covered, half = transparent(page)[..., 3] > 0.2, SCREEN[0] // 2
+    assert covered[:, :half].any()
+    assert covered[:, half:].any()
+    page.evaluate("(avatar.remove(), player.frameAll())")
+    assert page.evaluate("player.camera.target[0]") == pytest.approx(alone - 1.5)
+
+
+def test_fifty_loads_leave_no_memory_behind(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    empty = page.evaluate("player.bytes")
+    held = set()
+    for _ in range(LOADS):
+        assert load(page) == ""
+        held.add(page.evaluate("player.bytes"))
+        page.evaluate("(avatar.remove(), avatar.remove())")
+    assert len(held) == 1
+    assert page.evaluate("player.bytes") == empty < min(held)
+
+
+def test_a_lost_device_comes_back_with_its_avatars(opened: Open, small: Path) -> None:
+    page = opened(before=LOSABLE, a=small.read_bytes())
+    assert load(page) == ""
+    before = screenshot(page)
+    page.evaluate("new Promise((resolve) => setTimeout(resolve, 2100))")  # a device lost at once is given up
+    page.evaluate('lose("unknown")')
+    page.wait("player.bytes > 0")
+    np.testing.assert_array_equal(screenshot(page), before)
+    assert page.evaluate("faults") == []
+
+
+def test_a_device_that_is_lost_again_at_once_is_given_up_in_a_sentence(opened: Open, small: Path) -> None:
+    page = opened(before=LOSABLE, a=small.read_bytes())
+    page.evaluate('lose("unknown")')
+    page.wait("faults.length > 0")
+    assert page.evaluate("faults") == ["The graphics device was lost twice at once; reload the page to try again."]
+    assert load(page) == "The graphics device is away; try again in a moment."
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ('"none.muaavatar"', "none.muaavatar cannot be fetched: the server answers 404 Not Found."),
+        ('"http://127.0.0.1:9/a.muaavatar"', "a.muaavatar cannot be fetched: the server is out of reach"),
+        ('"half.muaavatar"', "half.muaavatar: .*lie outside the file's"),
+        ('"damaged.muaavatar"', "damaged.muaavatar: crc32: .* the file is damaged"),
+        ('new TextEncoder().encode("not an avatar").buffer', "the file identifier is b'an a', expected b'MUAV'"),
+        ('new File(["no"], "b.muaavatar")', "b.muaavatar: the file has 2 bytes, too few for a .muaavatar"),
+    ],
+    ids=["absent", "out of reach", "half", "damaged", "bytes", "file"],
+)
+def test_a_file_that_is_wrong_is_a_sentence(opened: Open, small: Path, source: str, told: str) -> None:
+    content = small.read_bytes()
+    damaged = bytearray(content)
+    damaged[-1] ^= 1
+    page = opened(half=content[: len(content) // 2], damaged=bytes(damaged))
+    assert re.match(told, load(page, source))
+    assert page.evaluate("player.avatars.length") == 0
+
+
+def test_what_is_disposed_of_holds_nothing_and_may_be_disposed_of_again(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    page.evaluate("(player.start(), player.dispose(), player.dispose())")
+    assert page.evaluate("player.bytes") == 0

@@ -1,0 +1,41 @@
+"""The kernels meet the golden cases in a browser's own WGSL compiler, dispatched by the player's own modules."""
+
+import base64
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Thread
+
+import numpy as np
+import pytest
+from parity.golden import FOLDER, Golden, read_golden
+from parity.test_golden import assert_met
+from web.browser import Browser, Page
+
+from mua.share.server import address, serving
+from mua.share.site import player_files
+
+ALL = read_golden()
+SCRIPT = Path(__file__).with_name("golden.js")
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser) -> Iterator[Page]:
+    cases = {f"golden/{path.name}": path for path in FOLDER.glob("*.*")}
+    page_file = b'<!doctype html><script type="module" src="golden.js"></script>'
+    with serving({**player_files(), **cases, "golden.js": SCRIPT, "index.html": page_file}) as server:
+        Thread(target=server.serve_forever, args=(0.02,)).start()
+        opened = browser.page(address(server))
+        opened.wait("globalThis.replay !== undefined")
+        yield opened
+        opened.close()
+        server.shutdown()
+
+
+@pytest.mark.parametrize("golden", ALL, ids=str)
+def test_the_browser_meets_the_golden_case(page: Page, golden: Golden) -> None:
+    stem = Path(golden.kernel).stem
+    number = [other.case for other in ALL if other.kernel == golden.kernel].index(golden.case)
+    found = page.evaluate(f'replay("{stem}", {number})')
+    assert page.told["console"] == []
+    words = {name: np.frombuffer(base64.b64decode(text), "<u4") for name, text in found.items()}
+    assert_met(golden, words)

@@ -1,0 +1,183 @@
+"""The browser player's modules, run by Node, against the Python that they follow."""
+
+import json
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from malformed import DAMAGED, MALFORMED, malformed
+from mutants import mutants
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
+
+from mua.asset import write
+from mua.asset.avatar import Avatar
+from mua.asset.flatbuffer import FormatError
+from mua.asset.read import decode_tree, parse_checked, read
+from mua.asset.write import encode
+from mua.camera import orbit, perspective
+from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
+from mua.kernels.splat_project import pack_texels
+from mua.player.draw import view_projection
+from mua.player.overlays import ground_height, shadow_area
+from mua.player.surface import surface_mesh
+from mua.pose.descriptor import describe_window
+from mua.pose.resample import resample
+from mua.rig.bounds import frame_boxes
+
+HERE = Path(__file__).parent
+GOLDEN = HERE.parent / "golden"
+EXACT = 1e-12  # of float64 sums of some dozen terms below 10
+ROUNDED = 2.0**-23 * 8  # of a float32 below 8
+FRAMES = [0, 1, 3, 5]
+MUTANTS = 400
+CUT = 97  # so many bytes apart a file is cut off
+
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node 20 or later")
+
+
+def node(what: str, *given: object) -> list[Any]:
+    """The lines that modules.mjs prints."""
+    command = ["node", "--no-warnings", str(HERE / "modules.mjs"), what, *map(str, given)]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    return [json.loads(line) for line in ran.stdout.splitlines()]
+
+
+def python_answer(content: bytes) -> list[str]:
+    try:
+        decode_tree(parse_checked(content))
+    except FormatError as error:
+        return [error.code, error.field, str(error)]
+    return ["ok"]
+
+
+def answers(folder: Path, contents: Sequence[bytes]) -> list[list[str]]:
+    files = [folder / f"{i}.muaavatar" for i in range(len(contents))]
+    for file, content in zip(files, contents, strict=True):
+        file.write_bytes(content)
+    return node("answers", *files)
+
+
+@pytest.fixture(scope="module")
+def content() -> bytes:
+    return encode(with_surface(synthetic_avatar()), storage="i8")
+
+
+@pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
+def test_sound_files_are_read(tmp_path: Path, storage: Any) -> None:
+    avatars = [synthetic_avatar(), with_surface(synthetic_avatar()), sparse_avatar(3)]
+    old = (GOLDEN / "version_1.muaavatar").read_bytes()
+    assert answers(tmp_path, [old, *(encode(avatar, storage=storage) for avatar in avatars)]) == [["ok"]] * 4
+
+
+def test_malformed_files_get_the_same_sentence(tmp_path: Path, content: bytes) -> None:
+    files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
+    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED]]
+    found = answers(tmp_path, files)
+    assert [tuple(answer[:2]) for answer in found] == expected
+    sentences = [(answer[2], python_answer(file)[2]) for answer, file in zip(found, files, strict=True)]
+    assert [pair for pair in sentences if pair[0] != pair[1] and "one is negative" not in pair[0]] == []
+
+
+def test_truncated_files_are_refused_alike(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "a.muaavatar"
+    path.write_bytes(content)
+    expected = [python_answer(content[:length]) for length in range(0, len(content), CUT)]
+    assert node("truncated", path, CUT) == expected
+
+
+def test_mutants_are_refused_alike(tmp_path: Path, content: bytes) -> None:
+    contents = list(mutants([content, encode(sparse_avatar(1))], np.random.default_rng(5), MUTANTS))
+    expected = [python_answer(mutant)[:2] for mutant in contents]
+    found = [answer[:2] for answer in answers(tmp_path, contents)]
+    assert {answer[0] for answer in expected} >= {"ok", "offset", "shape", "value", "range"}
+    assert found == expected
+
+
+def faster(avatar: Avatar) -> Avatar:
+    """With a clip that is not at the rate of the encoding."""
+    return replace(avatar, clips=(replace(avatar.clips[0], rate=17.0),))
+
+
+@pytest.mark.parametrize(
+    "change", [with_surface, faster, lambda avatar: sparse_avatar(2)], ids=["own", "rate", "sparse"]
+)
+def test_values_are_those_of_python(tmp_path: Path, change: Any) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, change(synthetic_avatar()), storage="i8")
+    avatar, [found] = read(path), node("values", path, *FRAMES)
+    clip, skeleton, texels = resample(avatar.clips[0], avatar.encoding.rate), avatar.rig.skeleton, avatar.rig.texels
+    poses = clip.rotations[FRAMES], clip.translations[FRAMES]
+    close = {
+        "rotations": poses[0].reshape(len(FRAMES), -1),
+        "translations": poses[1].reshape(len(FRAMES), -1),
+        "joints": skeleton.skinning(*poses).reshape(len(FRAMES), -1),
+        "boxes": frame_boxes(avatar.rig, clip)[FRAMES].reshape(len(FRAMES), -1),
+        "ground": ground_height(avatar.rig, clip),
+        "shadow": shadow_area(avatar.bounds, -0.25),
+        "staticOffset": avatar.geometry.static.ravel(),
+    }
+    for name, expected in close.items():
+        np.testing.assert_allclose(found[name], expected, rtol=EXACT, atol=EXACT, err_msg=name)
+    np.testing.assert_allclose(found["descriptors"], descriptors(avatar, clip), rtol=ROUNDED, atol=ROUNDED)
+    tiles, rows = texel_tiles(texels.texels, texels.size)
+    exact = {"frames": len(clip), "tiles": tiles, "rows": rows.ravel()}
+    exact["texels"] = pack_texels(texels.triangles, texels.barycentrics).ravel()
+    for name, expected in exact.items():
+        np.testing.assert_array_equal(found[name], expected, err_msg=name)
+    if avatar.surface:
+        mesh = surface_mesh(avatar)
+        for ours, theirs in zip(found["surface"], (mesh.triangles, mesh.ring_starts, mesh.ring), strict=True):
+            np.testing.assert_array_equal(ours, theirs.ravel())
+
+
+def descriptors(avatar: Avatar, clip: Any) -> list[Any]:
+    windows = [avatar.encoding.frames(frame) for frame in FRAMES]
+    raw = [
+        describe_window(avatar.rig.skeleton, avatar.encoding, clip.rotations[w], clip.translations[w]) for w in windows
+    ]
+    return [(one - avatar.normalization.mean) / avatar.normalization.scale for one in raw]
+
+
+@pytest.mark.parametrize("wavelet", ["bior4.4", "bior1.1", "bior2.2"])
+def test_levels_without_details_become_the_same_filter(tmp_path: Path, wavelet: str) -> None:
+    avatar = synthetic_avatar(wavelet=wavelet)
+    write(tmp_path / "a.muaavatar", avatar)
+    [found] = node("values", tmp_path / "a.muaavatar", 0)
+    for levels, filtered in enumerate(found["upsampling"]):
+        taps, delay = upsampling_taps(avatar.wavelet.rec_lo, levels)
+        assert [filtered["reach"], filtered["factor"], filtered["delay"]] == [*taps.shape, delay]
+        np.testing.assert_allclose(filtered["taps"], taps.ravel(), rtol=EXACT, atol=EXACT)
+
+
+def test_cameras_are_those_of_python() -> None:
+    box = np.array([[-0.8, -0.1, -0.3], [0.7, 1.8, 0.5]])
+    [found] = node("views", *box.ravel())
+    camera = orbit(box, screen=(96, 128), azimuth=0.4, elevation=0.2, fov=0.6)
+    expected = {
+        "view": camera.view,
+        "projection": perspective(0.6, aspect=96 / 128, near=camera.near),
+        "viewProjection": view_projection(camera),
+        "position": camera.position,
+        "target": box.mean(axis=0),
+        "near": camera.near,
+        "distance": np.linalg.norm(camera.position - box.mean(axis=0)),
+    }
+    for name, value in expected.items():
+        np.testing.assert_allclose(found[name], np.ravel(value) if np.ndim(value) else value, atol=EXACT, err_msg=name)
+
+
+def test_every_finite_half_is_expanded_exactly() -> None:
+    np.testing.assert_array_equal(node("halves")[0], np.arange(0x7C00, dtype="<u2").view("<f2").astype(float))
+
+
+def test_numbers_in_sentences_are_written_as_python_writes_them() -> None:
+    numbers = [0.5, 1.26, 65536, 1e-7, 9e-7, 123456, 1234567, -0.00012345, 3.0, 1e16, 2.5e-5, 0.1]
+    expected = [[f"{n:.4g}", f"{n:.6g}", f"{n:.1e}", repr(float(n))] for n in numbers]
+    assert node("numbers", *numbers)[0] == expected
+    assert [row[3] for row in node("numbers", "NaN", "-Infinity")[0]] == [repr(float("nan")), repr(-float("inf"))]
