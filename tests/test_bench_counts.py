@@ -63,5 +63,5 @@ def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path
     found = counts.fragments(device, frame.sorted, camera).sum()
     posed = decode_clip_frame(avatar, clip, frame=0, dtype=np.float64)
     seen = projected(posed, camera)
-    lengths = half_lengths(seen.ellipses, seen.opacities)
+    lengths = half_lengths(seen.ellipses)
     assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the picture

@@ -227,7 +227,7 @@ FAULTS = {
             "direction.z * sh[1] - direction.y * sh[2]",
             "splat_draw.hlsl",
         ),
-        drawn("quad of the splat alone", "return wide * splatReach(", "return deviations * splatReach("),
+        drawn("quad of the splat alone", "return REACH * splatWide(deviations)", "return REACH * deviations"),
     ],
     "splat_sort": [
         Fault("off by one in the scan of a group", "if (thread >= reach)", "if (thread > reach)", "scan.hlsl"),
@@ -272,11 +272,6 @@ FAULTS = {
         ),
     ],
     "splat_draw": [
-        drawn(
-            "missing clamp of alpha",
-            "min(exp2(varyings.color.a - dot(varyings.offset, varyings.offset)), MOST_ALPHA)",
-            "exp2(varyings.color.a - dot(varyings.offset, varyings.offset))",
-        ),
         drawn("eye index ignored", "eye == 0 ? tail.y : tail.z", "tail.y"),
         drawn("vertex of the neighbouring splat", "order[vertex / 6]", "order[(vertex + 1) / 6]"),
         drawn(
@@ -286,9 +281,13 @@ FAULTS = {
         ),
         drawn("pixels run up", "pixels * float2(2, -2) / screen", "pixels * 2 / screen"),
         drawn("depth inverted", "clamp(clip.z / clip.w", "clamp(clip.w / clip.z"),
-        drawn("pixel not integrated over", "PIXEL_VARIANCE = 1.0 / 12.0", "PIXEL_VARIANCE = 1e-6"),
-        drawn("peak not lowered", "log2(max(color.a * share, LEAST_NORM))", "log2(max(color.a, LEAST_NORM))"),
-        drawn("wider than it is", "EXPONENT = 0.8493218002880191", "EXPONENT = 0.7071067811865476"),
+        drawn("pixel not integrated over", "PIXEL_VARIANCE = 5.0 / 12.0", "PIXEL_VARIANCE = 1e-6"),
+        drawn("variance of the pixel alone", "PIXEL_VARIANCE = 5.0 / 12.0", "PIXEL_VARIANCE = 1.0 / 3.0"),
+        drawn("peak not lowered", "color.a * splatShare(deviations, splatWide(deviations))", "color.a * WEIGHT"),
+        drawn("integral of the window alone", "WEIGHT = 1.125 *", "WEIGHT = 1.27 *"),
+        drawn("wider than it is", "static const float REACH = 2.0", "static const float REACH = 2.2"),
+        drawn("no window across", "window.x * window.y", "window.x"),
+        drawn("window of a cone", "1 - varyings.offset * varyings.offset", "1 - abs(varyings.offset)"),
         drawn("not premultiplied", "float4(varyings.color.rgb * alpha, alpha)", "float4(varyings.color.rgb, alpha)"),
     ],
 }

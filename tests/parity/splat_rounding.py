@@ -15,16 +15,13 @@ from mua.kernels.splat_project import (
     GUARD,
     LAST_KEY,
     LEAST_OPACITY,
-    LEAST_SHARE,
-    PIXEL_VARIANCE,
+    REACH,
     eye_ellipses,
     half_extents,
     half_lengths,
-    wide_deviations,
 )
 
 ULP = float(np.finfo(np.float32).eps)
-LOG_ERROR = 2.0**-21  # of log near 1; elsewhere 3 ulp
 
 
 @dataclass(frozen=True)
@@ -73,8 +70,8 @@ def eye_bounds(splats: Splats, camera: Camera) -> Bounds:
     variance = jacobian2 * (sigma * (2 * 2.5 * (relative[:, 0] + 6 * ULP) + 6 * ULP) + spread_error)
 
     ellipses = eye_ellipses(centres, covariance, camera.view, camera.projection, camera.screen, NEAR)
-    reach_error = _extent_error(ellipses, opacities, variance)
-    extent = half_extents(ellipses, opacities)
+    reach_error = _extent_error(ellipses, variance)
+    extent = half_extents(ellipses)
     beside = np.minimum(ellipses[:, :2] + extent, np.array(camera.screen) - ellipses[:, :2] + extent)
     beside /= middle + reach_error[:, None]
     before = (-place[:, 2] - NEAR) / (place_error[:, 2] + ULP * NEAR)
@@ -82,26 +79,14 @@ def eye_bounds(splats: Splats, camera: Camera) -> Bounds:
     return Bounds(middle, variance, np.minimum.reduce([*beside.T, before, solid]))
 
 
-def _extent_error(ellipses: Array, opacities: Array, variance: Array) -> Array:
+def _extent_error(ellipses: Array, variance: Array) -> Array:
     """Bound [N] of the rounding of half_extents, pixels."""
     deviations = np.maximum(ellipses[:, 4:6], np.sqrt(variance)[:, None])
     deviation_error = (variance[:, None] / np.maximum(deviations, 1e-30) + 5 * ULP * deviations).max(axis=1)
     spread = (ellipses[:, 4] ** 2 - ellipses[:, 5] ** 2) / 2
     turn_error = np.minimum(variance / np.maximum(spread, 1e-30), np.pi / 2) + 8 * ULP
-    wide = wide_deviations(ellipses[:, 4:6])
-    share = np.maximum(np.prod(ellipses[:, 4:6] / wide, axis=1), LEAST_SHARE)
-    share_error = np.sum(deviation_error[:, None] / deviations * PIXEL_VARIANCE / wide**2, axis=1) + 10 * ULP
-    log = np.log(np.maximum(opacities * share / LEAST_OPACITY, 1))
-    square_error = 2 * (LOG_ERROR + 3 * ULP * (1 + log) + LOGIT_BOUND + share_error)
-    reach = np.sqrt(2 * log)
-    reach_error = square_error / np.maximum(reach, np.sqrt(square_error)) + 5 * ULP * reach
-    lengths = half_lengths(ellipses, opacities).sum(axis=1)
-    return (
-        2 * deviation_error * reach
-        + wide.sum(axis=1) * (reach_error + 5 * ULP * reach)
-        + lengths * turn_error
-        + 4 * ULP * lengths
-    )
+    lengths = half_lengths(ellipses).sum(axis=1)
+    return 2 * REACH * deviation_error + lengths * turn_error + 14 * ULP * lengths
 
 
 def exact_keys(centres: Array, views: Array, bounds: Array) -> tuple[Array, float]:

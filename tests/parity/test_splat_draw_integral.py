@@ -1,19 +1,13 @@
-"""The integral of a Gaussian over a pixel against quadrature; how splats are blended is in test_splat_draw.py."""
+"""The window drawn for a Gaussian against its integral by quadrature; blending is in test_splat_draw.py."""
 
 import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.kernels.splat_draw import pixel_integral
+from mua.kernels.splat_draw import pixel_share
+from mua.kernels.splat_project import PIXEL_VARIANCE, REACH
 
-# The square's fourth cumulant, -1/120 along either axis, over 4!, times the Gaussian's fourth derivative, at most
-# 3 / sigma^4; higher ones take a little more. Of splats smaller than a pixel, the largest error that quadrature finds.
-CUMULANT_BOUND = 2 * 3 / 120 / 24
-SMALL_BOUND = 0.09
-
-
-def integral_bound(minor: Array) -> Array:
-    return np.minimum(1.02 * CUMULANT_BOUND / minor**4, SMALL_BOUND)
+WINDOW_BOUND = float(np.exp(-(REACH**2) / 2))  # where the window ends, the Gaussian is so large yet
 
 
 def quadrature(x: Array, y: Array, angle: Array, major: Array, minor: Array) -> Array:
@@ -34,27 +28,35 @@ def random_ellipses(count: int, least: float) -> tuple[Array, Array, Array, Arra
     return x, y, rng.uniform(-np.pi, np.pi, count), deviations[0], deviations[1]
 
 
-def test_pixel_integral_of_upright_ellipses() -> None:
-    x, y, _, major, minor = random_ellipses(400, 0.05)
-    found = pixel_integral(x, y, major, minor)
-    assert np.all(np.abs(found - quadrature(x, y, 0 * x, major, minor)) <= integral_bound(minor))
-
-
-def test_pixel_integral_of_turned_ellipses() -> None:
-    x, y, angle, major, minor = random_ellipses(401, 0.05)
+@pytest.mark.parametrize("turned", [0, 1])
+def test_the_window_is_near_the_integral_over_a_pixel(turned: int) -> None:
+    x, y, angle, major, minor = random_ellipses(400, 0.05)
+    angle *= turned
     along, across = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
-    found = pixel_integral(along, across, major, minor)
-    assert np.all(np.abs(found - quadrature(x, y, angle, major, minor)) <= integral_bound(minor))
+    found = pixel_share(along, across, major, minor)
+    assert np.all(np.abs(found - quadrature(x, y, angle, major, minor)) <= WINDOW_BOUND)
 
 
-def test_pixels_together_hold_all_of_a_gaussian() -> None:
+@pytest.mark.parametrize("deviation", [0.01, 0.3, 5.0])
+def test_the_window_holds_all_of_a_gaussian(deviation: float) -> None:
+    """And the variance of a pixel whole, beside what the window has of the splat's."""
+    offsets = (np.arange(4000) + 0.5) / 4000 * 2 - 1
+    across, along = np.meshgrid(*2 * [offsets * REACH * np.sqrt(deviation**2 + PIXEL_VARIANCE)])
+    shares = pixel_share(along, across, np.array(deviation), np.array(deviation))
+    total = shares.mean() * np.prod([np.ptp(a) * 4000 / 3999 for a in (along, across)])
+    assert total == pytest.approx(2 * np.pi * deviation**2, rel=1e-6)
+    variance = np.sum(shares * along**2) / np.sum(shares)
+    assert variance == pytest.approx(REACH**2 / 5 * deviation**2 + 1 / 12, rel=1e-6)
+
+
+def test_pixels_together_hold_about_all_of_a_gaussian() -> None:
     rows, columns = np.mgrid[-40:41, -40:41]
-    for deviation, aliased in ((0.01, 0.04), (0.3, 1e-3), (5.0, 1e-9)):  # pixels sample the wider Gaussian
-        total = pixel_integral(columns + 0.3, rows - 0.2, np.array(deviation), np.array(deviation)).sum()
+    for deviation, aliased in ((0.3, 0.2), (1.0, 0.02), (5.0, 1e-3)):  # pixels sample the window
+        total = pixel_share(columns + 0.3, rows - 0.2, np.array(deviation), np.array(deviation)).sum()
         assert total == pytest.approx(2 * np.pi * deviation**2, rel=aliased)
 
 
-def test_pixel_integral_keeps_float32_and_raises_no_warning_far_away() -> None:
-    found = pixel_integral(np.float32([1e4]), np.float32([-1e4]), np.float32([0.01]), np.float32([0.01]))
+def test_the_window_keeps_float32_and_raises_no_warning_far_away() -> None:
+    found = pixel_share(np.float32([1e4]), np.float32([-1e4]), np.float32([0.01]), np.float32([0.01]))
     assert found.dtype == np.float32
     assert found == 0

@@ -9,8 +9,8 @@ from mua.arrays import Array
 from mua.camera import Camera
 from mua.decode import Splats
 from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
-from mua.kernels.splat_draw import MOST_ALPHA
-from mua.kernels.splat_project import half_lengths
+from mua.kernels.splat_draw import WEIGHT
+from mua.kernels.splat_project import PIXEL_VARIANCE, REACH, half_lengths
 from mua.rendering import projected
 
 SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part
@@ -46,12 +46,14 @@ void main()
 {
     vec2 apart = vec2(gl_FragCoord.x, screen.y - gl_FragCoord.y) - axes.xy;
     vec2 at = vec2(axes.z * apart.x + axes.w * apart.y, axes.z * apart.y - axes.w * apart.x);
-    vec2 wide = sqrt(deviations * deviations + 1.0 / 12.0);
-    float share = deviations.x / wide.x * (deviations.y / wide.y);
-    float alpha = min(tint.a * share * exp(-dot(at / wide, at / wide) / 2.0), MOST_ALPHA);
+    vec2 wide = sqrt(deviations * deviations + PIXEL_VARIANCE);
+    vec2 window = (1.0 - min(at * at / (wide * wide * REACH2), 1.0)) * deviations / wide;
+    float alpha = tint.a * WEIGHT * window.x * window.y;
     color = vec4(tint.rgb * alpha, alpha);
 }
-""".replace("MOST_ALPHA", str(MOST_ALPHA))
+"""
+for name, number in {"PIXEL_VARIANCE": PIXEL_VARIANCE, "REACH2": float(REACH**2), "WEIGHT": WEIGHT}.items():
+    FRAGMENT = FRAGMENT.replace(name, str(number))
 
 
 class SplatPainter:
@@ -68,7 +70,7 @@ class SplatPainter:
         splats = projected(frame, replace(camera, screen=self._canvas.size))
         visible = splats.order[splats.ellipses[splats.order, 4] > 0]
         ellipses, opacities = splats.ellipses[visible], splats.opacities[visible]
-        lengths = half_lengths(ellipses, opacities)
+        lengths = half_lengths(ellipses)
         rows = np.concatenate([ellipses, lengths, splats.colors[visible], opacities[:, None]], axis=1)
         self._canvas.begin()
         self._context.enable_only(moderngl.BLEND)

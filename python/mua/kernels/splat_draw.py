@@ -1,8 +1,9 @@
-"""Draw sorted splats: a quad each, the Gaussian integrated over every pixel, degree-1 SH colour, blended by depth.
+"""Draw sorted splats: a quad each, a window for the Gaussian over every pixel, degree-1 SH colour, blended by depth.
 
-The integral over the pixel's unit square is taken to be the Gaussian with its sum and its variance: the square has 1/12
-along any line through its middle, so that the ellipse keeps its axes. Sums over pixels are exact; one is off by at
-most 1/480 / minor^4, the square's fourth cumulant.
+The window 1 - x^2 along either axis of the ellipse has the Gaussian's integral and ends at REACH deviations: its quad
+has a third of the area on which the Gaussian is above LEAST_OPACITY. To its variance that of the pixel's unit square is
+added, 1/12 along any line, so that the ellipse keeps its axes. One splat is off by up to 0.14 of its opacity; where
+splats lie over one another, what one lacks its neighbours have.
 
 Colours are display-referred, as in 3D Gaussian Splatting: sRGB values are blended, and no transfer function is applied.
 """
@@ -14,9 +15,9 @@ import numpy as np
 from mua import rotation
 from mua.arrays import Array
 from mua.channels import SH_C0, SH_C1
-from mua.kernels.splat_project import half_extents, half_lengths, wide_deviations
+from mua.kernels.splat_project import REACH, half_extents, wide_deviations
 
-MOST_ALPHA = 0.99  # of one splat at one pixel, as in 3D Gaussian Splatting
+WEIGHT = 9 * np.pi / 8 / REACH**2  # of the window in its middle: the Gaussian's integral, 2 pi, over (4 / 3 REACH)^2
 BAND_PIXELS = 1 << 16  # pixels drawn together, so that their indices sort as 16-bit numbers
 CHUNK_PAIRS = 1 << 20  # (splat, pixel) pairs held at once
 
@@ -35,16 +36,25 @@ def splat_colors(
     return np.asarray(np.maximum(0.5 + SH_C0 * c0 + SH_C1 * (-y * c1 + z * c2 - x * c3), 0))
 
 
-def pixel_integral(
+def pixel_share(
     along: Array,  # [...] pixel centre minus ellipse centre, along the major axis, pixels
     across: Array,  # [...] across it
     major: Array,  # [...] standard deviation, pixels
     minor: Array,  # [...]
 ) -> Array:
-    """Integral [...] of exp(-along^2 / 2 major^2 - across^2 / 2 minor^2) over the unit square about the pixel."""
+    """Share [...] of its opacity that a splat has at a pixel.
+
+    It stands for the integral of exp(-along^2 / 2 major^2 - across^2 / 2 minor^2) over the pixel's square.
+    """
     wide_major, wide_minor = wide_deviations(major), wide_deviations(minor)
-    share = major / wide_major * (minor / wide_minor)
-    return np.asarray(share * np.exp(-((along / wide_major) ** 2 + (across / wide_minor) ** 2) / 2))
+    share = major.dtype.type(WEIGHT) * (major / wide_major) * (minor / wide_minor)
+    return np.asarray(share * _window(along / (REACH * wide_major)) * _window(across / (REACH * wide_minor)))
+
+
+def _window(
+    offset: Array,  # [...] 1 at the quad's edge
+) -> Array:
+    return np.asarray(1 - np.minimum(offset * offset, 1))
 
 
 def splat_draw(
@@ -60,14 +70,14 @@ def splat_draw(
     image = np.zeros((height * width, 4))
     front_to_back = order[::-1][ellipses[order[::-1], 4] > 0]
     ellipses, colors, opacities = ellipses[front_to_back], colors[front_to_back], opacities[front_to_back]
-    low, high = _pixel_boxes(ellipses, opacities, screen)
-    quads = np.concatenate([ellipses, half_lengths(ellipses, opacities), opacities[:, None]], axis=1)
+    low, high = _pixel_boxes(ellipses, screen)
     rows = BAND_PIXELS // width
     for top in range(0, height, rows):
         bottom = min(top + rows, height)
         band = image[top * width : bottom * width]
         for splats, column, row in _pairs(low, high, top, bottom):
-            alphas = _alphas(quads[splats], column.astype(quads.dtype), row.astype(quads.dtype))
+            pixel = column.astype(ellipses.dtype), row.astype(ellipses.dtype)
+            alphas = opacities[splats] * _shares(ellipses[splats], *pixel)
             drawn = np.flatnonzero(alphas)
             pixels = (row[drawn] - top) * width + column[drawn]
             _blend(band, colors, splats[drawn], pixels, alphas[drawn])
@@ -76,11 +86,10 @@ def splat_draw(
 
 def _pixel_boxes(
     ellipses: Array,  # [M, 6]
-    opacities: Array,  # [M]
     screen: tuple[int, int],
 ) -> tuple[Array, Array]:
     """First and one-past-last (column, row) [M, 2] int64 of the pixels whose centre the box of each quad holds."""
-    extent = half_extents(ellipses, opacities)
+    extent = half_extents(ellipses)
     limit = np.array(screen)
     low = np.clip(np.ceil(ellipses[:, 0:2] - extent - 0.5), 0, limit).astype(np.int64)
     high = np.clip(np.floor(ellipses[:, 0:2] + extent - 0.5) + 1, 0, limit).astype(np.int64)
@@ -107,18 +116,15 @@ def _pairs(
         yield owner, low[owner, 0] + column, first[owner] + row
 
 
-def _alphas(
-    quads: Array,  # [P, 9] ellipse, half lengths, opacity
+def _shares(
+    ellipses: Array,  # [P, 6]
     column: Array,  # [P]
     row: Array,  # [P]
 ) -> Array:
-    """Opacity [P] of each pair, 0 where the pixel centre is outside the quad."""
-    middle_x, middle_y, cosine, sine, major, minor, half_along, half_across, opacity = quads.T
+    """Share [P] of its opacity that each pair's splat has, 0 where the pixel centre is outside the quad."""
+    middle_x, middle_y, cosine, sine, major, minor = ellipses.T
     x, y = column + 0.5 - middle_x, row + 0.5 - middle_y
-    along, across = cosine * x + sine * y, cosine * y - sine * x
-    inside = (np.abs(along) <= half_along) & (np.abs(across) <= half_across)
-    alphas = opacity * pixel_integral(along, across, major, minor)
-    return np.where(inside, np.minimum(alphas, MOST_ALPHA), 0)
+    return pixel_share(cosine * x + sine * y, cosine * y - sine * x, major, minor)
 
 
 def _blend(
@@ -130,7 +136,7 @@ def _blend(
 ) -> None:
     """Blend pairs behind what the band holds: a pixel's pairs side by side, transmittance by one running sum.
 
-    The sum stays below 5 CHUNK_PAIRS, so that doubles leave transmittances an error of about 1e-9.
+    The sum stays below 3 CHUNK_PAIRS, so that doubles leave transmittances an error of about 1e-9.
     """
     by_pixel = np.argsort(pixels.astype(np.uint16), kind="stable")
     splats, pixels, alphas = splats[by_pixel], pixels[by_pixel], alphas[by_pixel].astype(float)

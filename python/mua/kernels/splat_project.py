@@ -11,8 +11,8 @@ from mua.arrays import Array
 
 LEAST_OPACITY = 1 / 255  # below it a splat changes no 8-bit image
 LEAST_VARIANCE = 1e-4  # px^2; float32 rounding of the covariance of a 30 px splat, so that a thin axis stays positive
-PIXEL_VARIANCE = 1 / 12  # px^2, of a unit square
-LEAST_SHARE = 1 / 16  # of its opacity in the middle, for which a smaller splat's quad is made
+REACH = 2  # standard deviations from a splat's middle to its quad's edges
+PIXEL_VARIANCE = 5 / 12 / REACH**2  # px^2; of the window that splat_draw draws, it is a unit square's 1 / 12
 GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
 LAST_KEY = 0xFFFE
 HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees
@@ -41,7 +41,7 @@ def splat_project(
     view, projection, bounds = view.astype(dtype), projection.astype(dtype), bounds.astype(dtype)
     eyes = [eye_ellipses(centres, covariance, v, p, screen, near) for v, p in zip(view, projection, strict=True)]
     ellipses = np.stack(eyes)
-    extent = half_extents(ellipses, opacities)
+    extent = half_extents(ellipses)
     middle = ellipses[..., 0:2]
     on_screen = np.all((middle + extent > 0) & (middle - extent < np.array(screen, dtype)), axis=-1)
     seen = on_screen & (ellipses[..., 4] > 0) & (opacities >= LEAST_OPACITY)
@@ -53,32 +53,23 @@ def splat_project(
 
 def half_lengths(
     ellipses: Array,  # [..., M, 6]
-    opacities: Array,  # [M]
 ) -> Array:
-    """Half lengths [..., M, 2] of the quad along the ellipse's axes, pixels: to where alpha falls to LEAST_OPACITY.
-
-    Of splats far smaller than a pixel many may add up: their quads are made as for one of LEAST_SHARE.
-    """
-    deviations = ellipses[..., 4:6]
-    wide = wide_deviations(deviations)
-    share = np.maximum(np.prod(deviations / wide, axis=-1), LEAST_SHARE)
-    reach = np.sqrt(2 * np.log(np.maximum(opacities * share / LEAST_OPACITY, 1)))
-    return np.asarray(wide * reach[..., None]).astype(ellipses.dtype)
+    """Half lengths [..., M, 2] of the quad along the ellipse's axes, pixels."""
+    return np.asarray(REACH * wide_deviations(ellipses[..., 4:6]))
 
 
 def wide_deviations(
     deviations: Array,  # [...] pixels
 ) -> Array:
-    """Standard deviations [...] of a Gaussian integrated over pixels."""
+    """Standard deviations [...] of what is drawn of a Gaussian."""
     return np.sqrt(deviations * deviations + deviations.dtype.type(PIXEL_VARIANCE))
 
 
 def half_extents(
     ellipses: Array,  # [..., M, 6]
-    opacities: Array,  # [M]
 ) -> Array:
     """Half width and height [..., M, 2] of the upright box around the quad, pixels."""
-    along, across = np.moveaxis(half_lengths(ellipses, opacities), -1, 0)
+    along, across = np.moveaxis(half_lengths(ellipses), -1, 0)
     cosine, sine = np.abs(ellipses[..., 2]), np.abs(ellipses[..., 3])
     return np.stack([cosine * along + sine * across, sine * along + cosine * across], axis=-1)
 

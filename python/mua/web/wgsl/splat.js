@@ -30,16 +30,6 @@ fn unpackHalves_0( word_1 : u32) -> vec2<f32>
     return vec2<f32>(halfAt_0(word_1, u32(0)), halfAt_0(word_1, u32(1)));
 }
 
-fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
-{
-    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.0833333358168602f));
-}
-
-fn splatShare_0( deviations_1 : vec2<f32>,  wide_0 : vec2<f32>) -> f32
-{
-    return deviations_1.x / wide_0.x * (deviations_1.y / wide_0.y);
-}
-
 fn splatCorner_0( corner_0 : u32) -> vec2<f32>
 {
     var right_0 : bool;
@@ -97,9 +87,19 @@ fn splatCorner_0( corner_0 : u32) -> vec2<f32>
     return vec2<f32>(_S2, f32(_S1));
 }
 
-fn splatReach_0( opacity_0 : f32,  share_0 : f32) -> f32
+fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
 {
-    return sqrt(max(2.0f * log(opacity_0 * max(share_0, 0.0625f) / 0.00392156885936856f), 0.0f));
+    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.1041666641831398f));
+}
+
+fn splatHalfLengths_0( deviations_1 : vec2<f32>) -> vec2<f32>
+{
+    return vec2<f32>(2.0f) * splatWide_0(deviations_1);
+}
+
+fn splatShare_0( deviations_2 : vec2<f32>,  wide_0 : vec2<f32>) -> f32
+{
+    return 0.88357293605804443f * (deviations_2.x / wide_0.x) * (deviations_2.y / wide_0.y);
 }
 
 struct SplatVaryings_0
@@ -127,21 +127,18 @@ fn splatVertex_0( _S3 : u32,  _S4 : u32,  _S5 : vec2<f32>,  _S6 : mat4x4<f32>) -
     var major_0 : vec2<f32> = unpackHalves_0(_S7);
     var _S8 : f32 = length(major_0);
     var _S9 : f32 = halfAt_0(tail_0.w, _S4);
-    var deviations_2 : vec2<f32> = vec2<f32>(_S8, _S9);
+    var deviations_3 : vec2<f32> = vec2<f32>(_S8, _S9);
     var axis_0 : vec2<f32> = major_0 / vec2<f32>(max(_S8, 1.17549435082228751e-38f));
-    var wide_1 : vec2<f32> = splatWide_0(deviations_2);
-    var share_1 : f32 = splatShare_0(deviations_2, wide_1);
-    var _S10 : f32 = color_1.w;
-    var corner_1 : vec2<f32> = splatCorner_0(_S3 % u32(6)) * vec2<f32>(splatReach_0(_S10, share_1));
-    var offset_1 : vec2<f32> = corner_1 * wide_1;
-    var _S11 : f32 = axis_0.x;
-    var _S12 : f32 = offset_1.x;
-    var _S13 : f32 = axis_0.y;
-    var _S14 : f32 = offset_1.y;
+    var corner_1 : vec2<f32> = splatCorner_0(_S3 % u32(6));
+    var offset_1 : vec2<f32> = corner_1 * splatHalfLengths_0(deviations_3);
+    var _S10 : f32 = axis_0.x;
+    var _S11 : f32 = offset_1.x;
+    var _S12 : f32 = axis_0.y;
+    var _S13 : f32 = offset_1.y;
     var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S6)));
-    var _S15 : f32 = clip_0.w;
-    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S15) + vec2<f32>(_S11 * _S12 - _S13 * _S14, _S13 * _S12 + _S11 * _S14) * vec2<f32>(2.0f, -2.0f) / _S5;
-    var depth_0 : f32 = clamp(clip_0.z / _S15, 0.0f, 1.0f);
+    var _S14 : f32 = clip_0.w;
+    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S14) + vec2<f32>(_S10 * _S11 - _S12 * _S13, _S12 * _S11 + _S10 * _S13) * vec2<f32>(2.0f, -2.0f) / _S5;
+    var depth_0 : f32 = clamp(clip_0.z / _S14, 0.0f, 1.0f);
     var seen_0 : bool = _S9 > 0.0f;
     var varyings_0 : SplatVaryings_0;
     varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
@@ -149,8 +146,8 @@ fn splatVertex_0( _S3 : u32,  _S4 : u32,  _S5 : vec2<f32>,  _S6 : mat4x4<f32>) -
     {
         varyings_0.position_0 = vec4<f32>(place_0, depth_0, 1.0f);
     }
-    varyings_0.offset_0 = vec2<f32>(0.84932178258895874f) * corner_1;
-    varyings_0.color_0 = vec4<f32>(color_1.xyz, log2(max(_S10 * share_1, 1.17549435082228751e-38f)));
+    varyings_0.offset_0 = corner_1;
+    varyings_0.color_0 = vec4<f32>(color_1.xyz, color_1.w * splatShare_0(deviations_3, splatWide_0(deviations_3)));
     return varyings_0;
 }
 
@@ -200,8 +197,9 @@ export const SplatFrag = {
 fn splatFragment_0( varyings_0 : SplatVaryings_0) -> vec4<f32>
 {
     var _S1 : vec2<f32> = varyings_0.offset_0;
-    var _S2 : f32 = min(exp2(varyings_0.color_0.w - dot(_S1, _S1)), 0.99000000953674316f);
-    return vec4<f32>(varyings_0.color_0.xyz * vec3<f32>(_S2), _S2);
+    var window_0 : vec2<f32> = saturate(vec2<f32>(1.0f) - _S1 * _S1);
+    var alpha_0 : f32 = varyings_0.color_0.w * window_0.x * window_0.y;
+    return vec4<f32>(varyings_0.color_0.xyz * vec3<f32>(alpha_0), alpha_0);
 }
 
 struct pixelOutput_0
@@ -216,11 +214,11 @@ struct pixelInput_0
 };
 
 @fragment
-fn SplatFrag( _S3 : pixelInput_0, @builtin(position) position_1 : vec4<f32>) -> pixelOutput_0
+fn SplatFrag( _S2 : pixelInput_0, @builtin(position) position_1 : vec4<f32>) -> pixelOutput_0
 {
-    var _S4 : SplatVaryings_0 = SplatVaryings_0( position_1, _S3.offset_1, _S3.color_1 );
-    var _S5 : pixelOutput_0 = pixelOutput_0( splatFragment_0(_S4) );
-    return _S5;
+    var _S3 : SplatVaryings_0 = SplatVaryings_0( position_1, _S2.offset_1, _S2.color_1 );
+    var _S4 : pixelOutput_0 = pixelOutput_0( splatFragment_0(_S3) );
+    return _S4;
 }
 
 `,

@@ -320,28 +320,17 @@ fn project_0( gaussian_1 : Gaussian_0,  eye_0 : u32) -> Ellipse_0
 
 fn splatWide_0( deviations_2 : vec2<f32>) -> vec2<f32>
 {
-    return sqrt(deviations_2 * deviations_2 + vec2<f32>(0.0833333358168602f));
+    return sqrt(deviations_2 * deviations_2 + vec2<f32>(0.1041666641831398f));
 }
 
-fn splatShare_0( deviations_3 : vec2<f32>,  wide_0 : vec2<f32>) -> f32
+fn splatHalfLengths_0( deviations_3 : vec2<f32>) -> vec2<f32>
 {
-    return deviations_3.x / wide_0.x * (deviations_3.y / wide_0.y);
+    return vec2<f32>(2.0f) * splatWide_0(deviations_3);
 }
 
-fn splatReach_0( opacity_1 : f32,  share_0 : f32) -> f32
+fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
 {
-    return sqrt(max(2.0f * log(opacity_1 * max(share_0, 0.0625f) / 0.00392156885936856f), 0.0f));
-}
-
-fn splatHalfLengths_0( deviations_4 : vec2<f32>,  opacity_2 : f32) -> vec2<f32>
-{
-    var wide_1 : vec2<f32> = splatWide_0(deviations_4);
-    return wide_1 * vec2<f32>(splatReach_0(opacity_2, splatShare_0(deviations_4, wide_1)));
-}
-
-fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_3 : f32) -> bool
-{
-    var quad_0 : vec2<f32> = splatHalfLengths_0(ellipse_1.deviations_1, opacity_3);
+    var quad_0 : vec2<f32> = splatHalfLengths_0(ellipse_1.deviations_1);
     var axis_2 : vec2<f32> = abs(ellipse_1.axis_1);
     var _S42 : f32 = axis_2.x;
     var _S43 : f32 = quad_0.x;
@@ -367,7 +356,7 @@ fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_3 : f32) -> bool
     }
     if(onScreen_0)
     {
-        onScreen_0 = opacity_3 >= 0.00392156885936856f;
+        onScreen_0 = opacity_1 >= 0.00392156885936856f;
     }
     else
     {
