@@ -25,9 +25,9 @@ function bytes(file) {
   return content.buffer.slice(content.byteOffset, content.byteOffset + content.length);
 }
 
-function answer(content) {
+async function answer(content) {
   try {
-    read(content);
+    await read(content);
     return ["ok"];
   } catch (error) {
     if (error.name !== "AvatarError") throw error;
@@ -63,12 +63,12 @@ function views(box) {
   return { target, distance, ...cameraOf({ ...state, target, distance }, [96, 128]) };
 }
 
-if (what === "answers") for (const file of given) say(answer(bytes(file)));
+if (what === "answers") for (const file of given) say(await answer(bytes(file)));
 if (what === "truncated") {
   const content = bytes(given[0]);
-  for (let length = 0; length < content.byteLength; length += Number(given[1])) say(answer(content.slice(0, length)));
+  for (let length = 0; length < content.byteLength; length += Number(given[1])) say(await answer(content.slice(0, length)));
 }
-if (what === "values") say(values(read(bytes(given[0])), given.slice(1).map(Number)));
+if (what === "values") say(values(await read(bytes(given[0])), given.slice(1).map(Number)));
 if (what === "views") say(views(given.map(Number)));
 if (what === "halves") say(Array.from({ length: 0x7c00 }, (_, bits) => half(bits)));
 if (what === "numbers") say(given.map(Number).map((n) => [...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]), shortest(n)]));

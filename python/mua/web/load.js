@@ -45,15 +45,13 @@ function startWorker() {
 export async function loadHere(/** @type {Source} */ source, /** @type {Progress} */ progress) {
   const content = typeof source === "string" ? await fetched(source, progress) : await bytesOf(source);
   progress(FETCHED, "Reading the avatar");
-  return named(typeof source === "string" ? nameOf(source) : source instanceof File ? source.name : "", () =>
-    read(content),
-  );
+  return named(typeof source === "string" ? nameOf(source) : source instanceof File ? source.name : "", read(content));
 }
 
-/** With the file's name before what is wrong with it. @template T @param {string} name @param {() => T} work @returns {T} */
-function named(name, work) {
+/** With the file's name before what is wrong with it. @template T @param {string} name @param {Promise<T>} work @returns {Promise<T>} */
+async function named(name, work) {
   try {
-    return work();
+    return await work;
   } catch (error) {
     if (name && error instanceof AvatarError) throw new AvatarError(`${name}: ${error.message}`, error);
     throw error;

@@ -68,3 +68,24 @@ export function upsamplingTaps(/** @type {Float64Array} */ recLo, /** @type {num
   taps.slice(first, last + 1).forEach((tap, i) => (padded[i] = tap));
   return { taps: padded, factor, reach, delay: delay - first };
 }
+
+/**
+ * The first two barycentrics [N, 2] of each texel's centre in its triangle, from UV alone, as every reader computes them;
+ * NaN where a triangle has no area. Reference: python/mua/rig/texel_map.py.
+ * @param {{uv: Float32Array, uvFaces: Int32Array}} template @param {number} size @param {Int32Array} texels @param {Int32Array} triangles
+ */
+export function centreBarycentrics({ uv, uvFaces }, size, texels, triangles) {
+  const found = new Float32Array(2 * texels.length);
+  for (let e = 0; e < texels.length; e++) {
+    const [column, row] = [(texels[e] % size) + 0.5, Math.floor(texels[e] / size) + 0.5];
+    const [a, b, c] = [0, 1, 2].map((corner) => 2 * uvFaces[3 * triangles[e] + corner]);
+    const [ax, ay] = [uv[a] * size - column, uv[a + 1] * size - row];
+    const [bx, by] = [uv[b] * size - column, uv[b + 1] * size - row];
+    const [cx, cy] = [uv[c] * size - column, uv[c + 1] * size - row];
+    const [one, two, three] = [bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx];
+    const whole = one + two + three || NaN;
+    found[2 * e] = Math.min(Math.max(one / whole, 0), 1);
+    found[2 * e + 1] = Math.min(Math.max(two / whole, 0), 1 - found[2 * e]);
+  }
+  return found;
+}

@@ -9,10 +9,16 @@ self.onmessage = async ({ data: source }) => {
     const avatar = await loadHere(source, (fraction, sentence) =>
       self.postMessage({ progress: { fraction, sentence } }),
     );
-    self.postMessage({ avatar }, { transfer: [avatar.thumbnail.buffer] });
+    self.postMessage({ avatar }, { transfer: [...new Set(memories(avatar))] });
   } catch (error) {
     if (!(error instanceof AvatarError)) throw error;
     const { message, code, field } = error;
     self.postMessage({ told: { message, code, field } });
   }
 };
+
+/** The memory behind all arrays of an avatar. @returns {Generator<ArrayBuffer>} */
+function* memories(/** @type {unknown} */ value) {
+  if (ArrayBuffer.isView(value)) yield /** @type {ArrayBuffer} */ (value.buffer);
+  else if (value && typeof value === "object") for (const part of Object.values(value)) yield* memories(part);
+}

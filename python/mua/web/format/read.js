@@ -5,6 +5,7 @@ import { checksum } from "./checksum.js";
 import { readBranch, readCoarse, readWavelet } from "./model.js";
 import { general, shortest } from "./numbers.js";
 import { fault, parse } from "./parser.js";
+import { unpack } from "./packing.js";
 import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, refuse, translated, unit } from "./rig.js";
 import { reals } from "./tensors.js";
 
@@ -21,14 +22,16 @@ const MAX_ADDED = 2 ** 24; // joints in all frames that clips gain at the encodi
 const LEAST_SCALE = 1e-6; // of a descriptor's number
 const PNG_SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
-/** @typedef {ReturnType<typeof read>} Avatar what a file holds; arrays are views of its bytes where they can be */
+/** @typedef {ReturnType<typeof decode>} Avatar what a file holds; arrays are views of its bytes where they can be */
 /** @typedef {ReturnType<typeof readClip>} Clip */
 /** @typedef {ReturnType<typeof readEncoding>} Encoding */
 
 /** The avatar in a file's bytes. @throws {import("../error.js").AvatarError} that names the field */
-export function read(/** @type {ArrayBuffer} */ content) {
+export async function read(/** @type {ArrayBuffer} */ content) {
   const { tree, crcAt } = parse(content);
   checkSum(content, tree, crcAt);
+  checkStages(tree.stages ?? [], content.byteLength);
+  await unpack(tree, content.byteLength);
   return decode(tree);
 }
 
@@ -42,6 +45,12 @@ function checkSum(/** @type {ArrayBuffer} */ content, /** @type {Tree} */ tree, 
   }
 }
 
+function checkStages(/** @type {Uint32Array | number[]} */ ends, /** @type {number} */ size) {
+  const list = Array.from(ends);
+  if (list.some((end, i) => end > size || (i > 0 && end < list[i - 1])))
+    throw refuse("stages", `[${list.join(", ")}], expected rising numbers up to the file's ${size} bytes`);
+}
+
 function decode(/** @type {Tree} */ tree) {
   const skeleton = readSkeleton(tree.skeleton);
   const joints = skeleton.names.length;
@@ -49,7 +58,7 @@ function decode(/** @type {Tree} */ tree) {
   const wavelet = readWavelet(tree.wavelet);
   const coarse = readCoarse(tree.coarse, encoding.width);
   const template = readTemplate(tree.template, coarse.vertices, joints);
-  const texels = readTexels(tree.texels, template.faces.length / 3);
+  const texels = readTexels(tree.texels, template);
   const side = Math.floor(texels.size / 2 ** wavelet.levels);
   const of = { count: texels.texels.length, width: encoding.width, size: side };
   const geometry = readBranch(tree.geometry, "geometry", GEOMETRY_CHANNELS, of);

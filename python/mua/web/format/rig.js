@@ -1,5 +1,6 @@
 // Skeleton, template, texels and surface of a file, checked. Reference: python/mua/asset/read.py.
 
+import { centreBarycentrics } from "../prepare.js";
 import { normalized } from "../rotation.js";
 import { bindInverse } from "../skeleton.js";
 import { blocks, blockTriangles } from "../surface.js";
@@ -80,8 +81,7 @@ export function besideRoot(
   /** @type {number} */ root,
 ) {
   const joints = indices(tensor, path, [null], 0, count);
-  if (joints.some((joint, i) => i > 0 && joint <= joints[i - 1]) || joints.includes(root))
-    throw refuse(path, "joints must ascend and leave out the root");
+  if (!ascend(joints) || joints.includes(root)) throw refuse(path, "joints must ascend and leave out the root");
   return joints;
 }
 
@@ -90,11 +90,11 @@ export function besideRoot(
 export function readTemplate(/** @type {Tree} */ tree, /** @type {number} */ count, /** @type {number} */ joints) {
   const uv = reals(tree.uv, "template.uv", [null, 2]);
   const faces = indices(tree.faces, "template.faces", [null, 3], 0, count);
-  indices(tree.uv_faces, "template.uv_faces", [faces.length / 3, 3], 0, uv.shape[0]);
+  const uvFaces = indices(tree.uv_faces, "template.uv_faces", [faces.length / 3, 3], 0, uv.shape[0]);
   const weights = reals(tree.skin_weights, "template.skin_weights", [count, INFLUENCES]).values;
   checkWeights(weights, count);
   const skinIndices = indices(tree.skin_indices, "template.skin_indices", [count, INFLUENCES], 0, joints);
-  return { faces, skinIndices, skinWeights: weights };
+  return { faces, uv: uv.values, uvFaces, skinIndices, skinWeights: weights };
 }
 
 /** Each vertex's weights are 0 or more, sum to 1, and begin with the largest. */
@@ -117,13 +117,13 @@ function checkWeights(/** @type {Float32Array} */ weights, /** @type {number} */
 
 /** @typedef {ReturnType<typeof readTexels>} Texels */
 
-export function readTexels(/** @type {Tree} */ tree, /** @type {number} */ faces) {
+export function readTexels(/** @type {Tree} */ tree, /** @type {Template} */ template) {
   const size = /** @type {number} */ (tree.size);
   if (size < 1 || size > MAX_SIZE) throw refuse("texels.size", `${size}, expected 1 to ${MAX_SIZE}`);
   const texels = indices(tree.texels, "texels.texels", [null], 0, size * size);
-  if (texels.some((texel, i) => i > 0 && texel <= texels[i - 1])) throw refuse("texels.texels", "texels must ascend");
-  const triangles = indices(tree.triangles, "texels.triangles", [texels.length], 0, faces);
-  const barycentrics = reals(tree.barycentrics, "texels.barycentrics", [texels.length, 2]).values;
+  if (!ascend(texels)) throw refuse("texels.texels", "texels must ascend");
+  const triangles = indices(tree.triangles, "texels.triangles", [texels.length], 0, template.faces.length / 3);
+  const barycentrics = readBarycentrics(tree, template, texels, triangles);
   let least = 0;
   for (let at = 0; at < barycentrics.length; at += 2) {
     const third = 1 - Math.fround(barycentrics[at] + barycentrics[at + 1]);
@@ -132,6 +132,21 @@ export function readTexels(/** @type {Tree} */ tree, /** @type {number} */ faces
   if (least < -SLACK) throw refuse("texels.barycentrics", `${general(least, 3)}, expected 0 to 1`);
   return { size, texels, triangles, barycentrics: barycentrics.map((share) => Math.max(share, 0)) };
 }
+
+/** [N, 2] as stored, or computed where only those of the listed texels are. @param {Tree} tree @param {Template} template @param {Int32Array} texels @param {Int32Array} triangles */
+function readBarycentrics(tree, template, texels, triangles) {
+  if (!tree.listed) return reals(tree.barycentrics, "texels.barycentrics", [texels.length, 2]).values;
+  const listed = indices(tree.listed, "texels.listed", [null], 0, texels.length);
+  if (!ascend(listed)) throw refuse("texels.listed", "texels must ascend");
+  const stored = reals(tree.barycentrics, "texels.barycentrics", [listed.length, 2]).values;
+  const found = centreBarycentrics(template, tree.size, texels, triangles);
+  listed.forEach((texel, i) => found.set(stored.subarray(2 * i, 2 * i + 2), 2 * texel));
+  if (found.some(Number.isNaN))
+    throw refuse("texels.listed", "a texel is not listed, but its triangle has no area in UV");
+  return found;
+}
+
+const ascend = (/** @type {Int32Array} */ values) => values.every((value, i) => i === 0 || value > values[i - 1]);
 
 /** @typedef {NonNullable<ReturnType<typeof readSurface>>} SurfaceCode */
 

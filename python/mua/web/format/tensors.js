@@ -17,20 +17,27 @@ import { general } from "./numbers.js";
 export const LARGEST = 65504; // of any real: f16's largest, so that what is decoded from a file is finite too
 const MAX_RANK = 4;
 const MAX_BYTES = 2 ** 31 - 1;
-const SIZES = { F32: 4, F16: 2, I8: 1, I32: 4 };
+/** @type {Record<string, number>} */
+export const SIZES = { F32: 4, F16: 2, I8: 1, I32: 4 };
 const HALF_MAGNITUDE = 0x7fff;
 const HALF_INFINITY = 0x7c00;
 
 const product = (/** @type {number[]} */ sides) => sides.reduce((all, side) => all * side, 1);
 const listed = (/** @type {number[]} */ sides) => `[${sides.join(", ")}]`;
 
-/** A tensor whose shape, bytes and scales agree. @returns {Stored} */
-function stored(/** @type {Tree} */ tensor, /** @type {string} */ path) {
+/** The shape of a tensor that a file could hold. @returns {number[]} */
+export function sides(/** @type {Tree} */ tensor, /** @type {string} */ path) {
   const shape = Array.from(/** @type {Uint32Array} */ (tensor.shape));
   if (shape.length < 1 || shape.length > MAX_RANK)
     throw fault("shape", `${path}.shape`, `${shape.length} dimensions, expected 1 to ${MAX_RANK}`);
   if (product(shape.map((side) => Math.max(side, 1))) > MAX_BYTES)
     throw fault("shape", `${path}.shape`, `the sides ${listed(shape)} multiply to more than a file can hold`);
+  return shape;
+}
+
+/** A tensor whose shape, bytes and scales agree. @returns {Stored} */
+function stored(/** @type {Tree} */ tensor, /** @type {string} */ path) {
+  const shape = sides(tensor, path);
   const type = /** @type {Stored["type"]} */ (tensor.type);
   const { data } = tensor;
   if (product(shape) * SIZES[type] !== data.length)
