@@ -37,6 +37,7 @@ def program(csharp: CSharp) -> Path:
         RUNTIME / "Kernels",
         PROGRAMS / "shared",
         PROGRAMS / "ComponentProgram.cs",
+        PROGRAMS / "ComponentLevels.cs",
         PROGRAMS / "ComponentRig.cs",
     ]
     return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
@@ -299,3 +300,37 @@ def test_a_scale_is_refused_once(story: Story) -> None:
     assert told["state"] == ["Ready"]
     assert len(told["log"]) == 1
     assert "avatars ignore" in told["log"][0]
+
+
+def counts(seed: int) -> list[int]:
+    """Splats of the levels of a synthetic avatar."""
+    return [len(synthetic_avatar(seed).at_level(level).rig.texels.texels) for level in range(3)]
+
+
+def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None:
+    told, levels = story("ChangesLevel", "first"), counts(1)
+    assert told["distance"] == [str(levels[level]) for level in (0, 2, 0)]
+    assert told["asked"] == [str(levels[level]) for level in (1, 2, 0)]
+    assert told["still"] == [str(len(FRAME_ORDER))]
+    assert told["geometry"] == [str(levels[0])]
+    assert told["log"] == []
+
+
+def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
+    told, first, second = story("SharesBudget", "first", "second"), counts(1), counts(2)
+    assert told["splats"] == [f"{first[i]} {second[j]}" for i, j in ((0, 0), (0, 1), (2, 2))]
+    assert told["fixed"] == [f"{first[2]} {second[0]}"]
+    assert told["free"] == [f"{first[0]} {second[0]}"]
+    assert told["allocated"] == ["0"]
+    assert told["log"] == []
+
+
+def test_an_avatar_without_levels_says_so_once_and_shows_all(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(1)
+    taps = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
+    write(folder / "long.muaavatar", replace(avatar, wavelet=replace(avatar.wavelet, **taps)), storage="f16")
+    told = story("LacksLevel", "long")
+    assert told["splats"] == [str(counts(1)[0])] * 2
+    sentence = "the avatar has no such level of detail; it is shown at full size."
+    assert told["message"] == [sentence]
+    assert [line.rpartition(": ")[2] for line in told["log"]] == [sentence]

@@ -59,12 +59,15 @@ class Shot:
     seconds: tuple[float, ...]
     frames: tuple[int, ...]  # of the clip, that these seconds mean
     eyes: int
+    levels: tuple[int, ...] = (0, 0, 0)  # of detail
 
 
 FIRST = Shot("first", (0.0, 0.0, 0.0), (0, 0, 0), 1)
 LATER = Shot("later", (3.2 / 24, 6.2 / 24, 2.2 / 24), (3, 6, 2), 2)
+COARSER = Shot("coarser", (1.2 / 24, 4.2 / 24, 6.2 / 24), (1, 4, 6), 2, (1, 0, 2))
+COARSEST = Shot("coarsest", (2.2 / 24, 5.2 / 24, 3.2 / 24), (2, 5, 3), 1, (2, 1, 1))
 WRAPPED = Shot("wrapped", (7.2 / 24, 12.2 / 24, 70.2 / 24), (0, 5, 0), 1)  # clips of 7 frames at 24 Hz
-SHOTS = (FIRST, LATER, WRAPPED)
+SHOTS = (FIRST, LATER, COARSER, COARSEST, WRAPPED)
 
 
 @pytest.fixture(scope="module")
@@ -95,9 +98,6 @@ class Recorded:
         for file, avatar in zip(files, avatars, strict=True):
             write(file, avatar, storage=storage)
         self.avatars = [read(file) for file in files]
-        counts = [len(avatar.rig.texels.texels) for avatar in self.avatars]
-        firsts = np.cumsum([0, *(count + count % 2 for count in counts)])
-        self.slots = np.concatenate([f + np.arange(n) for f, n in zip(firsts, counts, strict=False)])  # of splats
         self.exact = {shot.label: self._exact(shot) for shot in SHOTS}
         self.cameras = {shot.label: self._cameras(shot) for shot in SHOTS}
         scenario = folder / "scenario.txt"
@@ -110,9 +110,19 @@ class Recorded:
         return joined(
             [
                 moved(decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64), place_of(place))
-                for avatar, frame, place in zip(self.avatars, shot.frames, PLACES, strict=False)
+                for avatar, frame, place in zip(self.shown(shot), shot.frames, PLACES, strict=False)
             ]
         )
+
+    def shown(self, shot: Shot) -> list[Avatar]:
+        """The avatars at the levels of a shot."""
+        return [avatar.at_level(level) for avatar, level in zip(self.avatars, shot.levels, strict=False)]
+
+    def slots(self, shot: Shot) -> Array:
+        """Where the splats of all avatars lie [N]; each begins at an even place."""
+        counts = [len(avatar.rig.texels.texels) for avatar in self.shown(shot)]
+        firsts = np.cumsum([0, *(count + count % 2 for count in counts)])
+        return np.concatenate([first + np.arange(count) for first, count in zip(firsts, counts, strict=False)])
 
     def _cameras(self, shot: Shot) -> tuple[Camera, ...]:
         centres = self.exact[shot.label].centres
@@ -127,9 +137,9 @@ class Recorded:
         for camera in cameras:
             numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
             lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
-        for index, (seconds, place) in enumerate(zip(shot.seconds, PLACES, strict=False)):
+        for index, (seconds, place, level) in enumerate(zip(shot.seconds, PLACES, shot.levels, strict=True)):
             if index < len(self.avatars):
-                lines.append(f"decode {index} {seconds!r} " + " ".join(map(repr, place)))
+                lines.append(f"decode {index} {seconds!r} " + " ".join(map(repr, (*place, level))))
         return "\n".join([*lines, f"sort {shot.label}\n"])
 
     def bounds(self, shot: Shot) -> Array:
@@ -163,7 +173,7 @@ def recorded(
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
 def test_splats_are_those_of_the_reference(recorded: Recorded, shot: Shot) -> None:
-    exact, splats = recorded.exact[shot.label], unpacked(recorded.kept(shot, "splats"))[recorded.slots]
+    exact, splats = recorded.exact[shot.label], unpacked(recorded.kept(shot, "splats"))[recorded.slots(shot)]
     middle = np.mean([camera.position for camera in recorded.cameras[shot.label]], axis=0)
     assert np.abs(splats["centre"] - exact.centres).max() < POSITION_BOUND
     assert np.abs(splats["opacity"] - exact.opacities).max() < OPACITY_BOUND
@@ -177,8 +187,9 @@ def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded,
     count = int(recorded.kept(shot, "arguments")[VISIBLE_WORD])
     slots = recorded.kept(shot, "order")[:count]
     keys = recorded.kept(shot, "keys").view(np.uint16)[slots].astype(int)
-    order = np.searchsorted(recorded.slots, slots)
-    np.testing.assert_array_equal(recorded.slots[order], slots)
+    lie = recorded.slots(shot)
+    order = np.searchsorted(lie, slots)
+    np.testing.assert_array_equal(lie[order], slots)
     bounds = recorded.bounds(shot)
     expected, rounding = exact_keys(exact.centres[order], views, bounds)
     span = np.ptp(exact_depths(bounds, recorded.cameras[shot.label]))

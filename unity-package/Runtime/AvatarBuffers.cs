@@ -13,7 +13,7 @@ namespace Mua
     {
         private readonly BufferSet buffers = new BufferSet();
         private readonly List<Upload> uploads = new List<Upload>();
-        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces, tiles, tileRows, texels;
+        private readonly Upload recLo, recHi, skinIndices, skinWeights, faces;
         private int filled; // uploads
         private long sent, total; // bytes
 
@@ -29,10 +29,9 @@ namespace Mua
             skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
             skinWeights = Add(new Upload("template.skin_weights", avatar.Template.SkinWeights.ToFloats(), sizeof(float)));
             faces = Add(Stored(avatar.Template.Faces, "template.faces"));
-            var held = new TexelTiles(avatar.Texels.Indices.Integers.ToArray(), avatar.Texels.Size);
-            tiles = Add(new Upload("texels.texels", held.Tiles, sizeof(int)));
-            tileRows = Add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
-            texels = Add(new Upload("texels", Places(avatar.Texels), 2 * sizeof(int)));
+            TexelLength = DetailLevel.TexelLength(avatar);
+            Levels = Array.ConvertAll(DetailLevel.All(avatar), LevelOf);
+            SplatCounts = Array.ConvertAll(Levels, level => level.SplatCount);
             foreach (Upload upload in uploads)
             {
                 total += upload.Bytes;
@@ -50,7 +49,14 @@ namespace Mua
 
         public BranchBuffers Appearance { get; }
 
-        public int SplatCount => Avatar.Texels.Count;
+        /// <summary>Of detail, the finest first.</summary>
+        public LevelBuffers[] Levels { get; }
+
+        /// <summary>Splats of each.</summary>
+        public int[] SplatCounts { get; }
+
+        /// <summary>The side of a texel of the finest level, metres.</summary>
+        public double TexelLength { get; }
 
         public int VertexCount => Avatar.Coarse.Mean.Shape[0];
 
@@ -65,16 +71,6 @@ namespace Mua
         public GraphicsBuffer SkinWeights => skinWeights.Buffer;
 
         public GraphicsBuffer Faces => faces.Buffer;
-
-        /// <summary>How many tiles of the texture hold a valid texel.</summary>
-        public int TileCount => tiles.Count;
-
-        public GraphicsBuffer Tiles => tiles.Buffer;
-
-        public GraphicsBuffer TileRows => tileRows.Buffer;
-
-        /// <summary>[N] triangle, and its first two barycentrics in 16 bits each.</summary>
-        public GraphicsBuffer Texels => texels.Buffer;
 
         /// <summary>Share of the bytes that are on the device, 0 to 1.</summary>
         public float Progress => total == 0 ? 1 : (float)((double)sent / total);
@@ -138,8 +134,6 @@ namespace Mua
                 LlMean = StoredOf(branch.LlMean, name + ".ll_mean"),
                 LlBasis = StoredOf(branch.LlBasis, name + ".ll_basis"),
                 Details = details,
-                Upsampling = UpsamplingOf(branch.Details.Length),
-                StaticOffset = StoredOf(branch.StaticOffset, name + ".static_offset"),
                 Channels = branch.Channels,
                 Rank = branch.Rank,
             };
@@ -162,12 +156,29 @@ namespace Mua
             };
         }
 
-        /// <summary>Of the levels beyond the `dynamic` ones that have details.</summary>
-        private Upsampling UpsamplingOf(int dynamic)
+        private LevelBuffers LevelOf(DetailLevel level)
         {
-            var upsampling = new Upsampling(Avatar.Wavelet.RecLo, Avatar.Wavelet.Levels - dynamic);
+            return new LevelBuffers(level, Add)
+            {
+                Geometry = BranchLevelOf(Avatar.Geometry, "geometry", level.Geometry, level.Number),
+                Appearance = BranchLevelOf(Avatar.Appearance, "appearance", level.Appearance, level.Number),
+            };
+        }
+
+        /// <summary>The finest level's static offset as the file stores it, those of others as they were computed.</summary>
+        private BranchLevel BranchLevelOf(Branch branch, string name, float[] staticOffset, int number)
+        {
+            string field = name + ".static_offset";
+            var upsampling = new Upsampling(
+                Avatar.Wavelet.RecLo, Avatar.Wavelet.Levels - branch.Details.Length, number);
             Add(upsampling.Taps);
-            return upsampling;
+            return new BranchLevel
+            {
+                Upsampling = upsampling,
+                StaticOffset = number == 0
+                    ? StoredOf(branch.StaticOffset, field)
+                    : new StoredBuffer(Add(new Upload(field, staticOffset, sizeof(float)))),
+            };
         }
 
         private StoredBuffer StoredOf(Tensor tensor, string field)
@@ -185,24 +196,6 @@ namespace Mua
         {
             uploads.Add(upload);
             return upload;
-        }
-
-        /// <summary>[N, 2] as pack_texels of python/mua/kernels/splat_project.py has them.</summary>
-        private static int[] Places(Texels texels)
-        {
-            float[] barycentrics = texels.Barycentrics.ToFloats();
-            var places = new int[2 * texels.Count];
-            for (int i = 0; i < texels.Count; i++)
-            {
-                places[2 * i] = texels.Triangles.Integers[i];
-                places[2 * i + 1] = Steps(barycentrics[2 * i]) | Steps(barycentrics[2 * i + 1]) << 16;
-            }
-            return places;
-        }
-
-        private static int Steps(float barycentric)
-        {
-            return (int)Math.Round((double)barycentric * ushort.MaxValue);
         }
     }
 }

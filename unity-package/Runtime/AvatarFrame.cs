@@ -33,6 +33,7 @@ namespace Mua
         public AvatarFrame(AvatarResources resources, AvatarBuffers avatar)
         {
             Avatar = avatar;
+            Level = avatar.Levels[0];
             mlpMatmul = new MlpMatmul(resources.MlpMatmul);
             blendSubbands = new BlendSubbands(resources.BlendSubbands);
             inverseDwt = new InverseDwt(resources.InverseDwt);
@@ -55,7 +56,10 @@ namespace Mua
 
         public AvatarBuffers Avatar { get; }
 
-        public int SplatCount => Avatar.SplatCount;
+        /// <summary>That of the last decode; the buffers hold the finest.</summary>
+        public LevelBuffers Level { get; private set; }
+
+        public int SplatCount => Level.SplatCount;
 
         /// <summary>[6, N] of four half floats, of the last decode.</summary>
         public GraphicsBuffer TexelChannels { get; private set; }
@@ -100,23 +104,25 @@ namespace Mua
         /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
         /// <param name="translations">[k, J, 3] local joint translations, metres.</param>
         /// <param name="place">From the avatar's space to the right-handed world.</param>
+        /// <param name="level">Of detail, 0 being the finest.</param>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
-            in DualQuaternion place)
+            in DualQuaternion place, int level = 0)
         {
-            Decode(commands, rotations, translations, rotations, translations, place);
+            Decode(commands, rotations, translations, rotations, translations, place, level);
         }
 
         /// <summary>The same, in a pose [J, 4] and [J, 3] other than the window's newest.</summary>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
-            ReadOnlySpan<double> pose, ReadOnlySpan<double> offsets, in DualQuaternion place)
+            ReadOnlySpan<double> pose, ReadOnlySpan<double> offsets, in DualQuaternion place, int level = 0)
         {
+            Level = Avatar.Levels[level];
             WriteDescriptor(rotations, translations);
             WritePose(pose, offsets, place);
-            Branch(commands, Avatar.Geometry, 0);
+            Branch(commands, Avatar.Geometry, Level.Geometry, 0);
             Coarse(commands);
-            Branch(commands, Avatar.Appearance, AppearanceRow);
+            Branch(commands, Avatar.Appearance, Level.Appearance, AppearanceRow);
             Pose(commands);
             IsDecoded = true;
         }
@@ -212,7 +218,7 @@ namespace Mua
         /// <summary>
         /// Coefficients, LL, level by level as long as there are details; then the valid texels to TexelChannels.
         /// </summary>
-        private void Branch(CommandBuffer commands, BranchBuffers branch, int firstRow)
+        private void Branch(CommandBuffer commands, BranchBuffers branch, BranchLevel shown, int firstRow)
         {
             commands.BeginSample(AvatarStages.Texture);
             GraphicsBuffer alpha = Mlp(commands, branch.Mlp);
@@ -228,7 +234,8 @@ namespace Mua
                 offset += branch.Channels * band.Rank;
                 size *= 2;
             }
-            inverseDwt.UpsampleTexels(commands, Avatar, branch, size, textures[0], TexelChannels, firstRow);
+            inverseDwt.UpsampleTexels(
+                commands, Level, shown, branch.Channels, size, textures[0], TexelChannels, firstRow);
             commands.EndSample(AvatarStages.Texture);
         }
 
@@ -252,7 +259,7 @@ namespace Mua
         /// <summary>Numbers of a branch's texture where its details end.</summary>
         private long Detailed(BranchBuffers branch)
         {
-            long size = Avatar.Avatar.Texels.Size / branch.Upsampling.Factor;
+            long size = (long)(Avatar.Avatar.Texels.Size >> Avatar.Avatar.Wavelet.Levels) << branch.Details.Length;
             return branch.Channels * size * size;
         }
 

@@ -19,7 +19,8 @@ namespace Mua
         private string chosen = ""; // the clip's name when it took effect
         private string refusal; // why there is no room beside the other avatars
         private bool hasMoved; // since the last Record
-        private bool isScaleReported;
+        private bool isScaleReported, isLevelReported;
+        private int level;
 
         /// <summary>Begins to load an imported avatar, or the file where that is null.</summary>
         public AvatarInstance(AvatarRenderer owner, AvatarAsset avatar, string file)
@@ -58,6 +59,17 @@ namespace Mua
         public AvatarSurface Surface { get; private set; }
 
         public AvatarViews Views => owner.Views;
+
+        /// <summary>Of detail, for the next Record.</summary>
+        public int Level
+        {
+            get => ChoosesLevel ? level : FixedLevel;
+            set => level = value;
+        }
+
+        /// <summary>Whether distance and budget choose the level; the detailed geometry is of the finest.</summary>
+        public bool ChoosesLevel =>
+            owner.Level == AvatarLevel.Automatic && (Views & AvatarViews.Splats) != 0 && (Views & AvatarViews.Geometry) == 0;
 
         public int Layer => owner.gameObject.layer;
 
@@ -113,10 +125,11 @@ namespace Mua
         public void Record(CommandBuffer commands)
         {
             AvatarPose pose = motion.Pose;
-            if (pose.IsFresh)
+            if (pose.IsFresh || (Decoded.IsDecoded && Decoded.Level.Number != Level))
             {
                 Decoded.Decode(
-                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value);
+                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value,
+                    Level);
             }
             else if (hasMoved)
             {
@@ -124,6 +137,23 @@ namespace Mua
             }
             pose.IsFresh = false;
             hasMoved = false;
+        }
+
+        /// <summary>How near the eyes are to it, and how large a texel at the nearest point of its box looks to them.</summary>
+        public AvatarSeen Seen(AvatarEyes eyes)
+        {
+            var eye = new Vector3(eyes.Middle.x, eyes.Middle.y, eyes.Middle.z);
+            Vector3 aside = Vector3.Max(Vector3.Max(Decoded.Low - eye, eye - Decoded.High), Vector3.zero);
+            double distance = aside.magnitude, focal = eyes.Projection[0].m11 * eyes.Screen[1] / 2;
+            return new AvatarSeen
+            {
+                Distance = distance,
+                Texel = Decoded.IsDecoded
+                    ? buffers.TexelLength * Math.Abs(focal) / Math.Max(distance, eyes.Near)
+                    : double.MaxValue, // nobody knows yet where its box is
+                Counts = buffers.SplatCounts,
+                Level = level,
+            };
         }
 
         /// <summary>Has the next Record pose the avatar again.</summary>
@@ -149,6 +179,7 @@ namespace Mua
                     ChooseClip();
                 }
                 BindRig();
+                CheckLevel();
             }
         }
 
@@ -199,6 +230,29 @@ namespace Mua
             State = AvatarState.Ready;
             ChooseClip();
             BindRig();
+            CheckLevel();
+        }
+
+        /// <summary>The level that the owner asks for, where distance does not choose; the finest where there is none.</summary>
+        private int FixedLevel
+        {
+            get
+            {
+                int asked = (Views & AvatarViews.Geometry) != 0 ? 0 : Math.Max((int)owner.Level - (int)AvatarLevel.Full, 0);
+                return asked < buffers.Levels.Length ? asked : 0;
+            }
+        }
+
+        /// <summary>Says once where the avatar lacks the level that is asked for, or any to choose from.</summary>
+        private void CheckLevel()
+        {
+            int asked = (int)owner.Level - (int)AvatarLevel.Full, most = buffers.Levels.Length;
+            if (isLevelReported || (owner.Level == AvatarLevel.Automatic ? most > 1 : asked < most))
+            {
+                return;
+            }
+            isLevelReported = true;
+            Warn("the avatar has no such level of detail; it is shown at full size.");
         }
 
         private void ChooseClip()

@@ -26,6 +26,22 @@ namespace Mua
         Shadow = 16,
     }
 
+    /// <summary>How many texels of an avatar are shown.</summary>
+    public enum AvatarLevel
+    {
+        /// <summary>As many as can be told apart at its distance, within the AvatarBudget where there is one.</summary>
+        Automatic,
+
+        /// <summary>All.</summary>
+        Full,
+
+        /// <summary>Half as many along a side, a quarter of the splats.</summary>
+        Half,
+
+        /// <summary>A quarter along a side, a sixteenth of the splats.</summary>
+        Quarter,
+    }
+
     /// <summary>How far an AvatarRenderer is with its avatar.</summary>
     public enum AvatarState
     {
@@ -67,6 +83,10 @@ namespace Mua
 
         [SerializeField, Tooltip("What is drawn: splats, their surface as geometry, the coarse mesh, its bones, its shadow.")]
         private AvatarViews views = AvatarViews.Splats | AvatarViews.Shadow;
+
+        [SerializeField]
+        [Tooltip("Level of detail: how many texels are shown. Automatic shows fewer when the avatar is seen from afar.")]
+        private AvatarLevel level = AvatarLevel.Automatic;
 
         private AvatarInstance shown; // null while there is nothing to show
         private AvatarAsset loaded; // as avatar and file were when they took effect
@@ -145,6 +165,16 @@ namespace Mua
                 AvatarWorld.Refresh();
             }
         }
+
+        /// <summary>How many texels are shown.</summary>
+        public AvatarLevel Level
+        {
+            get => level;
+            set => level = value;
+        }
+
+        /// <summary>Splats of the level that is shown; 0 until the avatar is ready.</summary>
+        public int SplatCount => shown == null || shown.Decoded == null ? 0 : shown.Decoded.SplatCount;
 
         /// <summary>Box of the last pose in Unity's world, metres.</summary>
         public Bounds Bounds =>

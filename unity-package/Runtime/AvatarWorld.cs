@@ -19,6 +19,7 @@ namespace Mua
         private readonly List<AvatarInstance> avatars = new List<AvatarInstance>();
         private readonly List<AvatarFrame> frames = new List<AvatarFrame>();
         private readonly List<AvatarDraw> draws = new List<AvatarDraw>();
+        private readonly AvatarLevels levels = new AvatarLevels();
         private readonly SplatDraw splatDraw;
         private readonly AvatarBuiltIn builtIn;
         private SplatFrame splats;
@@ -106,15 +107,19 @@ namespace Mua
             {
                 return false;
             }
+            levels.See(avatars, eyes);
             for (int i = 0; i < avatars.Count; i++)
             {
                 avatars[i].Record(commands);
-                avatars[i].Surface.AddOpaque(draws, eyes, avatars[i].Views);
             }
             bool drawsSplats = splats.SplatCount > 0 && !camera.orthographic;
             if (drawsSplats || ShowsGeometry()) // which is drawn through the splats' centres
             {
                 splats.Project(commands, eyes);
+            }
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                avatars[i].Surface.AddOpaque(draws, eyes, avatars[i].Views);
             }
             if (drawsSplats)
             {
@@ -173,6 +178,7 @@ namespace Mua
         {
             Release();
             frames.Clear();
+            levels.Restart(avatars.Count);
             AddFrames(true);
             int shown = frames.Count;
             AddFrames(false);

@@ -17,6 +17,13 @@ namespace Mua
             Layout = new[] { (int)tensor.Type, perScale, rows == 0 ? 0 : upload.StoredWords };
         }
 
+        /// <summary>Of numbers that are no part of the file, as f32.</summary>
+        public StoredBuffer(Upload floats)
+        {
+            upload = floats;
+            Layout = new[] { (int)ElementType.F32, 1, 0 };
+        }
+
         public GraphicsBuffer Words => upload.Buffer;
 
         /// <summary>Element type, elements for each scale, index of the first scale's word.</summary>
@@ -49,8 +56,6 @@ namespace Mua
         public StoredBuffer LlMean;
         public StoredBuffer LlBasis;
         public BandBuffers[] Details; // coarse first
-        public Upsampling Upsampling; // of the levels without details
-        public StoredBuffer StaticOffset;
         public int Channels;
         public int Rank; // of LL
     }

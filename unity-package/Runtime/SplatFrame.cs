@@ -19,6 +19,7 @@ namespace Mua
         private readonly SplatSort splatSort;
         private readonly AvatarFrame[] avatars;
         private readonly int shown;
+        private readonly int capacity; // splats of the finest levels of those that are shown
         private readonly BufferSet buffers = new BufferSet();
         private GraphicsBuffer halfSorted;
 
@@ -39,8 +40,8 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 this.avatars[i] = avatars[i];
-                placed += Even(avatars[i]);
-                SplatCount = i < shown ? (int)Math.Min(placed, int.MaxValue) : SplatCount;
+                placed += Even(avatars[i].Avatar.SplatCounts[0]);
+                capacity = i < shown ? (int)Math.Min(placed, MostSplats) : capacity;
             }
             try
             {
@@ -51,16 +52,11 @@ namespace Mua
                 Dispose();
                 throw;
             }
-            int first = 0;
-            for (int i = 0; i < avatars.Count; i++)
-            {
-                avatars[i].ShareSplats(Splats, first);
-                first += Even(avatars[i]);
-            }
+            Place();
         }
 
-        /// <summary>N, of all avatars that are drawn, and one more where an avatar has an odd number.</summary>
-        public int SplatCount { get; }
+        /// <summary>N, of all avatars that are drawn, and one more where an avatar has an odd number; by the last Project.</summary>
+        public int SplatCount { get; private set; }
 
         /// <summary>[N, 8] words, as pack_splats of python/mua/kernels/splat_project.py lays them out.</summary>
         public GraphicsBuffer Splats { get; private set; }
@@ -88,6 +84,7 @@ namespace Mua
         public void Project(CommandBuffer commands, AvatarEyes eyes)
         {
             Eyes = eyes;
+            Place();
             Vector3 low = avatars[0].Low, high = avatars[0].High;
             for (int i = 1; i < shown; i++)
             {
@@ -117,6 +114,18 @@ namespace Mua
             buffers.Dispose();
         }
 
+        /// <summary>Gives each avatar room for the splats of the level that it has decoded.</summary>
+        private void Place()
+        {
+            int first = 0;
+            for (int i = 0; i < avatars.Length; i++)
+            {
+                avatars[i].ShareSplats(Splats, first);
+                first += Even(avatars[i].SplatCount);
+                SplatCount = i < shown ? first : SplatCount;
+            }
+        }
+
         private void CreateBuffers(long placed)
         {
             if (placed > MostSplats)
@@ -126,13 +135,13 @@ namespace Mua
             }
             Splats = buffers.Structured("splats", SplatWords / 4 * placed, 4 * sizeof(uint));
             Keys = buffers.Structured("keys", placed / 2, sizeof(uint));
-            long sorted = (long)SplatSort.Digits * Kernel.Groups(SplatCount, SplatSort.Sorted);
+            long sorted = (long)SplatSort.Digits * Kernel.Groups(capacity, SplatSort.Sorted);
             DigitCounts = buffers.Structured("digit_counts", sorted, sizeof(uint));
             DigitTotals = buffers.Structured("digit_totals", SplatSort.Digits, sizeof(uint));
             Arguments = buffers.Copied("arguments", ArgumentWords);
             IndirectArguments = buffers.Arguments("indirect arguments", ArgumentWords);
-            halfSorted = buffers.Structured("half_sorted", SplatCount, sizeof(uint));
-            Order = buffers.Structured("order", SplatCount, sizeof(uint));
+            halfSorted = buffers.Structured("half_sorted", capacity, sizeof(uint));
+            Order = buffers.Structured("order", capacity, sizeof(uint));
         }
 
         /// <summary>One pass of the sort, from the splats' keys to elements, or from those to the order.</summary>
@@ -144,9 +153,9 @@ namespace Mua
         }
 
         /// <summary>An avatar's splats, and one more where they are odd: two keys lie in a word.</summary>
-        private static int Even(AvatarFrame avatar)
+        private static int Even(int splats)
         {
-            return avatar.SplatCount + avatar.SplatCount % 2;
+            return splats + splats % 2;
         }
     }
 }

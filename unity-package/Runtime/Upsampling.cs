@@ -10,15 +10,22 @@ namespace Mua
     {
         /// <param name="recLo">Taps of one level.</param>
         /// <param name="levels">Without details.</param>
-        public Upsampling(double[] recLo, int levels)
+        /// <param name="coarser">At most as many: times that two texels become one.</param>
+        public Upsampling(double[] recLo, int levels, int coarser)
         {
             var taps = new double[] { 1 };
             for (int level = 0; level < levels; level++)
             {
                 taps = Refined(taps, recLo);
             }
-            Factor = 1 << levels;
-            int delay = (Factor - 1) * (recLo.Length / 2 - 1), first = 0, last = taps.Length - 1;
+            int delay = ((1 << levels) - 1) * (recLo.Length / 2 - 1);
+            for (int i = 0; i < coarser; i++)
+            {
+                taps = Halved(taps, delay % 2);
+                delay = (delay + 1) / 2;
+            }
+            Factor = 1 << (levels - coarser);
+            int first = 0, last = taps.Length - 1;
             while (last > 0 && taps[last] == 0)
             {
                 last--;
@@ -61,6 +68,17 @@ namespace Mua
                 }
             }
             return refined;
+        }
+
+        /// <summary>The filter of the means of two texels: means of two taps, of which zeros precede the first.</summary>
+        private static double[] Halved(double[] taps, int zeros)
+        {
+            var halved = new double[(taps.Length + zeros + 1) / 2];
+            for (int i = 0; i < taps.Length; i++)
+            {
+                halved[(i + zeros) / 2] += taps[i] / 2;
+            }
+            return halved;
         }
     }
 }

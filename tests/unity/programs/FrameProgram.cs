@@ -38,10 +38,10 @@ namespace Mua
             translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
         }
 
-        public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place)
+        public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place, int level)
         {
             Clip.ReadWindow((int)Clip.Position(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
-            Frame.Decode(commands, rotations, translations, place);
+            Frame.Decode(commands, rotations, translations, place, level);
         }
 
         public void Dispose()
@@ -114,7 +114,7 @@ namespace Mua
             else if (words[0] == "decode")
             {
                 double seconds = double.Parse(words[2], CultureInfo.InvariantCulture);
-                Actors[(int)Number(words, 1)].Decode(Commands, seconds, Place(words));
+                Actors[(int)Number(words, 1)].Decode(Commands, seconds, Place(words), words.Length > 10 ? (int)Number(words, 10) : 0);
             }
             else if (words[0] == "sort")
             {
@@ -175,7 +175,7 @@ namespace Mua
                 }
                 foreach (Actor actor in Actors)
                 {
-                    actor.Decode(Commands, i / 50.0, place);
+                    actor.Decode(Commands, i / 50.0, place, (i + WarmUp) / 7 % 3);
                 }
                 Execute(splats);
             }

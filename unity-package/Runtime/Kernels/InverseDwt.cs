@@ -61,23 +61,23 @@ namespace Mua
         /// `firstRow` on.
         /// </summary>
         public void UpsampleTexels(
-            CommandBuffer commands, AvatarBuffers avatar, BranchBuffers branch, int size, GraphicsBuffer ll,
+            CommandBuffer commands, LevelBuffers level, BranchLevel shown, int channels, int size, GraphicsBuffer ll,
             GraphicsBuffer texelChannels, int firstRow)
         {
             upsampleTexels.Set(commands, Ll, ll);
-            upsampleTexels.Set(commands, UpsamplingTaps, branch.Upsampling.Taps.Buffer);
-            upsampleTexels.Set(commands, Tiles, avatar.Tiles);
-            upsampleTexels.Set(commands, TileRows, avatar.TileRows);
-            upsampleTexels.Set(commands, StaticOffset, StaticOffsetLayout, branch.StaticOffset);
+            upsampleTexels.Set(commands, UpsamplingTaps, shown.Upsampling.Taps.Buffer);
+            upsampleTexels.Set(commands, Tiles, level.Tiles);
+            upsampleTexels.Set(commands, TileRows, level.TileRows);
+            upsampleTexels.Set(commands, StaticOffset, StaticOffsetLayout, shown.StaticOffset);
             upsampleTexels.Set(commands, TexelChannels, texelChannels);
-            upsampleTexels.Set(commands, Channels, branch.Channels);
+            upsampleTexels.Set(commands, Channels, channels);
             upsampleTexels.Set(commands, Size, size);
-            upsampleTexels.Set(commands, Factor, branch.Upsampling.Factor);
-            upsampleTexels.Set(commands, Reach, branch.Upsampling.Reach);
-            upsampleTexels.Set(commands, Delay, branch.Upsampling.Delay);
-            upsampleTexels.Set(commands, TexelCount, avatar.SplatCount);
+            upsampleTexels.Set(commands, Factor, shown.Upsampling.Factor);
+            upsampleTexels.Set(commands, Reach, shown.Upsampling.Reach);
+            upsampleTexels.Set(commands, Delay, shown.Upsampling.Delay);
+            upsampleTexels.Set(commands, TexelCount, level.SplatCount);
             upsampleTexels.Set(commands, FirstRow, firstRow);
-            upsampleTexels.Dispatch(commands, avatar.TileCount, 1, Kernel.Groups(branch.Channels, ChannelBatch));
+            upsampleTexels.Dispatch(commands, level.TileCount, 1, Kernel.Groups(channels, ChannelBatch));
         }
     }
 }

@@ -40,7 +40,7 @@ namespace Mua
         {
             project.Set(commands, Mesh, avatar.Mesh);
             project.Set(commands, Faces, avatar.Avatar.Faces);
-            project.Set(commands, Texels, avatar.Avatar.Texels);
+            project.Set(commands, Texels, avatar.Level.Texels);
             project.Set(commands, TexelChannels, avatar.TexelChannels);
             project.Set(commands, VertexDq, avatar.VertexDq);
             project.Set(commands, Splats, frame.Splats);

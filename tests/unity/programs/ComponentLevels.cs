@@ -1,0 +1,77 @@
+// Levels of detail of AvatarRenderer and AvatarBudget in the stand-ins' player loop.
+using UnityEngine;
+
+namespace Mua
+{
+    internal static partial class ComponentProgram
+    {
+        private const float Near = 1, Far = 2000; // metres behind the avatars
+
+        private static void ChangesLevel()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.IsPlaying = false;
+            foreach (float distance in new[] { Near, Far, Near })
+            {
+                Stand(distance);
+                Say("distance", Splats(shown));
+            }
+            foreach (AvatarLevel level in new[] { AvatarLevel.Half, AvatarLevel.Quarter, AvatarLevel.Full })
+            {
+                shown.Level = level;
+                Say("asked", Splats(shown));
+            }
+            shown.Level = AvatarLevel.Quarter;
+            Say("still", Dispatches(2) - Dispatches(1)); // a decode goes before the pose once
+            shown.Views = AvatarViews.Splats | AvatarViews.Geometry;
+            Say("geometry", Splats(shown));
+        }
+
+        private static void SharesBudget()
+        {
+            AvatarRenderer first = Show(files[0]), second = Show(files[1]);
+            Stand(Near);
+            second.transform.position = new Vector3(0, 0, 5);
+            var budget = Make("budget").AddComponent<AvatarBudget>();
+            foreach (int splats in new[] { 1 << 20, Full(first) + Full(second) - 1, 0 })
+            {
+                budget.Splats = splats;
+                Say("splats", Splats(first) + " " + Splats(second));
+            }
+            budget.Splats = Full(second);
+            second.Level = AvatarLevel.Full;
+            Say("fixed", Splats(first) + " " + Splats(second));
+            budget.enabled = false;
+            Say("free", Splats(first) + " " + Splats(second));
+            long before = System.GC.GetAllocatedBytesForCurrentThread();
+            Frames(30);
+            Say("allocated", System.GC.GetAllocatedBytesForCurrentThread() - before);
+        }
+
+        private static void LacksLevel()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            Stand(Far);
+            Say("splats", Splats(shown));
+            shown.Level = AvatarLevel.Half;
+            Say("splats", Splats(shown));
+            Say("message", shown.Message);
+        }
+
+        private static int Full(AvatarRenderer avatar)
+        {
+            return avatar.Decoded.Avatar.SplatCounts[0];
+        }
+
+        private static int Splats(AvatarRenderer avatar)
+        {
+            Frames(3);
+            return avatar.SplatCount;
+        }
+
+        private static void Stand(float distance)
+        {
+            Scene[0].transform.position = new Vector3(0, 0, -distance);
+        }
+    }
+}

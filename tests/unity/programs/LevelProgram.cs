@@ -1,0 +1,68 @@
+// Prints the levels of detail of a file, and those that are chosen for avatars, for tests/unity/test_levels.py.
+
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using Mua;
+using Mua.Format;
+
+internal static class LevelProgram
+{
+    private static void Main(string[] arguments)
+    {
+        CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+        if (arguments[0] == "choose")
+        {
+            foreach (string line in File.ReadAllLines(arguments[1]))
+            {
+                Console.WriteLine(Chosen(line.Split(' ')));
+            }
+            return;
+        }
+        AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(arguments[0]));
+        Console.WriteLine("texel " + DetailLevel.TexelLength(avatar).ToString("R"));
+        foreach (DetailLevel level in DetailLevel.All(avatar))
+        {
+            Console.WriteLine("level " + level.Number + " " + level.Size + " " + level.Count);
+            Print("texels", level.Texels);
+            Print("triangles", level.Triangles);
+            Print("barycentrics", level.Barycentrics);
+            Print("geometry", level.Geometry);
+            Print("appearance", level.Appearance);
+        }
+    }
+
+    /// <summary>Levels of a line: budget, then for each avatar distance, texel, shown, count of levels, counts.</summary>
+    private static string Chosen(string[] numbers)
+    {
+        var avatars = new List<AvatarSeen>();
+        int at = 1;
+        while (at < numbers.Length)
+        {
+            var seen = new AvatarSeen
+            {
+                Distance = double.Parse(numbers[at]),
+                Texel = double.Parse(numbers[at + 1]),
+                Level = int.Parse(numbers[at + 2]),
+                Counts = new int[int.Parse(numbers[at + 3])],
+            };
+            at += 4;
+            for (int i = 0; i < seen.Counts.Length; i++)
+            {
+                seen.Counts[i] = int.Parse(numbers[at++]);
+            }
+            avatars.Add(seen);
+        }
+        AvatarSeen[] chosen = avatars.ToArray();
+        LevelChoice.Choose(chosen, new int[chosen.Length], long.Parse(numbers[0]));
+        return "levels " + string.Join(" ", Array.ConvertAll(chosen, seen => seen.Level.ToString()));
+    }
+
+    private static void Print(string name, Array values)
+    {
+        var bytes = new byte[Buffer.ByteLength(values)];
+        Buffer.BlockCopy(values, 0, bytes, 0, bytes.Length);
+        Console.WriteLine(name + " " + BitConverter.ToString(bytes).Replace("-", ""));
+    }
+}

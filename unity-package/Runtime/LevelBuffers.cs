@@ -1,0 +1,70 @@
+using System;
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>What is geometry's or appearance's alone of a level of detail.</summary>
+    internal sealed class BranchLevel
+    {
+        public Upsampling Upsampling; // of the wavelet levels without details
+        public StoredBuffer StaticOffset;
+    }
+
+    /// <summary>The texels of one level of detail on the device (python/mua/player/buffers.py).</summary>
+    internal sealed class LevelBuffers
+    {
+        private readonly Upload tiles, tileRows, texels;
+
+        /// <param name="level">What it is made of.</param>
+        /// <param name="add">Takes what is to be uploaded.</param>
+        public LevelBuffers(DetailLevel level, Func<Upload, Upload> add)
+        {
+            Number = level.Number;
+            Size = level.Size;
+            SplatCount = level.Count;
+            var held = new TexelTiles(level.Texels, level.Size);
+            tiles = add(new Upload("texels.texels", held.Tiles, sizeof(int)));
+            tileRows = add(new Upload("texels.texels", held.Rows, 2 * sizeof(int)));
+            texels = add(new Upload("texels", Places(level), 2 * sizeof(int)));
+        }
+
+        /// <summary>0 is the finest.</summary>
+        public int Number { get; }
+
+        /// <summary>Texels along a side of the texture.</summary>
+        public int Size { get; }
+
+        public int SplatCount { get; }
+
+        public BranchLevel Geometry { get; set; }
+
+        public BranchLevel Appearance { get; set; }
+
+        /// <summary>How many tiles of the texture hold a valid texel.</summary>
+        public int TileCount => tiles.Count;
+
+        public GraphicsBuffer Tiles => tiles.Buffer;
+
+        public GraphicsBuffer TileRows => tileRows.Buffer;
+
+        /// <summary>[N] triangle, and its first two barycentrics in 16 bits each.</summary>
+        public GraphicsBuffer Texels => texels.Buffer;
+
+        /// <summary>[N, 2] as pack_texels of python/mua/kernels/splat_project.py has them.</summary>
+        private static int[] Places(DetailLevel level)
+        {
+            var places = new int[2 * level.Count];
+            for (int i = 0; i < level.Count; i++)
+            {
+                places[2 * i] = level.Triangles[i];
+                places[2 * i + 1] = Steps(level.Barycentrics[2 * i]) | Steps(level.Barycentrics[2 * i + 1]) << 16;
+            }
+            return places;
+        }
+
+        private static int Steps(float barycentric)
+        {
+            return (int)Math.Round((double)barycentric * ushort.MaxValue);
+        }
+    }
+}
