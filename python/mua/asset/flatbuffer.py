@@ -5,6 +5,7 @@ https://flatbuffers.dev/internals/ describes the bytes.
 """
 
 import struct
+from collections.abc import Sequence
 from typing import Any
 
 import flatbuffers
@@ -25,7 +26,8 @@ SCALARS = {
     "double": np.dtype("<f8"),
     **{name: np.dtype("u1") for name in ENUMS},
 }
-VERSION = (2, 1)  # major, minor of the format
+VERSION = (3, 0)  # major, minor of the format: the newest that is read
+DATA_ALIGN = 16  # bytes, of a tensor's data
 MAX_BYTES = 2**31 - 1  # FlatBuffers' offsets are 32 bits, and its builders stop at half of them
 
 
@@ -41,23 +43,46 @@ class FormatError(InputError):
         return FormatError(self.code, self.field, self.sentence, file=file)
 
 
-def build(tree: Tree) -> bytes:
-    """The bytes of a file whose root table is `tree`; the same tree gives the same bytes."""
-    builder = flatbuffers.Builder(1 << 16)
-    builder.ForceDefaults(True)
-    root = _build_table(builder, ROOT, tree)
-    builder.Finish(root, file_identifier=IDENTIFIER)
-    return bytes(builder.Output())
+class _Builder(flatbuffers.Builder):
+    """Also knows the vectors that are placed already."""
+
+    def __init__(self) -> None:
+        super().__init__(1 << 16)
+        self.ForceDefaults(True)
+        self.placed: dict[int, int] = {}  # by the identity of what they hold
 
 
-def _build_table(builder: flatbuffers.Builder, table: str, tree: Tree) -> int:
+def build(tree: Tree, stages: Sequence[Sequence[Array]] = ()) -> bytes:
+    """The bytes of a file whose root table is `tree`; the same tree gives the same bytes.
+
+    The data [bytes] of the tensors in `stages` stands last, stage by stage; the field `stages` says where each ends.
+    """
+    if not stages:
+        return _build(tree, ())[0]
+    _, ends = _build({**tree, "stages": np.zeros(len(stages))}, stages)
+    return _build({**tree, "stages": ends}, stages)[0]
+
+
+def _build(tree: Tree, stages: Sequence[Sequence[Array]]) -> tuple[bytes, list[int]]:
+    """The file, and the byte after each stage's last; a FlatBuffer grows towards its start."""
+    builder, behind = _Builder(), []
+    for stage in reversed(stages):
+        behind.append(builder.Offset())
+        for values in reversed(stage):
+            builder.placed[id(values)] = _build_scalars(builder, values, DATA_ALIGN)
+    builder.Finish(_build_table(builder, ROOT, tree), file_identifier=IDENTIFIER)
+    content = bytes(builder.Output())
+    return content, [len(content) - offset for offset in reversed(behind)]
+
+
+def _build_table(builder: _Builder, table: str, tree: Tree) -> int:
     fields = TABLES[table]
     offsets = {f.name: _build_child(builder, f, tree[f.name]) for f in fields if _by_offset(f) and f.name in tree}
     builder.StartObject(len(fields))
     for slot, field in enumerate(fields):
         if field.name in offsets:
             builder.PrependUOffsetTRelativeSlot(slot, offsets[field.name], 0)
-        elif not _by_offset(field):
+        elif not _by_offset(field) and field.name in tree:
             _prepend_scalar(builder, slot, field, tree[field.name])
     return int(builder.EndObject())
 
@@ -73,7 +98,9 @@ def _prepend_scalar(builder: flatbuffers.Builder, slot: int, field: Field, value
     getattr(builder, f"Prepend{name}Slot")(slot, value, 0)
 
 
-def _build_child(builder: flatbuffers.Builder, field: Field, value: Any) -> int:
+def _build_child(builder: _Builder, field: Field, value: Any) -> int:
+    if id(value) in builder.placed:
+        return builder.placed[id(value)]
     if field.vector and field.kind in SCALARS:
         return _build_scalars(builder, np.ascontiguousarray(value, dtype=SCALARS[field.kind]), field.align)
     if field.vector:
@@ -85,7 +112,7 @@ def _build_child(builder: flatbuffers.Builder, field: Field, value: Any) -> int:
     return _build_one(builder, field.kind, value)
 
 
-def _build_one(builder: flatbuffers.Builder, kind: str, value: Any) -> int:
+def _build_one(builder: _Builder, kind: str, value: Any) -> int:
     return int(builder.CreateString(value)) if kind == "string" else _build_table(builder, kind, value)
 
 

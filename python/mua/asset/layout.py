@@ -18,6 +18,7 @@ ROOT = "Avatar"
 
 ENUMS = {
     "ElementType": ("F32", "F16", "I8", "I32"),
+    "Packing": ("Plain", "Deflate"),
     "Axes": ("MetresYUpRightHanded",),
     "RotationEncoding": ("SixD",),
     "WindowOrder": ("NewestFirst",),
@@ -29,6 +30,7 @@ TABLES = {
         Field("type", "ElementType"),
         Field("data", "ubyte", vector=True, required=True, align=16),
         Field("scale", "float", vector=True),
+        Field("packing", "Packing"),
     ),
     "Skeleton": (
         Field("names", "string", vector=True, required=True),
@@ -62,6 +64,7 @@ TABLES = {
         Field("texels", "Tensor", required=True),
         Field("triangles", "Tensor", required=True),
         Field("barycentrics", "Tensor", required=True),
+        Field("listed", "Tensor"),
     ),
     "Wavelet": (
         Field("name", "string", required=True),
@@ -121,5 +124,6 @@ TABLES = {
         Field("bounds", "Tensor", required=True),
         Field("thumbnail", "ubyte", vector=True, required=True),
         Field("surface", "Surface"),
+        Field("stages", "uint", vector=True),
     ),
 }

@@ -9,6 +9,7 @@ from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree, parse
+from mua.asset.packing import unpack
 from mua.asset.tensors import indices, reals
 from mua.errors import InputError
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
@@ -18,7 +19,7 @@ from mua.pose.skeleton import Skeleton
 from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
 from mua.rig.surface import END, Surface, block_triangles, blocks, codes_of, count_codes
-from mua.rig.texel_map import TexelMap
+from mua.rig.texel_map import TexelMap, centre_barycentrics
 
 UNIT_BOUND = 2e-3  # a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
 WEIGHT_BOUND = 1e-4  # 8 weights rounded to f32, with room for a writer that rounds to f16-derived values
@@ -66,7 +67,7 @@ def load(path: PathLike) -> Tree:
 
 
 def parse_checked(content: bytes) -> Tree:
-    """The tree of a file whose structure and checksum are sound.
+    """The tree of a file whose structure and checksum are sound; packed tensors are unpacked.
 
     Errors: FormatError, with code `checksum` where the content is not what was written.
     """
@@ -79,7 +80,15 @@ def parse_checked(content: bytes) -> Tree:
         raise FormatError(
             "checksum", "crc32", f"{tree['crc32']:08x}, but the content gives {found:08x}: the file is damaged"
         )
+    _require_stages(tree, len(content))
+    unpack(tree, len(content))
     return tree
+
+
+def _require_stages(tree: Tree, size: int) -> None:
+    ends = tree.get("stages", np.zeros(0, np.uint32)).astype(np.int64)
+    if np.any(np.diff(ends) < 0) or ends.max(initial=0) > size:
+        _refuse("stages", f"{ends.tolist()}, expected rising numbers up to the file's {size} bytes")
 
 
 def decode_tree(tree: Tree) -> Avatar:
@@ -208,24 +217,25 @@ def _rig(tree: Tree, skeleton: Skeleton, vertices: Array) -> Rig:
     if np.any(weights[:, 1:] > weights[:, :-1]):
         vertex = int((weights[:, 1:] > weights[:, :-1]).any(axis=1).argmax())
         _refuse("template.skin_weights", f"weights of vertex {vertex} do not begin with the largest")
+    mesh = Mesh(vertices=vertices, faces=faces, uv=uv, uv_faces=uv_faces)
     return Rig(
         skeleton=skeleton,
-        mesh=Mesh(vertices=vertices, faces=faces, uv=uv, uv_faces=uv_faces),
+        mesh=mesh,
         skin_indices=indices(template["skin_indices"], "template.skin_indices", influences, 0, len(skeleton.names)),
         skin_weights=weights,
-        texels=_texels(tree["texels"], len(faces)),
+        texels=_texels(tree["texels"], mesh),
     )
 
 
-def _texels(tree: Tree, faces: int) -> TexelMap:
+def _texels(tree: Tree, mesh: Mesh) -> TexelMap:
     size = tree["size"]
     if not 1 <= size <= MAX_SIZE:
         _refuse("texels.size", f"{size}, expected 1 to {MAX_SIZE}")
     texels = indices(tree["texels"], "texels.texels", (None,), 0, size * size)
     if np.any(np.diff(texels) <= 0):
         _refuse("texels.texels", "texels must ascend")
-    triangles = indices(tree["triangles"], "texels.triangles", (len(texels),), 0, faces)
-    first = reals(tree["barycentrics"], "texels.barycentrics", (len(texels), 2))
+    triangles = indices(tree["triangles"], "texels.triangles", (len(texels),), 0, len(mesh.faces))
+    first = _barycentrics(tree, mesh, texels, triangles)
     barycentrics = np.column_stack([first, 1 - first.sum(axis=1)])
     slack = 4 * np.finfo(np.float32).eps  # the third is a rounded difference
     if barycentrics.min(initial=0) < -slack:
@@ -233,6 +243,21 @@ def _texels(tree: Tree, faces: int) -> TexelMap:
     return TexelMap(
         size=size, texels=texels, triangles=triangles, barycentrics=np.maximum(barycentrics, 0), claimed_twice=0
     )
+
+
+def _barycentrics(tree: Tree, mesh: Mesh, texels: Array, triangles: Array) -> Array:
+    """[N, 2] as stored, or computed where only those of the listed texels are."""
+    if "listed" not in tree:
+        return reals(tree["barycentrics"], "texels.barycentrics", (len(texels), 2))
+    listed = indices(tree["listed"], "texels.listed", (None,), 0, len(texels))
+    if np.any(np.diff(listed) <= 0):
+        _refuse("texels.listed", "texels must ascend")
+    stored = reals(tree["barycentrics"], "texels.barycentrics", (len(listed), 2))
+    found = centre_barycentrics(mesh, tree["size"], texels, triangles)
+    found[listed] = stored
+    if not np.isfinite(found).all():
+        _refuse("texels.listed", "a texel is not listed, but its triangle has no area in UV")
+    return found
 
 
 def _wavelet(tree: Tree) -> Wavelet:

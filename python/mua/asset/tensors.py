@@ -8,7 +8,8 @@ import numpy as np
 from mua.arrays import Array
 from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree
 
-Storage = Literal["f32", "f16", "i8"]
+Element = Literal["f32", "f16", "i8"]
+Storage = Literal["f32", "f16", "i8", "packed"]  # of a whole file
 
 DTYPES: dict[str, np.dtype[Any]] = {
     "F32": np.dtype("<f4"),
@@ -20,14 +21,14 @@ MAX_RANK = 4
 LARGEST = 65504.0  # of any real: f16's largest, so that what is decoded from a file is finite too
 
 
-def pack(values: Array, storage: Storage = "f32", *, rows: int = 0) -> Tree:
+def pack(values: Array, element: Element = "f32", *, rows: int = 0) -> Tree:
     """Store `values`, finite and at most LARGEST, as f32, f16 or i8.
 
     i8 scales each of `rows` equal parts to its largest magnitude.
     """
-    if storage == "i8":
+    if element == "i8":
         return _pack_i8(np.asarray(values, dtype=np.float32), rows)
-    return _tensor(storage.upper(), np.asarray(values).astype(DTYPES[storage.upper()]))
+    return _tensor(element.upper(), np.asarray(values).astype(DTYPES[element.upper()]))
 
 
 def pack_indices(values: Array) -> Tree:
@@ -47,16 +48,25 @@ def _tensor(kind: str, stored: Array) -> Tree:
     return {"shape": np.array(stored.shape, "<u4"), "type": kind, "data": data}
 
 
-def stored(tensor: Tree, path: str) -> Array:
-    """The elements of a tensor in their stored type, a view of the file.
+def sides(tensor: Tree, path: str) -> list[int]:
+    """The shape of a tensor that a file could hold.
 
-    Errors: FormatError with code `shape` where shape, bytes and scales do not agree.
+    Errors: FormatError with code `shape`.
     """
     shape = [int(n) for n in tensor["shape"]]
     if not 1 <= len(shape) <= MAX_RANK:
         raise FormatError("shape", f"{path}.shape", f"{len(shape)} dimensions, expected 1 to {MAX_RANK}")
     if math.prod(max(n, 1) for n in shape) > MAX_BYTES:  # an empty tensor's other sides, too
         raise FormatError("shape", f"{path}.shape", f"the sides {shape} multiply to more than a file can hold")
+    return shape
+
+
+def stored(tensor: Tree, path: str) -> Array:
+    """The elements of a tensor in their stored type, a view of the file.
+
+    Errors: FormatError with code `shape` where shape, bytes and scales do not agree.
+    """
+    shape = sides(tensor, path)
     dtype = DTYPES[tensor["type"]]
     if math.prod(shape) * dtype.itemsize != tensor["data"].size:
         raise FormatError("shape", f"{path}.data", f"{tensor['data'].size} bytes do not fill {tensor['type']} {shape}")

@@ -41,6 +41,27 @@ def build_texel_map(mesh: Mesh, size: int) -> TexelMap:
     )
 
 
+def centre_barycentrics(
+    mesh: Mesh,
+    size: int,
+    texels: Array,  # [N] row * size + col
+    triangles: Array,  # [N] into the mesh's faces
+) -> Array:
+    """The first two barycentrics [N, 2] float32 of each texel's centre in its triangle, from UV alone.
+
+    Every reader of a file computes them so (section 5.5 of schemas/README.md); NaN where a triangle has no area.
+    """
+    row, column = np.divmod(texels, size)
+    centres = np.stack([column, row], axis=1) + 0.5
+    x, y = np.moveaxis(mesh.uv.astype(np.float64)[mesh.uv_faces[triangles]] * size - centres[:, None], 2, 0)  # [N, 3]
+    one, two, three = (x[:, i] * y[:, j] - y[:, i] * x[:, j] for i, j in ((1, 2), (2, 0), (0, 1)))
+    whole = one + two + three
+    whole[whole == 0] = np.nan
+    first = np.clip(one / whole, 0, 1).astype(np.float32)
+    second = np.clip(two / whole, 0, 1 - first.astype(np.float64)).astype(np.float32)
+    return np.stack([first, second], axis=1)
+
+
 def cover(
     corners: Array,  # [F, 3, 2] UV triangles, in texels
     size: int,

@@ -114,7 +114,7 @@ internal static class FormatProgram
             string code = "ok";
             try
             {
-                new AvatarDecoder(content).Decode(Parser.Parse(content));
+                AvatarFile.Decode(Parser.Parse(content), content);
             }
             catch (AvatarFormatException error)
             {

@@ -1,4 +1,5 @@
 using System;
+using System.Runtime.InteropServices;
 
 namespace Mua.Format
 {
@@ -54,7 +55,31 @@ namespace Mua.Format
             }
             Table tree = Parser.Parse(content);
             Checksum.Require(tree, content);
+            return Decode(tree, content);
+        }
+
+        /// <summary>The avatar of a tree that Parser made of `content`.</summary>
+        internal static AvatarFile Decode(Table tree, byte[] content)
+        {
+            RequireStages(tree.Block("stages"), content);
+            Unpacking.Of(tree, content);
             return new AvatarDecoder(content).Decode(tree);
+        }
+
+        private static void RequireStages(Block stages, byte[] content)
+        {
+            long last = 0;
+            for (int i = 0; stages != null && i < stages.Count; i++)
+            {
+                uint end = MemoryMarshal.Read<uint>(new ReadOnlySpan<byte>(content, stages.Offset + 4 * i, 4));
+                if (end < last || end > content.Length)
+                {
+                    throw Refusal.Of(
+                        "stages", "{0} after {1}, expected rising numbers up to the file's {2} bytes", end, last,
+                        content.Length);
+                }
+                last = end;
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ namespace Mua.Format
         public const string Identifier = "MUAV";
 
         public static readonly string[] ElementType = { "F32", "F16", "I8", "I32" };
+        public static readonly string[] Packing = { "Plain", "Deflate" };
         public static readonly string[] Axes = { "MetresYUpRightHanded" };
         public static readonly string[] RotationEncoding = { "SixD" };
         public static readonly string[] WindowOrder = { "NewestFirst" };
@@ -15,7 +16,8 @@ namespace Mua.Format
             new Field("shape", Kind.U32, vector: true, required: true),
             new Field("type", Kind.Enum, names: ElementType),
             new Field("data", Kind.U8, vector: true, required: true, align: 16),
-            new Field("scale", Kind.F32, vector: true));
+            new Field("scale", Kind.F32, vector: true),
+            new Field("packing", Kind.Enum, names: Packing));
 
         public static readonly Layout Skeleton = new Layout(
             new Field("names", Kind.Text, vector: true, required: true),
@@ -48,7 +50,8 @@ namespace Mua.Format
             new Field("size", Kind.U32),
             new Field("texels", Kind.Table, required: true, table: Tensor),
             new Field("triangles", Kind.Table, required: true, table: Tensor),
-            new Field("barycentrics", Kind.Table, required: true, table: Tensor));
+            new Field("barycentrics", Kind.Table, required: true, table: Tensor),
+            new Field("listed", Kind.Table, table: Tensor));
 
         public static readonly Layout Wavelet = new Layout(
             new Field("name", Kind.Text, required: true),
@@ -107,7 +110,8 @@ namespace Mua.Format
             new Field("clips", Kind.Table, vector: true, required: true, table: Clip),
             new Field("bounds", Kind.Table, required: true, table: Tensor),
             new Field("thumbnail", Kind.U8, vector: true, required: true),
-            new Field("surface", Kind.Table, table: Surface));
+            new Field("surface", Kind.Table, table: Surface),
+            new Field("stages", Kind.U32, vector: true));
 
         public static readonly Layout Root = Avatar;
     }

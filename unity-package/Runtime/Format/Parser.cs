@@ -11,7 +11,7 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Parser
     {
-        public const int Major = 2;
+        public const int Major = 3;
 
         private const int OffsetWidth = 4;
         private static readonly UTF8Encoding Utf8 = new UTF8Encoding(false, true);

@@ -100,7 +100,7 @@ namespace Mua.Format
             };
         }
 
-        public Texels Texels(Table tree, int faces)
+        public Texels Texels(Table tree, Template template)
         {
             long size = tree.Number("size");
             if (size < 1 || size > MaxSize)
@@ -117,13 +117,43 @@ namespace Mua.Format
                 }
             }
             Tensor triangles = tensors.Indices(
-                tree.Child("triangles"), "texels.triangles", 0, faces, texels.Length);
-            Tensor barycentrics = tensors.Reals(tree.Child("barycentrics"), "texels.barycentrics", texels.Length, 2);
+                tree.Child("triangles"), "texels.triangles", 0, template.Faces.Shape[0], texels.Length);
+            Tensor barycentrics = Barycentrics(tree, template, (int)size, texels, triangles.Integers);
             RequireBarycentrics(barycentrics);
             return new Texels
             {
                 Size = (int)size, Indices = indices, Triangles = triangles, Barycentrics = barycentrics,
             };
+        }
+
+        /// <summary>[N, 2] as stored, or computed where only those of the listed texels are.</summary>
+        private Tensor Barycentrics(
+            Table tree, Template template, int size, ReadOnlySpan<int> texels, ReadOnlySpan<int> triangles)
+        {
+            const string Path = "texels.listed";
+            if (tree.Child("listed") == null)
+            {
+                return tensors.Reals(tree.Child("barycentrics"), "texels.barycentrics", texels.Length, 2);
+            }
+            ReadOnlySpan<int> listed = tensors.Indices(tree.Child("listed"), Path, 0, texels.Length, Any).Integers;
+            for (int i = 1; i < listed.Length; i++)
+            {
+                if (listed[i] <= listed[i - 1])
+                {
+                    throw Refusal.Of(Path, "texels must ascend");
+                }
+            }
+            Tensor stored = tensors.Reals(tree.Child("barycentrics"), "texels.barycentrics", listed.Length, 2);
+            float[] found = TexelCentres.Barycentrics(template, size, texels, triangles);
+            for (int i = 0; i < stored.Count; i++)
+            {
+                found[2 * listed[i / 2] + i % 2] = stored.Read(i);
+            }
+            if (Array.Exists(found, float.IsNaN))
+            {
+                throw Refusal.Of(Path, "a texel is not listed, but its triangle has no area in UV");
+            }
+            return Tensor.Of(found, texels.Length, 2);
         }
 
         /// <summary>Null where the file holds none.</summary>

@@ -1,8 +1,11 @@
 namespace Mua.Format
 {
-    /// <summary>A vector of scalars in the file: its first byte and its number of elements.</summary>
+    /// <summary>A vector of scalars: its first byte and its number of elements.</summary>
     internal sealed class Block
     {
+        /// <summary>What holds it; null: the file.</summary>
+        public byte[] Content;
+
         public int Offset;
         public int Count;
     }
@@ -19,6 +22,13 @@ namespace Mua.Format
             this.layout = layout;
             this.values = values;
             this.positions = positions;
+        }
+
+        public Field[] Fields => layout.Fields;
+
+        public bool Is(Layout other)
+        {
+            return layout == other;
         }
 
         public Table Child(string field)
@@ -56,6 +66,12 @@ namespace Mua.Format
         public Block Block(string field)
         {
             return (Block)values[layout.Slot(field)];
+        }
+
+        /// <summary>Puts another vector in the place of one.</summary>
+        public void Replace(string field, Block block)
+        {
+            values[layout.Slot(field)] = block;
         }
 
         /// <summary>The byte at which a field's scalar or offset stands, 0 where the file leaves it out.</summary>

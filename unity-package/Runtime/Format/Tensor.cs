@@ -12,7 +12,14 @@ namespace Mua.Format
         I32,
     }
 
-    /// <summary>A view of one tensor in the bytes of its file, row-major and in its stored type.</summary>
+    /// <summary>How a tensor's bytes stand in the file.</summary>
+    internal enum Packing : byte
+    {
+        Plain,
+        Deflate,
+    }
+
+    /// <summary>A view of one tensor's bytes, row-major and in its stored type.</summary>
     public sealed class Tensor
     {
         /// <summary>How the elements are stored.</summary>
@@ -24,7 +31,7 @@ namespace Mua.Format
         /// <summary>Number of elements.</summary>
         public int Count { get; internal set; }
 
-        /// <summary>The file that holds the elements.</summary>
+        /// <summary>What holds the elements: the file, or the bytes that a packed tensor has given.</summary>
         public byte[] Content { get; internal set; }
 
         /// <summary>First byte of the elements in Content, a multiple of 16.</summary>
@@ -35,6 +42,14 @@ namespace Mua.Format
 
         /// <summary>Of I8, one factor for each of as many equal rows; null for other types.</summary>
         public float[] Scale { get; internal set; }
+
+        /// <summary>A tensor of values that are not in the file.</summary>
+        internal static Tensor Of(float[] values, params int[] shape)
+        {
+            var bytes = new byte[4 * values.Length];
+            Buffer.BlockCopy(values, 0, bytes, 0, bytes.Length);
+            return new Tensor { Shape = shape, Count = values.Length, Content = bytes, ByteLength = bytes.Length };
+        }
 
         /// <summary>The stored bytes.</summary>
         public ReadOnlySpan<byte> Bytes => new ReadOnlySpan<byte>(Content, Offset, ByteLength);

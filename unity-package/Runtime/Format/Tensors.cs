@@ -58,13 +58,9 @@ namespace Mua.Format
         /// <summary>A tensor whose shape, bytes and scales agree.</summary>
         private Tensor Stored(Table table, string path)
         {
-            Block sides = table.Block("shape"), data = table.Block("data"), scale = table.Block("scale");
+            Block data = table.Block("data"), scale = table.Block("scale");
             var type = (ElementType)table.Number("type");
-            if (sides.Count < 1 || sides.Count > MaxRank)
-            {
-                throw Fault("shape", path + ".shape", sides.Count + " dimensions, expected 1 to " + MaxRank);
-            }
-            int[] shape = ReadShape(sides, path);
+            int[] shape = Sides(table, path);
             int count = 1;
             foreach (int side in shape)
             {
@@ -81,14 +77,20 @@ namespace Mua.Format
             }
             return new Tensor
             {
-                Type = type, Shape = shape, Count = count, Content = content, Offset = data.Offset, ByteLength = data.Count,
+                Type = type, Shape = shape, Count = count, Content = data.Content ?? content, Offset = data.Offset,
+                ByteLength = data.Count,
                 Scale = rows == 0 ? null : View<float>(scale.Offset, 4 * rows).ToArray(),
             };
         }
 
         /// <summary>The sides of a shape that a file could hold: an empty tensor's sides are bounded, too.</summary>
-        private int[] ReadShape(Block sides, string path)
+        public int[] Sides(Table table, string path)
         {
+            Block sides = table.Block("shape");
+            if (sides.Count < 1 || sides.Count > MaxRank)
+            {
+                throw Fault("shape", path + ".shape", sides.Count + " dimensions, expected 1 to " + MaxRank);
+            }
             ReadOnlySpan<uint> stored = View<uint>(sides.Offset, 4 * sides.Count);
             var shape = new int[stored.Length];
             long product = 1;
@@ -123,7 +125,7 @@ namespace Mua.Format
             }
         }
 
-        private static int Width(ElementType type)
+        public static int Width(ElementType type)
         {
             return type == ElementType.I8 ? 1 : type == ElementType.F16 ? 2 : 4;
         }

@@ -1,0 +1,76 @@
+"""Tensors made smaller for the network: their bytes in planes, deflated; and back, never into more than a file may claim.
+
+In planes, the bytes of equal weight stand together: all first bytes of the elements, then all second ones.
+"""
+
+import math
+import zlib
+from collections.abc import Iterator
+
+import numpy as np
+
+from mua.asset.flatbuffer import FormatError, Tree
+from mua.asset.layout import ROOT, TABLES
+from mua.asset.tensors import DTYPES, sides
+
+RAW = -15  # zlib's word for a deflate stream of the largest window without a header
+TIMES, ROOM = 16, 1 << 20  # what all packed tensors give: bytes for each of the file, and bytes beside
+GAIN = 0.95  # of its bytes, above which a tensor is not worth unpacking
+
+
+def packed(tensor: Tree) -> Tree:
+    """The tensor as a file for the network holds it, unchanged where that saves nothing."""
+    planes = tensor["data"].reshape(-1, DTYPES[tensor["type"]].itemsize).T.tobytes()
+    deflate = zlib.compressobj(9, zlib.DEFLATED, RAW)
+    stream = deflate.compress(planes) + deflate.flush()
+    if len(stream) > GAIN * len(planes):
+        return tensor
+    return {**tensor, "data": np.frombuffer(stream, np.uint8), "packing": "Deflate"}
+
+
+def unpack(tree: Tree, size: int) -> None:
+    """Unpack the packed tensors of a file of `size` bytes in place; each then holds its bytes in the file as `_stored`.
+
+    What a tensor gives is known from its shape, and refused before it is made. Errors: FormatError with code `shape`,
+    `value` or `packed`.
+    """
+    left = TIMES * size + ROOM
+    for path, tensor in tensors(tree):
+        if tensor["packing"] == "Plain":
+            continue
+        width = DTYPES[tensor["type"]].itemsize
+        count = math.prod(sides(tensor, path)) * width
+        left -= count
+        if left < 0:
+            claim = f"the file's packed tensors claim more than {TIMES * size + ROOM} bytes"
+            raise FormatError("value", f"{path}.data", f"{claim}, too many for {size} bytes")
+        planes = _inflate(tensor["data"].tobytes(), count, path)
+        tensor["_stored"] = tensor["data"].nbytes
+        tensor["data"] = np.ascontiguousarray(planes.reshape(width, -1).T).reshape(-1)
+        tensor["packing"] = "Plain"
+
+
+def tensors(tree: Tree, table: str = ROOT, path: str = "") -> Iterator[tuple[str, Tree]]:
+    """The paths and tensors of a tree, in the schema's order."""
+    for field in TABLES[table]:
+        if field.kind not in TABLES or field.name not in tree:
+            continue
+        name, value = f"{path}.{field.name}".lstrip("."), tree[field.name]
+        places = [(f"{name}[{i}]", part) for i, part in enumerate(value)] if field.vector else [(name, value)]
+        for place, part in places:
+            if field.kind == "Tensor":
+                yield place, part
+            else:
+                yield from tensors(part, field.kind, place)
+
+
+def _inflate(stream: bytes, count: int, path: str) -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
+    """The `count` bytes of a stream; not a byte more is made of it."""
+    try:
+        found = zlib.decompressobj(RAW).decompress(stream, count + 1)
+    except zlib.error as error:
+        raise FormatError("packed", f"{path}.data", "the bytes are no deflate stream: the file is damaged") from error
+    if len(found) != count:
+        given = f"more than {count}" if len(found) > count else str(len(found))
+        raise FormatError("packed", f"{path}.data", f"the stream gives {given} bytes, expected {count}")
+    return np.frombuffer(found, np.uint8)

@@ -1,0 +1,164 @@
+using System;
+using System.IO;
+using System.IO.Compression;
+using System.Runtime.InteropServices;
+
+namespace Mua.Format
+{
+    /// <summary>
+    /// Unpacks the packed tensors of a parsed tree in place, as python/mua/asset/packing.py does: what a tensor gives is
+    /// known from its shape, and refused before anything is allocated for it.
+    /// </summary>
+    internal sealed class Unpacking
+    {
+        private const long Times = 16, Room = 1 << 20; // all that packed tensors give: bytes for each of the file, and beside
+
+        private readonly byte[] content;
+        private readonly Tensors tensors;
+        private byte[] planes = new byte[0];
+        private long left;
+
+        private Unpacking(byte[] content)
+        {
+            this.content = content;
+            tensors = new Tensors(content);
+            left = Times * content.Length + Room;
+        }
+
+        public static void Of(Table tree, byte[] content)
+        {
+            new Unpacking(content).Walk(tree, "");
+        }
+
+        /// <summary>Every tensor below a table, in the schema's order.</summary>
+        private void Walk(Table table, string path)
+        {
+            if (table.Is(Layouts.Tensor))
+            {
+                Unpack(table, path);
+                return;
+            }
+            foreach (Field field in table.Fields)
+            {
+                string name = path.Length == 0 ? field.Name : path + "." + field.Name;
+                if (field.Kind != Kind.Table)
+                {
+                    continue;
+                }
+                if (!field.Vector)
+                {
+                    WalkOne(table.Child(field.Name), name);
+                    continue;
+                }
+                Table[] children = table.Children(field.Name);
+                for (int i = 0; children != null && i < children.Length; i++)
+                {
+                    Walk(children[i], name + "[" + i + "]");
+                }
+            }
+        }
+
+        private void WalkOne(Table child, string name)
+        {
+            if (child != null)
+            {
+                Walk(child, name);
+            }
+        }
+
+        private void Unpack(Table tensor, string path)
+        {
+            if ((Packing)tensor.Number("packing") == Packing.Plain)
+            {
+                return;
+            }
+            long count = 1;
+            foreach (int side in tensors.Sides(tensor, path))
+            {
+                count *= side;
+            }
+            int width = Tensors.Width((ElementType)tensor.Number("type"));
+            left -= count * width;
+            if (left < 0)
+            {
+                throw Refusal.Of(
+                    path + ".data", "the file's packed tensors claim more than {0} bytes, too many for {1} bytes",
+                    Times * content.Length + Room, content.Length);
+            }
+            var data = new byte[count * width];
+            byte[] inflated = width == 1 ? data : Planes(data.Length);
+            Inflate(tensor.Block("data"), inflated, data.Length, path);
+            if (width > 1)
+            {
+                Interleave(inflated, data, width);
+            }
+            tensor.Replace("data", new Block { Content = data, Offset = 0, Count = data.Length });
+        }
+
+        /// <summary>Room for planes, which one tensor after the other uses.</summary>
+        private byte[] Planes(int count)
+        {
+            if (planes.Length < count)
+            {
+                planes = new byte[count];
+            }
+            return planes;
+        }
+
+        /// <summary>The `count` bytes of a stream, and not one more.</summary>
+        private void Inflate(Block packed, byte[] inflated, int count, string path)
+        {
+            int found = 0;
+            bool ends;
+            try
+            {
+                var source = new MemoryStream(content, packed.Offset, packed.Count, false);
+                using (var stream = new DeflateStream(source, CompressionMode.Decompress))
+                {
+                    int read = count;
+                    while (found < count && read > 0)
+                    {
+                        read = stream.Read(inflated, found, count - found);
+                        found += read;
+                    }
+                    ends = found < count || stream.ReadByte() < 0;
+                }
+            }
+            catch (Exception error) when (error is IOException || error is InvalidDataException)
+            {
+                throw Fault(path, "the bytes are no deflate stream: the file is damaged");
+            }
+            if (found < count || !ends)
+            {
+                string given = ends ? found.ToString() : "more than " + count;
+                throw Fault(path, "the stream gives " + given + " bytes, expected " + count);
+            }
+        }
+
+        /// <summary>Elements of two or four bytes from planes of their first bytes, their second ones and so on.</summary>
+        private static void Interleave(byte[] planes, byte[] data, int width)
+        {
+            if (width == 2)
+            {
+                Span<ushort> halves = MemoryMarshal.Cast<byte, ushort>(data);
+                for (int i = 0, second = halves.Length; i < halves.Length; i++, second++)
+                {
+                    halves[i] = (ushort)(planes[i] | planes[second] << 8);
+                }
+                return;
+            }
+            Span<uint> words = MemoryMarshal.Cast<byte, uint>(data);
+            int count = words.Length;
+            for (int i = 0; i < count; i++)
+            {
+                words[i] = planes[i] | (uint)planes[i + count] << 8 | (uint)planes[i + 2 * count] << 16
+                    | (uint)planes[i + 3 * count] << 24;
+            }
+        }
+
+        private static AvatarFormatException Fault(string path, string sentence)
+        {
+            return new AvatarFormatException("packed", path + ".data", sentence);
+        }
+    }
+}
