@@ -4,6 +4,7 @@ MALFORMED edits the tree of a sound file before it is built and sealed again, DA
 """
 
 import struct
+import zlib
 from collections.abc import Callable
 from typing import Any
 
@@ -17,6 +18,7 @@ from mua.asset.write import seal
 def malformed(content: bytes, edit: Callable[[Tree], None]) -> bytes:
     """A sound file after `edit`, sealed."""
     tree = parse(content)
+    tree.pop("stages", None)  # of a file that ends elsewhere
     edit(tree)
     return seal_unread(build(tree))
 
@@ -124,7 +126,7 @@ def empty(*shape: int) -> Tree:
 
 NAN = float("nan")
 MALFORMED = [
-    ("version", "version_major", put("version_major", 3)),
+    ("version", "version_major", put("version_major", 4)),
     ("missing", "skeleton", drop("skeleton")),
     ("missing", "geometry.mlp", drop("geometry.mlp")),
     ("value", "skeleton.parents", poke("skeleton.parents", 1, 2)),
@@ -222,6 +224,60 @@ MALFORMED = [
     ("range", "surface.strips", poke("surface.strips", 0, -2)),
     ("range", "surface.strips", poke("surface.strips", 0, 2 * 676)),
     ("value", "thumbnail", put("thumbnail", np.frombuffer(b"GIF89a", np.uint8))),
+]
+
+
+def stream(planes: bytes) -> np.ndarray:
+    deflate = zlib.compressobj(9, zlib.DEFLATED, -15)
+    return np.frombuffer(deflate.compress(planes) + deflate.flush(), np.uint8)
+
+
+def claim(path: str, shape: tuple[int, ...], planes: bytes) -> Callable[[Tree], None]:
+    """A packed tensor of a shape that its stream need not fill."""
+    return put(path, {"shape": np.array(shape, np.uint32), "type": "I32", "data": stream(planes), "packing": "Deflate"})
+
+
+def listed(*texels: int) -> Callable[[Tree], None]:
+    """The barycentrics of some texels alone are stored."""
+
+    def edit(tree: Tree) -> None:
+        tree["texels"]["listed"] = pack_indices(np.array(texels))
+        tree["texels"]["barycentrics"] = pack(np.full((len(texels), 2), 0.25))
+
+    return edit
+
+
+def without_area(tree: Tree) -> None:
+    """All texture coordinates are one."""
+    tree["template"]["uv"] = pack(np.full(tree["template"]["uv"]["shape"], 0.5))
+
+
+TEXELS = 676  # of the synthetic avatar
+UNPACKABLE = [  # of a file for the network
+    ("packed", "texels.texels.data", put("texels.texels.data", np.full(50, 0xFF, np.uint8))),
+    ("packed", "texels.texels.data", put("texels.texels.data", np.zeros(0, np.uint8))),
+    ("packed", "texels.texels.data", put("texels.texels.data", stream(bytes(4 * TEXELS))[:-1])),
+    ("packed", "texels.texels.data", claim("texels.texels", (TEXELS,), bytes(4 * TEXELS - 1))),
+    ("packed", "texels.texels.data", claim("texels.texels", (TEXELS,), bytes(4 * TEXELS + 1))),
+    ("packed", "skeleton.translated.data", claim("skeleton.translated", (0,), bytes(1))),
+    ("value", "texels.texels.data", claim("texels.texels", (1 << 24,), bytes(1 << 26))),
+    ("value", "surface.strips.data", claim("surface.strips", (1 << 16, 1 << 14), b"")),
+    ("shape", "texels.texels.shape", claim("texels.texels", (1 << 16, 1 << 16), b"")),
+    ("shape", "texels.texels.shape", claim("texels.texels", (), b"")),
+    ("shape", "texels.texels.shape", claim("texels.texels", (TEXELS, 1), bytes(4 * TEXELS))),
+    ("value", "texels.texels", claim("texels.texels", (TEXELS,), bytes(4 * TEXELS))),
+    ("type", "coarse.mean", claim("coarse.mean", (12, 3), bytes(4 * 36))),
+    ("range", "texels.listed", listed(TEXELS)),
+    ("range", "texels.listed", listed(-1)),
+    ("value", "texels.listed", listed(3, 3)),
+    ("value", "texels.listed", listed(4, 3)),
+    ("type", "texels.listed", put("texels.listed", pack(np.zeros(2)))),
+    ("shape", "texels.barycentrics.shape", put("texels.barycentrics", pack(np.zeros((TEXELS, 2))))),
+    ("shape", "texels.barycentrics.shape", drop("texels.listed")),
+    ("value", "texels.listed", without_area),
+    ("value", "stages", put("stages", np.array([8, 7]))),
+    ("value", "stages", put("stages", np.array([1 << 30]))),
+    ("shape", "appearance.mlp", drop("appearance.details.1")),  # a level is missing
 ]
 
 

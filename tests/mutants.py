@@ -1,5 +1,6 @@
 """Files that nobody wrote: sound ones with bytes, numbers, tensors or whole tables changed, and sealed again."""
 
+import zlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -7,6 +8,8 @@ import numpy as np
 from malformed import malformed, seal_unread
 
 from mua.asset.flatbuffer import Tree
+from mua.asset.layout import ENUMS
+from mua.asset.packing import packed
 from mua.asset.tensors import DTYPES
 
 TABLES = 4000  # of the first bytes of a file are mostly tables
@@ -58,7 +61,7 @@ def _arrangement(tree: Tree, rng: np.random.Generator) -> None:
     tensors = [part for part in parts if _is_tensor(part[0][part[1]])]
     lists = [part for part in parts if isinstance(part[0][part[1]], list) and part[0][part[1]]]
     table, name = _one(tensors, rng)
-    match rng.integers(6):
+    match rng.integers(7):
         case 0:
             table, name = _one(parts, rng)
             del table[name]
@@ -76,6 +79,8 @@ def _arrangement(tree: Tree, rng: np.random.Generator) -> None:
             table[name] = {**table[name], "shape": shape if rng.random() < 0.7 else shape[::-1].copy()}
         case 5:
             table[name] = {**table[name], "type": str(rng.choice([*DTYPES]))}
+        case 6:
+            table[name] = {**table[name], "packing": str(rng.choice(ENUMS["Packing"]))}
 
 
 def _places(tree: Any) -> Iterator[tuple[Any, Any]]:
@@ -110,6 +115,9 @@ def _one(parts: list[tuple[Any, Any]], rng: np.random.Generator) -> tuple[Any, A
 
 def _resized(tensor: Tree, rng: np.random.Generator) -> Tree:
     """Some rows along one side are left out or repeated; the bytes fill the new shape."""
+    tensor = _opened(tensor)
+    if tensor.get("packing") == "Deflate":
+        return tensor
     values = tensor["data"].view(DTYPES[tensor["type"]]).reshape(tensor["shape"])
     axis = int(rng.integers(values.ndim))
     rows = np.sort(rng.integers(0, max(values.shape[axis], 1), rng.choice([0, 1, values.shape[axis] + 1])))
@@ -122,8 +130,25 @@ def _resized(tensor: Tree, rng: np.random.Generator) -> Tree:
 def _tensor(tensor: Tree, rng: np.random.Generator) -> Tree:
     if "scale" in tensor and rng.random() < 0.5:
         return {**tensor, "scale": _some(tensor["scale"], rng)}
-    values = tensor["data"].view(DTYPES[tensor["type"]])
-    return {**tensor, "data": _some(values, rng).view(np.uint8)}
+    is_packed = tensor.get("packing") == "Deflate"
+    tensor = _opened(tensor) if rng.random() < 0.7 else tensor
+    kind = np.dtype(np.uint8) if tensor.get("packing") == "Deflate" else DTYPES[tensor["type"]]
+    if tensor["data"].size % kind.itemsize:
+        return tensor
+    changed = {**tensor, "data": _some(tensor["data"].view(kind), rng).view(np.uint8)}
+    return packed(changed) if is_packed and tensor.get("packing") != "Deflate" else changed
+
+
+def _opened(tensor: Tree) -> Tree:
+    """A packed tensor as a plain one, where its stream is still sound."""
+    if tensor.get("packing") != "Deflate":
+        return tensor
+    try:
+        planes = np.frombuffer(zlib.decompress(tensor["data"].tobytes(), -15), np.uint8)
+        data = np.ascontiguousarray(planes.reshape(DTYPES[tensor["type"]].itemsize, -1).T).reshape(-1)
+    except (zlib.error, ValueError):
+        return tensor
+    return {**tensor, "data": data, "packing": "Plain"}
 
 
 def _some(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:

@@ -1,96 +1,106 @@
-"""Packing of charts: their shape and scale stay, none meets another, little of the square is left empty."""
+"""Packed tensors: their exact bytes, their way back, and streams that claim what they do not give."""
+
+import tracemalloc
+import zlib
 
 import numpy as np
 import pytest
+from malformed import malformed, put, stream
+from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
-from mua.atlas import packing, packing_grid
-from mua.atlas.chart_shapes import GUTTER
-from mua.atlas.packing import pack
-from mua.atlas.packing_grid import GRID
-from mua.rig.charts import areas
-from mua.rig.texel_map import cover
+from mua.asset.flatbuffer import FormatError, parse
+from mua.asset.packing import ROOM, TIMES, packed, tensors, unpack
+from mua.asset.read import parse_checked
+from mua.asset.tensors import Element, pack, pack_indices, stored
+from mua.asset.write import encode
 
-LENGTH_BOUND = 1e-9  # relative: float64 of a rotation and a scale
-ROOT_2 = np.sqrt(2)
+WORDS = 1 << 17  # bytes of Python's own that reading a small file takes
 
 
-def rectangles(sides: Array) -> tuple[Array, Array]:
-    """Two triangles for each width and height [n, 2], each rectangle turned its own way."""
-    square = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
-    corners = (square[None] * sides[:, None, None]).reshape(-1, 3, 2)
-    charts = np.repeat(np.arange(len(sides)), 2)
-    angle = 0.7 * charts
-    turn = np.stack([np.cos(angle), -np.sin(angle), np.sin(angle), np.cos(angle)], axis=1).reshape(-1, 2, 2)
-    return np.einsum("fij,fkj->fki", turn, corners), charts
+def sparse(rng: np.random.Generator, *shape: int) -> Array:
+    """Mostly zeros, of small whole numbers."""
+    return np.where(rng.random(shape) < 0.1, rng.integers(-100, 100, shape), 0).astype(np.float64)
 
 
-def lengths(corners: Array) -> Array:
-    return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+@pytest.fixture(scope="module")
+def network() -> bytes:
+    return encode(synthetic_avatar(), storage="packed")
 
 
-@pytest.mark.parametrize("count", [1, 2, 7, 60])
-def test_charts_keep_their_shape_and_scale_and_do_not_meet(count: int) -> None:
-    corners, charts = rectangles(np.random.default_rng(count).uniform(0.2, 1, (count, 2)))
-    placed = pack(corners, charts)
-    assert placed.min() >= 0
-    assert placed.max() <= 1
-    scale = lengths(placed) / lengths(corners)
-    np.testing.assert_allclose(scale, scale[0, 0], rtol=LENGTH_BOUND)
-    owner, claims = cover(placed * 1024, 1024)
-    assert claims.max() == 1
-    chart = np.where(owner >= 0, charts[owner], -1).reshape(1024, 1024)
-    for one, other in ((chart[:, :-1], chart[:, 1:]), (chart[:-1], chart[1:])):
-        assert not ((one != other) & (one >= 0) & (other >= 0)).any()
+def test_the_stream_holds_the_first_bytes_of_all_elements_then_the_second_ones() -> None:
+    tensor = packed(pack_indices(np.array([0x04030201, 0x14131211] * 9)))
+    planes = zlib.decompress(tensor["data"].tobytes(), wbits=-15)
+    assert planes == b"\x01\x11" * 9 + b"\x02\x12" * 9 + b"\x03\x13" * 9 + b"\x04\x14" * 9
+    assert tensor["packing"] == "Deflate"
 
 
-def test_little_of_the_square_is_left_empty() -> None:
-    corners, charts = rectangles(np.random.default_rng(0).uniform(0.2, 1, (20, 2)))
-    assert areas(pack(corners, charts)).sum() > 0.75
+@pytest.mark.parametrize("element", ["f32", "f16", "i8"])
+@pytest.mark.parametrize("shape", [(1013,), (31, 37), (3, 11, 5, 13)])
+def test_what_is_packed_is_given_back(element: Element, shape: tuple[int, ...]) -> None:
+    plain = pack(sparse(np.random.default_rng(1), *shape), element, rows=shape[0] if element == "i8" else 0)
+    tree = {"bounds": {"type": "F32", **packed(plain)}}
+    assert tree["bounds"]["data"].nbytes < plain["data"].nbytes / 2
+    unpack(tree, 1 << 20)
+    np.testing.assert_array_equal(tree["bounds"]["data"], plain["data"])
+    np.testing.assert_array_equal(stored(tree["bounds"], "bounds"), stored(plain, "bounds"))
 
 
-def test_a_small_chart_lies_in_the_hole_of_a_large_one() -> None:
-    turns = np.linspace(0, 2 * np.pi, 65)
-    inner, outer = (radius * np.stack([np.cos(turns), np.sin(turns)], axis=1) for radius in (0.8, 1.0))
-    ring = np.concatenate(
-        [np.stack([inner[:-1], outer[:-1], outer[1:]], 1), np.stack([inner[:-1], outer[1:], inner[1:]], 1)]
-    )
-    disc = 0.5 * np.stack([np.zeros_like(outer[:-1]), outer[:-1], outer[1:]], axis=1)
-    placed = pack(np.concatenate([ring, disc]), np.repeat([0, 1], [len(ring), len(disc)]))
-    middle = placed[: len(ring)].mean(axis=(0, 1))
-    assert np.abs(placed[len(ring) :].mean(axis=(0, 1)) - middle).max() < 0.2  # somewhere in the hole
+def test_a_tensor_that_does_not_shrink_stays_as_it_is() -> None:
+    noise = {**pack(np.zeros(500), "i8", rows=1), "data": np.random.default_rng(0).integers(0, 256, 500, np.uint8)}
+    assert packed(noise) is noise
 
 
-def test_gutters_are_at_least_as_wide_as_meant() -> None:
-    corners, charts = rectangles(np.full((16, 2), 1.0))
-    placed = pack(corners, charts)
-    side = lengths(placed).min()
-    middles = placed.reshape(16, 2, 3, 2).mean(axis=(1, 2))
-    apart = np.linalg.norm(middles[:, None] - middles, axis=2)[~np.eye(16, dtype=bool)].min()
-    assert apart > side + GUTTER / GRID
+def test_an_unpacked_file_holds_what_was_packed(network: bytes) -> None:
+    before = {path: tensor["data"].nbytes for path, tensor in tensors(parse(network)) if tensor["packing"] != "Plain"}
+    after = dict(tensors(parse_checked(network)))
+    assert len(before) > 5
+    assert {path: after[path]["_stored"] for path in before} == before
+    assert all(stored(tensor, path).size for path, tensor in after.items() if path in before)
 
 
-def test_charts_without_area_are_placed_too() -> None:
-    corners, charts = rectangles(np.array([[1, 1], [1, 0], [0, 0], [0.5, 0.5]]))
-    placed = pack(corners, charts)
-    assert np.isfinite(placed).all()
-    assert placed.min() >= 0
-    assert placed.max() <= 1
+def test_a_bomb_is_refused_in_bounded_memory(network: bytes) -> None:
+    """A gigabyte of zeros in a megabyte; not even what the file may claim is made before all claims are known."""
+    bomb = {
+        "shape": np.array([1 << 28], np.uint32),
+        "type": "F32",
+        "data": stream(bytes(1 << 26)),
+        "packing": "Deflate",
+    }
+    content = malformed(network, put("surface", {"runs": np.zeros(0, np.uint8), "strips": bomb}))
+    tracemalloc.start()
+    with pytest.raises(FormatError) as caught:
+        parse_checked(content)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert (caught.value.code, caught.value.field) == ("value", "surface.strips.data")
+    assert peak < 2 * len(content) + WORDS
 
 
-def test_a_chart_longer_than_the_square_makes_it_larger() -> None:
-    corners, charts = rectangles(np.array([[20.0, 0.5], [1, 1]]))
-    placed = pack(corners, charts)
-    np.testing.assert_allclose(lengths(placed)[0].max() / lengths(placed)[2].max(), np.hypot(20, 0.5) / ROOT_2)
-    assert cover(placed * 512, 512)[1].max() == 1
+def test_a_stream_longer_than_its_shape_is_not_unpacked_to_its_end(network: bytes) -> None:
+    tensor = {**pack(np.zeros((2, 3))), "data": stream(bytes(1 << 26)), "packing": "Deflate"}
+    content = malformed(network, put("bounds", tensor))
+    tracemalloc.start()
+    with pytest.raises(FormatError, match="gives more than 24 bytes, expected 24"):
+        parse_checked(content)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 4 * len(content) + WORDS
 
 
-def test_more_charts_than_the_grid_has_room_for_make_it_larger(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (packing, packing_grid):
-        monkeypatch.setattr(module, "GRID", 16)
-    corners, charts = rectangles(np.full((300, 2), 1.0))
-    placed = packing.pack(corners, charts)
-    centres = placed.reshape(len(charts) // 2, -1, 2).mean(axis=1)
-    apart = np.abs(centres[:, None] - centres).max(axis=2)
-    np.fill_diagonal(apart, np.inf)
-    assert apart.min() > lengths(placed).min()  # none lies on another
+def test_the_claims_of_all_tensors_count_together(network: bytes) -> None:
+    """Each alone is within what a file of this size may claim."""
+    held = [path for path, tensor in tensors(parse(network)) if tensor["packing"] == "Deflate"]
+    size = ROOM // 2
+    bomb = {"shape": np.array([1, size], np.uint32), "type": "I8", "data": stream(bytes(size)), "packing": "Deflate"}
+
+    def several(tree: dict[str, object]) -> None:
+        tree["clips"] = [{**tree["clips"][0], "rotations": bomb}] * 40  # type: ignore[index]
+
+    content = malformed(network, several)
+    assert held
+    assert size < TIMES * len(content) + ROOM < 40 * size
+    with pytest.raises(FormatError) as caught:
+        parse_checked(content)
+    assert caught.value.code == "value"
+    assert caught.value.field.startswith("clips[")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from malformed import DAMAGED, MALFORMED, malformed
+from malformed import DAMAGED, MALFORMED, UNPACKABLE, malformed
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset.flatbuffer import FormatError, Tree
@@ -21,11 +21,18 @@ def content() -> bytes:
     return encode(with_surface(synthetic_avatar()), storage="i8")
 
 
+@pytest.fixture(scope="module")
+def network() -> bytes:
+    return encode(with_surface(synthetic_avatar()), storage="packed")
+
+
 def decode(content: bytes) -> None:
     decode_tree(parse_checked(content))
 
 
-def test_truncation_at_every_offset_is_refused(content: bytes) -> None:
+@pytest.mark.parametrize("storage", ["content", "network"])
+def test_truncation_at_every_offset_is_refused(request: pytest.FixtureRequest, storage: str) -> None:
+    content = request.getfixturevalue(storage)
     for length in range(len(content)):
         with pytest.raises(FormatError):
             decode(content[:length])
@@ -60,6 +67,17 @@ def test_mutated_bytes_with_a_right_checksum_never_escape_the_reader(content: by
 def test_malformed_field_is_named(content: bytes, code: str, field: str, edit: Callable[[Tree], None]) -> None:
     with pytest.raises(FormatError) as caught:
         decode(malformed(content, edit))
+    assert (caught.value.code, caught.value.field) == (code, field)
+
+
+@pytest.mark.parametrize(
+    ("code", "field", "edit"), UNPACKABLE, ids=lambda value: value if isinstance(value, str) else ""
+)
+def test_malformed_field_of_a_packed_file_is_named(
+    network: bytes, code: str, field: str, edit: Callable[[Tree], None]
+) -> None:
+    with pytest.raises(FormatError) as caught:
+        decode(malformed(network, edit))
     assert (caught.value.code, caught.value.field) == (code, field)
 
 

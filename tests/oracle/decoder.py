@@ -4,6 +4,7 @@ Everything is float64. The number at each function is that of the page's section
 """
 
 import re
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -55,8 +56,13 @@ def reference(content: bytes, here: Table, offset: int, kind: str) -> Any:
 
 
 def tensor(fields: Tree) -> Array:
-    """1.1"""
-    values = fields["data"].view(ELEMENTS[fields["type"]])
+    """1.1, 1.5"""
+    data = fields["data"]
+    if fields.get("packing"):
+        width = np.dtype(ELEMENTS[fields["type"]]).itemsize
+        planes = np.frombuffer(zlib.decompress(data.tobytes(), wbits=-15), np.uint8)
+        data = np.ascontiguousarray(planes.reshape(width, -1).T).reshape(-1)
+    values = data.view(ELEMENTS[fields["type"]])
     if fields["type"] == 2:
         values = values * np.repeat(fields["scale"].astype(float), values.size // fields["scale"].size)
     return np.asarray(values if fields["type"] == 3 else values.astype(float)).reshape(fields["shape"])
@@ -206,6 +212,24 @@ def branch_texture(avatar: Tree, branch: Tree, x: Array) -> Array:
     return np.asarray(image[:, rows, columns] + branch["static_offset"])
 
 
+def places(template: Tree, texels: Tree) -> Array:
+    """5.5: b_0 and b_1 [N, 2]."""
+    if "listed" not in texels:
+        return np.asarray(texels["barycentrics"])
+    found = []
+    for texel, triangle in zip(texels["texels"], texels["triangles"], strict=True):
+        row, col = divmod(int(texel), int(texels["size"]))
+        corners = template["uv"][template["uv_faces"][triangle]] * float(texels["size"]) - [col + 0.5, row + 0.5]
+        (x0, y0), (x1, y1), (x2, y2) = corners
+        areas = (x1 * y2 - y1 * x2, x2 * y0 - y2 * x0, x0 * y1 - y0 * x1)
+        whole = sum(areas) or np.inf  # the texel is listed
+        first = np.float32(min(max(areas[0] / whole, 0), 1))
+        found.append((first, np.float32(min(max(areas[1] / whole, 0), 1 - float(first)))))
+    two = np.array(found).reshape(-1, 2).astype(float)
+    two[texels["listed"]] = texels["barycentrics"]
+    return two
+
+
 def blend(duals: Array, weights: Array, references: Array) -> Array:
     """6.2: of duals [N, K, 8] by weights [N, K]; references [N, 8]."""
     signs = np.where(np.einsum("nki,ni->nk", duals[..., :4], references[:, :4]) < 0, -1, 1)
@@ -225,7 +249,7 @@ def decode(avatar: Tree, frames: list[Pose], n: int) -> Splats:
     joints = chained(rigid(turned, placed), skeleton["bind_inverse"])  # 6.1
     indices = template["skin_indices"]
     vertices = blend(joints[indices], template["skin_weights"], joints[indices[:, 0]])  # 6.3
-    two = texels["barycentrics"]
+    two = places(template, texels)
     weights = np.column_stack([two, np.maximum(1 - two.sum(axis=1), 0)])
     corners = template["faces"][texels["triangles"]]
     nearest = corners[np.arange(len(corners)), np.argmax(weights, axis=1)]

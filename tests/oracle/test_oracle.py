@@ -36,10 +36,21 @@ from mua.rig.bounds import playback_bounds
 from mua.student.settings import preset
 
 POSITION, COLOUR = 1e-6, 1e-5  # metres; of 1: stored f32 numbers are rounded by 6e-8 of themselves
-STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8")
+STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8", "packed")
 SOURCES = [Path(str(module.__file__)).read_text() for module in (decoder, level_reader, surface_reader)]
 PAGE = decoder.SCHEMA.with_name("README.md")
-INDEPENDENT = {"re", "collections.abc", "dataclasses", "pathlib", "typing", "math", "numpy", "pywt", "flatbuffers"}
+INDEPENDENT = {
+    "re",
+    "zlib",
+    "collections.abc",
+    "dataclasses",
+    "pathlib",
+    "typing",
+    "math",
+    "numpy",
+    "pywt",
+    "flatbuffers",
+}
 
 
 def turned_avatar(*, heading: bool, rate: float = 30.0, wavelet: str = "bior4.4") -> Avatar:

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 from csharp import PROGRAMS, RUNTIME, CSharp
-from malformed import DAMAGED, MALFORMED, malformed
+from malformed import DAMAGED, MALFORMED, UNPACKABLE, malformed
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
 
 from mua.arrays import Array
+from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.read import decode_tree, parse_checked
 from mua.asset.tensors import Storage, stored
@@ -57,7 +58,7 @@ def test_format_knows_no_engine(csharp: CSharp) -> None:
     csharp.build([RUNTIME / "Format"], library=True)
 
 
-@pytest.mark.parametrize("storage", ["golden", "version 1", "f32", "f16", "i8"])
+@pytest.mark.parametrize("storage", ["golden", "version 1", "f32", "f16", "i8", "packed"])
 def test_values_are_those_of_the_python_reader(
     csharp: CSharp, program: Path, tmp_path: Path, storage: Storage | str
 ) -> None:
@@ -103,7 +104,9 @@ def test_malformed_files_get_the_same_code_and_field(
     csharp: CSharp, program: Path, tmp_path: Path, content: bytes
 ) -> None:
     files = [malformed(content, edit) for _, _, edit in MALFORMED] + [damage(content) for _, _, damage in DAMAGED]
-    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED]]
+    network = encode(with_surface(synthetic_avatar()), storage="packed")
+    files += [malformed(network, edit) for _, _, edit in UNPACKABLE]
+    expected = [(code, field) for code, field, _ in [*MALFORMED, *DAMAGED, *UNPACKABLE]]
     assert csharp_answers(csharp, program, write_all(tmp_path, files)) == expected
 
 
@@ -130,6 +133,16 @@ def test_a_million_mutated_bytes_neither_crash_nor_overallocate(
 
 
 CLIP_TENSORS = ("rotations", "translation", "translations")
+
+
+def barycentrics_of(tree: Tree, avatar: Avatar) -> Array:
+    """As stored, not yet within 0 to 1, or computed."""
+    kept = stored(tree["barycentrics"], "barycentrics")
+    if "listed" not in tree:
+        return kept
+    found = avatar.rig.texels.barycentrics[:, :2].copy()
+    found[stored(tree["listed"], "listed")] = kept
+    return found
 
 
 def joints_of(tree: Tree) -> Any:
@@ -160,7 +173,7 @@ def values(tree: Tree) -> dict[str, tuple[str, bytes]]:
     floats: dict[str, Any] = {
         "template.uv": rig.mesh.uv,
         "template.skin_weights": rig.skin_weights,
-        "texels.barycentrics": stored(tree["texels"]["barycentrics"], "barycentrics"),  # not yet within 0 to 1
+        "texels.barycentrics": barycentrics_of(tree["texels"], avatar),
         "coarse.mean": avatar.coarse.mean,
         "coarse.basis": avatar.coarse.basis,
         "encoding.rate": encoding.rate,

@@ -1,4 +1,4 @@
-"""A file for the network: what a reader computes is left out, tensors are packed, and what is shown first stands first."""
+"""A file for the network: tensors packed, what a reader computes left out, and what is shown first put first."""
 
 from collections.abc import Callable, Sequence
 

@@ -1,4 +1,4 @@
-"""Tensors made smaller for the network: their bytes in planes, deflated; and back, never into more than a file may claim.
+"""Tensors packed for the network, their bytes in planes and deflated; and unpacked, never beyond what a file may claim.
 
 In planes, the bytes of equal weight stand together: all first bytes of the elements, then all second ones.
 """
@@ -31,23 +31,26 @@ def packed(tensor: Tree) -> Tree:
 def unpack(tree: Tree, size: int) -> None:
     """Unpack the packed tensors of a file of `size` bytes in place; each then holds its bytes in the file as `_stored`.
 
-    What a tensor gives is known from its shape, and refused before it is made. Errors: FormatError with code `shape`,
-    `value` or `packed`.
+    What a tensor gives is known from its shape, and what all of them give is refused before any is unpacked. Errors:
+    FormatError with code `shape`, `value` or `packed`.
     """
-    left = TIMES * size + ROOM
-    for path, tensor in tensors(tree):
-        if tensor["packing"] == "Plain":
-            continue
-        width = DTYPES[tensor["type"]].itemsize
-        count = math.prod(sides(tensor, path)) * width
-        left -= count
-        if left < 0:
-            claim = f"the file's packed tensors claim more than {TIMES * size + ROOM} bytes"
-            raise FormatError("value", f"{path}.data", f"{claim}, too many for {size} bytes")
-        planes = _inflate(tensor["data"].tobytes(), count, path)
+    held = [(path, tensor) for path, tensor in tensors(tree) if tensor["packing"] == "Deflate"]
+    claimed, most = 0, TIMES * size + ROOM
+    for path, tensor in held:
+        claimed += _claimed(tensor, path)
+        if claimed > most:
+            sentence = f"the file's packed tensors claim more than {most} bytes, too many for {size} bytes"
+            raise FormatError("value", f"{path}.data", sentence)
+    for path, tensor in held:
+        planes = _inflate(tensor["data"].tobytes(), _claimed(tensor, path), path)
         tensor["_stored"] = tensor["data"].nbytes
-        tensor["data"] = np.ascontiguousarray(planes.reshape(width, -1).T).reshape(-1)
+        tensor["data"] = np.ascontiguousarray(planes.reshape(DTYPES[tensor["type"]].itemsize, -1).T).reshape(-1)
         tensor["packing"] = "Plain"
+
+
+def _claimed(tensor: Tree, path: str) -> int:
+    """Bytes of the elements, by the shape."""
+    return math.prod(sides(tensor, path)) * DTYPES[tensor["type"]].itemsize
 
 
 def tensors(tree: Tree, table: str = ROOT, path: str = "") -> Iterator[tuple[str, Tree]]:

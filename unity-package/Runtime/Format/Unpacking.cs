@@ -16,76 +16,76 @@ namespace Mua.Format
         private readonly byte[] content;
         private readonly Tensors tensors;
         private byte[] planes = new byte[0];
-        private long left;
+        private long claimed;
 
         private Unpacking(byte[] content)
         {
             this.content = content;
             tensors = new Tensors(content);
-            left = Times * content.Length + Room;
         }
 
         public static void Of(Table tree, byte[] content)
         {
-            new Unpacking(content).Walk(tree, "");
+            var unpacking = new Unpacking(content);
+            Walk(tree, "", unpacking.Claim);
+            Walk(tree, "", unpacking.Unpack);
         }
 
-        /// <summary>Every tensor below a table, in the schema's order.</summary>
-        private void Walk(Table table, string path)
+        /// <summary>Visits every packed tensor below a table, in the schema's order.</summary>
+        private static void Walk(Table table, string path, Action<Table, string> visit)
         {
             if (table.Is(Layouts.Tensor))
             {
-                Unpack(table, path);
+                if ((Packing)table.Number("packing") == Packing.Deflate)
+                {
+                    visit(table, path);
+                }
                 return;
             }
             foreach (Field field in table.Fields)
             {
                 string name = path.Length == 0 ? field.Name : path + "." + field.Name;
-                if (field.Kind != Kind.Table)
+                if (field.Kind == Kind.Table && !field.Vector && table.Child(field.Name) != null)
                 {
-                    continue;
+                    Walk(table.Child(field.Name), name, visit);
                 }
-                if (!field.Vector)
+                if (field.Kind == Kind.Table && field.Vector && table.Children(field.Name) != null)
                 {
-                    WalkOne(table.Child(field.Name), name);
-                    continue;
-                }
-                Table[] children = table.Children(field.Name);
-                for (int i = 0; children != null && i < children.Length; i++)
-                {
-                    Walk(children[i], name + "[" + i + "]");
+                    Table[] children = table.Children(field.Name);
+                    for (int i = 0; i < children.Length; i++)
+                    {
+                        Walk(children[i], name + "[" + i + "]", visit);
+                    }
                 }
             }
         }
 
-        private void WalkOne(Table child, string name)
+        private void Claim(Table tensor, string path)
         {
-            if (child != null)
-            {
-                Walk(child, name);
-            }
-        }
-
-        private void Unpack(Table tensor, string path)
-        {
-            if ((Packing)tensor.Number("packing") == Packing.Plain)
-            {
-                return;
-            }
-            long count = 1;
-            foreach (int side in tensors.Sides(tensor, path))
-            {
-                count *= side;
-            }
-            int width = Tensors.Width((ElementType)tensor.Number("type"));
-            left -= count * width;
-            if (left < 0)
+            claimed += Claimed(tensor, path);
+            if (claimed > Times * content.Length + Room)
             {
                 throw Refusal.Of(
                     path + ".data", "the file's packed tensors claim more than {0} bytes, too many for {1} bytes",
                     Times * content.Length + Room, content.Length);
             }
-            var data = new byte[count * width];
+        }
+
+        /// <summary>Bytes of the elements, by the shape.</summary>
+        private long Claimed(Table tensor, string path)
+        {
+            long count = Tensors.Width((ElementType)tensor.Number("type"));
+            foreach (int side in tensors.Sides(tensor, path))
+            {
+                count *= side;
+            }
+            return count;
+        }
+
+        private void Unpack(Table tensor, string path)
+        {
+            int width = Tensors.Width((ElementType)tensor.Number("type"));
+            var data = new byte[Claimed(tensor, path)];
             byte[] inflated = width == 1 ? data : Planes(data.Length);
             Inflate(tensor.Block("data"), inflated, data.Length, path);
             if (width > 1)

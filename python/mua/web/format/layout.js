@@ -4,7 +4,7 @@ export const IDENTIFIER = "MUAV";
 export const ROOT = "Avatar";
 
 /** @type {Record<string, string[]>} */
-export const ENUMS = {"ElementType": ["F32", "F16", "I8", "I32"], "Axes": ["MetresYUpRightHanded"], "RotationEncoding": ["SixD"], "WindowOrder": ["NewestFirst"]};
+export const ENUMS = {"ElementType": ["F32", "F16", "I8", "I32"], "Packing": ["Plain", "Deflate"], "Axes": ["MetresYUpRightHanded"], "RotationEncoding": ["SixD"], "WindowOrder": ["NewestFirst"]};
 
 /** @type {Record<string, import("./parser.js").Field[]>} */
 export const TABLES = {
@@ -13,6 +13,7 @@ export const TABLES = {
     { name: "type", kind: "ElementType" },
     { name: "data", kind: "ubyte", vector: true, required: true, align: 16 },
     { name: "scale", kind: "float", vector: true },
+    { name: "packing", kind: "Packing" },
   ],
   Skeleton: [
     { name: "names", kind: "string", vector: true, required: true },
@@ -46,6 +47,7 @@ export const TABLES = {
     { name: "texels", kind: "Tensor", required: true },
     { name: "triangles", kind: "Tensor", required: true },
     { name: "barycentrics", kind: "Tensor", required: true },
+    { name: "listed", kind: "Tensor" },
   ],
   Wavelet: [
     { name: "name", kind: "string", required: true },
@@ -105,5 +107,6 @@ export const TABLES = {
     { name: "bounds", kind: "Tensor", required: true },
     { name: "thumbnail", kind: "ubyte", vector: true, required: true },
     { name: "surface", kind: "Surface" },
+    { name: "stages", kind: "uint", vector: true },
   ],
 };

@@ -1,0 +1,46 @@
+"""Rounding for the network: steps are powers of two, and the demo's pictures lose less than a tenth of a decibel."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset.rounding import channel_steps, in_steps, rounded
+from mua.channels import ATTRIBUTES
+
+
+@pytest.mark.parametrize(("step", "power"), [(1.0, 1.0), (0.9, 0.5), (0.26, 0.25), (3e-5, 2.0**-16)])
+def test_values_become_the_nearest_multiples_of_a_power_of_two_at_or_below_the_step(step: float, power: float) -> None:
+    values = np.random.default_rng(0).normal(size=1000)
+    found = in_steps(values, step)
+    np.testing.assert_array_equal(found / power, np.rint(found / power))
+    assert np.abs(found - values).max() <= power / 2 * (1 + 1e-6)
+
+
+def test_the_step_of_an_offset_grows_with_the_figure() -> None:
+    giant, figure = channel_steps(20.0), channel_steps(2.0)
+    offset = ATTRIBUTES["offset"]
+    np.testing.assert_allclose(giant[offset], 10 * figure[offset])
+    others = np.delete(np.arange(23), np.arange(23)[offset])
+    np.testing.assert_array_equal(giant[others], figure[others])
+
+
+def test_what_is_rounded_stays_so() -> None:
+    once = rounded(synthetic_avatar())
+    twice = rounded(once)
+    for branch in ("geometry", "appearance"):
+        first, second = getattr(once, branch), getattr(twice, branch)
+        np.testing.assert_array_equal(first.static, second.static)
+        np.testing.assert_array_equal(first.ll_basis, second.ll_basis)
+
+
+def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
+    """Rows of the last layer by the size of what their coefficient multiplies."""
+    avatar = synthetic_avatar()
+    basis = avatar.geometry.ll_basis.copy()
+    basis[0, 1] *= 1e-4
+    faint = rounded(replace(avatar, geometry=replace(avatar.geometry, ll_basis=basis))).geometry.mlp[-1].weight
+    strong = avatar.geometry.mlp[-1].weight
+    error = np.abs(faint - strong).max(axis=1)
+    assert error[1] > 100 * error[0]
