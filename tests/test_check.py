@@ -8,20 +8,24 @@ import pytest
 import typer
 from bvh_files import BVH
 from PIL import Image
+from rich.console import Console
 from silent import Silent
 from test_bake import SMALL
 from test_fidelity import column_file
 from typer.testing import CliRunner
 
+from mua.baking.check import Check
 from mua.baking.contact_sheet import CELL
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
 from mua.characters.read import read_surfaces
 from mua.cli.bake import main
+from mua.cli.check import show
 from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.motion.load import load_motions
 from mua.motion.mapping import read_mapping
+from mua.motion.quality import MotionQuality
 
 app = typer.Typer()
 app.command()(main)
@@ -110,3 +114,12 @@ def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path
 def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--json: only --check writes it"):
         run("--json", tmp_path / "a.json", "-o", tmp_path / "a.muaavatar")
+
+
+def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
+    walk = MotionQuality("walk", 1.24, 12.4, -0.0126, 0.333, {"left thigh": 1.25}, ())
+    wave = MotionQuality("wave", 0.0, None, None, None, {"left thigh": 0.0}, ())
+    show(Console(width=120), Check(None, (walk, wave), (), (), (), (), ()))
+    rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
+    assert ["walk", "1.2°", "12°", "-0.013", "m", "0.33", "m/s"] in rows
+    assert ["wave", "0.0°"] in rows

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from commands import Commands
 from fake_adb import serving
 from fake_headset import FakeHeadset
 from synthetic_avatar import synthetic_avatar
@@ -72,3 +73,20 @@ def test_pc_link_wants_metas_runtime() -> None:
     assert openxr_runtime("C:\\Program Files\\Oculus\\Support\\oculus-runtime\\oculus_openxr_64.json").state == "ok"
     assert openxr_runtime("C:\\Steam\\steamxr_win64.json").state == "wrong"
     assert openxr_runtime(None).state == "missing"
+
+
+def test_the_command_shows_every_check_and_names_those_that_are_not_ok(
+    command: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    hero, headset = tmp_path / "hero.muaavatar", FakeHeadset()
+    write(hero, synthetic_avatar())
+    unity = fake_unity(tmp_path, "exit 0")
+    with serving(monkeypatch, headset):
+        ended = command("deploy", "--doctor", "--unity", unity, hero)
+        assert ended.status == 0, ended.err
+        assert ended.out.count(" ok ") == len(examine([hero], unity=unity))
+    with serving(monkeypatch, FakeHeadset(battery="7", packages=set())):
+        ended = command("deploy", "--doctor", "--unity", unity, hero)
+    assert "2 of 9 checks are not ok: battery, player" in ended.sentence
+    assert "bake it anew" not in ended.out
+    assert "hero.muaavatar" in ended.out

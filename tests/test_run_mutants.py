@@ -1,6 +1,7 @@
 """A run over a small tree: what tests catch, what survives, what is known as no fault."""
 
 import subprocess
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
@@ -51,7 +52,7 @@ def test_each_fault_ends_as_caught_survived_or_equivalent(tree: Path, tmp_path: 
     assert [(test.name, test.places) for test in tests] == [("tests/test_code_.py::test_it", code)]
     found = {
         each.mutant.lines(CODE)[2]: each
-        for each in run(iter(mutants(tree / "python/code_.py", tree)), 9, [checkout], tests)
+        for each in run(iter(mutants(tree / "python/code_.py", tree)), 9, [checkout], tests, Counter())
     }
     assert {line: each.result for line, each in found.items()} == {
         "return a >= b": CAUGHT,
@@ -172,7 +173,7 @@ def test_a_test_that_is_late_without_the_fault_too_has_not_caught_it(
     checkout.refresh(tree)
     tests = record([checkout], tmp_path / "seen")
     (checkout.root / "tests" / "test_code_.py").write_text(LATE)  # the machine is busy now
-    [found] = run(iter(mutants(tree / "python/code_.py", tree)[:1]), 1, [checkout], tests)
+    [found] = run(iter(mutants(tree / "python/code_.py", tree)[:1]), 1, [checkout], tests, Counter())
     assert found.result == SURVIVED
 
 

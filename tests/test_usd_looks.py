@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, Vt
 from test_usd import edited, preview, write_character
 
@@ -188,3 +189,32 @@ def test_two_skeletons_are_one_character(plain: Path) -> None:
     assert set(surfaces.skeleton.names) == {"Hips", "Spine", "Head", "Hips_2", "Spine_2", "Head_2"}
     assert len(surfaces.faces) == 48
     np.testing.assert_allclose(surfaces.vertices.min(axis=0)[2], -0.58, atol=1e-6)
+
+
+@pytest.mark.parametrize("wrap", ["mirror", "repeat"])
+def test_glow_lies_where_the_colour_does_or_is_left_out_by_name(tmp_path: Path, wrap: str) -> None:
+    path = write_character(tmp_path / "man.usda")
+    dark = read_surfaces(path).materials[0].image
+
+    def glow(stage: Usd.Stage) -> None:
+        Image.fromarray(np.full((4, 4, 3), 255, np.uint8)).save(tmp_path / "glow.png")
+        image = UsdShade.Shader.Define(stage, "/Man/Skin/Glow")
+        image.CreateIdAttr("UsdUVTexture")
+        image.CreateInput("file", Sdf.ValueTypeNames.Asset).Set("glow.png")
+        image.CreateInput("wrapS", Sdf.ValueTypeNames.Token).Set(wrap)  # the colour's is mirrored
+        reader = UsdShade.Shader.Get(stage, "/Man/Skin/Reader").GetOutput("result")
+        image.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(reader)
+        emission = UsdShade.Shader.Get(stage, "/Man/Skin/Surface").CreateInput(
+            "emissiveColor", Sdf.ValueTypeNames.Color3f
+        )
+        emission.ConnectToSource(image.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
+
+    surfaces = read_surfaces(edited(path, glow))
+    told = [note for note in surfaces.notes if "Emission with another UV mapping" in note]
+    if wrap == "mirror":
+        assert told == []
+        assert (surfaces.materials[0].image[..., :3] == 255).all()
+    else:
+        assert len(told) == 1
+        assert told[0].endswith("Skin.")
+        np.testing.assert_array_equal(surfaces.materials[0].image, dark)

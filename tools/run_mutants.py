@@ -20,7 +20,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
-from itertools import chain
+from itertools import chain, cycle, islice
 from pathlib import Path
 
 from mutant_sites import Mutant, mutants
@@ -38,6 +38,7 @@ LANGUAGES = {
     ),
     "csharp": ("unity-package/Runtime/**/*.cs", "unity-package/Editor/**/*.cs", "unity-package/Samples~/**/*.cs"),
 }
+ROUNDS = 8
 NOT_COMPILED = re.compile(r"error CS\d{4}|: \w+ does not compile: |^ERROR: .*\d+:\d+: ", re.MULTILINE)
 WAITED = re.compile(r"\btimed out\b|\bTimeout", re.IGNORECASE)
 CAUGHT, TIMED_OUT, SURVIVED, EQUAL, UNCOMPILED = "caught", "timed out", "survived", "equivalent", "does not compile"
@@ -132,10 +133,15 @@ def _judged(mutant: Mutant, checkout: Checkout, tests: list[SeenTest]) -> tuple[
     return Outcome(mutant, CAUGHT, failed[0]), "::" in failed[0] and bool(WAITED.search(printed))
 
 
-def run(waiting: Iterator[Mutant], number: int, checkouts: list[Checkout], tests: list[SeenTest]) -> list[Outcome]:
+def run(
+    waiting: Iterator[Mutant],
+    number: int,
+    checkouts: list[Checkout],
+    tests: list[SeenTest],
+    caught: Counter[tuple[str, str]],  # by folder of the fault and test; counts on
+) -> list[Outcome]:
     """Outcomes until `number` of the faults, taken in order, compiled and are not known as equivalent."""
     known = tomllib.loads(EQUIVALENT.read_text())["equivalent"]
-    caught = Counter[tuple[str, str]]()  # by folder of the fault and test
 
     def outcome(checkout: Checkout, mutant: Mutant) -> Outcome:
         if why := reason(mutant, (ROOT / mutant.path).read_text(encoding="utf-8"), known):
@@ -176,16 +182,19 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="faults tried at once")
     parser.add_argument("--record", action="store_true", help="find out anew which tests see what")
     given = parser.parse_args()
-    outcomes = {}
     with ExitStack() as opened:
         checkouts = [opened.enter_context(closing(Checkout(WORK / f"job-{k}"))) for k in range(given.jobs)]
         for checkout in checkouts:
             checkout.refresh(ROOT)
         tests = record(checkouts, WORK / "seen", again=given.record)
         languages = given.language or list(LANGUAGES)
-        for k, language in enumerate(languages):
-            number = (given.number + k) // len(languages)
-            outcomes[language] = run(drawn(language, given.seed, given.file), number, checkouts, tests)
+        waiting = {language: drawn(language, given.seed, given.file) for language in languages}
+        outcomes = {language: list[Outcome]() for language in languages}
+        turns = list(islice(cycle(languages), ROUNDS * len(languages)))  # who breaks off has seen a part of each
+        caught = Counter[tuple[str, str]]()
+        for k, language in enumerate(turns):
+            number = (given.number + k) // len(turns)
+            outcomes[language] += run(waiting[language], number, checkouts, tests, caught)
     commit = subprocess.run(
         ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
     )
