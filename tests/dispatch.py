@@ -10,6 +10,8 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.gpu.device import Device
 
+FENCE = 0x7FFF7FFF  # not a number, as a float and as two halves
+FENCE_WORDS = 1024
 KINDS = {"uint": "iufb", "int": "i", "float": "f"}  # of numpy values by a buffer's scalar; uint holds any bytes
 
 
@@ -35,7 +37,7 @@ def run(
             raise InputError(
                 f"kernel {entry}: buffer {slot.name} is {np.asarray(given).dtype}, expected 4-byte {slot.scalar} values"
             )
-    uploaded = {name: device.buffer(np.asarray(array), name=name) for name, array in buffers.items()}
+    uploaded = {name: device.buffer(_fenced(np.asarray(array)), name=name) for name, array in buffers.items()}
     commands = device.commands()
     commands.dispatch(kernel, groups, uploaded, **constants)
     commands.submit()
@@ -43,6 +45,13 @@ def run(
     for slot in kernel.buffers:
         if not slot.read_only:
             given = np.asarray(buffers[slot.name])
-            read = uploaded[slot.name].read(np.uint8)[: given.nbytes]
-            found[slot.name] = read.view(given.dtype).reshape(given.shape)
+            read = uploaded[slot.name].read(np.uint8)
+            assert (read[given.nbytes :].view(np.uint32) == FENCE).all(), f"{entry} writes beyond {slot.name}"
+            found[slot.name] = read[: given.nbytes].view(given.dtype).reshape(given.shape)
     return found
+
+
+def _fenced(array: Array) -> Array:
+    """The words of an array and more behind them, which no kernel may use or change."""
+    words = np.ascontiguousarray(array).reshape(-1).view(np.uint32)
+    return np.concatenate([words, np.full(FENCE_WORDS, FENCE, np.uint32)])
