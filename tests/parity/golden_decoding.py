@@ -148,7 +148,7 @@ def _texels_of(storage: Storage, *, levels: int) -> Case:
     exact = upsample_texels(ll.astype(float), lo, levels, texels=texels, static_offset=offset.values)
     padded = np.concatenate([exact, np.zeros((4 * rows - channels, count))])
     found = padded.reshape(rows, 4, count).swapaxes(1, 2)
-    bound = upsampling_bound(lo, levels, float(np.abs(ll).max()), float(np.abs(offset.values).max()))
+    bound = upsampling_bound(filtered, float(np.abs(ll).max()), float(np.abs(offset.values).max()))
     return Case(
         f"{storage}, {levels} levels",
         "UpsampleTexels",
