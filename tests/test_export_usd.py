@@ -1,16 +1,19 @@
 """Exported USD: what Pixar's own library makes of the skeleton, the skin, the detailed geometry and the splats."""
 
+import io
 from pathlib import Path
 
 import numpy as np
 import pytest
 from commands import Commands
-from pxr import Usd, UsdGeom, UsdSkel, UsdVol
+from PIL import Image
+from pxr import Ar, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, UsdVol
 from synthetic_avatar import with_surface
 
 import mua
 from mua import rotation
 from mua.export.splats import mean_colors, world_splats
+from mua.export.surface import skinned_mesh
 from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.read import read_motion
 from mua.player.surface import surface_mesh
@@ -154,3 +157,31 @@ def test_our_own_reader_finds_the_same_motion(
     _, found = motion.skeleton.world(motion.clip.rotations, motion.clip.translations)
     order = [motion.skeleton.names.index(name) for name in skeleton.names]
     np.testing.assert_allclose(found[[0, -1]][:, order], placed[[1, 5]], atol=PLACE_BOUND)
+
+
+@pytest.mark.parametrize("what", ["mesh", "skeleton", "geometry", "splats"])
+def test_a_package_holds_the_same_and_pixar_finds_nothing_wrong(
+    command: Commands, stored: mua.Avatar, avatar_file: Path, tmp_path: Path, what: str
+) -> None:
+    stage = exported(command, avatar_file, tmp_path, what, "usdz")
+    assert stage.GetDefaultPrim().GetName() == stored.name
+    assert [path.name for path in tmp_path.iterdir()] == [f"{what}.usdz"]
+    rules = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    assert rules
+    assert [error.GetMessage() for error in UsdValidation.ValidationContext(rules).Validate(stage)] == []
+
+
+def test_the_mesh_of_a_package_shines_in_its_texture(
+    command: Commands, stored: mua.Avatar, avatar_file: Path, tmp_path: Path
+) -> None:
+    stage = exported(command, avatar_file, tmp_path, "mesh", "usdz")
+    mesh = stage.GetPrimAtPath(f"/{stored.name}/Mesh")
+    material, _ = UsdShade.MaterialBindingAPI(mesh).ComputeBoundMaterial()
+    surface, _, _ = material.ComputeSurfaceSource()
+    ((source,), _) = surface.GetInput("emissiveColor").GetConnectedSources()
+    image = UsdShade.Shader(source.source.GetPrim())
+    asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(image.GetInput("file").Get().resolvedPath))
+    with Image.open(io.BytesIO(bytes(asset.GetBuffer()))) as picture:
+        pixels = np.asarray(picture)
+    expected = skinned_mesh(stored, stored.decode("wave", 1)).texture
+    np.testing.assert_array_equal(pixels, expected)

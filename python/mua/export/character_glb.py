@@ -4,10 +4,7 @@ Skinning in glTF is linear, with four joints at most, and knows no shape that de
 player's, not equal to it. Materials are unlit, because colours of splats have their light in them.
 """
 
-import io
-
 import numpy as np
-from PIL import Image
 from pygltflib import (
     Animation,
     AnimationChannel,
@@ -119,16 +116,10 @@ def _skinned(glb: Glb, mesh: SkinnedMesh) -> Primitive:
         WEIGHTS_0=glb.accessor(weights, target=VERTICES),
     )
     indices = glb.accessor(mesh.faces.ravel().astype("<u4"), target=INDICES)
-    glb.document.images = [Picture(bufferView=glb.view(_png(mesh.texture)), mimeType="image/png", name="texture")]
+    glb.document.images = [Picture(bufferView=glb.view(mesh.png), mimeType="image/png", name="texture")]
     glb.document.textures = [Texture(source=0)]
     _unlit(glb, PbrMetallicRoughness(baseColorTexture=TextureInfo(index=0), metallicFactor=0.0, roughnessFactor=1.0))
     return Primitive(attributes=attributes, indices=indices, material=0)
-
-
-def _png(image: Array) -> bytes:
-    content = io.BytesIO()
-    Image.fromarray(image).save(content, "PNG")
-    return content.getvalue()
 
 
 def _unlit(glb: Glb, look: PbrMetallicRoughness) -> None:

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from mua.decode import Splats
 from mua.export.compressed_ply import compressed_ply_bytes
 from mua.export.frames import ExportFrames
-from mua.export.kinds import GEOMETRY, MESH, SPLATS, USD, Kind
+from mua.export.kinds import GEOMETRY, MESH, PACKAGE, SPLATS, USD, Kind
 from mua.export.ply import ply_bytes
 from mua.export.splats import HALF_TURN_Z, WorldSplats, turned, world_splats
 from mua.export.spz import spz_bytes
@@ -54,14 +55,38 @@ def write_clip(kind: Kind, path: Path, frames: ExportFrames, posed: Iterator[Spl
 
 def _write_usd(kind: Kind, path: Path, frames: ExportFrames, posed: Iterator[Splats]) -> None:
     from mua.export import usd
+
+    if kind.suffix != PACKAGE:
+        _write_stage(kind, path, frames, posed, texture=None)
+        return
+    with TemporaryDirectory(prefix="mua-export.") as directory:
+        stage = Path(directory) / "avatar.usdc"
+        _write_stage(kind, stage, frames, posed, texture="texture.png")
+        usd.package(path, stage)
+
+
+def _write_stage(
+    kind: Kind,
+    path: Path,
+    frames: ExportFrames,
+    posed: Iterator[Splats],
+    *,
+    texture: str | None,  # name of the picture to write beside the stage
+) -> None:
+    from mua.export import usd
     from mua.export.surface import detailed_mesh, skinned_mesh
 
     if kind.what == GEOMETRY:
         usd.write_geometry(path, frames, posed, detailed_mesh(frames.avatar))
     elif kind.what == SPLATS:
         usd.write_splats(path, frames, posed)
+    elif kind.what == MESH:
+        mesh = skinned_mesh(frames.avatar, next(posed))
+        if texture is not None:
+            (path.parent / texture).write_bytes(mesh.png)
+        usd.write_character(path, frames, mesh, texture=texture)
     else:
-        usd.write_character(path, frames, skinned_mesh(frames.avatar, next(posed)) if kind.what == MESH else None)
+        usd.write_character(path, frames, None)
 
 
 def held(kind: Kind, frames: ExportFrames) -> str:

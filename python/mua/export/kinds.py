@@ -19,7 +19,8 @@ class Kind:
     clip: bool  # whether one file holds all frames
 
 
-USD = (".usd", ".usda", ".usdc")
+PACKAGE = ".usdz"  # with the texture of the mesh
+USD = (".usd", ".usda", ".usdc", PACKAGE)
 KINDS = (  # of one ending the default comes first
     Kind(".compressed.ply", SPLATS, clip=False),
     Kind(".ply", SPLATS, clip=False),

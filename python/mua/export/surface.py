@@ -1,8 +1,10 @@
 """Meshes of an avatar as other programs take them: the template with a texture, and the detailed geometry."""
 
+import io
 from dataclasses import dataclass
 
 import numpy as np
+from PIL import Image
 from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
@@ -25,6 +27,13 @@ class SkinnedMesh:
     joints: Array  # [P, 8] int, largest weight first
     weights: Array  # [P, 8] rows sum to 1
     texture: Array  # [S, S, 3] uint8 sRGB
+
+    @property
+    def png(self) -> bytes:
+        """The texture as a file."""
+        content = io.BytesIO()
+        Image.fromarray(self.texture).save(content, "PNG")
+        return content.getvalue()
 
     @property
     def colors(self) -> Array:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel, UsdVol, Vt
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, UsdVol, Vt
 
 from mua.arrays import Array
 from mua.decode import Splats
@@ -23,8 +23,12 @@ from mua.pose.skeleton import Skeleton
 SPLAT_SCHEMA = "ParticleField3DGaussianSplat"  # of OpenUSD 26.03 and later
 
 
-def write_character(path: Path, frames: ExportFrames, mesh: SkinnedMesh | None) -> None:
-    """The skeleton with its motion, and the mesh if there is one, which UsdSkel deforms by dual quaternions."""
+def write_character(path: Path, frames: ExportFrames, mesh: SkinnedMesh | None, *, texture: str | None = None) -> None:
+    """The skeleton with its motion, and the mesh if there is one, which UsdSkel deforms by dual quaternions.
+
+    `texture` is the name of a picture beside the file, which the mesh shows without light; without one it has colours
+    at its vertices.
+    """
     stage, name = _stage(path, frames)
     UsdSkel.Root.Define(stage, name)
     skeleton = frames.avatar.rig.skeleton
@@ -36,7 +40,9 @@ def write_character(path: Path, frames: ExportFrames, mesh: SkinnedMesh | None) 
     animation = _animation(stage, f"{name}/Skeleton/Animation", joints, frames)
     UsdSkel.BindingAPI.Apply(prim.GetPrim()).CreateAnimationSourceRel().SetTargets([animation.GetPath()])
     if mesh is not None:
-        _skinned(stage, f"{name}/Mesh", prim, mesh, frames)
+        skinned = _skinned(stage, f"{name}/Mesh", prim, mesh)
+        if texture is not None:
+            _unlit(stage, f"{name}/Material", skinned, texture)
     stage.Save()
 
 
@@ -77,6 +83,12 @@ def write_splats(path: Path, frames: ExportFrames, posed: Iterable[Splats]) -> N
     stage.Save()
 
 
+def package(path: Path, stage: Path) -> None:
+    """A .usdz of a stage and the files that it refers to; errors: InputError where the library fails."""
+    if not UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(stage)), str(path)):
+        raise InputError(f"{path}: the USD library could not make the package")
+
+
 def joint_paths(skeleton: Skeleton) -> list[str]:
     """The path of each joint, as UsdSkel names it."""
     paths: list[str] = []
@@ -115,7 +127,7 @@ def _animation(stage: Usd.Stage, path: str, joints: list[str], frames: ExportFra
     return animation
 
 
-def _skinned(stage: Usd.Stage, path: str, skeleton: UsdSkel.Skeleton, mesh: SkinnedMesh, frames: ExportFrames) -> None:
+def _skinned(stage: Usd.Stage, path: str, skeleton: UsdSkel.Skeleton, mesh: SkinnedMesh) -> UsdGeom.Mesh:
     prim = UsdGeom.Mesh.Define(stage, path)
     _topology(prim, mesh.faces)
     prim.GetPointsAttr().Set(_vectors(mesh.vertices))
@@ -137,6 +149,29 @@ def _skinned(stage: Usd.Stage, path: str, skeleton: UsdSkel.Skeleton, mesh: Skin
     binding.CreateJointIndicesPrimvar(constant=False, elementSize=influences).Set(joints)
     binding.CreateJointWeightsPrimvar(constant=False, elementSize=influences).Set(weights)
     binding.CreateSkinningMethodAttr(UsdSkel.Tokens.dualQuaternion)
+    return prim
+
+
+def _unlit(stage: Usd.Stage, path: str, mesh: UsdGeom.Mesh, texture: str) -> None:
+    """A material that shines in the colours of a texture: they have their light in them."""
+    types = Sdf.ValueTypeNames
+    material = UsdShade.Material.Define(stage, path)
+    place = UsdShade.Shader.Define(stage, f"{path}/Place")
+    place.CreateIdAttr("UsdPrimvarReader_float2")
+    place.CreateInput("varname", types.String).Set("st")
+    image = UsdShade.Shader.Define(stage, f"{path}/Texture")
+    image.CreateIdAttr("UsdUVTexture")
+    image.CreateInput("file", types.Asset).Set(texture)
+    image.CreateInput("sourceColorSpace", types.Token).Set("sRGB")
+    image.CreateInput("st", types.Float2).ConnectToSource(place.CreateOutput("result", types.Float2))
+    surface = UsdShade.Shader.Define(stage, f"{path}/Surface")
+    surface.CreateIdAttr("UsdPreviewSurface")
+    surface.CreateInput("diffuseColor", types.Color3f).Set(Gf.Vec3f(0))
+    surface.CreateInput("roughness", types.Float).Set(1.0)
+    shine = surface.CreateInput("emissiveColor", types.Color3f)
+    shine.ConnectToSource(image.CreateOutput("rgb", types.Float3))
+    material.CreateSurfaceOutput().ConnectToSource(surface.CreateOutput("surface", types.Token))
+    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
 
 
 def _topology(prim: UsdGeom.Mesh, faces: Array) -> None:
