@@ -4,6 +4,7 @@ Written from the paper (Kerbl et al. 2023, https://doi.org/10.1145/3592433) and,
 (Yu et al. 2024, https://arxiv.org/abs/2311.16493); it shares no code with mua.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -90,7 +91,24 @@ def read_by_gaussforge(path: Path, kind: str) -> Read:
     )
 
 
-def draw(splats: Read, camera: Camera, *, dilation: float = DILATION, antialiased: bool = True) -> Array:
+def gaussian(u: Array, v: Array) -> Array:
+    """What is left of a splat, as published; u and v are in standard deviations along its axes."""
+    return np.exp(-(u * u + v * v) / 2)
+
+
+def window(u: Array, v: Array) -> Array:
+    """What our players draw instead: a parabola along each axis that ends at 2, with the same integral."""
+    return 9 * np.pi / 32 * np.maximum(1 - u * u / 4, 0) * np.maximum(1 - v * v / 4, 0)
+
+
+def draw(
+    splats: Read,
+    camera: Camera,
+    *,
+    dilation: float = DILATION,
+    antialiased: bool = True,
+    profile: Callable[[Array, Array], Array] = gaussian,
+) -> Array:
     """Premultiplied sRGB and alpha [H, W, 4]; `antialiased` keeps a splat's sum over the pixels, dilated or not."""
     width, height = camera.screen
     focal = camera.projection[[0, 1], [0, 1]] * np.array([width, height]) / 2
@@ -101,22 +119,22 @@ def draw(splats: Read, camera: Camera, *, dilation: float = DILATION, antialiase
     slopes = np.zeros((len(depth), 2, 3))  # of the pixel with the place in eye space
     slopes[:, 0, 0], slopes[:, 0, 2] = focal[0] / depth, focal[0] * eye[:, 0] / depth**2
     slopes[:, 1, 1], slopes[:, 1, 2] = -focal[1] / depth, -focal[1] * eye[:, 1] / depth**2
-    seen = slopes @ turn @ splats.covariances() @ (slopes @ turn).swapaxes(1, 2)
-    wide = seen + dilation * np.eye(2)
-    share = np.sqrt(np.maximum(np.linalg.det(seen) / np.linalg.det(wide), 0)) if antialiased else np.ones(len(depth))
+    seen, axes = np.linalg.eigh(slopes @ turn @ splats.covariances() @ (slopes @ turn).swapaxes(1, 2))
+    wide = seen + dilation
+    share = np.sqrt(np.prod(np.maximum(seen, 0) / wide, axis=1)) if antialiased else np.ones(len(depth))
     opacity = share / (1 + np.exp(-splats.logits))
     away = splats.centres - camera.position
     color = splats.colors(away / np.linalg.norm(away, axis=1, keepdims=True))
     image, left = np.zeros((height, width, 4)), np.ones((height, width))
-    inverse, reach = np.linalg.inv(wide), 3 * np.sqrt(np.linalg.eigvalsh(wide)[:, 1])
+    reach = 3 * np.sqrt(wide[:, 1])
     for k in np.argsort(depth, kind="stable"):
         low = np.clip(np.floor(middle[k] - reach[k]), 0, camera.screen).astype(int)
         high = np.clip(np.ceil(middle[k] + reach[k]), 0, camera.screen).astype(int)
         if depth[k] < camera.near or (low >= high).any():
             continue
         x, y = np.meshgrid(*(np.arange(a, b) + 0.5 - m for a, b, m in zip(low, high, middle[k], strict=True)))
-        power = inverse[k, 0, 0] * x * x + 2 * inverse[k, 0, 1] * x * y + inverse[k, 1, 1] * y * y
-        alpha = np.minimum(opacity[k] * np.exp(-power / 2), 0.99)
+        (ux, vx), (uy, vy) = axes[k] / np.sqrt(wide[k])
+        alpha = np.minimum(opacity[k] * profile(ux * x + uy * y, vx * x + vy * y), 0.99)
         alpha[alpha < 1 / 255] = 0
         box = np.s_[low[1] : high[1], low[0] : high[0]]
         image[box] += (left[box] * alpha)[..., None] * np.append(color[k], 1)
