@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -24,6 +25,7 @@ def layer(module: str) -> str:
     return held
 
 
+@cache
 def modules() -> dict[str, Path]:
     """Every module of the package by its name below `mua`."""
     paths = sorted(PACKAGE.rglob("*.py"))

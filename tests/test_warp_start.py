@@ -5,7 +5,7 @@ import sys
 
 CODE = """
 import os
-from mua.teachers.warp_start import NO_GPU, _without
+from mua.warp_start import NO_GPU, _without
 with _without(NO_GPU):
     os.write(2, b"Warp CUDA warning: " + NO_GPU + b". More.\\nanother matter\\n")
 os.write(2, b"and after it\\n")

@@ -14,7 +14,6 @@ from rich.text import Text
 from mua import files
 from mua.asset.write import write
 from mua.bench.devices import DEVICES, model_device
-from mua.bench.work import Work
 from mua.camera import EYE_DISTANCE
 from mua.cli.choice import choice
 from mua.cli.console import printer
@@ -26,6 +25,7 @@ from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu
     from mua.bench.measure import Measured, Timing
+    from mua.bench.work import Work
     from mua.gpu import Device
 
 SIZE = "1024"  # pixels
@@ -167,7 +167,7 @@ def _legend(measured: "Measured") -> tuple[str, ...]:
     )
 
 
-def _figures(milliseconds: float, spread: str, work: Work, copy_bandwidth: float) -> tuple[str, ...]:
+def _figures(milliseconds: float, spread: str, work: "Work", copy_bandwidth: float) -> tuple[str, ...]:
     from mua.bench.report import rate
 
     moved = rate(work.bytes, milliseconds)

@@ -14,7 +14,7 @@ import numpy as np
 import warp as wp
 
 from mua.arrays import Array
-from mua.teachers.warp_start import start
+from mua.warp_start import start
 
 DEVICE = "cpu"
 LANES = 16  # vertices of a block

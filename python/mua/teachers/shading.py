@@ -14,7 +14,7 @@ import warp as wp
 from mua import rotation
 from mua.arrays import Array
 from mua.teachers.teacher import Light
-from mua.teachers.warp_start import start
+from mua.warp_start import start
 
 DEVICE = "cpu"
 LAMP = np.array([0.35, 0.65, 0.67])  # towards the lamp: from above, front and the body's left

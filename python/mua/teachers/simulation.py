@@ -18,7 +18,7 @@ import warp as wp
 from mua.arrays import Array
 from mua.teachers.bones import Bones, capsule_distance, figure_scale
 from mua.teachers.rings import LANES, in_blocks, relax
-from mua.teachers.warp_start import start
+from mua.warp_start import start
 
 DEVICE = "cpu"  # a frame takes milliseconds: less than its way to a GPU and back
 SUBSTEP = 1 / 120  # seconds, at most

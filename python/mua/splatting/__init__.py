@@ -1,0 +1,1 @@
+"""Pictures of splats that can be differentiated: what the reference renderer draws, for training."""

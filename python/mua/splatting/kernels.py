@@ -1,0 +1,181 @@
+"""The two passes of the rasteriser over the pixels of tiles, for the CPU and for CUDA from one source.
+
+    alpha = peak (1 - a^2) (1 - b^2),   a = (cosine dx + sine dy) along,   b = (cosine dy - sine dx) across
+    image = sum_i T_i alpha_i (color_i, 1),   T_i = product of (1 - alpha_j) over the quads j before i
+
+(dx, dy) from the quad's middle to the pixel's centre. `shapes` are those of mua.splatting.projection.Quads. A pixel is
+done when its transmittance T falls to LEAST_TRANSMITTANCE. The second pass walks back from there and divides T by
+1 - alpha again, so that a pixel keeps two numbers, however many quads lie over it.
+"""
+
+# mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, valid-type, no-untyped-call"
+# mypy: disable-error-code="call-overload, arg-type"
+# (the bodies of the kernels are Warp's language, not Python)
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import warp as wp
+
+from mua.splatting.tiles import TILE
+from mua.warp_start import start
+
+LEAST_TRANSMITTANCE = 1e-5  # what lies behind changes no 8-bit image
+
+start()
+
+
+@dataclass(frozen=True, eq=False)
+class Passes:
+    """Both kernels in one precision."""
+
+    forward: wp.Kernel
+    backward: wp.Kernel
+
+
+@cache
+def passes(real: Any) -> Passes:
+    """The kernels for wp.float32 or wp.float64."""
+    tile = wp.constant(TILE)
+    least = wp.constant(real(LEAST_TRANSMITTANCE))
+    one, two, half, zero = (wp.constant(real(value)) for value in (1.0, 2.0, 0.5, 0.0))
+
+    @wp.struct
+    class Pixel:
+        x: real  # its centre, pixels
+        y: real
+        at: wp.int32  # into the image, row by row; -1 outside
+        first: wp.int32  # pair of its tile
+        end: wp.int32
+
+    @wp.struct
+    class Place:
+        along: real  # from the quad's middle, pixels, along its axes
+        across: real
+        a: real  # 1 at the quad's edge
+        b: real
+
+    @wp.func
+    def pixel_of(thread: int, columns: int, width: int, height: int, starts: wp.array[wp.int32]):
+        pixel = Pixel()
+        owner = thread // (tile * tile)
+        inner = thread % (tile * tile)
+        column = (owner % columns) * tile + inner % tile
+        row = (owner // columns) * tile + inner // tile
+        pixel.x = real(column) + half
+        pixel.y = real(row) + half
+        pixel.at = wp.where(column < width and row < height, row * width + column, -1)
+        pixel.first = starts[owner]
+        pixel.end = starts[owner + 1]
+        return pixel
+
+    @wp.func
+    def place_in(pixel: Pixel, shapes: wp.array2d[real], quad: int):
+        place = Place()
+        dx = pixel.x - shapes[quad, 0]
+        dy = pixel.y - shapes[quad, 1]
+        place.along = shapes[quad, 2] * dx + shapes[quad, 3] * dy
+        place.across = shapes[quad, 2] * dy - shapes[quad, 3] * dx
+        place.a = place.along * shapes[quad, 4]
+        place.b = place.across * shapes[quad, 5]
+        return place
+
+    @wp.func
+    def window(place: Place):
+        return wp.max(one - place.a * place.a, zero) * wp.max(one - place.b * place.b, zero)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def forward(
+        columns: int,
+        width: int,
+        height: int,
+        starts: wp.array[wp.int32],
+        quads: wp.array[wp.int32],
+        shapes: wp.array2d[real],
+        colors: wp.array2d[real],
+        image: wp.array2d[real],  # [W H, 4]
+        left: wp.array[real],  # [W H] transmittance behind the last quad
+        ends: wp.array[wp.int32],  # [W H] pair behind the last that was blended
+    ):
+        pixel = pixel_of(wp.tid(), columns, width, height, starts)
+        if pixel.at < 0:
+            return
+        transmittance = one
+        red = zero
+        green = zero
+        blue = zero
+        pair = pixel.first
+        while pair < pixel.end and transmittance > least:
+            quad = quads[pair]
+            alpha = shapes[quad, 6] * window(place_in(pixel, shapes, quad))
+            weight = transmittance * alpha
+            red += weight * colors[quad, 0]
+            green += weight * colors[quad, 1]
+            blue += weight * colors[quad, 2]
+            transmittance -= weight
+            pair += 1
+        image[pixel.at, 0] = red
+        image[pixel.at, 1] = green
+        image[pixel.at, 2] = blue
+        image[pixel.at, 3] = one - transmittance
+        left[pixel.at] = transmittance
+        ends[pixel.at] = pair
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def backward(
+        columns: int,
+        width: int,
+        height: int,
+        starts: wp.array[wp.int32],
+        quads: wp.array[wp.int32],
+        shapes: wp.array2d[real],
+        colors: wp.array2d[real],
+        left: wp.array[real],
+        ends: wp.array[wp.int32],
+        wanted: wp.array2d[real],  # [W H, 4] gradient of the image
+        shapes_gradient: wp.array2d[real],  # [M, 7]
+        colors_gradient: wp.array2d[real],  # [M, 3]
+    ):
+        pixel = pixel_of(wp.tid(), columns, width, height, starts)
+        if pixel.at < 0:
+            return
+        red = wanted[pixel.at, 0]
+        green = wanted[pixel.at, 1]
+        blue = wanted[pixel.at, 2]
+        transmittance = left[pixel.at]
+        behind = zero  # what the quads behind add to the loss
+        pair = ends[pixel.at] - 1
+        while pair >= pixel.first:
+            quad = quads[pair]
+            place = place_in(pixel, shapes, quad)
+            shown = window(place)
+            pair -= 1
+            if shown > zero:
+                peak = shapes[quad, 6]
+                alpha = peak * shown
+                transmittance /= one - alpha
+                weight = transmittance * alpha
+                value = red * colors[quad, 0] + green * colors[quad, 1] + blue * colors[quad, 2] + wanted[pixel.at, 3]
+                by_alpha = transmittance * value - behind / (one - alpha)
+                behind += weight * value
+                wp.atomic_add(colors_gradient, quad, 0, weight * red)
+                wp.atomic_add(colors_gradient, quad, 1, weight * green)
+                wp.atomic_add(colors_gradient, quad, 2, weight * blue)
+                by_a = -two * place.a * (one - place.b * place.b) * peak * by_alpha
+                by_b = -two * place.b * (one - place.a * place.a) * peak * by_alpha
+                by_along = by_a * shapes[quad, 4]
+                by_across = by_b * shapes[quad, 5]
+                cosine = shapes[quad, 2]
+                sine = shapes[quad, 3]
+                dx = pixel.x - shapes[quad, 0]
+                dy = pixel.y - shapes[quad, 1]
+                wp.atomic_add(shapes_gradient, quad, 0, sine * by_across - cosine * by_along)
+                wp.atomic_add(shapes_gradient, quad, 1, -sine * by_along - cosine * by_across)
+                wp.atomic_add(shapes_gradient, quad, 2, dx * by_along + dy * by_across)
+                wp.atomic_add(shapes_gradient, quad, 3, dy * by_along - dx * by_across)
+                wp.atomic_add(shapes_gradient, quad, 4, by_a * place.along)
+                wp.atomic_add(shapes_gradient, quad, 5, by_b * place.across)
+                wp.atomic_add(shapes_gradient, quad, 6, by_alpha * shown)
+
+    return Passes(forward, backward)

@@ -1,0 +1,150 @@
+"""Splats to the screen of one camera in torch: the same ellipses, culling and order as mua.kernels.splat_project.
+
+Gradients reach everything, the camera's matrices as well; which splats are seen and in what order are taken as given.
+"""
+
+from dataclasses import dataclass
+
+import torch
+
+from mua.camera import Camera
+from mua.channels import SH_C0, SH_C1
+from mua.kernels.splat_draw import WEIGHT
+from mua.kernels.splat_project import GUARD, LAST_KEY, LEAST_OPACITY, LEAST_VARIANCE, PIXEL_VARIANCE, REACH
+
+ROUND = 1e-6  # of an ellipse's mean variance: with a smaller spread it has no axes, and none that could be turned
+
+
+@dataclass(frozen=True, eq=False)
+class TorchSplats:
+    """N posed splats as mua.decode.Splats holds them, in one dtype and on one device."""
+
+    centres: torch.Tensor  # [N, 3] world, metres
+    rotations: torch.Tensor  # [N, 4] world, wxyz, unit
+    scales: torch.Tensor  # [N, 3] standard deviations, metres
+    opacities: torch.Tensor  # [N] in 0..1
+    sh: torch.Tensor  # [N, 12] degree 1, coefficient-major
+    turns: torch.Tensor  # [N, 4] from the space of the SH to the world, unit
+
+
+@dataclass(frozen=True, eq=False)
+class Eye:
+    """A camera as tensors."""
+
+    view: torch.Tensor  # [4, 4] world to eye, metres
+    projection: torch.Tensor  # [4, 4] eye to clip
+    screen: tuple[int, int]  # width, height, pixels
+
+    @classmethod
+    def of(cls, camera: Camera, like: torch.Tensor) -> "Eye":
+        """In the dtype and on the device of `like`."""
+        view, projection = (torch.as_tensor(m).to(like) for m in (camera.view, camera.projection))
+        return cls(view, projection, camera.screen)
+
+
+@dataclass(frozen=True, eq=False)
+class Quads:
+    """The M splats that are seen, front to back."""
+
+    splats: torch.Tensor  # [M] int64 into the splats
+    shapes: torch.Tensor  # [M, 7] middle (column, row), cosine, sine, 1 / half length along and across, peak of alpha
+    colors: torch.Tensor  # [M, 3] sRGB, not below 0
+
+
+def project(
+    splats: TorchSplats,
+    eye: Eye,
+    bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
+) -> Quads:
+    """What the camera sees, front to back."""
+    near = eye.projection.detach()[2, 3] / -2
+    ellipses = _ellipses(splats, eye, near)
+    with torch.no_grad():
+        seen = torch.nonzero(_is_seen(ellipses, splats.opacities, eye.screen))[:, 0]
+        keys = _keys(splats.centres[seen], eye.view, near, bounds)
+        chosen = seen[torch.sort(keys, stable=True).indices].flip(0)
+    shapes = _shapes(ellipses[chosen], splats.opacities[chosen])
+    return Quads(chosen, shapes, _colors(splats, chosen, eye))
+
+
+def half_extents(
+    shapes: torch.Tensor,  # [M, 7]
+) -> torch.Tensor:
+    """Half width and height [M, 2] of the upright box around each quad, pixels."""
+    _, _, cosine, sine, along, across, _ = shapes.abs().unbind(1)
+    return torch.stack([cosine / along + sine / across, sine / along + cosine / across], dim=1)
+
+
+def _ellipses(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> torch.Tensor:
+    """Ellipses [N, 6] as of mua.kernels.splat_project.eye_ellipses; deviations 0 before the near plane."""
+    turn = eye.view[:3, :3]
+    at = splats.centres @ turn.T + eye.view[:3, 3]
+    depth = (-at[:, 2]).clamp(min=near)
+    flip = torch.tensor([1.0, -1.0]).to(at)  # rows run down
+    half = torch.tensor(eye.screen).to(at) / 2 * flip
+    focal, skew = torch.diagonal(eye.projection)[:2], eye.projection[:2, 2]
+    ndc = at[:, :2] / depth[:, None] * focal - skew
+    slope = (ndc.clamp(-GUARD, GUARD) + skew) / focal
+    jacobian = (half * focal / depth[:, None])[:, :, None] * (turn[:2] + slope[:, :, None] * turn[2])
+    half_axes = jacobian @ (_matrices(splats.rotations) * splats.scales[:, None, :])  # [N, 2, 3]
+    covariance = half_axes @ half_axes.mT
+    a, b, c = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
+    mean, stretch = (a + c) / 2, (a - c) / 2
+    is_round = stretch**2 + b**2 <= (ROUND * mean) ** 2
+    level = torch.where(is_round, mean.detach(), stretch)  # a round ellipse lies level
+    upright = torch.where(is_round, torch.zeros_like(b), b)
+    angle = torch.atan2(upright, level) / 2
+    spread = torch.where(is_round, torch.zeros_like(mean), torch.hypot(upright, level))
+    variances = torch.stack([mean + spread, mean - spread], dim=1).clamp(min=LEAST_VARIANCE)
+    deviations = variances.sqrt() * (-at[:, 2:] > near)
+    middle = (ndc * flip + 1) * half.abs()
+    return torch.cat([middle, angle.cos()[:, None], angle.sin()[:, None], deviations], dim=1)
+
+
+def _matrices(quaternions: torch.Tensor) -> torch.Tensor:
+    """Rotation matrices [N, 3, 3] of unit quaternions [N, 4]."""
+    w, x, y, z = quaternions.unbind(1)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return torch.stack([torch.stack(row, dim=1) for row in rows], dim=1)
+
+
+def _is_seen(ellipses: torch.Tensor, opacities: torch.Tensor, screen: tuple[int, int]) -> torch.Tensor:
+    """Whether each quad [N] reaches into the screen and is more than nothing."""
+    extent = half_extents(_shapes(ellipses, opacities))
+    middle = ellipses[:, 0:2]
+    on_screen = (middle + extent > 0) & (middle - extent < torch.tensor(screen).to(middle))
+    return on_screen.all(dim=1) & (ellipses[:, 4] > 0) & (opacities >= LEAST_OPACITY)
+
+
+def _shapes(ellipses: torch.Tensor, opacities: torch.Tensor) -> torch.Tensor:
+    """[M, 7] of Quads from ellipses [M, 6]."""
+    deviations = ellipses[:, 4:6]
+    wide = (deviations**2 + PIXEL_VARIANCE).sqrt()
+    peak = WEIGHT * opacities * (deviations / wide).prod(dim=1)
+    return torch.cat([ellipses[:, 0:4], 1 / (REACH * wide), peak[:, None]], dim=1)
+
+
+def _keys(centres: torch.Tensor, view: torch.Tensor, near: torch.Tensor, bounds: torch.Tensor) -> torch.Tensor:
+    """Keys [M] int32, back to front, of mua.kernels.splat_project."""
+    spare = (bounds[1] - bounds[0]).norm() / 2
+    forward, offset = -view[2, :3], -view[2, 3]
+    low, high = torch.sort(bounds * forward, dim=0).values
+    nearest = torch.maximum(low.sum() + offset - spare, near)
+    farthest = high.sum() + offset + spare
+    span = (farthest - nearest).clamp(min=torch.finfo(centres.dtype).tiny)
+    fraction = ((farthest - (centres @ forward + offset)) / span).clamp(0, 1)
+    return (fraction * LAST_KEY + 0.5).floor().to(torch.int32)
+
+
+def _colors(splats: TorchSplats, chosen: torch.Tensor, eye: Eye) -> torch.Tensor:
+    """Colours [M, 3] of mua.kernels.splat_draw.splat_colors."""
+    position = -eye.view[:3, :3].T @ eye.view[:3, 3]
+    direction = torch.nn.functional.normalize(splats.centres[chosen] - position, dim=1)
+    turned = (direction[:, None] @ _matrices(splats.turns[chosen]))[:, 0]  # by the transpose: back
+    x, y, z = turned[:, :, None].unbind(1)
+    c0, c1, c2, c3 = splats.sh[chosen].reshape(-1, 4, 3).unbind(1)
+    return (0.5 + SH_C0 * c0 + SH_C1 * (-y * c1 + z * c2 - x * c3)).clamp(min=0)

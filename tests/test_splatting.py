@@ -1,0 +1,183 @@
+"""The differentiable rasteriser: its picture against the reference renderer, its gradients against differences."""
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import torch
+from synthetic_avatar import synthetic_avatar
+
+from mua import rotation
+from mua.camera import Camera, orbit, perspective
+from mua.decode import Splats, decode_clip_frame
+from mua.kernels.splat_project import REACH
+from mua.rendering import render_premultiplied
+from mua.splatting.projection import Eye, TorchSplats, project
+from mua.splatting.rasterise import draw_quads, rasterise
+from mua.splatting.tiles import TILE, assign
+
+SCREEN = (53, 37)  # not whole tiles
+STEP = 1e-6  # of the finite differences
+
+
+def random_splats(count: int, seed: int = 0) -> Splats:
+    """Splats of a few pixels in a box before `camera`, some beyond its edges."""
+    rng = np.random.default_rng(seed)
+    centres = rng.uniform([-1.3, -1.0, -3.5], [1.3, 1.0, -1.5], (count, 3))
+    turns = rotation.normalize(rng.normal(size=(count, 8)))
+    return Splats(
+        canonical=centres,
+        mesh=centres,
+        texture=np.zeros((count, 23)),
+        centres=centres,
+        rotations=rotation.normalize(rng.normal(size=(count, 4))),
+        scales=np.exp(rng.uniform(-4, -2, (count, 3))),
+        opacities=rng.uniform(0.05, 1, count),
+        sh=0.5 * rng.normal(size=(count, 12)),
+        texel_dq=np.concatenate([rotation.normalize(turns[:, :4]), turns[:, 4:]], axis=1),
+        bounds=np.array([[-2.0, -2, -4], [2, 2, -1]]),
+    )
+
+
+def camera(screen: tuple[int, int] = SCREEN) -> Camera:
+    """At the origin, turned a little."""
+    view = np.eye(4)
+    view[:3, :3] = rotation.to_matrix(rotation.normalize(np.array([1, 0.05, -0.1, 0.03])))
+    return Camera(view, perspective(0.8, aspect=screen[0] / screen[1]), screen)
+
+
+def in_torch(splats: Splats, dtype: torch.dtype = torch.float64) -> TorchSplats:
+    of = {field.name: getattr(splats, field.name, None) for field in fields(TorchSplats)}
+    of["turns"] = splats.texel_dq[:, :4]
+    return TorchSplats(**{name: torch.tensor(values, dtype=dtype) for name, values in of.items()})
+
+
+def drawn(splats: Splats, eye: Camera, dtype: torch.dtype = torch.float64) -> torch.Tensor:
+    tensors = in_torch(splats, dtype)
+    return rasterise(tensors, Eye.of(eye, tensors.centres), torch.tensor(splats.bounds, dtype=dtype))
+
+
+@pytest.mark.parametrize("count", [0, 1, 300])
+def test_the_picture_is_the_reference_renderers(count: int) -> None:
+    splats = random_splats(count)
+    expected = render_premultiplied(splats, camera())
+    np.testing.assert_allclose(drawn(splats, camera()), expected, rtol=0, atol=2e-5)  # what a done pixel leaves out
+    assert count == 0 or expected[..., 3].max() > 0.2
+
+
+def test_an_avatar_is_drawn_as_by_the_reference_renderer_in_single_precision() -> None:
+    avatar = synthetic_avatar()
+    splats = decode_clip_frame(avatar, avatar.clips[0], frame=3, dtype=np.float64)
+    eye = orbit(splats.bounds, screen=(96, 128), azimuth=0.4)
+    error = drawn(splats, eye, torch.float32).numpy() - render_premultiplied(splats, eye)
+    assert -10 * np.log10(np.mean(error**2)) > 60
+    assert np.abs(error).max() < 1 / 255
+
+
+def test_a_background_fills_what_the_splats_leave() -> None:
+    tensors = in_torch(random_splats(20))
+    given = Eye.of(camera(), tensors.centres), torch.tensor(random_splats(20).bounds)
+    image, blue = rasterise(tensors, *given), torch.tensor([0.0, 0.0, 1.0], dtype=torch.float64)
+    over = rasterise(tensors, *given, background=blue)
+    torch.testing.assert_close(over, image[..., :3] + (1 - image[..., 3:]) * blue)
+
+
+def slopes(loss: Callable[[torch.Tensor], torch.Tensor], at: torch.Tensor, along: torch.Tensor) -> tuple[float, float]:
+    """The change of the loss along a direction: by its gradient, and by a central difference."""
+    variable = at.clone().requires_grad_()
+    (gradient,) = torch.autograd.grad(loss(variable), variable)
+    with torch.no_grad():
+        difference = (loss(at + STEP * along) - loss(at - STEP * along)) / (2 * STEP)
+    return float((gradient * along).sum()), float(difference)
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(TorchSplats)])
+def test_gradients_are_those_of_finite_differences(name: str) -> None:
+    splats, rng = random_splats(200), torch.Generator().manual_seed(3)
+    tensors, bounds = in_torch(splats), torch.tensor(splats.bounds)
+    eye, weights = Eye.of(camera(), tensors.centres), torch.randn(*SCREEN[::-1], 4, generator=rng, dtype=torch.float64)
+
+    def loss(values: torch.Tensor) -> torch.Tensor:
+        return (weights * rasterise(replace(tensors, **{name: values}), eye, bounds)).sum()
+
+    at = getattr(tensors, name)
+    for _ in range(5):
+        by_gradient, by_difference = slopes(loss, at, torch.randn(at.shape, generator=rng, dtype=torch.float64))
+        assert by_gradient == pytest.approx(by_difference, rel=0.01)
+
+
+@pytest.mark.parametrize("name", ["view", "projection"])
+def test_gradients_reach_the_camera(name: str) -> None:
+    splats, rng = random_splats(200), torch.Generator().manual_seed(4)
+    tensors, bounds = in_torch(splats), torch.tensor(splats.bounds)
+    eye, weights = Eye.of(camera(), tensors.centres), torch.randn(*SCREEN[::-1], 4, generator=rng, dtype=torch.float64)
+
+    def loss(values: torch.Tensor) -> torch.Tensor:
+        return (weights * rasterise(tensors, replace(eye, **{name: values}), bounds)).sum()
+
+    along = torch.zeros(4, 4, dtype=torch.float64)
+    rows = 3 if name == "view" else 2  # the others move the near plane only
+    along[:rows] = torch.randn(rows, 4, generator=rng, dtype=torch.float64) * 0.1
+    by_gradient, by_difference = slopes(loss, getattr(eye, name), along)
+    assert by_gradient == pytest.approx(by_difference, rel=0.01)
+
+
+def test_round_splats_have_finite_gradients() -> None:
+    splats = random_splats(30)
+    splats = replace(splats, scales=np.full((30, 3), 0.1), centres=np.tile([[0.0, 0, -2]], (30, 1)))
+    straight = replace(camera((32, 32)), view=np.eye(4))
+    tensors = in_torch(splats)
+    for field in fields(TorchSplats):
+        getattr(tensors, field.name).requires_grad_()
+    rasterise(
+        tensors, Eye.of(straight, tensors.centres.detach()), torch.tensor(splats.bounds)
+    ).square().sum().backward()
+    assert all(getattr(tensors, field.name).grad.isfinite().all() for field in fields(TorchSplats))
+
+
+def test_splats_behind_the_camera_get_no_gradient() -> None:
+    splats = random_splats(40)
+    splats.centres[:20, 2] *= -1
+    tensors = in_torch(splats)
+    tensors.centres.requires_grad_()
+    rasterise(tensors, Eye.of(camera(), tensors.centres.detach()), torch.tensor(splats.bounds))[..., 3].sum().backward()
+    assert tensors.centres.grad is not None
+    assert not tensors.centres.grad[:20].any()
+    assert tensors.centres.grad[20:].any()
+
+
+def test_a_pixel_that_is_done_blends_nothing_and_passes_no_gradient() -> None:
+    half = 1 / (2 * TILE)
+    shapes = torch.tensor([[8.5, 8.5, 1, 0, half, half, 0.884]], dtype=torch.float64).repeat(40, 1)
+    colors = torch.linspace(0, 1, 40, dtype=torch.float64)[:, None].repeat(1, 3).requires_grad_()
+    draw_quads(shapes, colors, (TILE, TILE)).sum().backward()
+    assert colors.grad is not None
+    assert colors.grad[0].all()
+    assert not colors.grad[30:].any()
+
+
+@pytest.mark.parametrize("screen", [(TILE, TILE), (TILE + 1, 2 * TILE - 1), (3 * TILE, 5)])
+def test_tiles_hold_every_quad_whose_pixels_they_have_front_to_back(screen: tuple[int, int]) -> None:
+    rng = np.random.default_rng(6)
+    middle = rng.uniform(-10, 60, (50, 2))
+    extent = rng.uniform(0.1, 20, (50, 2))
+    tiles = assign(torch.tensor(middle), torch.tensor(extent), screen)
+    column, row = np.meshgrid(*(np.arange(side) for side in screen))
+    inside = np.abs(np.stack([column, row], axis=-1) + 0.5 - middle[:, None, None]) <= extent[:, None, None]
+    quads, rows, columns = np.nonzero(inside.all(axis=-1))
+    starts, held = tiles.starts.numpy(), tiles.quads.numpy()
+    expected = {(q, r // TILE * tiles.columns + c // TILE) for q, r, c in zip(quads, rows, columns, strict=True)}
+    found = [(q, tile) for tile in range(len(starts) - 1) for q in held[starts[tile] : starts[tile + 1]]]
+    assert len(found) == len(set(found))
+    assert expected <= set(found)
+    assert all((np.diff(held[low:high]) > 0).all() for low, high in pairwise(starts))
+
+
+def test_quads_are_drawn_as_far_as_the_reference_reaches() -> None:
+    splats = random_splats(100)
+    tensors = in_torch(splats)
+    quads = project(tensors, Eye.of(camera(), tensors.centres), torch.tensor(splats.bounds))
+    assert 0 < len(quads.splats) < 100  # some lie beyond the edges
+    assert (1 / quads.shapes[:, 4:6] > REACH * 0.3).all()  # half a pixel's own deviation at the least
