@@ -9,7 +9,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.export.splats import WorldSplats
 
-# Our renderer integrates over pixels, which Mip-Splatting does too: viewers that know the comment draw it likewise.
+# Our renderer filters splats over pixels, as Mip-Splatting does: viewers that know the comment do so too.
 COMMENTS = ("made by mua-export; metres", "SplatRenderMode: mip")
 FIELDS = (
     *("x", "y", "z"),
