@@ -7,6 +7,7 @@ import { readFileSync } from "node:fs";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, framing } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
+import { chooseLevel, coarserTexture, coarsest, texelLength, texelPixels, textureOf } from "../../python/mua/web/coarser.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read } from "../../python/mua/web/format/read.js";
@@ -52,15 +53,30 @@ function values(avatar, frames) {
     tiles: list(texelTiles(texels).tiles),
     rows: list(texelTiles(texels).rows),
     upsampling: [0, 1, 2, 3].map((levels) => upsamplingTaps(wavelet.recLo, levels)),
+    halved: [1, 2].map((coarser) => upsamplingTaps(wavelet.recLo, 2, coarser)),
+    coarsest: coarsest(avatar),
+    length: texelLength(avatar, texels.texels.length),
     staticOffset: list(expanded(geometry.staticOffset)),
     surface: surface && Object.values(surfaceMesh(texels, surface)).map(list),
   };
 }
 
+/** The coarser levels, one after the other. */
+function levels(avatar) {
+  let texture = textureOf(avatar);
+  return Array.from({ length: coarsest(avatar) }, () => {
+    texture = coarserTexture(avatar, texture);
+    const { size, texels, triangles, barycentrics, statics } = texture;
+    const lists = { texels, triangles, barycentrics, ...statics };
+    return { size, ...Object.fromEntries(Object.entries(lists).map(([name, values]) => [name, list(values)])) };
+  });
+}
+
 function views(box) {
   const state = { azimuth: 0.4, elevation: 0.2, fov: 0.6 };
   const { target, distance } = framing(box, state, [96, 128]);
-  return { target, distance, ...cameraOf({ ...state, target, distance }, [96, 128]) };
+  const camera = cameraOf({ ...state, target, distance }, [96, 128]);
+  return { target, distance, ...camera, texel: texelPixels(0.01, box, camera) };
 }
 
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));
@@ -69,6 +85,8 @@ if (what === "truncated") {
   for (let length = 0; length < content.byteLength; length += Number(given[1])) say(await answer(content.slice(0, length)));
 }
 if (what === "values") say(values(await read(bytes(given[0])), given.slice(1).map(Number)));
+if (what === "levels") say(levels(await read(bytes(given[0]))));
+if (what === "choices") say(JSON.parse(given[0]).map(([texel, most, shown]) => chooseLevel(texel, most, shown)));
 if (what === "views") say(views(given.map(Number)));
 if (what === "halves") say(Array.from({ length: 0x7c00 }, (_, bits) => half(bits)));
 if (what === "numbers") say(given.map(Number).map((n) => [...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]), shortest(n)]));

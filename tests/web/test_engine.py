@@ -19,6 +19,7 @@ from mua.asset.write import encode
 from mua.camera import Camera
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
+from mua.player.levels import FULL, Levels
 from mua.player.offscreen import Offscreen
 from mua.player.picture import over
 from mua.player.toggles import Toggles
@@ -36,6 +37,7 @@ START = """(async () => {
   const { createPlayer } = await import("./player.js");
   globalThis.player = await createPlayer(document.querySelector("canvas"));
   player.playing = false;
+  player.level = "full";
   globalThis.faults = [];
   player.onerror = (error) => faults.push(error.message);
 })()"""
@@ -44,6 +46,7 @@ LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
   globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
   return new Promise((resolve) => { this.told = resolve; });
 } });"""
+SPLATS = Toggles()
 Open = Callable[..., Page]
 
 
@@ -95,11 +98,14 @@ def psnr(image: Array, exact: Array) -> float:
     return float(-10 * np.log10(np.maximum(np.mean((image - exact) ** 2), 1e-12)))
 
 
-def desktop(device: Device, file: Path, page: Page, frame: int, toggles: Toggles) -> Array:
+def desktop(
+    device: Device, file: Path, page: Page, frame: int, toggles: Toggles = SPLATS, level: str | int = FULL
+) -> Array:
     """The desktop player's picture from where the page's camera is."""
     buffers = AvatarBuffers(device, file)
     clip = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
-    image = Offscreen(device, buffers, clip, toggles).picture(frame, [camera_of(page)])
+    levels = Levels(buffers.avatar, level)
+    image = Offscreen(device, buffers, clip, toggles, levels=levels).picture(frame, [camera_of(page)])
     return over(image, GREY) / 255
 
 
@@ -148,6 +154,47 @@ def test_the_demo_looks_as_on_the_desktop(opened: Open, device: Device) -> None:
     assert load(page) == ""
     show(page, Toggles(shadow=True), 9, read(DEMO).encoding.rate)
     assert psnr(screenshot(page), desktop(device, DEMO, page, 9, Toggles(shadow=True))) > LEAST_PSNR
+
+
+@pytest.mark.parametrize("size", [16, 8])
+def test_coarser_levels_are_those_of_the_desktop(opened: Open, device: Device, small: Path, size: int) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    show(page, SPLATS, 2, read(small).encoding.rate)
+    full = screenshot(page)
+    page.evaluate(f"player.level = {size}")
+    coarse = screenshot(page)
+    assert psnr(coarse, desktop(device, small, page, 2, level=size)) > LEAST_PSNR
+    assert np.abs(coarse - full).max() > 2 / 255
+
+
+def test_far_away_an_avatar_is_coarser_unless_its_surface_is_shown(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    shown = "player.entries[0].slot.frame.shown.level.size"
+    page.evaluate('(player.level = "auto", player.camera.distance = 500, player.draw())')
+    assert page.evaluate(shown) == 8
+    page.evaluate("(player.show.geometry = true, player.draw())")
+    assert page.evaluate(shown) == 32
+
+
+def test_a_decode_that_is_spread_shows_what_one_at_once_shows(opened: Open, small: Path) -> None:
+    page, rate = opened(a=small.read_bytes()), read(small).encoding.rate
+    assert load(page) == ""
+    show(page, SPLATS, 4, rate)
+    at_once = screenshot(page)
+    show(page, SPLATS, 3, rate)
+    page.evaluate("""(() => {
+      const posed = player.posed().map((one) => ({ ...one, following: 4 }));
+      for (const turn of [0, 1, 2]) turn ? player.renderer.lookAhead(posed) : player.renderer.draw(posed, player);
+    })()""")
+    frame = "player.entries[0].slot.frame"
+    assert page.evaluate(f"[{frame}.partsLeft, player.entries[0].slot.schedule.coming.frame]") == [0, 4]
+    show(page, SPLATS, 4, rate)
+    before = page.evaluate(f"(globalThis.made = {frame}.hidden, true)")
+    np.testing.assert_array_equal(screenshot(page), at_once)
+    assert before
+    assert page.evaluate(f"{frame}.shown === made"), "it was not decoded anew"
 
 
 def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:

@@ -20,8 +20,10 @@ from mua.asset.flatbuffer import FormatError
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode
 from mua.camera import orbit, perspective
+from mua.coarser import at_level, coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
+from mua.level_choice import Seen, choose_level, texel_pixels
 from mua.player.draw import view_projection
 from mua.player.overlays import ground_height, shadow_area
 from mua.player.surface import surface_mesh
@@ -118,6 +120,7 @@ def test_values_are_those_of_python(tmp_path: Path, change: Any) -> None:
         "translations": poses[1].reshape(len(FRAMES), -1),
         "joints": skeleton.skinning(*poses).reshape(len(FRAMES), -1),
         "boxes": frame_boxes(avatar.rig, clip)[FRAMES].reshape(len(FRAMES), -1),
+        "length": texel_length(avatar),
         "ground": ground_height(avatar.rig, clip),
         "shadow": shadow_area(avatar.bounds, -0.25),
         "staticOffset": avatar.geometry.static.ravel(),
@@ -149,10 +152,34 @@ def test_levels_without_details_become_the_same_filter(tmp_path: Path, wavelet: 
     avatar = synthetic_avatar(wavelet=wavelet)
     write(tmp_path / "a.muaavatar", avatar)
     [found] = node("values", tmp_path / "a.muaavatar", 0)
-    for levels, filtered in enumerate(found["upsampling"]):
-        taps, delay = upsampling_taps(avatar.wavelet.rec_lo, levels)
+    asked = [(levels, 0) for levels in range(4)] + [(2, 1), (2, 2)]
+    for (levels, coarser), filtered in zip(asked, found["upsampling"] + found["halved"], strict=True):
+        taps, delay = upsampling_taps(avatar.wavelet.rec_lo, levels, coarser)
         assert [filtered["reach"], filtered["factor"], filtered["delay"]] == [*taps.shape, delay]
         np.testing.assert_allclose(filtered["taps"], taps.ravel(), rtol=EXACT, atol=EXACT)
+
+
+def test_coarser_levels_are_those_of_python(tmp_path: Path) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, synthetic_avatar())
+    avatar, [found] = read(path), node("levels", path)
+    assert len(found) == coarsest(avatar) == 2
+    for number, level in enumerate(found, 1):
+        expected = at_level(avatar, number)
+        texels = expected.rig.texels
+        assert level["size"] == texels.size
+        np.testing.assert_array_equal(level["texels"], texels.texels)
+        np.testing.assert_array_equal(level["triangles"], texels.triangles)
+        np.testing.assert_allclose(level["barycentrics"], texels.barycentrics[:, :2].ravel(), atol=ROUNDED)
+        np.testing.assert_allclose(level["geometry"], expected.geometry.static.ravel(), rtol=ROUNDED, atol=ROUNDED)
+        np.testing.assert_allclose(level["appearance"], expected.appearance.static.ravel(), rtol=ROUNDED, atol=ROUNDED)
+
+
+@pytest.mark.parametrize("texel", [2.0, 1.0, 0.51, 0.5, 0.55, 0.25, 0.27, 0.01])
+def test_the_level_is_chosen_as_in_python(texel: float) -> None:
+    asked = [(texel, most, shown) for most in range(3) for shown in range(most + 1)]
+    expected = [choose_level(Seen(1.0, texel, (16, 4, 1)[: most + 1], shown)) for texel, most, shown in asked]
+    assert node("choices", json.dumps(asked))[0] == expected
 
 
 def test_cameras_are_those_of_python() -> None:
@@ -166,6 +193,7 @@ def test_cameras_are_those_of_python() -> None:
         "position": camera.position,
         "target": box.mean(axis=0),
         "near": camera.near,
+        "texel": texel_pixels(0.01, box, [camera])[1],
         "distance": np.linalg.norm(camera.position - box.mean(axis=0)),
     }
     for name, value in expected.items():

@@ -1,11 +1,27 @@
 // An avatar's tensors on the device, in the type in which the file stores them. Reference: python/mua/player/buffers.py.
 
+import { coarserTexture, textureOf } from "./coarser.js";
 import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 
 /** @typedef {import("./device.js").Memory} Memory */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./format/model.js").Branch} Branch */
 /** @typedef {import("./format/tensors.js").Stored} Stored */
+/** @typedef {{size: number, texels: Int32Array, triangles: Int32Array, barycentrics: Float32Array}} Texels */
+/** @typedef {{taps: GPUBuffer, factor: number, reach: number, delay: number}} Upsampling */
+/** @typedef {{upsampling: Upsampling, staticOffset: StoredBuffer}} BranchLevel what is geometry's or appearance's alone of a level */
+/**
+ * @typedef {object} LevelBuffers the texels of one level of detail
+ * @property {number} number 0 is the finest
+ * @property {number} size texels along a side
+ * @property {number} splatCount
+ * @property {GPUBuffer} texels where they lie on the mesh
+ * @property {number} tileCount
+ * @property {GPUBuffer} tiles
+ * @property {GPUBuffer} tileRows
+ * @property {BranchLevel} geometry
+ * @property {BranchLevel} appearance
+ */
 /** @typedef {{words: GPUBuffer, layout: number[]}} StoredBuffer as the kernels' stored() reads it */
 
 const ELEMENT_TYPES = ["F32", "F16", "I8"];
@@ -24,13 +40,60 @@ export class AvatarBuffers {
     this.recLo = memory.buffer(Float32Array.from(wavelet.recLo), "wavelet.rec_lo");
     this.recHi = memory.buffer(Float32Array.from(wavelet.recHi), "wavelet.rec_hi");
     this.faces = memory.buffer(template.faces, "template.faces");
-    this.texels = memory.buffer(texelWords(texels), "texels");
     this.skinIndices = memory.buffer(template.skinIndices, "template.skin_indices");
     this.skinWeights = memory.buffer(template.skinWeights, "template.skin_weights");
+    const statics = { geometry: avatar.geometry.staticOffset, appearance: avatar.appearance.staticOffset };
+    /** @type {LevelBuffers[]} */
+    this.levels = [this.levelOf(texels, statics, 0)];
+    /** @type {import("./coarser.js").Texture | null} */
+    this.coarser = null; // that the last of the levels was made of
+  }
+
+  /** A level of detail, at most `coarsest` of the avatar; made when it is first asked for. @returns {LevelBuffers} */
+  level(/** @type {number} */ number) {
+    while (this.levels.length <= number) {
+      this.coarser = coarserTexture(this.avatar, this.coarser ?? textureOf(this.avatar));
+      this.levels.push(this.levelOf(this.coarser, this.coarser.statics, this.levels.length));
+    }
+    return this.levels[number];
+  }
+
+  /** @returns {LevelBuffers} */
+  levelOf(
+    /** @type {Texels} */ texels,
+    /** @type {{geometry: Stored | Float32Array, appearance: Stored | Float32Array}} */ statics,
+    /** @type {number} */ number,
+  ) {
     const { tiles, rows } = texelTiles(texels);
-    this.tileCount = tiles.length;
-    this.tiles = memory.buffer(tiles, "texels.texels");
-    this.tileRows = memory.buffer(rows, "texels.texels");
+    return {
+      number,
+      size: texels.size,
+      splatCount: texels.texels.length,
+      texels: this.memory.buffer(texelWords(texels), "texels"),
+      tileCount: tiles.length,
+      tiles: this.memory.buffer(tiles, "texels.texels"),
+      tileRows: this.memory.buffer(rows, "texels.texels"),
+      geometry: this.branchLevel("geometry", statics.geometry, number),
+      appearance: this.branchLevel("appearance", statics.appearance, number),
+    };
+  }
+
+  /** @returns {BranchLevel} */
+  branchLevel(
+    /** @type {"geometry" | "appearance"} */ name,
+    /** @type {Stored | Float32Array} */ values,
+    /** @type {number} */ number,
+  ) {
+    const { wavelet } = this.avatar;
+    const { taps, ...rest } = upsamplingTaps(wavelet.recLo, wavelet.levels - this.avatar[name].details.length, number);
+    const label = `${name}.static_offset`;
+    return {
+      upsampling: { ...rest, taps: this.memory.buffer(Float32Array.from(taps), "wavelet.rec_lo") },
+      staticOffset:
+        values instanceof Float32Array
+          ? { words: this.memory.buffer(values, label), layout: [ELEMENT_TYPES.indexOf("F32"), 1, 0] }
+          : this.stored(values, label),
+    };
   }
 
   /** @returns {StoredBuffer} */
@@ -55,8 +118,6 @@ export class AvatarBuffers {
   }
 
   branch(/** @type {Branch} */ branch, /** @type {string} */ name) {
-    const { levels, recLo } = this.avatar.wavelet;
-    const upsampling = upsamplingTaps(recLo, levels - branch.details.length);
     return {
       mlp: this.mlp(branch.mlp, `${name}.mlp`),
       llMean: this.stored(branch.llMean, `${name}.ll_mean`),
@@ -68,8 +129,6 @@ export class AvatarBuffers {
         rank: band.rank,
         size: band.size,
       })),
-      upsampling: { ...upsampling, taps: this.memory.buffer(Float32Array.from(upsampling.taps), "wavelet.rec_lo") },
-      staticOffset: this.stored(branch.staticOffset, `${name}.static_offset`),
       channels: branch.channels,
       rank: branch.rank,
     };

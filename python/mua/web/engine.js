@@ -38,8 +38,11 @@ export class Engine {
     this.camera = { azimuth: 0, elevation: 0, distance: 3.5, target: [0, 1, 0], fov: FOV };
     /** @type {import("./player.js").Show} */
     this.show = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true };
+    /** @type {import("./player.js").Level} */
+    this.level = "auto";
     this.playing = true;
     this.speed = 1;
+    this.frameStep = 0; // seconds of the clip from one picture to the next, as it plays
     /** @type {((error: AvatarError) => void) | null} */
     this.onerror = null;
     /** @type {string | null} */
@@ -206,8 +209,16 @@ export class Engine {
       const clip = this.clipOf(avatar) ?? stillClip(avatar);
       const ground = this.show.shadow ? (grounds.get(clip.name) ?? groundHeight(avatar, clip)) : 0;
       if (this.show.shadow) grounds.set(clip.name, ground);
-      return { slot, clip, frame: this.frameOf(avatar, clip), place: [...handle.place], ground };
+      const frame = this.frameOf(avatar, clip);
+      return { slot, clip, frame, following: this.followingOf(avatar, clip, frame), place: [...handle.place], ground };
     });
+  }
+
+  /** The frame to decode ahead; this one where the clip rests or skips frames, or what is shown must be exact. */
+  followingOf(/** @type {Avatar} */ { encoding }, /** @type {Clip} */ clip, /** @type {number} */ frame) {
+    const step = this.frameStep * encoding.rate;
+    const ahead = this.request && this.playing && !this.show.geometry && step > 0 && step < 1;
+    return ahead ? (frame + 1) % framesAt(clip, encoding.rate) : frame;
   }
 
   async draw() {
@@ -241,15 +252,17 @@ export class Engine {
     this.request = requestAnimationFrame((next) => this.step(next));
     const passed = Math.min(Math.max(now - this.before, 0) / 1000, LONGEST_STEP);
     this.before = now;
-    if (this.playing) this.time += passed * this.speed;
+    this.frameStep = passed * this.speed;
+    if (this.playing) this.time += this.frameStep;
     const frames = this.entries.map(({ avatar, handle }) => {
       const clip = this.clipOf(avatar);
       return [handle.name, clip?.name, clip && this.frameOf(avatar, clip), handle.place];
     });
-    const wanted = JSON.stringify([this.camera, this.show, this.screen, frames]);
-    if (wanted === this.drawn || !this.renderer) return;
+    const wanted = JSON.stringify([this.camera, this.show, this.level, this.screen, frames]);
+    if (!this.renderer) return;
     try {
-      this.drawNow();
+      if (wanted !== this.drawn) this.drawNow();
+      else if (this.playing) this.renderer.lookAhead(this.posed());
       this.drawn = wanted;
     } catch (error) {
       this.stop();

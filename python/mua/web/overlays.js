@@ -99,7 +99,7 @@ export class Overlays {
   }
 
   posed() {
-    return { vertex_dq: this.frame.vertexDq, mesh: this.frame.mesh };
+    return { vertex_dq: this.frame.vertexDq, mesh: this.frame.shown.mesh };
   }
 
   /** Darken the ground by the mask. */

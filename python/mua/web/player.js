@@ -29,6 +29,7 @@ export { AvatarError };
  * @property {number} fov vertical, radians
  */
 
+/** @typedef {"auto" | "full" | number} Level of detail: by the distance, the finest, or texels along a side of the texture */
 /** @typedef {{name: string, seconds: number, frames: number}} ClipInfo */
 /** @typedef {[[number, number, number], [number, number, number]]} Box lowest and highest corner, metres */
 
@@ -66,6 +67,7 @@ export { AvatarError };
  * @property {CameraState} camera may be changed in place; the next picture follows
  * @property {() => void} frameAll puts the camera where all avatars are in the picture
  * @property {Show} show may be changed in place
+ * @property {Level} level of detail; "auto" by default
  * @property {() => Promise<void>} draw one picture now, at the canvas' size; resolves when it is drawn
  * @property {() => void} start draws a picture for every frame of the display
  * @property {() => void} stop

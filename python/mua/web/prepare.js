@@ -5,7 +5,7 @@ const TILE = 16; // texels along a side
 const LARGEST_BARYCENTRIC = 65535;
 
 /** Where texels lie on the mesh, [N, 2] words: the triangle, two barycentrics of 16 bits each. */
-export function texelWords(/** @type {import("./format/rig.js").Texels} */ { triangles, barycentrics }) {
+export function texelWords(/** @type {{triangles: Int32Array, barycentrics: Float32Array}} */ { triangles, barycentrics }) {
   const words = new Uint32Array(2 * triangles.length);
   for (let i = 0; i < triangles.length; i++) {
     const [first, second] = [0, 1].map((k) => toEven(barycentrics[2 * i + k] * LARGEST_BARYCENTRIC));
@@ -50,16 +50,24 @@ function tileOf(/** @type {number} */ texel, /** @type {number} */ size, /** @ty
   return Math.floor(Math.floor(texel / size) / TILE) * across + Math.floor((texel % size) / TILE);
 }
 
-/** The filter [reach, factor] that so many levels of low-pass synthesis are together, and its delay. */
-export function upsamplingTaps(/** @type {Float64Array} */ recLo, /** @type {number} */ levels) {
+/**
+ * The filter [reach, factor] that so many levels of low-pass synthesis are together, and its delay.
+ * @param {Float64Array} recLo @param {number} levels @param {number} [coarser] times that two texels become one
+ */
+export function upsamplingTaps(recLo, levels, coarser = 0) {
   let taps = [1];
   for (let level = 0; level < levels; level++) {
     const wider = new Array(2 * (taps.length - 1) + recLo.length).fill(0);
     taps.forEach((tap, i) => recLo.forEach((other, k) => (wider[2 * i + k] += tap * other)));
     taps = wider;
   }
-  const factor = 2 ** levels;
-  const delay = (factor - 1) * (recLo.length / 2 - 1);
+  let delay = (2 ** levels - 1) * (recLo.length / 2 - 1);
+  for (let level = 0; level < coarser; level++) {
+    const even = [...(delay % 2 ? [0] : []), ...taps, ...((taps.length + delay) % 2 ? [0] : [])];
+    taps = even.flatMap((tap, i) => (i % 2 ? [] : [(tap + even[i + 1]) / 2]));
+    delay = Math.floor((delay + 1) / 2);
+  }
+  const factor = 2 ** (levels - coarser);
   const used = taps.flatMap((tap, i) => (tap ? [i] : []));
   const first = used.length ? Math.min(used[0], delay) : 0;
   const last = used.length ? used[used.length - 1] : 0;

@@ -7,17 +7,19 @@ import { window } from "./clip.js";
 import { Device, Memory } from "./device.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
+import { Levels } from "./levels.js";
 import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
+import { DecodeSchedule } from "./schedule.js";
 import { SplatFrame } from "./splats.js";
 import { Timing } from "./timing.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./format/read.js").Clip} Clip */
-/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, shown: string}} Slot an avatar on the device */
-/** @typedef {{slot: Slot, clip: Clip, frame: number, place: number[], ground: number}} Posed what a picture shows of one */
-/** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show}} Look */
+/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, place: string}} Slot an avatar on the device */
+/** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, place: number[], ground: number}} Posed what a picture shows of one */
+/** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show, level: import("./player.js").Level}} Look */
 
 export class Renderer {
   /** @returns {Promise<Renderer>} */
@@ -63,7 +65,8 @@ export class Renderer {
     let slot = null;
     try {
       const frame = new AvatarFrame(new AvatarBuffers(memory, avatar));
-      slot = { memory, frame, overlays: new Overlays(memory, frame, { color: COLOR, depth: DEPTH }), shown: "" };
+      const overlays = new Overlays(memory, frame, { color: COLOR, depth: DEPTH });
+      slot = { memory, frame, overlays, schedule: new DecodeSchedule(frame), levels: new Levels(avatar), place: "" };
       this.rearrange([...this.slots, slot]);
     } finally {
       const lacking = await gpu.popErrorScope();
@@ -113,34 +116,51 @@ export class Renderer {
     }
   }
 
-  submit(/** @type {GPUTexture} */ target, /** @type {Posed[]} */ posed, /** @type {Look} */ { camera: state, show }) {
+  submit(/** @type {GPUTexture} */ target, /** @type {Posed[]} */ posed, /** @type {Look} */ look) {
     const { device, timing, splats } = this;
-    const camera = cameraOf(state, [target.width, target.height]);
+    const camera = cameraOf(look.camera, [target.width, target.height]);
     const encoder = device.gpu.createCommandEncoder();
-    this.pose(encoder, posed);
+    this.pose(encoder, posed, look, camera);
     if (splats) {
       const pass = encoder.beginComputePass({ label: "sort", timestampWrites: timing.of("sort") });
       splats.sort(pass, camera);
       pass.end();
     }
     const overlays = posed.map(({ slot }) => slot.overlays);
-    this.scene.draw(encoder, target, { frame: splats, overlays, camera, show }, timing.of("draw"));
+    this.scene.draw(encoder, target, { frame: splats, overlays, camera, show: look.show }, timing.of("draw"));
     const then = timing.end(encoder);
     device.uniforms.upload();
     device.gpu.queue.submit([encoder.finish()]);
     then();
   }
 
-  /** Decode what shows another frame or stands elsewhere than before. */
-  pose(/** @type {GPUCommandEncoder} */ encoder, /** @type {Posed[]} */ posed) {
+  /** Decode a part of what comes next, where the picture stays. */
+  lookAhead(/** @type {Posed[]} */ posed) {
+    const encoder = this.device.gpu.createCommandEncoder();
+    const pass = encoder.beginComputePass({ label: "ahead" });
+    for (const one of posed) {
+      const { schedule, levels } = one.slot;
+      if (schedule.shown && schedule.shown.frame === one.frame)
+        schedule.record(pass, asked(one, levels.shown), windowOf(one));
+    }
+    pass.end();
+    this.device.uniforms.upload();
+    this.device.gpu.queue.submit([encoder.finish()]);
+  }
+
+  /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUCommandEncoder} encoder @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera} camera */
+  pose(encoder, posed, look, camera) {
     const pass = encoder.beginComputePass({ label: "decode", timestampWrites: this.timing.of("decode") });
-    for (const { slot, clip, frame, place, ground } of posed) {
-      const shown = [clip.name, frame, ...place].join();
-      if (slot.shown === shown) continue;
-      const { skeleton, encoding } = slot.frame.buffers.avatar;
-      slot.frame.decode(pass, window(skeleton, clip, frame, encoding), place);
-      slot.overlays.pose(ground + place[1]);
-      slot.shown = shown;
+    for (const one of posed) {
+      const { schedule, levels, frame, overlays, place } = one.slot;
+      const window = windowOf(one);
+      const [pose] = window({ clip: one.clip.name, frame: one.frame });
+      const level = look.show.geometry ? 0 : levels.choose(look.level, pose, one.place, camera);
+      const changed = schedule.record(pass, asked(one, level), window);
+      one.slot.place = one.place.join();
+      if (!changed && one.slot.place === place) continue;
+      frame.repose(pass, pose, one.place);
+      overlays.pose(one.ground + one.place[1]);
     }
     pass.end();
   }
@@ -155,4 +175,14 @@ export class Renderer {
     this.context.unconfigure();
     this.device.gpu.destroy();
   }
+}
+
+function asked(/** @type {Posed} */ { clip, frame, following }, /** @type {number} */ level) {
+  return { due: { clip: clip.name, frame }, following: { clip: clip.name, frame: following }, level };
+}
+
+/** The poses that end at a moment of what is shown. @returns {import("./schedule.js").Window} */
+function windowOf(/** @type {Posed} */ { slot, clip }) {
+  const { skeleton, encoding } = slot.frame.buffers.avatar;
+  return ({ frame }) => window(skeleton, clip, frame, encoding);
 }

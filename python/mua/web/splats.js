@@ -2,7 +2,7 @@
 // the order of the kernels. Reference: python/mua/player/splats.py.
 
 import { AvatarError } from "./error.js";
-import { FLOAT, groups } from "./frame.js";
+import { FLOAT, groups } from "./channels.js";
 import { kernelsOf } from "./kernel.js";
 import { SplatProject } from "./wgsl/splat_project.js";
 import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";
@@ -18,21 +18,16 @@ const DIGITS = 256; // values of 8 bits
 const ARGUMENTS = 5; // words: of the draw, and how many splats are seen
 export const KERNELS = { SplatProject, CountDigits, ScanDigits, ScatterDigits };
 
+const even = (/** @type {number} */ count) => count + (count % 2);
+
 /** One sort for all avatars, so that those that stand among each other blend rightly. */
 export class SplatFrame {
   constructor(/** @type {import("./device.js").Memory} */ memory, /** @type {AvatarFrame[]} */ avatars) {
     this.avatars = avatars;
-    /** @type {number[]} */
-    this.firstSplats = []; // each avatar's first is even
-    this.splatCount = 0;
-    for (const avatar of avatars) {
-      this.firstSplats.push(this.splatCount);
-      this.splatCount += avatar.splatCount + (avatar.splatCount % 2);
-    }
-    if (this.splatCount > MOST_SPLATS)
-      throw new AvatarError(`${this.splatCount} splats of all avatars; expected at most ${MOST_SPLATS}`);
+    const finest = avatars.map((avatar) => even(avatar.buffers.level(0).splatCount));
+    const count = finest.reduce((all, one) => all + one, 0);
+    if (count > MOST_SPLATS) throw new AvatarError(`${count} splats of all avatars; expected at most ${MOST_SPLATS}`);
     this.kernels = kernelsOf(memory.device, KERNELS);
-    const count = this.splatCount;
     this.splats = memory.buffer(4 * SPLAT_WORDS * count, "splats");
     this.keys = memory.buffer((FLOAT * count) / 2, "keys");
     this.digitCounts = memory.buffer(FLOAT * DIGITS * groups(count, SORTED), "digit_counts");
@@ -42,9 +37,17 @@ export class SplatFrame {
     this.order = memory.buffer(FLOAT * count, "order");
   }
 
+  /** Where the splats of each avatar begin, and where the last one's end: even numbers, as many as are decoded. */
+  get starts() {
+    const starts = [0];
+    for (const avatar of this.avatars) starts.push(starts[starts.length - 1] + even(avatar.splatCount));
+    return starts;
+  }
+
   /** Append the dispatches from posed texels to `order`, the splats that a camera sees, back to front. */
   sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera} */ camera) {
-    this.avatars.forEach((avatar, i) => this.project(pass, avatar, this.firstSplats[i], camera));
+    const { starts } = this;
+    this.avatars.forEach((avatar, i) => this.project(pass, avatar, starts[i], camera));
     this.sortDigit(pass, this.keys, this.halfSorted, 0);
     this.sortDigit(pass, this.halfSorted, this.order, 1);
   }
@@ -62,10 +65,10 @@ export class SplatFrame {
       pass,
       [groups(avatar.splatCount, PROJECTED), 1, 1],
       {
-        mesh: avatar.mesh,
+        mesh: avatar.shown.mesh,
         faces: avatar.buffers.faces,
-        texels: avatar.buffers.texels,
-        texel_channels: avatar.texelChannels,
+        texels: avatar.shown.level.texels,
+        texel_channels: avatar.shown.texelChannels,
         vertex_dq: avatar.vertexDq,
         splats: this.splats,
         keys: this.keys,
@@ -87,10 +90,11 @@ export class SplatFrame {
 
   /** One pass of the sort, from the splats' keys to elements, or from those to the order. @param {GPUComputePassEncoder} pass @param {GPUBuffer} keys @param {GPUBuffer} sorted @param {number} second_pass */
   sortDigit(pass, keys, sorted, second_pass) {
-    const blocks = [groups(this.splatCount, SORTED), 1, 1];
+    const count = this.starts[this.avatars.length];
+    const blocks = [groups(count, SORTED), 1, 1];
     const counts = { digit_counts: this.digitCounts, arguments: this.arguments };
     const totals = { ...counts, digit_totals: this.digitTotals };
-    const constants = { second_pass, key_count: this.splatCount, instances: 1 };
+    const constants = { second_pass, key_count: count, instances: 1 };
     this.kernels.CountDigits.dispatch(pass, blocks, { keys, ...counts }, constants);
     this.kernels.ScanDigits.dispatch(pass, [DIGITS, 1, 1], totals, constants);
     this.kernels.ScatterDigits.dispatch(pass, blocks, { keys, ...totals, sorted }, constants);

@@ -1,0 +1,201 @@
+// From a window of poses to channels: the dispatches of a decode, a plain list in the order of the kernels, in parts that
+// displayed frames can share. Reference: python/mua/player/channels.py.
+
+import { kernelsOf } from "./kernel.js";
+import { BlendDetail, BlendLl } from "./wgsl/blend_subbands.js";
+import { InverseDwt, UpsampleTexels } from "./wgsl/inverse_dwt.js";
+import { MlpMatmul, MlpMatmulTransposed } from "./wgsl/mlp_matmul.js";
+
+/** @typedef {import("./buffers.js").AvatarBuffers} AvatarBuffers */
+/** @typedef {import("./buffers.js").BranchLevel} BranchLevel */
+/** @typedef {import("./buffers.js").LevelBuffers} LevelBuffers */
+/** @typedef {ReturnType<AvatarBuffers["branch"]>} Branch */
+/** @typedef {ReturnType<AvatarBuffers["mlp"]>} Mlp */
+/**
+ * @typedef {object} ChannelSet what a decode makes, and of what
+ * @property {LevelBuffers} level of detail
+ * @property {GPUBuffer} descriptor of the window of poses
+ * @property {GPUBuffer} mesh [V, 3] canonical vertices
+ * @property {GPUBuffer} texelChannels [6, N, 4] halves; holds the finest level
+ */
+
+export const FLOAT = 4; // bytes
+const [LAYER_ROWS, MESH_COLUMNS] = [8, 64]; // outputs of a group of MlpMatmul and of MlpMatmulTransposed
+const LL_TEXELS = 64; // of a group of BlendLl
+const DETAIL_TILE = 24; // texels along a side of a group of BlendDetail
+const COARSE_TILE = 16; // samples along a side that a group of InverseDwt doubles
+const [ROWS, BATCH] = [6, 4]; // of texel_channels, and channels of each
+export const TEXEL_CHANNELS = 2 * ROWS * BATCH; // bytes
+export const PARTS = 2; // of a decode, that move about as many bytes: geometry; mesh and appearance
+const KERNELS = { MlpMatmul, MlpMatmulTransposed, BlendLl, BlendDetail, InverseDwt, UpsampleTexels };
+
+/** Groups of `size` that hold `count`. */
+export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);
+
+/** The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another. */
+export class ChannelDecoder {
+  constructor(/** @type {AvatarBuffers} */ buffers) {
+    const { avatar, geometry, appearance, coarseMlp, memory } = buffers;
+    this.buffers = buffers;
+    this.kernels = kernelsOf(memory.device, KERNELS);
+    const branches = [geometry, appearance];
+    const layers = [...coarseMlp, ...branches.flatMap((branch) => branch.mlp)];
+    const activations = FLOAT * Math.max(...layers.map((layer) => layer.outputs));
+    const low = avatar.texels.size / 2 ** avatar.wavelet.levels;
+    const planes = branches.map((branch) => branch.channels * (low * 2 ** branch.details.length) ** 2);
+    const texture = FLOAT * Math.max(...planes);
+    const details = branches.flatMap((branch) => branch.details.map((band) => 3 * branch.channels * band.size ** 2));
+    this.activations = [0, 1].map((i) => memory.buffer(activations, `activations ${i}`));
+    this.details = memory.buffer(FLOAT * Math.max(0, ...details), "details");
+    // the finest texture with details, and its ll
+    this.textures = [texture, texture / 4].map((bytes, i) => memory.buffer(bytes, `texture ${i}`));
+  }
+
+  /** Append one of PARTS, from the descriptor of `channels` to what it makes of it. */
+  part(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels, /** @type {number} */ part) {
+    const { geometry, appearance } = this.buffers;
+    if (part > 0) this.coarse(pass, channels);
+    if (part === 0) this.branch(pass, geometry, channels.level.geometry, channels, 0);
+    else this.branch(pass, appearance, channels.level.appearance, channels, ROWS / 2);
+  }
+
+  /** What the MLP makes of the descriptor; good until the next MLP. */
+  mlp(/** @type {GPUComputePassEncoder} */ pass, /** @type {Mlp} */ mlp, /** @type {GPUBuffer} */ descriptor) {
+    let x = descriptor;
+    mlp.forEach((layer, i) => {
+      const y = this.activations[i % 2];
+      this.layer(pass, this.kernels.MlpMatmul, layer, { x, y }, LAYER_ROWS, i < mlp.length - 1);
+      x = y;
+    });
+    return x;
+  }
+
+  /**
+   * One fully connected layer, or the basis of the mesh as one.
+   * @param {GPUComputePassEncoder} pass @param {import("./kernel.js").Kernel} kernel @param {Mlp[0]} layer
+   * @param {{x: GPUBuffer, y: GPUBuffer}} through @param {number} outputs of a group @param {boolean} relu
+   */
+  layer(pass, kernel, layer, through, outputs, relu) {
+    kernel.dispatch(
+      pass,
+      [groups(layer.outputs, outputs), 1, 1],
+      { weight: layer.weight.words, bias: layer.bias.words, ...through },
+      {
+        weight_layout: layer.weight.layout,
+        bias_layout: layer.bias.layout,
+        inputs: layer.inputs,
+        outputs: layer.outputs,
+        relu: Number(relu),
+      },
+    );
+  }
+
+  coarse(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels) {
+    const { coarseMlp, mesh } = this.buffers;
+    const x = this.mlp(pass, coarseMlp, channels.descriptor);
+    this.layer(pass, this.kernels.MlpMatmulTransposed, mesh, { x, y: channels.mesh }, MESH_COLUMNS, false);
+  }
+
+  /**
+   * Coefficients, LL, level by level as long as there are details; then the valid texels to `channels`.
+   * @param {GPUComputePassEncoder} pass @param {Branch} branch @param {BranchLevel} shown @param {ChannelSet} channels
+   * @param {number} firstRow
+   */
+  branch(pass, branch, shown, channels, firstRow) {
+    const alpha = this.mlp(pass, branch.mlp, channels.descriptor);
+    const { texels, wavelet } = this.buffers.avatar;
+    const { textures } = this;
+    const levels = branch.details.length;
+    let size = texels.size / 2 ** wavelet.levels;
+    this.blendLow(pass, branch, alpha, size, textures[levels % 2]);
+    let offset = branch.channels * branch.rank;
+    branch.details.forEach((band, level) => {
+      const [ll, fine] = [textures[(levels - level) % 2], textures[(levels - level - 1) % 2]];
+      this.blendBand(pass, branch, band, alpha, offset, size);
+      this.synthesise(pass, branch, ll, fine, size);
+      offset += branch.channels * band.rank;
+      size *= 2;
+    });
+    this.upsample(pass, branch, shown, channels, size, firstRow);
+  }
+
+  /** @param {GPUComputePassEncoder} pass @param {Branch} branch @param {GPUBuffer} alpha @param {number} size @param {GPUBuffer} blended */
+  blendLow(pass, branch, alpha, size, blended) {
+    this.kernels.BlendLl.dispatch(
+      pass,
+      [groups(size * size, LL_TEXELS), branch.channels, 1],
+      { mean: branch.llMean.words, basis: branch.llBasis.words, alpha, blended },
+      {
+        mean_layout: branch.llMean.layout,
+        basis_layout: branch.llBasis.layout,
+        channels: branch.channels,
+        rank: branch.rank,
+        size,
+        alpha_offset: 0,
+      },
+    );
+  }
+
+  /** @param {GPUComputePassEncoder} pass @param {Branch} branch @param {Branch["details"][0]} band @param {GPUBuffer} alpha @param {number} alphaOffset @param {number} size */
+  blendBand(pass, branch, band, alpha, alphaOffset, size) {
+    const tiles = groups(size, DETAIL_TILE);
+    this.kernels.BlendDetail.dispatch(
+      pass,
+      [tiles, tiles, 3 * branch.channels],
+      { mean: band.mean.words, h: band.h.words, w: band.w.words, alpha, blended: this.details },
+      {
+        mean_layout: band.mean.layout,
+        h_layout: band.h.layout,
+        w_layout: band.w.layout,
+        channels: branch.channels,
+        rank: band.rank,
+        size,
+        alpha_offset: alphaOffset,
+      },
+    );
+  }
+
+  /** One level, from planes of `size` to twice that. @param {GPUComputePassEncoder} pass @param {Branch} branch @param {GPUBuffer} ll @param {GPUBuffer} fine @param {number} size */
+  synthesise(pass, branch, ll, fine, size) {
+    const { recLo: rec_lo, recHi: rec_hi, avatar } = this.buffers;
+    const tiles = groups(size, COARSE_TILE);
+    this.kernels.InverseDwt.dispatch(
+      pass,
+      [tiles, tiles, branch.channels],
+      { ll, details: this.details, rec_lo, rec_hi, fine },
+      { channels: branch.channels, size, taps: avatar.wavelet.recLo.length },
+    );
+  }
+
+  /**
+   * All levels without details, from planes of `size`, and the static offset, at the valid texels.
+   * @param {GPUComputePassEncoder} pass @param {Branch} branch @param {BranchLevel} shown @param {ChannelSet} channels
+   * @param {number} size @param {number} firstRow
+   */
+  upsample(pass, branch, shown, channels, size, firstRow) {
+    const { level } = channels;
+    const { taps, factor, reach, delay } = shown.upsampling;
+    this.kernels.UpsampleTexels.dispatch(
+      pass,
+      [level.tileCount, 1, groups(branch.channels, BATCH)],
+      {
+        ll: this.textures[0],
+        upsampling: taps,
+        tiles: level.tiles,
+        tile_rows: level.tileRows,
+        static_offset: shown.staticOffset.words,
+        texel_channels: channels.texelChannels,
+      },
+      {
+        static_offset_layout: shown.staticOffset.layout,
+        channels: branch.channels,
+        size,
+        factor,
+        reach,
+        delay,
+        texel_count: level.splatCount,
+        first_row: firstRow,
+      },
+    );
+  }
+}
