@@ -1,13 +1,23 @@
 """Rounding for the network: steps are powers of two, and the demo's pictures lose less than a tenth of a decibel."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar
 
+from mua.asset.read import read
 from mua.asset.rounding import channel_steps, in_steps, rounded
+from mua.camera import orbit
 from mua.channels import ATTRIBUTES
+from mua.decode import decode_clip_frame
+from mua.rendering import frame_bounds, render_premultiplied
+
+DEMO = Path(__file__).resolve().parents[1] / "build" / "demo" / "avatar.muaavatar"
+TEACHER = 53.6  # dB, of the demo's pictures beside the teacher's, of which the figure covers COVERED
+COVERED = 0.08
+LOSS = 0.1  # dB
 
 
 @pytest.mark.parametrize(("step", "power"), [(1.0, 1.0), (0.9, 0.5), (0.26, 0.25), (3e-5, 2.0**-16)])
@@ -44,3 +54,18 @@ def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
     strong = avatar.geometry.mlp[-1].weight
     error = np.abs(faint - strong).max(axis=1)
     assert error[1] > 100 * error[0]
+
+
+@pytest.mark.skipif(not DEMO.exists(), reason="needs build/demo/avatar.muaavatar: run `make demo`")
+@pytest.mark.parametrize("frame", [0, 40])
+def test_pictures_of_the_demo_lose_less_than_a_tenth_of_a_decibel(frame: int) -> None:
+    """Beside the teacher, whose pictures the demo's miss by an error that this one is added to."""
+    avatar = read(DEMO)
+    clip = avatar.clips[0]
+    exact, near = (decode_clip_frame(one, clip, frame=frame) for one in (avatar, rounded(avatar)))
+    camera = orbit(frame_bounds(exact), screen=(192, 256), azimuth=0.4)
+    images = [render_premultiplied(one, camera) for one in (exact, near)]
+    covered = images[0][..., 3] > 0.5
+    error = np.mean((images[0] - images[1])[covered][:, :3] ** 2)
+    missed = 10 ** (-TEACHER / 10) / COVERED
+    assert 0 < 10 * np.log10(1 + error / missed) < LOSS

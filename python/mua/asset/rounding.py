@@ -14,8 +14,8 @@ from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
 from mua.model import Branch, Coarse, DetailBand, Layer
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
-STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-6, "opacity": 2.0**-6, "SH": 2.0**-8}
-LL, DETAILS, MEANS, WEIGHTS, MESH = 1.0, 0.25, 1.0, 0.03, 8.0  # times the channel's step, of what each is a part of
+STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}
+LL, DETAILS, MEANS, WEIGHTS, MESH = 1.0, 0.25, 1.0, 0.03, 4.0  # times the channel's step, of what each is a part of
 COARSEST = 1.0  # step, of what hardly counts
 LL_GAIN = 4.0  # of a coefficient of LL to one of the finest detail, by which weights are compared
 
