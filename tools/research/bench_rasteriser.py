@@ -1,0 +1,71 @@
+"""Print what a picture and its gradients take in the differentiable rasteriser, and how far it is from the reference.
+
+python tools/research/bench_rasteriser.py hero.muaavatar [--side 256] [--device cuda]: one frame of the first clip in
+single precision, the median of several runs; the first compiles the kernels and is left out.
+"""
+
+import argparse
+from dataclasses import fields
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+import torch
+
+from mua.asset.read import read
+from mua.camera import Camera, orbit
+from mua.decode import Splats, decode_clip_frame
+from mua.rendering import frame_bounds, render_premultiplied
+from mua.splatting.projection import Eye, TorchSplats, half_extents, project
+from mua.splatting.rasterise import rasterise
+from mua.splatting.tiles import assign
+
+RUNS = 5
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--side", type=int, default=256, help="pixels")
+    parser.add_argument("--device", default="cpu", help="cpu or cuda")
+    given = parser.parse_args()
+    avatar = read(given.file)
+    frame = decode_clip_frame(avatar, avatar.clips[0], frame=len(avatar.clips[0]) // 2, dtype=np.float64)
+    camera = orbit(frame_bounds(frame), screen=(given.side, given.side), azimuth=0.4)
+    splats = on_device(frame, given.device)
+    eye, bounds = Eye.of(camera, splats.centres), torch.as_tensor(frame.bounds).to(splats.centres)
+    shapes = project(splats, eye, bounds).shapes.detach()
+    pairs = len(assign(shapes[:, :2], half_extents(shapes), camera.screen).quads)
+    print(f"{len(frame):,} splats, {given.side} x {given.side} pixels, {pairs:,} pairs of a tile and a splat")
+    times = np.median([run(splats, eye, bounds) for _ in range(1 + RUNS)][1:], axis=0)
+    print(f"forward {times[0]:.2f} s, backward {times[1]:.2f} s")
+    print(f"{decibels(splats, eye, bounds, frame, camera):.0f} dB against the reference renderer in double precision")
+
+
+def on_device(frame: Splats, device: str) -> TorchSplats:
+    of = {field.name: getattr(frame, field.name, None) for field in fields(TorchSplats)}
+    of["turns"] = frame.texel_dq[:, :4]
+    tensors = {name: torch.tensor(v, dtype=torch.float32, device=device).requires_grad_() for name, v in of.items()}
+    return TorchSplats(**tensors)
+
+
+def run(splats: TorchSplats, eye: Eye, bounds: torch.Tensor) -> tuple[float, float]:
+    """Seconds forward and backward."""
+    began = perf_counter()
+    loss = rasterise(splats, eye, bounds).square().sum()
+    loss.item()  # waits for the device
+    drawn = perf_counter()
+    loss.backward()
+    if splats.centres.is_cuda:
+        torch.cuda.synchronize()
+    return drawn - began, perf_counter() - drawn
+
+
+def decibels(splats: TorchSplats, eye: Eye, bounds: torch.Tensor, frame: Splats, camera: Camera) -> float:
+    with torch.no_grad():
+        image = rasterise(splats, eye, bounds).double().cpu().numpy()
+    return float(-10 * np.log10(np.mean((image - render_premultiplied(frame, camera)) ** 2)))
+
+
+if __name__ == "__main__":
+    main()
