@@ -12,6 +12,7 @@ from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
 from mua.model import Layer
+from mua.pose.resample import resample
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
@@ -39,6 +40,7 @@ def program(csharp: CSharp) -> Path:
         PROGRAMS / "ComponentProgram.cs",
         PROGRAMS / "ComponentLevels.cs",
         PROGRAMS / "ComponentRig.cs",
+        PROGRAMS / "ComponentSteering.cs",
     ]
     return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
 
@@ -81,6 +83,29 @@ def test_a_clip_plays(story: Story) -> None:
     assert told["clips"] == [" ".join(clip.name for clip in synthetic_avatar(1).clips)]
     assert told["draws"] == [str(SECOND)]
     assert told["log"] == []
+
+
+def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Story) -> None:
+    told = story("IsPlain")
+    assert told["plain"] == ["Empty '' 0 '' 0"]
+    assert told["clip"] == ["0 of 0, 0 of 0, 0"]
+    assert told["plays"] == ["True 1, Splats, Shadow, Automatic"]
+    assert told["bounds"] == ["1 2 3 0"]
+    assert told["log"] == []
+
+
+def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(1)
+    [clip] = avatar.clips
+    shorter = replace(clip, name="shorter", rotations=clip.rotations[:4], translations=clip.translations[:4])
+    write(folder / "clips.muaavatar", replace(avatar, clips=(clip, shorter)))
+    told = story("Steers", "clips")
+    counts = [len(resample(each, avatar.encoding.rate)) for each in (clip, shorter)]
+    assert (told["name"], told["progress"], told["frames"]) == ([avatar.name], ["1"], [str(counts[0])])
+    assert told["clip"] == [f"{index} 0 {counts[index]}" for index in (0, 1, 1, 0)]
+    assert told["still"] == ["0.25"]
+    assert float(told["slow"][0]) == pytest.approx(0.5)
+    assert float(told["back"][0]) == pytest.approx(0.5)
 
 
 def test_a_load_asks_once_for_the_packages_resources(story: Story) -> None:

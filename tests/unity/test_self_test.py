@@ -229,6 +229,24 @@ def test_a_damaged_golden_file_fails_once(
     assert told in story().failed["splat_sort/golden"]
 
 
+@pytest.mark.parametrize("beyond", [0, 1])
+def test_expected_values_lie_within_their_buffer_to_its_last_word(story: Story, streaming: Path, beyond: int) -> None:
+    path = streaming / "MuaGolden" / "splat_sort.json"
+    document = json.loads(path.read_text())
+    case, expected = next(
+        (case, each)
+        for case in document["cases"]
+        for each in case["expected"]
+        if each["length"] == each["period"] and each["kind"] == "uint"
+    )
+    held = next(buffer for buffer in case["buffers"] if buffer["name"] == expected["buffer"])
+    words = held["count"] * (4 if held["element"].endswith("4") else 2 if held["element"].endswith("2") else 1)
+    expected["first"] = words - expected["count"] + beyond
+    path.write_text(json.dumps(document))
+    refused = f"its expected {held['name']} is not as" in story().failed.get("splat_sort/golden", "")
+    assert refused == bool(beyond)
+
+
 def test_a_golden_file_that_is_cut_fails_once(story: Story, streaming: Path) -> None:
     for name in ("mlp_matmul.json", "splat_sort.bin"):
         path = streaming / "MuaGolden" / name

@@ -1,0 +1,54 @@
+// Stories of ComponentProgram.cs: what an application reads of an AvatarRenderer, and what it sets.
+using UnityEngine;
+
+namespace Mua
+{
+    internal static partial class ComponentProgram
+    {
+        /// <summary>A component that was given nothing to show.</summary>
+        private static void IsPlain()
+        {
+            GameObject thing = Make("avatar");
+            thing.transform.position = new Vector3(1, 2, 3);
+            AvatarRenderer shown = thing.AddComponent<AvatarRenderer>();
+            Frames(2);
+            shown.ClipIndex = 1;
+            shown.Frame = 3;
+            shown.Seconds = 2;
+            Say("plain", shown.State + " '" + shown.Message + "' " + shown.Progress + " '" + shown.AvatarName + "' " + shown.SplatCount);
+            Say("clip", shown.ClipIndex + " of " + shown.Clips.Count + ", " + shown.Frame + " of " + shown.FrameCount + ", " + shown.Seconds);
+            Say("plays", shown.IsPlaying + " " + shown.Speed + ", " + shown.Views + ", " + shown.Level);
+            Say("bounds", shown.Bounds.center.x + " " + shown.Bounds.center.y + " " + shown.Bounds.center.z + " " + shown.Bounds.size.magnitude);
+        }
+
+        private static void Steers()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            Say("progress", shown.Progress);
+            Say("name", shown.AvatarName);
+            Say("frames", shown.FrameCount);
+            foreach (int index in new[] { -1, 99, 1, 0 })
+            {
+                shown.Frame = 2;
+                shown.ClipIndex = index;
+                Say("clip", shown.ClipIndex + " " + shown.Frame + " " + shown.FrameCount);
+            }
+            shown.IsPlaying = false;
+            shown.Seconds = 0.25;
+            Frames(36);
+            Say("still", shown.Seconds);
+            shown.IsPlaying = true;
+            shown.Seconds = 0;
+            Frames(36);
+            double half = shown.Seconds;
+            shown.Seconds = 0;
+            shown.Speed = 0.5f;
+            Frames(36);
+            Say("slow", shown.Seconds / half);
+            shown.Seconds = 1;
+            shown.Speed = -0.5f;
+            Frames(36);
+            Say("back", (1 - shown.Seconds) / half);
+        }
+    }
+}
