@@ -247,7 +247,7 @@ def test_each_pass_is_given_its_eyes(recorded: Recorded) -> None:
 
 def test_pixels_are_those_of_a_scaled_target(recorded: Recorded) -> None:
     mode = recorded.mode
-    scale = 0.5 * (0.8 if label(mode) == "urp None" else 1)
+    scale = np.array([0.5, 0.25 if mode.stereo == "None" else 0.5]) * (0.8 if label(mode) == "urp None" else 1)
     for given in recorded.constants("scaled", "SplatProject", "screen"):
         assert tuple(given[:2]) == tuple(np.ceil(np.multiply(mode.screen, scale)))
 

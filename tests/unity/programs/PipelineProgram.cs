@@ -179,7 +179,7 @@ namespace Mua
         private static void Resize(float headset, float buffers)
         {
             XRSettings.renderViewportScale = headset;
-            ScalableBufferManager.ResizeBuffers(buffers, buffers);
+            ScalableBufferManager.ResizeBuffers(buffers, buffers * buffers); // width and height on their own
         }
 
         /// <summary>All avatars again, on a device that takes no counts from a buffer.</summary>
