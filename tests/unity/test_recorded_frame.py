@@ -19,7 +19,7 @@ from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_draw import splat_colors
-from mua.kernels.splat_project import LAST_KEY
+from mua.kernels.splat_project import HIDDEN, LAST_KEY
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
 from mua.rendering import render_premultiplied
 from mua.rig.bounds import root_positions
@@ -27,6 +27,7 @@ from mua.rig.bounds import root_positions
 sys.path.append(str(ROOT / "tests" / "parity"))
 
 from frame_errors import exact_depths
+from golden_sorting import BLOCK
 from packed_splats import unpacked
 from splat_rounding import exact_keys
 from test_frame import (
@@ -197,6 +198,32 @@ def test_the_order_is_from_back_to_front_through_all_avatars(recorded: Recorded,
     assert np.abs(keys - expected).max() <= 0.5 + rounding + LAST_KEY * POSITION_BOUND * np.sqrt(3) / span
     assert np.all(np.diff(keys) >= 0)
     assert np.all(np.diff(order.astype(int))[np.diff(keys) == 0] > 0)
+
+
+def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
+    csharp: CSharp, program: Path, device: Device, tmp_path: Path
+) -> None:
+    avatar, lines = synthetic_avatar(1), []
+    texels = len(avatar.rig.texels.texels)
+    count = 2 * BLOCK // texels + 1
+    files = [tmp_path / f"{index}.muaavatar" for index in range(count)]
+    for index, file in enumerate(files):
+        write(file, avatar, storage="f16")
+        place = (0.1 * (index % 3), 0.0, 0.15 * index, 0.0, 0.0, 0.0, 1.0)
+        lines.append(f"decode {index} {0.1 * index!r} " + " ".join(map(repr, (*place, 0))))
+    camera = orbit(np.array([[-1, -1, -3], [1, 2, 1]]), screen=(64, 48), azimuth=0.7, elevation=0.3)
+    numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+    eye = "eye " + " ".join(repr(float(number)) for number in numbers)
+    scenario = tmp_path / "scenario.txt"
+    scenario.write_text("\n".join([f"screen 64 48 {NEAR} 1", eye, *lines, "sort crowd\n"]))
+    csharp.run(program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, *files)
+    kept = replay(device, tmp_path / "recording").kept
+    keys = kept["crowd keys"].view(np.uint16)
+    visible = np.flatnonzero(keys != HIDDEN)
+    assert 2 * BLOCK < len(visible) == kept["crowd arguments"][VISIBLE_WORD]
+    np.testing.assert_array_equal(
+        kept["crowd order"][: len(visible)], visible[np.argsort(keys[visible], kind="stable")]
+    )
 
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
