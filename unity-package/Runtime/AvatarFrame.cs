@@ -85,7 +85,7 @@ namespace Mua
         /// <summary>The last pose, in the avatar's space.</summary>
         public SkeletonPose Skeleton => skeleton;
 
-        /// <summary>Lowest corner of the box of the last pose in the right-handed world, metres.</summary>
+        /// <summary>Lowest corner of the box in which the last pose stands in the right-handed world, metres.</summary>
         public Vector3 Low { get; private set; }
 
         /// <summary>Highest corner.</summary>
@@ -134,6 +134,14 @@ namespace Mua
         {
             WritePose(rotations, translations, place);
             Pose(commands);
+        }
+
+        /// <summary>Sets Low and High for a pose [J, 4] and [J, 3] that need not be drawn; nothing goes to the device.</summary>
+        public void Stand(
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, in DualQuaternion place)
+        {
+            skeleton.Set(rotations, translations);
+            WriteBounds(place);
         }
 
         public void Dispose()

@@ -118,7 +118,22 @@ namespace Mua
                 Warn("the rig that posed the avatar was destroyed; a clip plays in its place.");
             }
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
+            Decoded.Stand(motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             Surface.CastShadow(Views, Bounds, Layer);
+        }
+
+        /// <summary>Whether it is drawn for these eyes.</summary>
+        public bool IsSeenBy(AvatarEyes eyes)
+        {
+            return eyes.Sees(Decoded.Low, Decoded.High, AvatarEyes.SplatReach);
+        }
+
+        /// <summary>Whether it, or the shadow that it casts, may be drawn for these eyes.</summary>
+        public bool IsNeededFor(AvatarEyes eyes)
+        {
+            bool hasShadow = (Views & AvatarViews.Shadow) != 0;
+            float reach = hasShadow ? AvatarEyes.ShadowReach : AvatarEyes.SplatReach;
+            return eyes.Sees(Decoded.Low, Decoded.High, reach);
         }
 
         /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
