@@ -27,7 +27,7 @@ const COARSE_TILE = 16; // samples along a side that a group of InverseDwt doubl
 const [ROWS, BATCH] = [6, 4]; // of texel_channels, and channels of each
 export const TEXEL_CHANNELS = 2 * ROWS * BATCH; // bytes
 export const PARTS = 2; // of a decode, that move about as many bytes: geometry; mesh and appearance
-const KERNELS = { MlpMatmul, MlpMatmulTransposed, BlendLl, BlendDetail, InverseDwt, UpsampleTexels };
+export const KERNELS = { MlpMatmul, MlpMatmulTransposed, BlendLl, BlendDetail, InverseDwt, UpsampleTexels };
 
 /** Groups of `size` that hold `count`. */
 export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);

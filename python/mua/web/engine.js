@@ -97,7 +97,7 @@ export class Engine {
     const avatar = await load(source, onProgress);
     const { renderer } = this;
     if (!renderer) throw new AvatarError(AWAY);
-    onProgress(0.95, "Uploading the avatar");
+    onProgress(0.9, "Preparing the graphics device");
     const slot = await renderer.add(avatar);
     if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
     const entry = { avatar, slot, grounds: new Map(), handle: this.handleOf(avatar) };

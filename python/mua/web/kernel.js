@@ -66,13 +66,21 @@ class Bindings {
   }
 }
 
-/** An entry point of a compute shader. */
+/** An entry point of a compute shader, compiled when it is first needed. */
 export class Kernel {
   constructor(/** @type {Device} */ device, /** @type {Shader} */ shader) {
+    this.gpu = device.gpu;
     this.bindings = new Bindings(device, shader);
     const layout = device.gpu.createPipelineLayout({ bindGroupLayouts: [this.bindings.layout] });
     const compute = { module: moduleOf(device, shader), entryPoint: shader.entry };
-    this.pipeline = device.gpu.createComputePipeline({ label: shader.entry, layout, compute });
+    this.described = { label: shader.entry, layout, compute };
+    /** @type {GPUComputePipeline | null} */
+    this.pipeline = null;
+  }
+
+  /** Compile beside others, before it is needed. */
+  async compile() {
+    this.pipeline ??= await this.gpu.createComputePipelineAsync(this.described);
   }
 
   /**
@@ -83,7 +91,7 @@ export class Kernel {
    * @param {Values} constants
    */
   dispatch(pass, groups, buffers, constants) {
-    pass.setPipeline(this.pipeline);
+    pass.setPipeline((this.pipeline ??= this.gpu.createComputePipeline(this.described)));
     pass.setBindGroup(0, this.bindings.group(buffers), this.bindings.offsets(constants));
     pass.dispatchWorkgroups(groups[0], groups[1], groups[2]);
   }
@@ -108,7 +116,7 @@ export function kernelsOf(/** @type {Device} */ device, /** @type {T} */ shaders
  * @property {GPUPrimitiveTopology} [topology]
  */
 
-/** A vertex and a fragment entry; the vertex's resources lie in group 0, the fragment's in group 1. */
+/** A vertex and a fragment entry, compiled when first needed; the vertex's resources lie in group 0, the fragment's in 1. */
 export class Pipeline {
   constructor(
     /** @type {Device} */ device,
@@ -125,19 +133,28 @@ export class Pipeline {
       depthWriteEnabled: drawn.write ?? false,
       depthCompare: drawn.always ? "always" : "less-equal",
     };
-    this.pipeline = gpu.createRenderPipeline({
+    this.gpu = gpu;
+    /** @type {GPURenderPipeline | null} */
+    this.pipeline = null;
+    /** @type {GPURenderPipelineDescriptor} */
+    this.described = {
       label: vertex.entry,
       layout: gpu.createPipelineLayout({ bindGroupLayouts: this.stages.map((stage) => stage.layout) }),
       vertex: { module: moduleOf(device, vertex), entryPoint: vertex.entry },
       fragment: { module: moduleOf(device, fragment), entryPoint: fragment.entry, targets: [target] },
       primitive: { topology: drawn.topology ?? "triangle-list" },
       depthStencil,
-    });
+    };
+  }
+
+  /** Compile beside others, before it is needed. */
+  async compile() {
+    this.pipeline ??= await this.gpu.createRenderPipelineAsync(this.described);
   }
 
   /** Set the pipeline, its buffers and its constants for the draws that follow in a pass. */
   bind(/** @type {GPURenderPassEncoder} */ pass, /** @type {Buffers} */ buffers, /** @type {Values} */ constants) {
-    pass.setPipeline(this.pipeline);
+    pass.setPipeline((this.pipeline ??= this.gpu.createRenderPipeline(this.described)));
     for (const [index, stage] of this.stages.entries())
       pass.setBindGroup(index, stage.group(buffers), stage.offsets(constants));
   }

@@ -5,7 +5,9 @@ const TILE = 16; // texels along a side
 const LARGEST_BARYCENTRIC = 65535;
 
 /** Where texels lie on the mesh, [N, 2] words: the triangle, two barycentrics of 16 bits each. */
-export function texelWords(/** @type {{triangles: Int32Array, barycentrics: Float32Array}} */ { triangles, barycentrics }) {
+export function texelWords(
+  /** @type {{triangles: Int32Array, barycentrics: Float32Array}} */ { triangles, barycentrics },
+) {
   const words = new Uint32Array(2 * triangles.length);
   for (let i = 0; i < triangles.length; i++) {
     const [first, second] = [0, 1].map((k) => toEven(barycentrics[2 * i + k] * LARGEST_BARYCENTRIC));

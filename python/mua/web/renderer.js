@@ -3,17 +3,20 @@
 
 import { cameraOf } from "./camera.js";
 import { AvatarBuffers } from "./buffers.js";
+import { KERNELS as DECODING } from "./channels.js";
 import { window } from "./clip.js";
 import { Device, Memory } from "./device.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
+import { kernelsOf } from "./kernel.js";
 import { Levels } from "./levels.js";
 import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
 import { DecodeSchedule } from "./schedule.js";
-import { SplatFrame } from "./splats.js";
+import { KERNELS as SORTING, SplatFrame } from "./splats.js";
 import { Timing } from "./timing.js";
+import { BlendVertices } from "./wgsl/dq_skinning.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./format/read.js").Clip} Clip */
@@ -50,6 +53,8 @@ export class Renderer {
     this.scene = new Scene(device, options.background ?? [0, 0, 0, 0]);
     this.timing = new Timing(device);
     this.shared = new Memory(device); // the splats of all avatars
+    this.compiled = compiled(device, this.scene.splats);
+    this.compiled.catch(() => {}); // whoever adds an avatar is told
     /** @type {Slot[]} */
     this.slots = [];
     /** @type {SplatFrame | null} */
@@ -59,6 +64,7 @@ export class Renderer {
   /** Upload an avatar. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
   async add(/** @type {Avatar} */ avatar) {
     const { gpu } = this.device;
+    await this.compiled;
     const memory = new Memory(this.device);
     gpu.pushErrorScope("out-of-memory");
     /** @type {Slot | null} */
@@ -175,6 +181,12 @@ export class Renderer {
     this.context.unconfigure();
     this.device.gpu.destroy();
   }
+}
+
+/** Compiles all that every picture needs at once, while the avatar is still being fetched. @param {Device} device @param {import("./kernel.js").Pipeline} splats */
+function compiled(device, splats) {
+  const kernels = kernelsOf(device, { ...DECODING, ...SORTING, BlendVertices });
+  return Promise.all([splats, ...Object.values(kernels)].map((one) => one.compile()));
 }
 
 function asked(/** @type {Posed} */ { clip, frame, following }, /** @type {number} */ level) {
