@@ -22,6 +22,14 @@ CALLED = {"PIL": "pillow", "pxr": "usd-core", "pywt": "pywavelets", "warp": "war
 FEW_USE = {"view": {"pxr"}}  # by extra: motion in USD files
 
 
+def test_the_wheel_carries_the_whole_browser_player() -> None:
+    data = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["mua"]
+    carried = {path for pattern in data for path in PACKAGE.glob(pattern)}
+    files = {path for path in (PACKAGE / "web").rglob("*") if path.is_file()}
+    assert len(files) > 40
+    assert files <= carried
+
+
 def normal(requirement: str) -> str:
     """The name of a distribution without version and spelling."""
     return re.split(r"[<>=,\[; ]", requirement)[0].lower().replace("_", "-")

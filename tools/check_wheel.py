@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -107,6 +108,15 @@ def build(folder: Path) -> Path:
     return wheel
 
 
+def left_out(wheel: Path) -> list[str]:
+    """Files of the browser player that the wheel lacks."""
+    with zipfile.ZipFile(wheel) as packed:
+        names = set(packed.namelist())
+    package = ROOT / "python"
+    files = [path for path in (package / "mua" / "web").rglob("*") if path.is_file()]
+    return [name for name in (path.relative_to(package).as_posix() for path in files) if name not in names]
+
+
 def lowest() -> list[str]:
     """The lowest version of each package but torch that pyproject.toml allows."""
     project = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]
@@ -154,7 +164,7 @@ def carry_out(scratch: Path, avatar: Path, constraints: list[str], console: Cons
     wheel = build(scratch)
     subprocess.run([sys.executable, "-m", "venv", str(venv)], check=True)
     programs, empty = venv / ("Scripts" if os.name == "nt" else "bin"), megabytes(venv)
-    faults = []
+    faults = [f"{name} is not in the wheel" for name in left_out(wheel)]
     for step in STEPS:
         packages = [package.format(wheel=wheel) for package in step.packages]
         subprocess.run([programs / "python", "-I", "-m", "pip", "install", "-q", "-c", listed, *packages], check=True)
