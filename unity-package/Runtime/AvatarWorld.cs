@@ -92,9 +92,8 @@ namespace Mua
         }
 
         /// <summary>
-        /// Appends what one camera needs of the avatars in its view: decoding and posing what moved since it was last drawn, then
-        /// one sort for the eyes. An avatar is posed where its shadow alone may be in view, too.
-        /// Whether there is anything to draw; splats are projected in perspective only.
+        /// Appends what one camera needs of all avatars: decoding and posing what moved since it was last drawn, then one
+        /// sort for the eyes. Whether there is anything to draw; splats are projected in perspective only.
         /// </summary>
         public bool Record(CommandBuffer commands, Camera camera, AvatarEyes eyes)
         {
@@ -111,23 +110,26 @@ namespace Mua
             levels.See(avatars, eyes);
             for (int i = 0; i < avatars.Count; i++)
             {
-                if (avatars[i].IsNeededFor(eyes))
-                {
-                    avatars[i].Record(commands);
-                }
+                avatars[i].Record(commands);
             }
-            bool perspective = !camera.orthographic;
-            if ((perspective && splats.Capacity > 0) || ShowsGeometry()) // which is drawn through the splats' centres
+            bool drawsSplats = splats.SplatCount > 0 && !camera.orthographic;
+            if (drawsSplats || ShowsGeometry()) // which is drawn through the splats' centres
             {
                 splats.Project(commands, eyes);
             }
-            AddSurfaces(eyes, true);
-            if (perspective && splats.SplatCount > 0)
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                avatars[i].Surface.AddOpaque(draws, eyes, avatars[i].Views);
+            }
+            if (drawsSplats)
             {
                 splats.Sort(commands);
                 draws.Add(splatDraw.Bind(splats));
             }
-            AddSurfaces(eyes, false);
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                avatars[i].Surface.AddOverlay(draws, eyes, avatars[i].Views);
+            }
             return draws.Count > 0;
         }
 
@@ -187,27 +189,6 @@ namespace Mua
             catch (InvalidOperationException error)
             {
                 avatars[avatars.Count - 1].Refuse(error.Message);
-            }
-        }
-
-        /// <summary>What lies behind the splats, or over them, of the avatars that the eyes see.</summary>
-        private void AddSurfaces(AvatarEyes eyes, bool opaque)
-        {
-            for (int i = 0; i < avatars.Count; i++)
-            {
-                AvatarInstance avatar = avatars[i];
-                if (!avatar.IsSeenBy(eyes))
-                {
-                    continue;
-                }
-                if (opaque)
-                {
-                    avatar.Surface.AddOpaque(draws, eyes, avatar.Views);
-                }
-                else
-                {
-                    avatar.Surface.AddOverlay(draws, eyes, avatar.Views);
-                }
             }
         }
 
