@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mua.camera import EYE_DISTANCE, Camera, perspective, stereo
-from mua.level_choice import HYSTERESIS, Seen, choose_level, choose_levels, texel_pixels
+from mua.level_choice import HYSTERESIS, LARGEST_TEXEL, Seen, choose_level, choose_levels, texel_pixels
 
 CASES = json.loads((Path(__file__).parent / "golden" / "level_choice.json").read_text())
 COUNTS = (300_000, 76_000, 20_000)
@@ -64,7 +64,7 @@ def test_inside_the_box_a_texel_is_as_large_as_at_the_near_plane() -> None:
 def test_walking_to_and_fro_about_a_switch_changes_the_level_once() -> None:
     level, switches = 0, 0
     for step in np.sin(np.linspace(0, 20 * np.pi, 400)):
-        seen = Seen(3.0, 0.5 * (1 + 0.4 * (HYSTERESIS - 1) * step), COUNTS, level)
+        seen = Seen(3.0, LARGEST_TEXEL / 2 * (1 + 0.4 * (HYSTERESIS - 1) * step), COUNTS, level)
         switches += choose_level(seen) != level
         level = choose_level(seen)
     assert (level, switches) == (1, 1)

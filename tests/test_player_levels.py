@@ -8,6 +8,7 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.camera import Camera, perspective
 from mua.coarser import texel_length
+from mua.level_choice import LARGEST_TEXEL
 from mua.player.levels import AUTO, FULL, Levels
 from mua.player.picture import Reference
 
@@ -39,7 +40,7 @@ def test_the_level_that_is_asked_for_is_shown_from_anywhere(wanted: str | int, l
 def test_the_distance_chooses_and_near_a_switch_keeps_what_is_shown() -> None:
     levels = Levels(synthetic_avatar(), AUTO)
     assert levels.note == ""
-    walk = [0.51, 0.49, 0.51, 0.6, 0.24, 0.26, 0.3]
+    walk = [LARGEST_TEXEL * share for share in (0.51, 0.49, 0.51, 0.6, 0.24, 0.26, 0.3)]
     assert [levels.choose(*_pose(), seen_from(texel)) for texel in walk] == [0, 1, 1, 0, 2, 2, 1]
 
 

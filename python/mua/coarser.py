@@ -14,7 +14,7 @@ from mua.model import Branch, Model
 from mua.rig.texel_map import TexelMap
 
 REACH = 6.0  # texels: what lies farther apart in space belongs to other surfaces, though it is beside in the texture
-GROWTH = 1.8  # of the standard deviations where one splat stands for four: the figure then covers as much as before
+GROWTH = 1.85  # of the standard deviations where one splat stands for four: the figure then covers as much as before
 TURN = 1.0  # between quaternions: what is turned farther, or has the other sign, has no part in a mean rotation
 MOST_TAPS = 32  # of a wavelet: UpsampleTexels holds no more samples of a tile of a level that is not upsampled
 

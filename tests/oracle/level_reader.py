@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-GROWTH = 9 / 5
+GROWTH = 37 / 20
 Tree = dict[str, Any]
 Array = np.ndarray[Any, np.dtype[Any]]
 

@@ -12,7 +12,7 @@ namespace Mua
         private const int Most = 2; // levels beyond the finest
         private const int MostTaps = 32; // of a wavelet that has coarser levels
         private const double Reach = 6; // texels: what lies farther apart belongs to other surfaces
-        private const double Growth = 1.8; // of the standard deviations where one splat stands for four
+        private const double Growth = 1.85; // of the standard deviations where one splat stands for four
         private const double Turn = 1; // between quaternions that have a part in a mean rotation
         private const int BlockTexels = 4;
         private const int Rotation = 3, Scale = 7, Opacity = 10; // first channels
