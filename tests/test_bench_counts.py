@@ -48,6 +48,16 @@ def test_counts_what_a_frame_must_do(avatar_file: Path, tmp_path: Path) -> None:
     assert [part["dispatches"] for part in told["parts"]] == [9, 13]
     assert told["triangles"]["2.2"] == 2 * told["splats"]
     assert 0 < told["fragments"]["2.2"] < told["fragments"]["1.0"] < told["fragments"]["0.6"]
+    assert [level["texels"] for level in told["levels"]] == [32, 16, 8]
+    assert [level["splats"] for level in told["levels"]] == [
+        len(synthetic_avatar().at_level(level).rig.texels.texels) for level in range(3)
+    ]
+    assert told["levels"][0]["chosen_from"] == 0
+    assert told["levels"][2]["chosen_from"] == 2 * told["levels"][1]["chosen_from"] > 0
+    for name in ("decode", "pose"):
+        moved = [level["bytes"][name] for level in told["levels"]]
+        assert moved[0] == told["bytes"][name]
+        assert moved[2] < moved[1] < moved[0]
     assert all(overdraw >= 1 for overdraw in told["overdraw"].values())
 
 

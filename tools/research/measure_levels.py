@@ -111,10 +111,10 @@ def walk(avatar: Avatar, clip: str, strip: Path | None) -> None:
         before, shown = mean, level
         seen.append((distance, level, image))
     switches = sum(a[1] != b[1] for a, b in itertools.pairwise(seen))
+    print(f"\nFrom {ways[0]:.1f} m to {ways[-1]:.1f} m and back in {len(seen)} pictures, {switches} switches.")
     print(
-        f"\nFrom {ways[0]:.1f} m to {ways[-1]:.1f} m and back in {len(seen)} pictures, {switches} switches. The mean colour"
+        f"The mean colour of the figure's part changes by up to {jumps[False]:.5f} between two pictures of one level,"
     )
-    print(f"of the figure's part changes by up to {jumps[False]:.5f} between two pictures of one level,")
     print(f"by up to {jumps[True]:.5f} at a switch.")
     if strip is not None:
         chosen = [seen[int(i)] for i in np.linspace(0, len(seen) - 1, SHOWN)]

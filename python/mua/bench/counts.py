@@ -13,8 +13,10 @@ import numpy as np
 from mua.arrays import Array
 from mua.bench.work import NOTHING, Work, by_kernel
 from mua.camera import Camera, orbit
+from mua.coarser import coarsest, texel_length
 from mua.errors import InputError
 from mua.gpu import Bound, Device
+from mua.level_choice import LARGEST_TEXEL
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import EXACT_FORMAT, SortedSplats, SplatRenderer, draw_image, image_format
@@ -52,6 +54,18 @@ class Part:
 
 
 @dataclass(frozen=True)
+class LevelCounts:
+    """One level of detail."""
+
+    texels: int  # along a side
+    splats: int
+    chosen: float  # metres from the nearest point of the figure's box, from which on it is chosen
+    decode: Work
+    pose: Work
+    drawn: Drawn  # from the first of DISTANCES
+
+
+@dataclass(frozen=True)
 class Counts:
     """Of one avatar before one eye, all of whose splats are in view."""
 
@@ -61,6 +75,7 @@ class Counts:
     pose: Part  # from these to sorted splats, in every displayed frame that poses
     rest: int  # dispatches of a frame in which only the camera moves
     drawn: tuple[Drawn, ...]
+    levels: tuple[LevelCounts, ...] = ()  # the finest first
 
     @property
     def kernels(self) -> dict[str, Work]:
@@ -101,6 +116,7 @@ def count(device: Device, path: Path) -> Counts:
         pose=_part(posed, share),
         rest=len(posed) - [each.kernel for each in posed].index("SplatProject"),
         drawn=tuple(drawn for _, _, drawn in views),
+        levels=tuple(_level(device, frame, clip, level) for level in range(coarsest(avatar) + 1)),
     )
 
 
@@ -123,6 +139,16 @@ def as_json(counts: Counts) -> dict[str, Any]:
         "triangles": {str(d.distance): d.triangles for d in counts.drawn},
         "fragments": {str(d.distance): d.fragments for d in counts.drawn},
         "overdraw": {str(d.distance): d.overdraw for d in counts.drawn},
+        "levels": [
+            {
+                "texels": level.texels,
+                "splats": level.splats,
+                "chosen_from": level.chosen,
+                "bytes": {"decode": level.decode.bytes, "pose": level.pose.bytes},
+                "fragments": {str(level.drawn.distance): level.drawn.fragments},
+            }
+            for level in counts.levels
+        ],
         "kernels": {name: {"bytes": work.bytes, "operations": work.flops} for name, work in counts.kernels.items()},
     }
 
@@ -140,10 +166,25 @@ def _part(bound: Sequence[Bound], share: float) -> Part:
     return Part(by_kernel(bound, share=share), len(bound))
 
 
-def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip) -> list[tuple[Bound, ...]]:
+def _level(device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, level: int) -> LevelCounts:
+    posed, visible, drawn = _draw(device, frame, clip, DISTANCES[0], level)
+    (avatar,) = frame.avatars
+    share, shown = visible / max(frame.splat_count, 1), avatar.level
+    decode = [_part(bound, share).work for bound in _decode_parts(device, avatar, clip, level)]
+    return LevelCounts(
+        texels=shown.size,
+        splats=shown.splat_count,
+        chosen=texel_length(avatar.avatar.avatar) * 2**level * FOCAL / LARGEST_TEXEL if level else 0.0,
+        decode=sum(decode, NOTHING),
+        pose=_part(posed, share).work,
+        drawn=drawn,
+    )
+
+
+def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip, level: int = 0) -> list[tuple[Bound, ...]]:
     """The dispatches of a decode by displayed frame."""
     window = avatar.avatar.avatar.encoding.frames(0)
-    avatar.begin(clip.rotations[window], clip.translations[window])
+    avatar.begin(clip.rotations[window], clip.translations[window], level)
     parts = []
     while avatar.parts_left > 0:
         commands = device.commands()
@@ -153,13 +194,13 @@ def _decode_parts(device: Device, avatar: AvatarFrame, clip: Clip) -> list[tuple
 
 
 def _draw(
-    device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, distance: float
+    device: Device, frame: SplatFrame[AvatarFrame], clip: Clip, distance: float, level: int = 0
 ) -> tuple[tuple[Bound, ...], int, Drawn]:
     """The dispatches of a frame that only poses, how many splats it sorted, and what is drawn."""
     (avatar,) = frame.avatars
     window = avatar.avatar.avatar.encoding.frames(0)
     decoding, commands = device.commands(), device.commands()
-    avatar.decode_channels(decoding, clip.rotations[window], clip.translations[window])
+    avatar.decode_channels(decoding, clip.rotations[window], clip.translations[window], level)
     decoding.submit()
     avatar.repose(commands, clip.rotations[0], clip.translations[0])
     skeleton = avatar.avatar.avatar.rig.skeleton

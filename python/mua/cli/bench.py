@@ -24,6 +24,7 @@ from mua.inputs import require_file
 from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu
+    from mua.bench.counts import Counts
     from mua.bench.measure import Measured, Timing
     from mua.bench.work import Work
     from mua.gpu import Device
@@ -107,8 +108,19 @@ def _count(device: "Device", path: Path, output: Path | None) -> None:
     views = Table("metres", "triangles", "fragments", "overdraw", box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for seen in counted.drawn:
         views.add_row(str(seen.distance), f"{seen.triangles:,}", f"{seen.fragments:,}", f"{seen.overdraw:.1f}")
-    for shown in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views):
+    for shown in (Text(f"{counted.avatar}: {counted.splats:,} splats, one eye."), table, views, _levels(counted)):
         printer().print(shown)
+
+
+def _levels(counted: "Counts") -> Table:
+    """What each level of detail costs, and from where on it is chosen."""
+    titles = ("texels", "splats", "from metres", "decode MB", "pose MB", f"fragments at {counted.drawn[0].distance} m")
+    table = Table(*titles, box=SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    for level in counted.levels:
+        moved = [f"{work.bytes / 1e6:.1f}" for work in (level.decode, level.pose)]
+        fragments = f"{level.drawn.fragments:,}"
+        table.add_row(str(level.texels), f"{level.splats:,}", f"{level.chosen:.1f}", *moved, fragments)
+    return table
 
 
 def _model(device: "Device", path: Path, name: str, frames: int, output: Path | None) -> None:
