@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mua.arrays import Array
-from mua.camera import FILL, Camera, orbit, stereo
+from mua.camera import FILL, Camera, orbit, sees, stereo
 
 BOX = np.array([[-0.3, 0.1, -0.2], [0.5, 1.9, 0.4]])
 ROUNDING = 64 * np.finfo(float).eps
@@ -61,3 +61,21 @@ def test_eyes_stand_their_distance_apart_across_the_view_about_the_camera() -> N
     np.testing.assert_allclose(across, 0.063 * camera.view[0, :3], atol=ROUNDING)
     np.testing.assert_allclose((left.position + right.position) / 2, camera.position, atol=ROUNDING)
     np.testing.assert_array_equal(left.view[:3, :3], camera.view[:3, :3])
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_box_is_seen_until_all_of_it_lies_beyond_one_side(axis: int, side: int) -> None:
+    camera = orbit(BOX, screen=(64, 48), azimuth=0.7, elevation=0.3)
+    direction = side * camera.view[axis, :3]
+    size = float(np.linalg.norm(np.ptp(BOX, axis=0)))
+    assert sees(camera, BOX)
+    assert sees(camera, BOX + 0.4 * size * direction)  # half of it is out of the picture
+    behind_all = axis == 2 and side == -1  # there is no far plane
+    assert sees(camera, BOX + 20 * size * direction) == behind_all
+
+
+def test_a_box_around_the_camera_or_wider_than_the_picture_is_seen() -> None:
+    camera = orbit(BOX, screen=(64, 48))
+    assert sees(camera, camera.position + np.array([[-1.0, -1, -1], [1, 1, 1]]))
+    assert sees(camera, 100 * (BOX - BOX.mean(axis=0)) * [1, 1, 0.001] + BOX.mean(axis=0))

@@ -13,6 +13,7 @@ from mua.compare.optimise import optimise
 from mua.compare.system import Budget, TrainingFrames
 from mua.compare.systems import SYSTEMS
 from mua.errors import InputError
+from mua.student.optimise import Progress
 
 CLOSED_FORMS = [name for name in SYSTEMS if name != "2d-conv+2d-conv"]
 RANDOM_STEPS = 60
@@ -70,7 +71,11 @@ def test_convolutions_start_at_the_mean_texture(smooth_frames: TrainingFrames) -
 
 def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
     place = torch.nn.Parameter(torch.zeros(1))
-    places = [0.0]
+    places, told = [0.0], list[Progress]()
+
+    def report(progress: Progress) -> None:
+        places.append(float(place.detach()))
+        told.append(progress)
 
     def loss(_: Tensor) -> Tensor:
         return -place.sum()
@@ -83,8 +88,10 @@ def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
         started=0.0,
         stage="Adam",
         generator=torch.Generator(),
-        report=lambda _: places.append(float(place.detach())),
+        report=report,
     )
+    assert [(each.stage, each.step, each.steps) for each in told] == [("Adam", step, 50) for step in range(1, 51)]
+    assert [each.loss for each in told] == [-each for each in places[:-1]]
     moves = np.diff(places)  # of Adam under a steady gradient: the rate
     done = np.arange(50) / 50
     np.testing.assert_allclose(moves, np.minimum(done / 0.1, 1) * 0.5 * (1 + np.cos(np.pi * done)), atol=1e-4)

@@ -128,6 +128,7 @@ def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) 
 def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, written: Path, avatar_file: Path) -> None:
     given = {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
     given["export"] = (avatar_file, "-o", "a.glb")
+    given["share"] = (avatar_file, "-o", "shared")
     code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
     ended = run_bare(code, *given.get(name, (avatar_file,)))
     told = re.fullmatch(

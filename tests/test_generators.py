@@ -7,7 +7,10 @@ import gen_golden
 import gen_kernel_table
 import gen_meta
 import gen_spirv
+import gen_wgsl
 import pytest
+
+from mua.errors import InputError
 
 
 @pytest.fixture
@@ -52,17 +55,55 @@ def test_what_is_stale_is_named_and_then_written(
         module.main()
 
 
-def test_a_compiler_that_is_not_that_of_the_index_is_told(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.fixture(
+    params=[(gen_spirv, "codes", b"code", ".spv"), (gen_wgsl, "modules", "code", ".js")], ids=["spirv", "wgsl"]
+)
+def compiles(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> tuple[ModuleType, Path]:
+    """A tool that compiles, with an entry point of its own, and the folder that it writes to."""
+    module, made, code, ending = request.param
+    folder = tmp_path / "compiled"
+    folder.mkdir()
+    (folder / f"old{ending}").touch()
+    monkeypatch.setattr("sys.argv", ["tool"])
+    monkeypatch.setattr(module, made, lambda: {f"new{ending}": code})
+    monkeypatch.setattr(module, "sources", lambda: {f"new{ending}": "a digest"})
+    monkeypatch.setattr(module, "signature", lambda: "one 1.0")
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    if module is gen_spirv:
+        monkeypatch.setattr(module.compiled, "FOLDER", folder)
+    else:
+        monkeypatch.setattr(module, "FOLDER", folder)
+    return module, folder
+
+
+def test_compiled_shaders_are_written_once_they_are_asked_for(
+    compiles: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("sys.argv", ["gen_spirv.py", "--check"])
-    monkeypatch.setattr(gen_spirv, "faults", lambda _: ["a.spv is missing"])
-    with pytest.raises(SystemExit, match=r"a.spv is missing\n.*spirv is out of date: run tools/gen_spirv.py"):
-        gen_spirv.main()
-    monkeypatch.setattr(gen_spirv, "faults", lambda _: [])
-    made_by = gen_spirv.read_index(gen_spirv.compiled.FOLDER)["compiler"]
-    for here, told in ((made_by, ""), ("no compiler", f"it is of {made_by}, this machine has no compiler\n")):
-        monkeypatch.setattr(gen_spirv, "signature", lambda here=here: here)
-        gen_spirv.main()
-        assert capsys.readouterr().out.endswith(told)
-        assert not capsys.readouterr().out
+    module, folder = compiles
+    module.main()
+    assert {path.stem for path in folder.iterdir() if path.suffix != ".json"} == {"new"}
+    with monkeypatch.context() as checking:
+        checking.setattr("sys.argv", ["tool", "--check"])
+        module.main()
+        assert capsys.readouterr().out == ""
+        checking.setattr(module, "signature", lambda: "no compiler")
+        module.main()
+        assert capsys.readouterr().out.endswith("it is of one 1.0, this machine has no compiler\n")
+        next(path for path in folder.iterdir() if path.stem == "new").unlink()
+        with pytest.raises(
+            SystemExit, match=rf"^new.* is missing\ncompiled is out of date: run tools/{module.__name__}.py"
+        ):
+            module.main()
+
+
+def test_a_compiler_that_refuses_ends_in_its_sentence(
+    compiles: tuple[ModuleType, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_: Path) -> None:
+        raise InputError("there is no compiler")
+
+    monkeypatch.setattr(compiles[0], "write", refuse)
+    with pytest.raises(SystemExit, match="error: there is no compiler"):
+        compiles[0].main()

@@ -34,11 +34,14 @@ def disc(size: int, *, soft: float = 0.0) -> Array:
     return picture
 
 
-def card(picture: Array, mode: AlphaMode, *, cutoff: float = 0.5, cells: int = 1, behind: bool = True) -> Surfaces:
+def card(
+    picture: Array, mode: AlphaMode, *, cutoff: float | None = None, cells: int = 1, behind: bool = True
+) -> Surfaces:
     """A square sheet that shows the picture, and a solid one behind it."""
     sheets = [patch(cells, at=0, uv=WHOLE)] + [patch(2, at=2, uv=WHOLE)] * behind
     surfaces = surfaces_of(*sheets, images=(picture, plain(9, 9, 9, 255))[: 1 + behind])
-    first = replace(surfaces.materials[0], alpha_mode=mode, alpha_cutoff=cutoff)
+    first = replace(surfaces.materials[0], alpha_mode=mode)
+    first = first if cutoff is None else replace(first, alpha_cutoff=cutoff)
     return replace(surfaces, materials=(first, *surfaces.materials[1:]))
 
 

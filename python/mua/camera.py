@@ -70,6 +70,16 @@ def orbit(
     return Camera(view, perspective(fov, aspect=screen[0] / screen[1], near=near_plane(distance)), screen)
 
 
+def sees(
+    camera: Camera,
+    box: Array,  # [2, 3] lowest and highest corner, metres
+) -> bool:
+    """Whether any of the box may be in the picture: not all of it lies beyond one side, or before the near plane."""
+    corners = np.array(np.meshgrid(*np.transpose(box))).reshape(3, -1)
+    x, y, z, w = camera.projection @ camera.view @ np.concatenate([corners, np.ones((1, corners.shape[1]))])
+    return not any(side.all() for side in (x > w, x < -w, y > w, y < -w, z < -w))
+
+
 def near_plane(distance: float) -> float:
     """Where the near plane lies of a camera that looks at something so far away; metres."""
     return min(NEAR, NEAR_SHARE * distance)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -143,3 +144,74 @@ def test_an_avatar_without_texels_stands_among_others(device: Device, tmp_path: 
     avatars = three()
     crowd = Crowd(device, tmp_path, [avatars[0], part(avatars[1], slice(0, 0)), avatars[2]], eyes=1)
     np.testing.assert_array_equal(np.sort(crowd.order), np.arange(len(crowd.exact.centres)))
+
+
+class Dispatched:
+    """Passes dispatches on, and keeps which kernel read how many keys or texels."""
+
+    def __init__(self, device: Device) -> None:
+        self.commands, self.projected, self.keys = device.commands(), list[int](), set[int]()
+
+    def dispatch(self, kernel: Any, *arguments: Any, **constants: Any) -> None:
+        if "texel_count" in constants:
+            self.projected.append(constants["texel_count"])
+        if "key_count" in constants:
+            self.keys.add(constants["key_count"])
+        self.commands.dispatch(kernel, *arguments, **constants)
+
+
+def sort_from(crowd: Crowd, cameras: Sequence[Camera]) -> Dispatched:
+    listed = Dispatched(crowd.device)
+    crowd.frame.sort(listed, cameras)  # type: ignore[arg-type]
+    listed.commands.submit()
+    return listed
+
+
+def send_away(crowd: Crowd, index: int, place: Sequence[float]) -> None:
+    """Pose an avatar elsewhere."""
+    avatar, commands = crowd.frame.avatars[index], crowd.device.commands()
+    clip, window = avatar.avatar.avatar.clips[0], avatar.avatar.avatar.encoding.frames(INDICES[index])
+    avatar.decode(commands, clip.rotations[window], clip.translations[window], turned(0, place))
+    commands.submit()
+
+
+def past(camera: Camera) -> Camera:
+    """The camera, gone on until all lies behind it."""
+    view = camera.view.copy()
+    view[2, 3] += 40
+    return replace(camera, view=view)
+
+
+@pytest.mark.parametrize("eyes", [1, 2])
+def test_an_avatar_out_of_view_is_neither_projected_nor_sorted(device: Device, tmp_path: Path, eyes: int) -> None:
+    crowd = Crowd(device, tmp_path, three(), eyes=eyes)
+    send_away(crowd, 0, 40 * crowd.cameras[0].view[2, :3])  # behind the camera
+    listed = sort_from(crowd, crowd.cameras)
+    counts = [avatar.splat_count for avatar in crowd.frame.avatars]
+    assert listed.projected == counts[1:]
+    assert listed.keys == {sum(count + count % 2 for count in counts[1:])}
+    assert crowd.frame.arguments.read()[VISIBLE_WORD] == sum(counts[1:])
+    image = draw_image(device, SplatRenderer(device, image_format(device)), crowd.frame.sorted, crowd.cameras)
+    alone = [
+        moved(decode_clip_frame(a.avatar.avatar, a.avatar.avatar.clips[0], frame=i, dtype=np.float64), place)
+        for a, i, place in list(zip(crowd.frame.avatars, INDICES, PLACES, strict=True))[1:]
+    ]
+    for found, camera in zip(np.split(image, eyes, axis=1), crowd.cameras, strict=True):
+        assert psnr(found, render_premultiplied(joined(alone), camera)) > LEAST_PSNR
+
+
+def test_an_avatar_that_one_eye_sees_is_drawn(device: Device, tmp_path: Path) -> None:
+    crowd = Crowd(device, tmp_path, three(), eyes=2)
+    away = past(crowd.cameras[1])
+    assert len(sort_from(crowd, (crowd.cameras[0], away)).projected) == 3
+    assert len(sort_from(crowd, (away, crowd.cameras[0])).projected) == 3
+
+
+def test_nothing_is_drawn_while_all_avatars_are_out_of_view(device: Device, tmp_path: Path) -> None:
+    crowd = Crowd(device, tmp_path, three(), eyes=1)
+    away = past(crowd.cameras[0])
+    assert sort_from(crowd, [away]).projected == []
+    assert sort_from(crowd, [away]).keys == {0}
+    assert not draw_image(device, SplatRenderer(device, image_format(device)), crowd.frame.sorted, [away]).any()
+    assert len(sort_from(crowd, crowd.cameras).projected) == 3  # and all are drawn when they are back
+    np.testing.assert_array_equal(np.sort(crowd.frame.order.read()[: len(crowd.slots)]), np.sort(crowd.slots))

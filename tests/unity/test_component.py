@@ -199,6 +199,17 @@ def test_an_avatar_that_rests_is_posed_again_into_the_buffer_that_is_left(story:
     assert told["idle"] == [str(len(posed) - posed.index("SplatProject"))]
 
 
+def test_an_avatar_out_of_view_rests_unless_its_shadow_may_be_seen(story: Story) -> None:
+    told = story("StandsOutOfView", "first", "second")
+    at_rest = len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
+    assert told["both"] == told["back"] == [str(at_rest + 1)]  # each is projected
+    assert int(told["shadow"][0]) == at_rest + FRAME_ORDER.index("SplatProject")  # decoded and posed, not projected
+    assert told["one"] == told["far"] == told["without"] == [str(at_rest)]
+    assert told["stands"] == ["1"]  # where it would be seen
+    assert (told["none"], told["drawn"]) == (["0"], ["0"])
+    assert int(told["again"][0]) > at_rest + FRAME_ORDER.index("SplatProject")  # decodes what it missed
+
+
 def test_an_avatar_destroyed_while_it_uploads_leaves_nothing(story: Story) -> None:
     told = story("GoesMidUpload", "wide")
     assert (told["state"], told["progress"], told["held"]) == (["Loading"], ["1"], ["1"])

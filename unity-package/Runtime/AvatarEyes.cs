@@ -10,6 +10,14 @@ namespace Mua
     {
         public const int Most = 2;
 
+        /// <summary>Diagonals of a pose's box that its splats may leave it by; so far SplatProject keys their depth.</summary>
+        public const float SplatReach = 0.5f;
+
+        /// <summary>That its shadow may, where the light comes from some 20 degrees above the ground or more.</summary>
+        public const float ShadowReach = 2;
+
+        private const int Corners = 8; // of a box
+
         /// <summary>World to eye; a single eye stands in both places.</summary>
         public readonly Matrix4x4[] View = new Matrix4x4[Most];
 
@@ -62,6 +70,41 @@ namespace Mua
             }
             Count++;
             Middle = new Vector4(sum.x / Count, sum.y / Count, sum.z / Count, 1);
+        }
+
+        /// <summary>
+        /// Whether any eye may see what reaches so many diagonals beyond a box in the right-handed world, metres: not all of it
+        /// lies beyond one side of the eye's view.
+        /// </summary>
+        public bool Sees(Vector3 low, Vector3 high, float reach)
+        {
+            float spare = reach * (high - low).magnitude;
+            var margin = new Vector3(spare, spare, spare);
+            for (int eye = 0; eye < Count; eye++)
+            {
+                if (Sees(Projection[eye] * View[eye], low - margin, high + margin))
+                {
+                    return true;
+                }
+            }
+            return false;
+        }
+
+        private static bool Sees(in Matrix4x4 viewProjection, Vector3 low, Vector3 high)
+        {
+            bool left = true, right = true, below = true, above = true, before = true;
+            for (int corner = 0; corner < Corners; corner++)
+            {
+                Vector4 clip = viewProjection * new Vector4(
+                    (corner & 1) == 0 ? low.x : high.x, (corner & 2) == 0 ? low.y : high.y,
+                    (corner & 4) == 0 ? low.z : high.z, 1);
+                left &= clip.x < -clip.w;
+                right &= clip.x > clip.w;
+                below &= clip.y < -clip.w;
+                above &= clip.y > clip.w;
+                before &= clip.z < -clip.w;
+            }
+            return !(left || right || below || above || before);
         }
 
         /// <summary>-R^T t of a rigid view.</summary>

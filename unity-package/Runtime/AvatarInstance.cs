@@ -16,12 +16,9 @@ namespace Mua
         private AvatarLoader loader; // null once everything is on the device
         private AvatarBuffers buffers;
         private AvatarMotion motion;
-        private DecodeSchedule schedule;
         private string chosen = ""; // the clip's name when it took effect
         private string refusal; // why there is no room beside the other avatars
         private bool hasMoved; // since the last Record
-        private bool isDue; // Move was called since the last Record
-        private bool spreads; // a decode over displayed frames
         private bool isScaleReported, isLevelReported;
         private int level;
 
@@ -121,27 +118,39 @@ namespace Mua
                 Warn("the rig that posed the avatar was destroyed; a clip plays in its place.");
             }
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
-            spreads = owner.SpreadDecode && Application.isPlaying
-                && (Views & AvatarViews.Geometry) == 0 // which is of the finest level
-                && !isDue; // else frames went by without a Record
-            isDue = true;
-            schedule.ShowWhole(motion.Pose);
+            Decoded.Stand(motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
             Surface.CastShadow(Views, Bounds, Layer);
         }
 
-        /// <summary>Appends what has changed since the last call: a decode or a part of one, another pose, or nothing.</summary>
+        /// <summary>Whether it is drawn for these eyes.</summary>
+        public bool IsSeenBy(AvatarEyes eyes)
+        {
+            return eyes.Sees(Decoded.Low, Decoded.High, AvatarEyes.SplatReach);
+        }
+
+        /// <summary>Whether it, or the shadow that it casts, may be drawn for these eyes.</summary>
+        public bool IsNeededFor(AvatarEyes eyes)
+        {
+            bool hasShadow = (Views & AvatarViews.Shadow) != 0;
+            float reach = hasShadow ? AvatarEyes.ShadowReach : AvatarEyes.SplatReach;
+            return eyes.Sees(Decoded.Low, Decoded.High, reach);
+        }
+
+        /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
         public void Record(CommandBuffer commands)
         {
             AvatarPose pose = motion.Pose;
-            if (isDue || !spreads)
+            if (pose.IsFresh || (Decoded.IsDecoded && Decoded.Level.Number != Level))
             {
-                hasMoved |= schedule.Record(commands, pose, Level, spreads);
+                Decoded.Decode(
+                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value,
+                    Level);
             }
-            isDue = false;
-            if (hasMoved)
+            else if (hasMoved)
             {
                 Decoded.Repose(commands, pose.Current, pose.CurrentTranslations, placement.Value);
             }
+            pose.IsFresh = false;
             hasMoved = false;
         }
 
@@ -213,7 +222,6 @@ namespace Mua
             Decoded = null;
             buffers = null;
             motion = null;
-            schedule = null;
             refusal = null;
         }
 
@@ -231,7 +239,6 @@ namespace Mua
             Decoded = new AvatarFrame(resources, buffers);
             Surface = new AvatarSurface(resources, Decoded);
             motion = new AvatarMotion(buffers.Avatar);
-            schedule = new DecodeSchedule(Decoded);
             AvatarWorld.Add(this, resources);
             loader.Dispose();
             loader = null;

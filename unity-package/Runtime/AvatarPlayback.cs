@@ -86,10 +86,9 @@ namespace Mua
             Seconds += step;
             if (Seconds.Equals(shown))
             {
-                pose.Rest();
                 return false;
             }
-            pose.Sample(clips[index], Seconds, step);
+            pose.Sample(clips[index], Seconds);
             shown = Seconds;
             return true;
         }

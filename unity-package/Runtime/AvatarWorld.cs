@@ -92,8 +92,9 @@ namespace Mua
         }
 
         /// <summary>
-        /// Appends what one camera needs of all avatars: decoding and posing what moved since it was last drawn, then one
-        /// sort for the eyes. Whether there is anything to draw; splats are projected in perspective only.
+        /// Appends what one camera needs of the avatars in its view: decoding and posing what moved since it was last drawn, then
+        /// one sort for the eyes. An avatar is posed where its shadow alone may be in view, too.
+        /// Whether there is anything to draw; splats are projected in perspective only.
         /// </summary>
         public bool Record(CommandBuffer commands, Camera camera, AvatarEyes eyes)
         {
@@ -110,26 +111,23 @@ namespace Mua
             levels.See(avatars, eyes);
             for (int i = 0; i < avatars.Count; i++)
             {
-                avatars[i].Record(commands);
+                if (avatars[i].IsNeededFor(eyes))
+                {
+                    avatars[i].Record(commands);
+                }
             }
-            bool drawsSplats = splats.SplatCount > 0 && !camera.orthographic;
-            if (drawsSplats || ShowsGeometry()) // which is drawn through the splats' centres
+            bool perspective = !camera.orthographic;
+            if ((perspective && splats.Capacity > 0) || ShowsGeometry()) // which is drawn through the splats' centres
             {
                 splats.Project(commands, eyes);
             }
-            for (int i = 0; i < avatars.Count; i++)
-            {
-                avatars[i].Surface.AddOpaque(draws, eyes, avatars[i].Views);
-            }
-            if (drawsSplats)
+            AddSurfaces(eyes, true);
+            if (perspective && splats.SplatCount > 0)
             {
                 splats.Sort(commands);
                 draws.Add(splatDraw.Bind(splats));
             }
-            for (int i = 0; i < avatars.Count; i++)
-            {
-                avatars[i].Surface.AddOverlay(draws, eyes, avatars[i].Views);
-            }
+            AddSurfaces(eyes, false);
             return draws.Count > 0;
         }
 
@@ -189,6 +187,27 @@ namespace Mua
             catch (InvalidOperationException error)
             {
                 avatars[avatars.Count - 1].Refuse(error.Message);
+            }
+        }
+
+        /// <summary>What lies behind the splats, or over them, of the avatars that the eyes see.</summary>
+        private void AddSurfaces(AvatarEyes eyes, bool opaque)
+        {
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                AvatarInstance avatar = avatars[i];
+                if (!avatar.IsSeenBy(eyes))
+                {
+                    continue;
+                }
+                if (opaque)
+                {
+                    avatar.Surface.AddOpaque(draws, eyes, avatar.Views);
+                }
+                else
+                {
+                    avatar.Surface.AddOverlay(draws, eyes, avatar.Views);
+                }
             }
         }
 

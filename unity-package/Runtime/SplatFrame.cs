@@ -7,7 +7,8 @@ namespace Mua
 {
     /// <summary>
     /// All avatars' splats together: the dispatches from posed texels to the splats that one or two eyes see, back to front,
-    /// in the order of python/mua/player/splats.py. One sort serves avatars that stand among each other, and both eyes.
+    /// in the order of python/mua/player/splats.py. One sort serves avatars that stand among each other, and both eyes; those
+    /// outside every eye's view are neither projected nor sorted.
     /// </summary>
     internal sealed class SplatFrame : IDisposable
     {
@@ -18,8 +19,8 @@ namespace Mua
         private readonly SplatProject splatProject;
         private readonly SplatSort splatSort;
         private readonly AvatarFrame[] avatars;
+        private readonly bool[] seen; // by the last Project
         private readonly int shown;
-        private readonly int capacity; // splats of the finest levels of those that are shown
         private readonly BufferSet buffers = new BufferSet();
         private GraphicsBuffer halfSorted;
 
@@ -35,13 +36,14 @@ namespace Mua
             splatProject = new SplatProject(resources.SplatProject);
             splatSort = new SplatSort(resources.SplatSort);
             this.avatars = new AvatarFrame[avatars.Count];
+            seen = new bool[avatars.Count];
             this.shown = shown;
             long placed = 0;
             for (int i = 0; i < avatars.Count; i++)
             {
                 this.avatars[i] = avatars[i];
                 placed += Even(avatars[i].Avatar.SplatCounts[0]);
-                capacity = i < shown ? (int)Math.Min(placed, MostSplats) : capacity;
+                Capacity = i < shown ? (int)Math.Min(placed, MostSplats) : Capacity;
             }
             try
             {
@@ -52,10 +54,14 @@ namespace Mua
                 Dispose();
                 throw;
             }
-            Place();
         }
 
-        /// <summary>N, of all avatars that are drawn, and one more where an avatar has an odd number; by the last Project.</summary>
+        /// <summary>Splats of the finest levels of the avatars that are drawn.</summary>
+        public int Capacity { get; }
+
+        /// <summary>
+        /// N, of the avatars that are drawn and that the last Project found in view, and one more where one has an odd number.
+        /// </summary>
         public int SplatCount { get; private set; }
 
         /// <summary>[N, 8] words, as pack_splats of python/mua/kernels/splat_project.py lays them out.</summary>
@@ -84,17 +90,14 @@ namespace Mua
         public void Project(CommandBuffer commands, AvatarEyes eyes)
         {
             Eyes = eyes;
-            Place();
-            Vector3 low = avatars[0].Low, high = avatars[0].High;
-            for (int i = 1; i < shown; i++)
-            {
-                low = Vector3.Min(low, avatars[i].Low);
-                high = Vector3.Max(high, avatars[i].High);
-            }
+            Place(out Vector3 low, out Vector3 high);
             commands.BeginSample(AvatarStages.Project);
-            foreach (AvatarFrame avatar in avatars)
+            for (int i = 0; i < avatars.Length; i++)
             {
-                splatProject.Project(commands, this, avatar, eyes, low, high);
+                if (seen[i])
+                {
+                    splatProject.Project(commands, this, avatars[i], eyes, low, high);
+                }
             }
             commands.EndSample(AvatarStages.Project);
         }
@@ -114,14 +117,28 @@ namespace Mua
             buffers.Dispose();
         }
 
-        /// <summary>Gives each avatar room for the splats of the level that it has decoded.</summary>
-        private void Place()
+        /// <summary>One avatar in view after the other in Splats, and the box around those that are sorted.</summary>
+        private void Place(out Vector3 low, out Vector3 high)
         {
+            low = new Vector3(float.MaxValue, float.MaxValue, float.MaxValue);
+            high = -low;
             int first = 0;
+            SplatCount = 0;
             for (int i = 0; i < avatars.Length; i++)
             {
-                avatars[i].ShareSplats(Splats, first);
-                first += Even(avatars[i].SplatCount);
+                AvatarFrame avatar = avatars[i];
+                seen[i] = Eyes.Sees(avatar.Low, avatar.High, AvatarEyes.SplatReach);
+                if (!seen[i])
+                {
+                    continue;
+                }
+                avatar.ShareSplats(Splats, first);
+                first += Even(avatar.SplatCount);
+                if (i < shown || SplatCount == 0) // what is placed for other views alone has a box of its own
+                {
+                    low = Vector3.Min(low, avatar.Low);
+                    high = Vector3.Max(high, avatar.High);
+                }
                 SplatCount = i < shown ? first : SplatCount;
             }
         }
@@ -135,13 +152,13 @@ namespace Mua
             }
             Splats = buffers.Structured("splats", SplatWords / 4 * placed, 4 * sizeof(uint));
             Keys = buffers.Structured("keys", placed / 2, sizeof(uint));
-            long sorted = (long)SplatSort.Digits * Kernel.Groups(capacity, SplatSort.Sorted);
+            long sorted = (long)SplatSort.Digits * Kernel.Groups(Capacity, SplatSort.Sorted);
             DigitCounts = buffers.Structured("digit_counts", sorted, sizeof(uint));
             DigitTotals = buffers.Structured("digit_totals", SplatSort.Digits, sizeof(uint));
             Arguments = buffers.Copied("arguments", ArgumentWords);
             IndirectArguments = buffers.Arguments("indirect arguments", ArgumentWords);
-            halfSorted = buffers.Structured("half_sorted", capacity, sizeof(uint));
-            Order = buffers.Structured("order", capacity, sizeof(uint));
+            halfSorted = buffers.Structured("half_sorted", Capacity, sizeof(uint));
+            Order = buffers.Structured("order", Capacity, sizeof(uint));
         }
 
         /// <summary>One pass of the sort, from the splats' keys to elements, or from those to the order.</summary>

@@ -1,4 +1,4 @@
-"""mua-view: an avatar in a window, or as a picture, a video or an animation."""
+"""mua-view: an avatar in a window, in a browser, or as a picture, a video or an animation."""
 
 from pathlib import Path
 from typing import Annotated
@@ -120,8 +120,23 @@ def view(
     reference: Annotated[
         bool, typer.Option("--reference", help="Compute on the CPU with numpy; needs no graphics device.")
     ] = False,
+    web: Annotated[
+        bool, typer.Option("--web", help="Show FILES in a browser, served from this machine alone.")
+    ] = False,
+    no_open: Annotated[bool, typer.Option("--no-open", help="With --web: print the address, open no browser.")] = False,
 ) -> None:
-    """Show FILES in a window, or write a picture, a video or an animation of one with -o."""
+    """Show FILES in a window or a browser, or write a picture, a video or an animation of one with -o."""
+    if no_open and not web:
+        raise InputError("--no-open: works only with --web, which is not given")
+    if web:
+        left = {"-o": output, "--frame": frame, "--frames": frames, "--ipd": ipd, "--stereo": stereo, "--level": level}
+        left |= {"--reference": reference, "--device": device, "--mapping": mapping, "--motion": motion}
+        left |= {"--size": size, "--zoom": zoom, "--look-at": look_at, "--follow": follow, "--turntable": turntable}
+        from mua.cli.view_web import check_web, serve
+
+        check_web({**left, "--background": background})
+        serve(files, clip=clip, show=show, azimuth=azimuth, elevation=elevation, orbit=orbit, opens=not no_open)
+        return
     kind = kind_of(output, turntable=turntable)
     given: dict[str, object] = {
         "--frame": frame,

@@ -4,13 +4,12 @@ Kept a plain list in the order of the kernels, so that unity-package/Runtime/Spl
 """
 
 from collections.abc import Sequence
-from itertools import accumulate
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera
+from mua.camera import Camera, sees
 from mua.errors import InputError
 from mua.gpu import Buffer, Commands, Device
 from mua.kernels.splat_project import SPLAT_WORDS
@@ -50,7 +49,9 @@ P = TypeVar("P", bound=Posed)
 
 
 class SplatFrame(Generic[P]):
-    """One sort for all avatars, so that those that stand among each other blend rightly.
+    """One sort for all avatars in view, so that those that stand among each other blend rightly.
+
+    Those outside every eye's view are neither projected nor sorted; their splats' places lie behind the others'.
 
     A splat's colour is computed once for both eyes, towards the mean of their positions: degree-1 harmonics turn with
     the direction, and two eyes 63 mm apart see an avatar a metre away in directions 4 degrees apart.
@@ -59,6 +60,7 @@ class SplatFrame(Generic[P]):
     def __init__(self, device: Device, avatars: Sequence[P]) -> None:
         """One avatar at least. Errors: InputError where there are too many splats, for the device or for the sort."""
         self.avatars = tuple(avatars)
+        self._seen = (True,) * len(self.avatars)  # by the last sort
         if self.splat_count > MOST_SPLATS:
             raise InputError(f"{self.splat_count} splats of all avatars; expected at most {MOST_SPLATS}")
         self._load_kernels(device)
@@ -67,17 +69,23 @@ class SplatFrame(Generic[P]):
     @property
     def splat_count(self) -> int:
         """Of all avatars, as many as they have decoded, each rounded up to an even number."""
-        return self._starts[-1]
+        return int(self._counts.sum())
 
     @property
     def first_splats(self) -> tuple[int, ...]:
-        """Each avatar's first; they are even."""
-        return self._starts[:-1]
+        """Each avatar's first, of those in view before the others; they are even."""
+        order = np.argsort(np.logical_not(self._seen), kind="stable")
+        starts = np.cumsum(self._counts[order]) - self._counts[order]
+        return tuple(starts[np.argsort(order)].tolist())
 
     @property
-    def _starts(self) -> tuple[int, ...]:
-        counts = (avatar.splat_count + avatar.splat_count % 2 for avatar in self.avatars)
-        return tuple(accumulate(counts, initial=0))
+    def sorted_count(self) -> int:
+        """Of the avatars that the last sort found in view."""
+        return int(self._counts[list(self._seen)].sum())
+
+    @property
+    def _counts(self) -> Array:
+        return np.array([avatar.splat_count + avatar.splat_count % 2 for avatar in self.avatars], dtype=int)
 
     def _load_kernels(self, device: Device) -> None:
         self._splat_project = device.kernel("splat_project.compute", "SplatProject")
@@ -104,14 +112,17 @@ class SplatFrame(Generic[P]):
         if not 1 <= len(cameras) <= EYES or any(camera.screen != cameras[0].screen for camera in cameras):
             screens = ", ".join("x".join(map(str, camera.screen)) for camera in cameras)
             raise InputError(f"cameras have the screens [{screens}]; expected one or {EYES} of one size")
-        for avatar, first_splat in zip(self.avatars, self.first_splats, strict=True):
-            self._project(commands, avatar, first_splat, cameras)
+        self._seen = tuple(any(sees(c, _reach(avatar.bounds)) for c in cameras) for avatar in self.avatars)
+        for avatar, first_splat, seen in zip(self.avatars, self.first_splats, self._seen, strict=True):
+            if seen:
+                self._project(commands, avatar, first_splat, cameras)
         self._sort_digit(commands, self.keys, self.half_sorted, second_pass=0)
         self._sort_digit(commands, self.half_sorted, self.order, second_pass=1)
 
     def box(self) -> Array:
-        """[2, 3] world box of what was posed last, metres."""
-        return union(np.stack([avatar.bounds for avatar in self.avatars]))
+        """[2, 3] world box of what was posed last, metres: of the avatars in view, or of all where none is."""
+        boxes = np.stack([avatar.bounds for avatar in self.avatars])
+        return union(boxes[np.array(self._seen)] if any(self._seen) else boxes)
 
     def _project(self, commands: Commands, avatar: P, first_splat: int, cameras: Sequence[Camera]) -> None:
         low, high = self.box()
@@ -142,11 +153,19 @@ class SplatFrame(Generic[P]):
 
     def _sort_digit(self, commands: Commands, keys: Buffer, sorted: Buffer, *, second_pass: int) -> None:
         """One pass of the sort, from the splats' keys to elements, or from those to the order."""
-        blocks = (groups(self.splat_count, SORTED), 1, 1)
+        blocks = (max(groups(self.sorted_count, SORTED), 1), 1, 1)  # the first one writes the draw's arguments
         counts = {"digit_counts": self.digit_counts, "arguments": self.arguments}
         totals = {**counts, "digit_totals": self.digit_totals}
-        constants = {"second_pass": second_pass, "key_count": self.splat_count}
+        constants = {"second_pass": second_pass, "key_count": self.sorted_count}
         commands.dispatch(self._count_digits, blocks, {"keys": keys, **counts}, **constants)
         commands.dispatch(self._scan_digits, (DIGITS, 1, 1), totals, **constants)
         moved = {"keys": keys, **totals, "sorted": sorted}
         commands.dispatch(self._scatter_digits, blocks, moved, **constants, instances=1)
+
+
+def _reach(
+    bounds: Array,  # [2, 3]
+) -> Array:
+    """The box [2, 3] that splats may reach: half a diagonal beyond, as far as SplatProject keys their depth."""
+    spare = np.linalg.norm(bounds[1] - bounds[0]) / 2
+    return np.stack([bounds[0] - spare, bounds[1] + spare])

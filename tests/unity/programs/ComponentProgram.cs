@@ -100,6 +100,36 @@ namespace Mua
             Say("idle", Dispatches(1));
         }
 
+        /// <summary>Two avatars before the camera, then one behind it, then both.</summary>
+        private static void StandsOutOfView()
+        {
+            AvatarRenderer first = Show(files[0]), second = Show(files[1]);
+            first.IsPlaying = second.IsPlaying = false;
+            Frames(2);
+            Say("both", Dispatches(1));
+            Vector3 near = new Vector3(0, 0, -1.5f * second.Bounds.size.magnitude), far = 4 * near;
+            second.transform.position = near;
+            second.Frame = 3;
+            Say("shadow", Dispatches(1));
+            Say("one", Dispatches(1));
+            second.transform.position = far;
+            second.Frame = 5;
+            Say("far", Dispatches(1));
+            Say("stands", second.Bounds.max.z < 3 * near.z ? 1 : 0);
+            second.Views = AvatarViews.Splats;
+            Frames(2);
+            second.transform.position = near;
+            Say("without", Dispatches(1));
+            first.transform.position = far;
+            Frames(2);
+            Say("none", Dispatches(1));
+            Say("drawn", AvatarWorld.Current.Draws.Count);
+            first.transform.position = second.transform.position = Vector3.zero;
+            Say("again", Dispatches(1));
+            Frames(2);
+            Say("back", Dispatches(1));
+        }
+
         private static void ShowsViews()
         {
             AvatarRenderer shown = Show(files[0]);
