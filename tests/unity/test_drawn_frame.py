@@ -257,7 +257,7 @@ def test_what_is_drawn_before_hides_the_splats_behind_it(painter: Painter, both:
         assert np.any(expected[:, :middle]) == (place != "before")
 
 
-@pytest.mark.parametrize("brightness", [1.0, 0.12])
+@pytest.mark.parametrize("brightness", [1.0, 0.12, 0.07])
 def test_a_linear_project_is_given_light(painter: Painter, mono: Scene, brightness: float) -> None:
     """sRGB of each splat turned to light before it is blended, of dark ones too, which it is proportional to."""
     drawn = mono.drawn["indirect"]
