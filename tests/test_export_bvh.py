@@ -85,6 +85,12 @@ def test_joints_follow_the_order_of_the_skeleton_and_their_parents() -> None:
     assert text.count("CHANNELS 6") == 1
 
 
+def test_a_root_that_stands_still_has_positions_too() -> None:
+    skeleton = upright(("hips", "head"), (-1, 0), [[0, 1, 0], [0, 0.5, 0]])
+    clip = Clip("a", 30.0, skeleton.bind_rotations[None], skeleton.bind_translations[None])
+    assert bvh_text(skeleton, clip).count("CHANNELS 6 Xposition Yposition Zposition") == 1
+
+
 def test_angles_do_not_jump_by_whole_turns() -> None:
     skeleton = upright(("hips", "head"), (-1, 0), [[0, 1, 0], [0, 0.5, 0]])
     turns = rotation.from_axis_angle(np.array([0.0, 0, 1]), np.radians(np.arange(0, 500, 50.0)))

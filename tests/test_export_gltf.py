@@ -18,7 +18,10 @@ from synthetic_avatar import with_surface
 import mua
 from mua import rotation
 from mua.characters.read import read_character
+from mua.export.character_glb import character_glb
+from mua.export.frames import ExportFrames
 from mua.export.splats import mean_colors, world_splats
+from mua.export.surface import skinned_mesh
 from mua.motion.read import read_motion
 from mua.player.surface import surface_mesh
 
@@ -105,6 +108,17 @@ def test_the_mesh_at_rest_is_the_template_and_then_follows_its_joints(
         np.put_along_axis(weights, rig.skin_indices[:, :3], rig.skin_weights[:, :3], axis=1)
         linear = np.einsum("vj,vjc->vc", weights, moved)
         np.testing.assert_allclose(found.skinned(frame)[found.faces()], linear[rig.mesh.faces], atol=PLACE_BOUND)
+
+
+def test_of_eight_joints_the_four_largest_count(stored: mua.Avatar, tmp_path: Path) -> None:
+    mesh = skinned_mesh(stored, stored.decode("wave", 0))
+    eight = np.tile(np.float32([0.3, 0.2, 0.2, 0.1, 0.05, 0.05, 0.05, 0.05]), (len(mesh.vertices), 1))
+    eight[0] = [1, 0, 0, 0, 0, 0, 0, 0]
+    many = replace(mesh, weights=eight, joints=np.tile([2, 1, 1, 1, 1, 1, 1, 1], (len(eight), 1)))
+    (tmp_path / "a.glb").write_bytes(character_glb(ExportFrames(stored, stored.clips[0], range(1)), many))
+    found = ReadGlb(tmp_path / "a.glb").attributes()
+    np.testing.assert_allclose(found["WEIGHTS_0"][1:], [[0.375, 0.25, 0.25, 0.125]] * (len(eight) - 1), atol=EPSILON)
+    assert found["JOINTS_0"][:2].tolist() == [[2, 0, 0, 0], [2, 1, 1, 1]]
 
 
 def test_the_texture_has_the_colours_of_the_splats(

@@ -1,5 +1,6 @@
 """Exported splats: what other programs read is what the avatar is, with the same colour from every direction."""
 
+import gzip
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -18,6 +19,7 @@ from mua.export.compressed_ply import CHUNK, compressed_ply_bytes
 from mua.export.ply import ply_bytes
 from mua.export.splats import HALF_TURN_Z, WorldSplats, morton_order, turned, world_splats
 from mua.export.spz import spz_bytes
+from mua.kernels.dq_skinning import LARGEST_LOG_SCALE
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import PIXEL_VARIANCE
 from mua.rendering import render_premultiplied
@@ -137,6 +139,33 @@ def test_a_spz_gives_another_reader_the_same_within_its_steps(tmp_path: Path) ->
     assert same.min() > 1 - (2 / 511) ** 2
 
 
+@pytest.mark.parametrize(("kind", "step"), [("spz", 1 / 511), ("compressed.ply", 1 / 1023)])
+def test_any_rotation_comes_back(tmp_path: Path, kind: str, step: float) -> None:
+    any_way = unit(np.random.default_rng(3).normal(size=(len(exported()), 4)))
+    spun = replace(exported(), rotations=any_way.astype(np.float32), centres=np.sort(exported().centres, axis=0))
+    content = {"spz": spz_bytes, "compressed.ply": compressed_ply_bytes}[kind](spun)
+    found = read_by_gaussforge(written(tmp_path, content), kind).wxyz
+    order = np.arange(len(spun)) if kind == "spz" else morton_order(spun.centres)
+    assert np.abs(np.sum(found * any_way[order], axis=1)).min() > 1 - (2 * step) ** 2
+
+
+def test_a_spz_says_that_its_splats_are_filtered() -> None:
+    header = gzip.decompress(spz_bytes(exported()))[:16]
+    assert header[:8] == b"NGSP\3\0\0\0"
+    assert int.from_bytes(header[8:12], "little") == len(exported())
+    assert (header[12], header[14], header[15]) == (1, 1, 0)
+
+
+def test_scales_are_held_where_players_hold_them(tmp_path: Path) -> None:
+    splats = posed()
+    texture = splats.texture.copy()
+    texture[:2, 7] = [12, -30]
+    found = world_splats(replace(splats, texture=texture))
+    assert found.log_scales[:2, 0].tolist() == [LARGEST_LOG_SCALE, -30]
+    read = read_by_gaussforge(written(tmp_path, compressed_ply_bytes(found)), "compressed.ply")
+    assert read.log_scales.min() == pytest.approx(-20, abs=1e-5)
+
+
 def test_a_spz_far_from_the_origin_keeps_its_centres(tmp_path: Path) -> None:
     far = replace(exported(), centres=exported().centres + np.float32([0, 0, 1000]))
     found = read_by_gaussforge(written(tmp_path, spz_bytes(far)), "spz")
@@ -161,6 +190,17 @@ def test_a_flat_chunk_has_no_range(tmp_path: Path) -> None:
     flat = replace(exported(), centres=exported().centres * np.float32([1, 1, 0]))
     found = read_by_gaussforge(written(tmp_path, compressed_ply_bytes(flat)), "compressed.ply")
     np.testing.assert_array_equal(found.centres[:, 2], 0)
+
+
+def test_a_narrow_chunk_keeps_its_range(tmp_path: Path) -> None:
+    narrow = replace(exported(), centres=exported().centres * np.float32([1, 1, 1e-3]))
+    found = read_by_gaussforge(written(tmp_path, compressed_ply_bytes(narrow)), "compressed.ply")
+    expected = narrow.centres[morton_order(narrow.centres)]
+    np.testing.assert_allclose(found.centres[:, 2], expected[:, 2], atol=np.ptp(expected[:, 2]) / 1023)
+
+
+def test_points_in_one_place_keep_their_order() -> None:
+    assert morton_order(np.ones((3, 3), np.float32)).tolist() == [0, 1, 2]
 
 
 def test_neighbours_in_space_are_written_near_each_other() -> None:

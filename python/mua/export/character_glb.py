@@ -22,11 +22,12 @@ from pygltflib import (
 )
 from pygltflib import Image as Picture
 
+from mua import rotation
 from mua.arrays import Array
 from mua.decode import Splats
 from mua.export.frames import ExportFrames
 from mua.export.glb import INDICES, UNLIT, VERTICES, Glb, to_linear, xyzw
-from mua.export.joints import bind_matrices, steady, translated
+from mua.export.joints import matrices, steady, translated
 from mua.export.splats import mean_colors
 from mua.export.surface import DetailedMesh, SkinnedMesh, detailed_normals
 from mua.pose.clip import Clip
@@ -43,8 +44,8 @@ def character_glb(frames: ExportFrames, mesh: SkinnedMesh | None) -> bytes:
     _animate(glb, skeleton, joints, frames.poses)
     if mesh is not None:
         glb.document.meshes = [Mesh(name=frames.avatar.name, primitives=[_skinned(glb, mesh)])]
-        inverse = np.linalg.inv(bind_matrices(skeleton)).astype("<f4")
-        inverse[:, 3] = [0, 0, 0, 1]
+        back = skeleton.bind_inverse
+        inverse = matrices(back[:, :4], rotation.dual_translation(back)).astype("<f4")
         roots = np.flatnonzero(skeleton.parents < 0)
         skin = Skin(inverseBindMatrices=glb.accessor(inverse), joints=joints, skeleton=joints[int(roots[0])])
         glb.document.skins = [skin]
