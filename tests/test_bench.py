@@ -103,6 +103,7 @@ def test_random_avatar_has_the_papers_shapes() -> None:
     assert avatar.coarse.basis.shape == (128, 5508, 3)
     assert abs(len(avatar.rig.texels.texels) - PAPER_TEXELS) < 1000
     assert avatar.rig.texels.claimed_twice == 0
+    assert (len(avatar.encoding.joints), avatar.encoding.rate, len(avatar.clips[0])) == (53, 25, 50)
 
 
 def test_random_avatar_is_a_sound_file_and_the_same_twice(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import pytest
 from gltf_files import PICTURE, TRIANGLES, UV, read, textured
 from PIL import Image
 
+from mua.atlas import pictures
 from mua.errors import InputError
 
 
@@ -43,6 +44,13 @@ def test_factor_is_multiplied_in_linear_light(tmp_path: Path) -> None:
     model = {"baseColorFactor": [0.5, 1, 0, 1]}
     (material,) = read(textured(picture, model=model), tmp_path).materials
     np.testing.assert_allclose(material.image[0, 0, :3], [137, 188, 0], atol=1)
+
+
+def test_a_factor_doubles_light_and_opacity_at_most_to_the_whole() -> None:
+    grey = np.full((1, 1, 4), 100, np.uint8)
+    np.testing.assert_array_equal(pictures.tinted(grey, np.full(4, 2.0)), [[[137, 137, 137, 200]]])
+    np.testing.assert_array_equal(pictures.tinted(grey, np.full(4, 9.0)), [[[255, 255, 255, 255]]])
+    np.testing.assert_array_equal(pictures.tinted(grey, np.ones(4)), grey)
 
 
 def test_reads_webp_textures(tmp_path: Path) -> None:

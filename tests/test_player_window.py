@@ -231,6 +231,15 @@ def test_plays_round_and_scrubs(window: Driven) -> None:
     assert session.index == count - 1
 
 
+def test_the_buttons_of_the_panel_go_a_frame_back_and_on(window: Driven, monkeypatch: pytest.MonkeyPatch) -> None:
+    for label, frames in (("<", -1), (">", 1)):
+        window.session.step(3 - window.session.index)
+        with monkeypatch.context() as pressed:
+            pressed.setattr("mua.player.panel.imgui.button", lambda name, *_, label=label: name == label)
+            window.picture()
+        assert window.session.index == 3 + frames
+
+
 def test_draws_two_eyes_beside_each_other(window: Driven) -> None:
     window.session.toggles = Toggles()
     window.session.stereo = True
