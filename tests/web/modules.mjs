@@ -5,7 +5,7 @@
 
 import { readFileSync } from "node:fs";
 import { frameBox } from "../../python/mua/web/bounds.js";
-import { cameraOf, framing } from "../../python/mua/web/camera.js";
+import { cameraOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
 import { chooseLevel, coarserTexture, coarsest, texelLength, texelPixels, textureOf } from "../../python/mua/web/coarser.js";
 import { describe } from "../../python/mua/web/descriptor.js";
@@ -72,11 +72,18 @@ function levels(avatar) {
   });
 }
 
+/** Whether a camera sees small boxes all around it. */
+function seen(camera) {
+  const places = [-12, -3, -0.5, 0, 0.5, 3, 12];
+  const boxes = places.flatMap((x) => places.flatMap((y) => places.map((z) => [x, y, z, x + 0.5, y + 0.5, z + 0.5])));
+  return boxes.map((box) => sees(camera, box));
+}
+
 function views(box) {
   const state = { azimuth: 0.4, elevation: 0.2, fov: 0.6 };
   const { target, distance } = framing(box, state, [96, 128]);
   const camera = cameraOf({ ...state, target, distance }, [96, 128]);
-  return { target, distance, ...camera, texel: texelPixels(0.01, box, camera) };
+  return { target, distance, ...camera, texel: texelPixels(0.01, box, camera), seen: seen(camera) };
 }
 
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));

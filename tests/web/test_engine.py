@@ -239,6 +239,19 @@ def test_two_avatars_stand_where_they_are_placed(opened: Open, small: Path) -> N
     assert page.evaluate("player.camera.target[0]") == pytest.approx(alone - 1.5)
 
 
+def test_an_avatar_out_of_view_is_not_sorted_and_the_other_looks_as_alone(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    show(page, SPLATS, 0, 24.0)
+    alone = screenshot(page)
+    assert load(page) == ""
+    page.evaluate("player.avatars[0].place = [0, 0, 200]")  # behind the camera
+    np.testing.assert_array_equal(screenshot(page), alone)
+    assert page.evaluate("player.renderer.splats.seen") == [False, True]
+    page.evaluate("player.avatars[1].place = [0, 0, 200]")
+    assert transparent(page).max() == 0
+
+
 def test_fifty_loads_leave_no_memory_behind(opened: Open, small: Path) -> None:
     page = opened(a=small.read_bytes())
     empty = page.evaluate("player.bytes")

@@ -19,7 +19,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode
-from mua.camera import orbit, perspective
+from mua.camera import orbit, perspective, sees
 from mua.coarser import at_level, coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
@@ -203,6 +203,10 @@ def test_cameras_are_those_of_python() -> None:
         "texel": texel_pixels(0.01, box, [camera])[1],
         "distance": np.linalg.norm(camera.position - box.mean(axis=0)),
     }
+    places = [-12, -3, -0.5, 0, 0.5, 3, 12]
+    boxes = [np.array([[x, y, z], [x + 0.5, y + 0.5, z + 0.5]]) for x in places for y in places for z in places]
+    assert found["seen"] == [bool(sees(camera, one)) for one in boxes]
+    assert len(set(found["seen"])) == 2
     for name, value in expected.items():
         np.testing.assert_allclose(found[name], np.ravel(value) if np.ndim(value) else value, atol=EXACT, err_msg=name)
 

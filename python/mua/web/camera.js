@@ -54,6 +54,22 @@ export function framing(box, { azimuth, elevation, fov }, screen) {
   return { target, distance: distance || NEAR };
 }
 
+/** Whether any of a box may be in the picture: not all of it lies beyond one side, or before the near plane. */
+export function sees(/** @type {Camera} */ { viewProjection }, /** @type {number[]} */ box) {
+  const corners = Array.from({ length: 8 }, (_, corner) => {
+    const place = [...[0, 1, 2].map((axis) => box[corner & (1 << axis) ? 3 + axis : axis]), 1];
+    return [0, 4, 8, 12].map((row) => dot(place, viewProjection.slice(row, row + 4)));
+  });
+  const sides = [
+    corners.every(([x, , , w]) => x > w),
+    corners.every(([x, , , w]) => x < -w),
+    corners.every(([, y, , w]) => y > w),
+    corners.every(([, y, , w]) => y < -w),
+    corners.every(([, , z]) => z < 0),
+  ];
+  return !sides.includes(true);
+}
+
 /** Rows of the rotation from the world to the eye. */
 function rotation(/** @type {number} */ azimuth, /** @type {number} */ elevation) {
   const [c, s] = [Math.cos(azimuth), Math.sin(azimuth)];

@@ -41,7 +41,7 @@ export class Scene {
       timestampWrites,
     });
     overlays.forEach((overlay, i) => {
-      if (show.geometry && frame) overlay.drawGeometry(pass, camera, frame.splats, frame.starts[i]);
+      if (show.geometry && frame?.seen[i]) overlay.drawGeometry(pass, camera, frame.splats, frame.starts[i]);
       if (show.mesh) overlay.drawTemplate(pass, camera);
     });
     for (const overlay of overlays) if (show.shadow) overlay.drawGround(pass, camera);

@@ -2,6 +2,7 @@
 // the order of the kernels. Reference: python/mua/player/splats.py.
 
 import { AvatarError } from "./error.js";
+import { sees } from "./camera.js";
 import { FLOAT, groups } from "./channels.js";
 import { kernelsOf } from "./kernel.js";
 import { SplatProject } from "./wgsl/splat_project.js";
@@ -20,10 +21,20 @@ export const KERNELS = { SplatProject, CountDigits, ScanDigits, ScatterDigits };
 
 const even = (/** @type {number} */ count) => count + (count % 2);
 
-/** One sort for all avatars, so that those that stand among each other blend rightly. */
+/** The box that splats may reach: half a diagonal beyond, as far as SplatProject keys their depth. */
+function reach(/** @type {number[]} */ box) {
+  const spare = Math.hypot(...[0, 1, 2].map((axis) => box[3 + axis] - box[axis])) / 2;
+  return box.map((value, i) => value + (i < 3 ? -spare : spare));
+}
+
+/**
+ * One sort for all avatars in view, so that those that stand among each other blend rightly. Those out of view are neither
+ * projected nor sorted; their splats' places lie behind the others'.
+ */
 export class SplatFrame {
   constructor(/** @type {import("./device.js").Memory} */ memory, /** @type {AvatarFrame[]} */ avatars) {
     this.avatars = avatars;
+    this.seen = avatars.map(() => true); // by the last sort
     const finest = avatars.map((avatar) => even(avatar.buffers.level(0).splatCount));
     const count = finest.reduce((all, one) => all + one, 0);
     if (count > MOST_SPLATS) throw new AvatarError(`${count} splats of all avatars; expected at most ${MOST_SPLATS}`);
@@ -37,24 +48,38 @@ export class SplatFrame {
     this.order = memory.buffer(FLOAT * count, "order");
   }
 
-  /** Where the splats of each avatar begin, and where the last one's end: even numbers, as many as are decoded. */
+  /** Where the splats of each avatar begin, of those in view before the others: even numbers. */
   get starts() {
-    const starts = [0];
-    for (const avatar of this.avatars) starts.push(starts[starts.length - 1] + even(avatar.splatCount));
+    const starts = new Array(this.avatars.length).fill(0);
+    let next = 0;
+    for (const wanted of [true, false])
+      this.avatars.forEach((avatar, i) => {
+        if (this.seen[i] !== wanted) return;
+        starts[i] = next;
+        next += even(avatar.splatCount);
+      });
     return starts;
+  }
+
+  /** Splats of the avatars that the last sort found in view. */
+  get sortedCount() {
+    return this.avatars.reduce((all, avatar, i) => all + (this.seen[i] ? even(avatar.splatCount) : 0), 0);
   }
 
   /** Append the dispatches from posed texels to `order`, the splats that a camera sees, back to front. */
   sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera} */ camera) {
+    this.seen = this.avatars.map((avatar) => sees(camera, reach(avatar.bounds)));
     const { starts } = this;
-    this.avatars.forEach((avatar, i) => this.project(pass, avatar, starts[i], camera));
+    this.avatars.forEach((avatar, i) => {
+      if (this.seen[i]) this.project(pass, avatar, starts[i], camera);
+    });
     this.sortDigit(pass, this.keys, this.halfSorted, 0);
     this.sortDigit(pass, this.halfSorted, this.order, 1);
   }
 
-  /** World box of what was posed last: lowest then highest corner, metres. */
+  /** World box of what was posed last, of the avatars in view: lowest then highest corner, metres. */
   box() {
-    const boxes = this.avatars.map((avatar) => avatar.bounds);
+    const boxes = this.avatars.filter((_, i) => this.seen[i]).map((avatar) => avatar.bounds);
     return [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((box) => box[i])));
   }
 
@@ -90,8 +115,8 @@ export class SplatFrame {
 
   /** One pass of the sort, from the splats' keys to elements, or from those to the order. @param {GPUComputePassEncoder} pass @param {GPUBuffer} keys @param {GPUBuffer} sorted @param {number} second_pass */
   sortDigit(pass, keys, sorted, second_pass) {
-    const count = this.starts[this.avatars.length];
-    const blocks = [groups(count, SORTED), 1, 1];
+    const count = this.sortedCount;
+    const blocks = [Math.max(groups(count, SORTED), 1), 1, 1]; // the first one writes the draw's arguments
     const counts = { digit_counts: this.digitCounts, arguments: this.arguments };
     const totals = { ...counts, digit_totals: this.digitTotals };
     const constants = { second_pass, key_count: count, instances: 1 };
