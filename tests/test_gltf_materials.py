@@ -48,7 +48,7 @@ def test_factor_is_multiplied_in_linear_light(tmp_path: Path) -> None:
 
 def test_a_factor_doubles_light_and_opacity_at_most_to_the_whole() -> None:
     grey = np.full((1, 1, 4), 100, np.uint8)
-    np.testing.assert_array_equal(pictures.tinted(grey, np.full(4, 2.0)), [[[137, 137, 137, 200]]])
+    np.testing.assert_array_equal(pictures.tinted(grey, np.full(4, 2.0)), [[[138, 138, 138, 200]]])
     np.testing.assert_array_equal(pictures.tinted(grey, np.full(4, 9.0)), [[[255, 255, 255, 255]]])
     np.testing.assert_array_equal(pictures.tinted(grey, np.ones(4)), grey)
 
