@@ -13,7 +13,7 @@ RENDERER = SOURCES[ROOT / "unity-package" / "Runtime" / "AvatarRenderer.cs"]
 MENU = re.compile(r"\*\*((?:MUA|GameObject) > [^*]+)\*\*")
 ITEM = re.compile(r"MenuItem\((.+?)(?:,|\))")
 JOINT = re.compile(r'"\s*\+\s*"')  # two literals that are one text
-FIELD = re.compile(r"^\| ([A-Z]\w+) \| ", re.MULTILINE)
+FIELD = re.compile(r"^\| ([A-Z]\w+(?: [A-Z]\w+)*) \| ", re.MULTILINE)
 MEMBER = re.compile(r"avatar\.([A-Z]\w+)")
 METHOD = re.compile(r"Mua\.Editor\.(\w+)\.(\w+)")
 WORD = re.compile(r"(?<!\w)(-mua[A-Z]\w+|MUA-[A-Z]+(?: [A-Z]+)?)")
@@ -53,7 +53,8 @@ def test_every_test_is_in_the_readme_beside_it() -> None:
 
 def test_fields_are_those_of_the_component() -> None:
     serialized = re.findall(r"private \w+ (\w+) = [^;]+;", RENDERER.split("private AvatarInstance")[0])
-    assert FIELD.findall(section("The component")) == [name.capitalize() for name in serialized]
+    labels = [re.sub(r"([A-Z])", r" \1", name).title() for name in serialized]
+    assert FIELD.findall(section("The component")) == labels
 
 
 @pytest.mark.parametrize("member", sorted(set(MEMBER.findall(GUIDE))))

@@ -16,9 +16,12 @@ namespace Mua
         private AvatarLoader loader; // null once everything is on the device
         private AvatarBuffers buffers;
         private AvatarMotion motion;
+        private DecodeSchedule schedule;
         private string chosen = ""; // the clip's name when it took effect
         private string refusal; // why there is no room beside the other avatars
         private bool hasMoved; // since the last Record
+        private bool isDue; // Move was called since the last Record
+        private bool spreads; // a decode over displayed frames
         private bool isScaleReported, isLevelReported;
         private int level;
 
@@ -119,6 +122,11 @@ namespace Mua
             }
             hasMoved |= motion.Sample(Time.timeAsDouble, step);
             Decoded.Stand(motion.Pose.Current, motion.Pose.CurrentTranslations, placement.Value);
+            spreads = owner.SpreadDecode && Application.isPlaying
+                && (Views & AvatarViews.Geometry) == 0 // which is of the finest level
+                && !isDue; // else frames went by without a Record
+            isDue = true;
+            schedule.ShowWhole(motion.Pose);
             Surface.CastShadow(Views, Bounds, Layer);
         }
 
@@ -136,21 +144,19 @@ namespace Mua
             return eyes.Sees(Decoded.Low, Decoded.High, reach);
         }
 
-        /// <summary>Appends what has changed since the last call: a decode, another pose, or nothing.</summary>
+        /// <summary>Appends what has changed since the last call: a decode or a part of one, another pose, or nothing.</summary>
         public void Record(CommandBuffer commands)
         {
             AvatarPose pose = motion.Pose;
-            if (pose.IsFresh || (Decoded.IsDecoded && Decoded.Level.Number != Level))
+            if (isDue || !spreads)
             {
-                Decoded.Decode(
-                    commands, pose.Window, pose.WindowTranslations, pose.Current, pose.CurrentTranslations, placement.Value,
-                    Level);
+                hasMoved |= schedule.Record(commands, pose, Level, spreads);
             }
-            else if (hasMoved)
+            isDue = false;
+            if (hasMoved)
             {
                 Decoded.Repose(commands, pose.Current, pose.CurrentTranslations, placement.Value);
             }
-            pose.IsFresh = false;
             hasMoved = false;
         }
 
@@ -222,6 +228,7 @@ namespace Mua
             Decoded = null;
             buffers = null;
             motion = null;
+            schedule = null;
             refusal = null;
         }
 
@@ -239,6 +246,7 @@ namespace Mua
             Decoded = new AvatarFrame(resources, buffers);
             Surface = new AvatarSurface(resources, Decoded);
             motion = new AvatarMotion(buffers.Avatar);
+            schedule = new DecodeSchedule(Decoded);
             AvatarWorld.Add(this, resources);
             loader.Dispose();
             loader = null;

@@ -86,9 +86,10 @@ namespace Mua
             Seconds += step;
             if (Seconds.Equals(shown))
             {
+                pose.Rest();
                 return false;
             }
-            pose.Sample(clips[index], Seconds);
+            pose.Sample(clips[index], Seconds, step);
             shown = Seconds;
             return true;
         }

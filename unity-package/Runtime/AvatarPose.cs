@@ -5,13 +5,15 @@ using Mua.Motion;
 namespace Mua
 {
     /// <summary>
-    /// What an avatar is doing: the window of poses, at the avatar's own rate, that it is decoded from, and the pose of this
-    /// moment, in which it is drawn.
+    /// What an avatar is doing: the windows of poses, at the avatar's own rate, that it is decoded from, and the pose of this
+    /// moment, in which it is drawn. Numbers tell windows apart; those of a clip are known before they are due.
     /// </summary>
     internal sealed class AvatarPose
     {
         private const double FrameSlack = 1e-6; // frames; a time that was a frame's own stays in it
         private const int LongestGap = 4; // frames without a pose after which the window starts anew
+        private const double LongestLag = 1.1; // frames in which a late window is shown; displayed frames vary a little
+        private const long Windows = 1L << 32; // more than there are of one motion
 
         private readonly Skeleton skeleton;
         private readonly int frames;
@@ -20,13 +22,18 @@ namespace Mua
         private readonly double[] windowTranslations; // [k, J, 3]
         private readonly double[] current; // [J, 4]
         private readonly double[] currentTranslations; // [J, 3]
+        private readonly double[] start; // [J, 4] of the clip's frame
+        private readonly double[] startTranslations; // [J, 3]
         private readonly double[] next; // [J, 4]
         private readonly double[] nextTranslations; // [J, 3]
         private ClipSampler clip; // of the window; null where it is of transforms
-        private int index = -1; // frame of the clip, newest of the window
+        private int index = -1; // frame of the clip
+        private long first; // number of the first window of a motion
         private double newest; // seconds; of the window's newest pose of transforms
+        private double sampled; // seconds; of the last sample of transforms
         private int rested; // newest poses of the window that are the pose of transforms of this moment
         private bool started;
+        private bool isHeld;
 
         public AvatarPose(AvatarFile avatar)
         {
@@ -37,6 +44,8 @@ namespace Mua
             windowTranslations = new double[3 * frames * skeleton.JointCount];
             current = new double[4 * skeleton.JointCount];
             currentTranslations = new double[3 * skeleton.JointCount];
+            start = new double[4 * skeleton.JointCount];
+            startTranslations = new double[3 * skeleton.JointCount];
             next = new double[4 * skeleton.JointCount];
             nextTranslations = new double[3 * skeleton.JointCount];
         }
@@ -53,13 +62,19 @@ namespace Mua
         /// <summary>[J, 3] local translations of this moment, metres.</summary>
         public ReadOnlySpan<double> CurrentTranslations => currentTranslations;
 
-        /// <summary>Whether the window is another than that of the last decode; who decodes it sets this back.</summary>
-        public bool IsFresh { get; set; }
+        /// <summary>The window of this moment.</summary>
+        public long Due { get; private set; }
+
+        /// <summary>The window to decode before it is due; Due where none is foreseen.</summary>
+        public long Following { get; private set; }
+
+        /// <summary>Whether a decode of Due that takes some displayed frames is late by no more than a frame of the avatar.</summary>
+        public bool MayLag { get; private set; }
 
         /// <summary>The pose without motion: the bind pose, held still.</summary>
         public void Hold()
         {
-            if (started && clip == null && index < 0)
+            if (isHeld)
             {
                 return;
             }
@@ -67,29 +82,51 @@ namespace Mua
             skeleton.BindTranslations.CopyTo(currentTranslations, 0);
             Fill();
             clip = null;
+            isHeld = true;
         }
 
-        /// <summary>The clip at a time that starts over at its end; between its frames the drawn pose is interpolated.</summary>
-        public void Sample(ClipSampler source, double seconds)
+        /// <summary>
+        /// The clip at a time that starts over at its end, `step` seconds after the last; between its frames the drawn pose is
+        /// interpolated.
+        /// </summary>
+        public void Sample(ClipSampler source, double seconds, double step)
         {
             double position = source.Position(seconds);
             int frame = (int)position;
-            if (source != clip || frame != index)
+            bool isLast = frame + 1 >= source.FrameCount;
+            if (source != clip)
             {
-                source.ReadWindow(frame, frames, window, windowTranslations);
+                first += Windows;
                 clip = source;
-                index = frame;
-                started = false;
-                IsFresh = true;
+                index = -1;
             }
-            new ReadOnlySpan<double>(window, 0, current.Length).CopyTo(current);
-            new ReadOnlySpan<double>(windowTranslations, 0, currentTranslations.Length).CopyTo(currentTranslations);
-            double t = position - frame;
-            if (t > 0 && frame + 1 < source.FrameCount)
+            if (frame != index)
             {
-                source.ReadFrame(frame + 1, next, nextTranslations);
-                Approach(t);
+                source.ReadFrame(frame, start, startTranslations);
+                source.ReadFrame(isLast ? frame : frame + 1, next, nextTranslations);
+                index = frame;
             }
+            start.CopyTo(current, 0);
+            startTranslations.CopyTo(currentTranslations, 0);
+            if (position > frame && !isLast)
+            {
+                Approach(position - frame);
+            }
+            started = isHeld = MayLag = false;
+            Due = first + frame;
+            Following = first + Next(frame, step * rate, source.FrameCount);
+        }
+
+        /// <summary>Foresees nothing, as the clip rests.</summary>
+        public void Rest()
+        {
+            Following = Due;
+        }
+
+        /// <summary>Takes a window, Due or Following, where it is not taken; one of transforms is there already.</summary>
+        public void ReadWindow(long number)
+        {
+            clip?.ReadWindow((int)(number - first), frames, window, windowTranslations);
         }
 
         /// <summary>
@@ -104,6 +141,8 @@ namespace Mua
             nextTranslations.CopyTo(currentTranslations, 0);
             rested = isSame ? rested : 0;
             double age = (seconds - newest) * rate;
+            MayLag = ChannelDecoder.Parts * (seconds - sampled) * rate <= LongestLag;
+            sampled = seconds;
             if (rested == frames)
             {
                 newest = seconds;
@@ -119,7 +158,7 @@ namespace Mua
                 newest += Math.Floor(age + FrameSlack) / rate;
             }
             clip = null;
-            index = 0;
+            isHeld = false;
             return !isSame;
         }
 
@@ -143,8 +182,9 @@ namespace Mua
             }
             rested = frames;
             started = true;
-            index = -1;
-            IsFresh = true;
+            first += Windows;
+            Due = Following = first;
+            MayLag = false;
         }
 
         private void Push()
@@ -155,7 +195,13 @@ namespace Mua
             current.CopyTo(window, 0);
             currentTranslations.CopyTo(windowTranslations, 0);
             rested++;
-            IsFresh = true;
+            Due = Following = Due + 1;
+        }
+
+        /// <summary>The frame after another, if it is one of its neighbours that comes.</summary>
+        private static int Next(int frame, double step, int count)
+        {
+            return step == 0 || Math.Abs(step) >= 1 ? frame : (frame + Math.Sign(step) + count) % count;
         }
 
         private static bool Equal(double[] a, double[] b)

@@ -88,6 +88,9 @@ namespace Mua
         [Tooltip("Level of detail: how many texels are shown. Automatic shows fewer when the avatar is seen from afar.")]
         private AvatarLevel level = AvatarLevel.Automatic;
 
+        [Tooltip("Spread the decoding of a pose over several displayed frames, so that no single frame takes long.")]
+        private bool spreadDecode = true;
+
         private AvatarInstance shown; // null while there is nothing to show
         private AvatarAsset loaded; // as avatar and file were when they took effect
         private string loadedFile = "";
@@ -175,6 +178,15 @@ namespace Mua
 
         /// <summary>Splats of the level that is shown; 0 until the avatar is ready.</summary>
         public int SplatCount => shown == null || shown.Decoded == null ? 0 : shown.Decoded.SplatCount;
+
+        /// <summary>
+        /// Whether the decoding of a pose is spread over several displayed frames, where the display is faster than the avatar.
+        /// </summary>
+        public bool SpreadDecode
+        {
+            get => spreadDecode;
+            set => spreadDecode = value;
+        }
 
         /// <summary>Box of the last pose in Unity's world, metres.</summary>
         public Bounds Bounds =>

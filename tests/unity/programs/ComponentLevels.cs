@@ -65,7 +65,7 @@ namespace Mua
 
         private static int Splats(AvatarRenderer avatar)
         {
-            Frames(3);
+            Frames(9); // where it plays, another level comes with the next decode
             return avatar.SplatCount;
         }
 

@@ -95,11 +95,11 @@ namespace Mua
                 changes += pose.Sample(joints, i * frame) ? 1 : 0;
             }
             Say("changes", changes);
-            pose.IsFresh = false;
+            long rested = pose.Due;
             double[] rest = pose.Current.ToArray();
             rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
             Say("changes", pose.Sample(joints, 100 * frame) ? 1 : 0);
-            Say("fresh", pose.IsFresh ? 1 : 0);
+            Say("fresh", pose.Due != rested ? 1 : 0);
             double[] window = pose.Window.ToArray();
             int same = 0;
             for (int age = 0; age < avatar.Encoding.Window; age++)

@@ -137,8 +137,8 @@ namespace Mua
         private static void Measure()
         {
             Avatars[0].IsPlaying = true;
+            Advance(Measured); // whoever replays knows of the second set of channels
             Recorder.Pause();
-            Advance(Measured);
             long before = GC.GetAllocatedBytesForCurrentThread();
             Advance(Measured);
             Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);

@@ -256,6 +256,8 @@ namespace Mua.Samples.VrPlayer
 
         private static void Switches()
         {
+            Make();
+            shown.SpreadDecode = false; // else a second set of channels is made where a clip plays
             Begin();
             Frames(2);
             int alive = Recorder.AliveCount;

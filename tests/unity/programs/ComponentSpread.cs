@@ -1,0 +1,99 @@
+// Stories of decodes that are spread over displayed frames, for ComponentProgram.cs: each tells what every displayed frame
+// dispatches, and keeps the channels and the mesh that it shows, first with the spread on and then with it off.
+using System;
+using System.IO;
+using StandIns;
+using UnityEngine;
+
+namespace Mua
+{
+    internal static partial class ComponentProgram
+    {
+        private const int Watched = 24; // displayed frames
+        private const float Fast = 1f / 71, Slow = 1f / 31; // seconds of one, of which no number is a frame of the avatar
+
+        private static Transform[] rigTransforms;
+
+        private static void SpreadsClip()
+        {
+            Watch(Step, shown => shown.Speed = 25f / 24, null);
+        }
+
+        private static void SpreadsBackwards()
+        {
+            Watch(Step, shown => shown.Speed = -1, null);
+        }
+
+        private static void SpreadsOnSlowDisplay()
+        {
+            Watch(Slow, null, null);
+        }
+
+        private static void SpreadsOverSeeks()
+        {
+            Watch(Step, null, (shown, i) =>
+            {
+                shown.Frame = i == 8 ? 4 : shown.Frame;
+                shown.IsPlaying = i < 12 || i > 16;
+                shown.Seconds += i == 14 ? 0.1 : 0;
+            });
+        }
+
+        private static void SpreadsRig()
+        {
+            Watch(Fast, FollowRig, TurnRig);
+        }
+
+        private static void SpreadsRigOnSlowDisplay()
+        {
+            Watch(Slow, FollowRig, TurnRig);
+        }
+
+        private static void SpreadsRigThatIsNotSeen()
+        {
+            Camera camera = UnityEngine.Object.FindAnyObjectByType<Camera>();
+            Watch(Fast, FollowRig, (shown, i) =>
+            {
+                TurnRig(shown, i);
+                camera.enabled = i < 5 || i > 9;
+            });
+        }
+
+        private static void FollowRig(AvatarRenderer shown)
+        {
+            shown.Rig = Scene[Scene.Count - 2].transform;
+        }
+
+        private static void TurnRig(AvatarRenderer shown, int i)
+        {
+            rigTransforms[rigTransforms.Length - 1].localRotation = Quaternion.Euler(0, 5 * i, 0);
+        }
+
+        private static void Watch(float step, Action<AvatarRenderer> begin, Action<AvatarRenderer, int> move)
+        {
+            foreach (bool spreads in new[] { true, false })
+            {
+                string label = spreads ? "spread" : "at once";
+                Recorder.Start(Path.ChangeExtension(files[0], null) + " " + label);
+                rigTransforms = MakeRig(Mua.Format.AvatarFile.Read(File.ReadAllBytes(files[0])));
+                AvatarRenderer shown = Begin(files[0]);
+                shown.SpreadDecode = spreads;
+                Until(shown);
+                begin?.Invoke(shown);
+                for (int i = 0; i < Watched; i++)
+                {
+                    move?.Invoke(shown, i);
+                    int before = Recorder.Dispatches;
+                    PlayerLoop.Frame(step);
+                    Say(label, Recorder.Dispatches - before);
+                    Recorder.Keep(shown.Decoded.Mesh, i + " mesh");
+                    Recorder.Keep(shown.Decoded.TexelChannels, i + " texel_channels");
+                }
+                string names = Recorder.AliveNames();
+                Say("sets", names.Split(new[] { "texel_channels" }, StringSplitOptions.None).Length - 1);
+                UnityEngine.Object.DestroyImmediate(shown.gameObject);
+                Recorder.Stop();
+            }
+        }
+    }
+}

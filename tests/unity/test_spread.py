@@ -1,0 +1,146 @@
+"""AvatarRenderer spreads a decode over displayed frames: what each shows, bit for bit against decodes at once."""
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from replay import replay
+from synthetic_avatar import synthetic_avatar
+
+from mua.arrays import Array
+from mua.asset import write
+from mua.gpu import Device
+
+sys.path.append(str(ROOT / "tests" / "parity"))
+
+from test_frame import FRAME_ORDER, PARTS_ORDER
+
+STAND_INS = Path(__file__).parent / "stand_ins"
+FRAMES = 24  # displayed
+POSED = len(FRAME_ORDER) - sum(map(len, PARTS_ORDER))  # dispatches of a frame that decodes nothing
+SPREAD, AT_ONCE = "spread", "at once"
+SHADOW = 3  # pass
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What the displayed frames of one playing show."""
+
+    sets: int  # of channels
+    dispatches: list[int]
+    kept: list[tuple[Array, Array]]  # mesh and channels
+    shadows: list[bool]  # whether it falls from the mesh that is shown
+
+
+@pytest.fixture(scope="module")
+def program(csharp: CSharp) -> Path:
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    programs = [PROGRAMS / "shared", *sorted(PROGRAMS.glob("Component*.cs"))]
+    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", *programs]
+    return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
+
+
+class Watched:
+    """Plays a story twice and replays both on Vulkan."""
+
+    def __init__(self, csharp: CSharp, program: Path, device: Device, folder: Path) -> None:
+        self._csharp, self._program, self._device, self._folder = csharp, program, device, folder
+
+    def play(self, story: str) -> tuple[Shown, Shown]:
+        """With the spread on, and off."""
+        file = self._folder / "first.muaavatar"
+        write(file, synthetic_avatar(1), storage="f16")
+        said = self._csharp.run(self._program, ROOT / "ComputeShaders", story, file)
+        told = [line.split("\t", 1) for line in said.splitlines()]
+        assert ["alive", "0"] in told
+        sets = [int(value) for name, value in told if name == "sets"]
+        spread, at_once = (
+            self._shown(name, [int(value) for label, value in told if label == name], count)
+            for name, count in zip((SPREAD, AT_ONCE), sets, strict=True)
+        )
+        return spread, at_once
+
+    def _shown(self, name: str, dispatches: list[int], sets: int) -> Shown:
+        recording = self._folder / f"first {name}"
+        kept = replay(self._device, recording).kept
+        pairs = [(kept[f"{i} mesh"], kept[f"{i} texel_channels"]) for i in range(FRAMES)]
+        return Shown(sets, dispatches, pairs, _shadows(recording.with_suffix(".json")))
+
+
+def _shadows(recording: Path) -> list[bool]:
+    """Of each displayed frame, whether its last cast shadow is bound to the mesh that it keeps."""
+    cast, bound = -1, []
+    for line in recording.read_text().splitlines():
+        event = json.loads(line)
+        if event["event"] == "draw" and event["pass"] == SHADOW:
+            cast = event["block_buffers"]["mesh"]
+        if event["event"] == "keep" and event["label"].endswith(" mesh"):
+            bound.append(event["buffer"] == cast)
+    return bound
+
+
+@pytest.fixture
+def watched(csharp: CSharp, program: Path, device: Device, tmp_path: Path) -> Watched:
+    return Watched(csharp, program, device, tmp_path)
+
+
+def alike(found: tuple[Array, Array], exact: tuple[Array, Array]) -> bool:
+    return all(np.array_equal(*pair) for pair in zip(found, exact, strict=True))
+
+
+def changes(shown: Shown) -> int:
+    return sum(not alike(*pair) for pair in zip(shown.kept, shown.kept[1:], strict=False))
+
+
+@pytest.mark.parametrize("story", ["SpreadsClip", "SpreadsBackwards"])
+def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_all(
+    watched: Watched, story: str
+) -> None:
+    spread, at_once = watched.play(story)
+    assert changes(at_once) >= FRAMES // 3 - 1
+    assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
+    assert max(at_once.dispatches) == len(FRAME_ORDER)
+    assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))  # the first decode is at once
+    assert (spread.sets, at_once.sets) == (2, 1)
+
+
+def test_a_shadow_falls_from_the_mesh_that_is_shown(watched: Watched) -> None:
+    """But for the first frame that is due before it is whole, as there was no time to look ahead."""
+    spread, _ = watched.play("SpreadsClip")
+    assert spread.shadows[2:] == [True] * (FRAMES - 2)
+
+
+@pytest.mark.parametrize("story", ["SpreadsOnSlowDisplay", "SpreadsOverSeeks", "SpreadsRigOnSlowDisplay"])
+def test_what_cannot_be_spread_is_on_time_too(watched: Watched, story: str) -> None:
+    spread, at_once = watched.play(story)
+    assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
+    assert max(spread.dispatches) <= len(FRAME_ORDER)
+
+
+def test_a_paused_clip_decodes_nothing_ahead(watched: Watched) -> None:
+    spread, at_once = watched.play("SpreadsOverSeeks")
+    assert spread.dispatches[13] == spread.dispatches[16] == POSED - 1
+    assert spread.dispatches[14] == len(FRAME_ORDER)  # sought
+    assert spread.dispatches[12:17] == at_once.dispatches[12:17]
+
+
+def test_a_rig_is_shown_one_displayed_frame_late(watched: Watched) -> None:
+    spread, at_once = watched.play("SpreadsRig")
+    assert changes(at_once) >= FRAMES // 3 - 1
+    assert alike(spread.kept[0], at_once.kept[0])
+    late = zip(spread.kept[1:], at_once.kept, strict=False)
+    assert [alike(*pair) for pair in late] == [True] * (FRAMES - 1)
+    assert max(spread.dispatches[1:]) == POSED + max(map(len, PARTS_ORDER))
+
+
+def test_a_rig_that_nobody_saw_for_a_while_shows_its_pose_of_now(watched: Watched) -> None:
+    """Seen again in frame 10."""
+    spread, at_once = watched.play("SpreadsRigThatIsNotSeen")
+    assert alike(spread.kept[10], at_once.kept[10])
+    assert not alike(spread.kept[10], spread.kept[9])

@@ -1,0 +1,152 @@
+using System;
+using Mua.Format;
+using UnityEngine;
+using UnityEngine.Rendering;
+
+namespace Mua
+{
+    /// <summary>
+    /// From a window of poses to channels: the dispatches of a decode, in parts that displayed frames can share, in the order
+    /// of python/mua/player/channels.py. The buffers between the kernels are made once; no part hands on to another.
+    /// </summary>
+    internal sealed class ChannelDecoder : IDisposable
+    {
+        /// <summary>Of a decode, that move about as many bytes: geometry; mesh and appearance.</summary>
+        public const int Parts = 2;
+
+        private const int AppearanceRow = 3; // of the channels, of four half floats each
+
+        private readonly AvatarBuffers avatar;
+        private readonly MlpMatmul mlpMatmul;
+        private readonly BlendSubbands blendSubbands;
+        private readonly InverseDwt inverseDwt;
+        private readonly BufferSet buffers = new BufferSet();
+        private readonly GraphicsBuffer[] activations = new GraphicsBuffer[2];
+        private readonly GraphicsBuffer[] textures = new GraphicsBuffer[2]; // finest detailed, its ll
+        private GraphicsBuffer details;
+
+        /// <summary>InvalidOperationException where a kernel is missing or a buffer is more than the device holds.</summary>
+        public ChannelDecoder(AvatarResources resources, AvatarBuffers avatar)
+        {
+            this.avatar = avatar;
+            mlpMatmul = new MlpMatmul(resources.MlpMatmul);
+            blendSubbands = new BlendSubbands(resources.BlendSubbands);
+            inverseDwt = new InverseDwt(resources.InverseDwt);
+            try
+            {
+                CreateBuffers();
+            }
+            catch
+            {
+                Dispose();
+                throw;
+            }
+        }
+
+        /// <summary>Appends one of Parts, from the descriptor of `channels` to what it makes of it.</summary>
+        public void Part(CommandBuffer commands, ChannelSet channels, int part)
+        {
+            if (part == 0)
+            {
+                Branch(commands, avatar.Geometry, channels.Level.Geometry, channels, 0);
+            }
+            else
+            {
+                Coarse(commands, channels);
+                Branch(commands, avatar.Appearance, channels.Level.Appearance, channels, AppearanceRow);
+            }
+        }
+
+        public void Dispose()
+        {
+            buffers.Dispose();
+        }
+
+        private void CreateBuffers()
+        {
+            int layers = Math.Max(Widest(avatar.CoarseMlp), 1);
+            layers = Math.Max(layers, Math.Max(Widest(avatar.Geometry.Mlp), Widest(avatar.Appearance.Mlp)));
+            long texture = Math.Max(Detailed(avatar.Geometry), Detailed(avatar.Appearance));
+            long bands = Math.Max(LargestBand(avatar.Geometry), LargestBand(avatar.Appearance));
+            details = buffers.Structured("details", bands, sizeof(float));
+            for (int i = 0; i < 2; i++)
+            {
+                activations[i] = buffers.Structured("activations", layers, sizeof(float));
+                textures[i] = buffers.Structured("texture", texture >> 2 * i, sizeof(float));
+            }
+        }
+
+        /// <summary>What the MLP makes of the descriptor; good until the next MLP.</summary>
+        private GraphicsBuffer Mlp(CommandBuffer commands, LayerBuffers[] mlp, GraphicsBuffer descriptor)
+        {
+            GraphicsBuffer x = descriptor;
+            for (int i = 0; i < mlp.Length; i++)
+            {
+                GraphicsBuffer y = activations[i % 2];
+                mlpMatmul.Layer(commands, mlp[i], x, y, i < mlp.Length - 1);
+                x = y;
+            }
+            return x;
+        }
+
+        private void Coarse(CommandBuffer commands, ChannelSet channels)
+        {
+            commands.BeginSample(AvatarStages.CoarseMesh);
+            GraphicsBuffer coefficients = Mlp(commands, avatar.CoarseMlp, channels.Descriptor);
+            mlpMatmul.Transposed(commands, avatar.Mesh, coefficients, channels.Mesh);
+            commands.EndSample(AvatarStages.CoarseMesh);
+        }
+
+        /// <summary>
+        /// Coefficients, LL, level by level as long as there are details; then the valid texels to the channels.
+        /// </summary>
+        private void Branch(
+            CommandBuffer commands, BranchBuffers branch, BranchLevel shown, ChannelSet channels, int firstRow)
+        {
+            commands.BeginSample(AvatarStages.Texture);
+            GraphicsBuffer alpha = Mlp(commands, branch.Mlp, channels.Descriptor);
+            int levels = branch.Details.Length, size = avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels;
+            blendSubbands.Low(commands, branch, alpha, size, textures[levels % 2]);
+            int offset = branch.Channels * branch.Rank;
+            for (int level = 0; level < levels; level++)
+            {
+                GraphicsBuffer ll = textures[(levels - level) % 2], fine = textures[(levels - level - 1) % 2];
+                BandBuffers band = branch.Details[level];
+                blendSubbands.Detail(commands, band, branch.Channels, alpha, offset, details);
+                inverseDwt.Full(commands, avatar, branch.Channels, size, ll, details, fine);
+                offset += branch.Channels * band.Rank;
+                size *= 2;
+            }
+            inverseDwt.UpsampleTexels(
+                commands, channels.Level, shown, branch.Channels, size, textures[0], channels.TexelChannels, firstRow);
+            commands.EndSample(AvatarStages.Texture);
+        }
+
+        private static int Widest(LayerBuffers[] mlp)
+        {
+            int widest = 0;
+            foreach (LayerBuffers layer in mlp)
+            {
+                widest = Math.Max(widest, layer.Outputs);
+            }
+            return widest;
+        }
+
+        /// <summary>Numbers of a branch's texture where its details end.</summary>
+        private long Detailed(BranchBuffers branch)
+        {
+            long size = (long)(avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels) << branch.Details.Length;
+            return branch.Channels * size * size;
+        }
+
+        private static long LargestBand(BranchBuffers branch)
+        {
+            long largest = 0;
+            foreach (BandBuffers band in branch.Details)
+            {
+                largest = Math.Max(largest, 3L * branch.Channels * band.Size * band.Size);
+            }
+            return largest;
+        }
+    }
+}

@@ -1,0 +1,46 @@
+using System;
+using UnityEngine;
+
+namespace Mua
+{
+    /// <summary>What a decode makes, the window of poses that it is made from, and the level of detail at which.</summary>
+    internal sealed class ChannelSet : IDisposable
+    {
+        private const int ChannelRows = 6; // of four half floats each
+
+        private readonly BufferSet buffers = new BufferSet();
+
+        /// <summary>InvalidOperationException where a buffer is more than the device holds.</summary>
+        public ChannelSet(AvatarBuffers avatar, int descriptorWidth)
+        {
+            Level = avatar.Levels[0];
+            try
+            {
+                Descriptor = buffers.Structured("descriptor", descriptorWidth, sizeof(float));
+                Mesh = buffers.Structured("mesh", 3L * avatar.VertexCount, sizeof(float));
+                TexelChannels = buffers.Structured("texel_channels", (long)ChannelRows * Level.SplatCount, 2 * sizeof(uint));
+            }
+            catch
+            {
+                Dispose();
+                throw;
+            }
+        }
+
+        /// <summary>The buffers hold the finest.</summary>
+        public LevelBuffers Level { get; set; }
+
+        public GraphicsBuffer Descriptor { get; }
+
+        /// <summary>[V, 3] canonical vertices, metres.</summary>
+        public GraphicsBuffer Mesh { get; }
+
+        /// <summary>[6, N] of four half floats.</summary>
+        public GraphicsBuffer TexelChannels { get; }
+
+        public void Dispose()
+        {
+            buffers.Dispose();
+        }
+    }
+}
