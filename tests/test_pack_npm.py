@@ -1,0 +1,86 @@
+"""The npm package: its version is the project's, it has all modules, and a TypeScript program can use its types."""
+
+import json
+import subprocess
+import tarfile
+from pathlib import Path
+
+import pack_npm
+import pytest
+
+import mua
+from mua.share.site import PLAYER, player_files
+
+USE = """
+import { createPlayer, type AvatarHandle } from "@mua/player";
+import { MuaAvatar } from "@mua/player/element.js";
+export async function begin(canvas: HTMLCanvasElement): Promise<string[]> {
+  const player = await createPlayer(canvas);
+  const handle: AvatarHandle = await player.load("hero.muaavatar", { onProgress: (share: number) => void share });
+  player.camera.azimuth = 1;
+  return handle.clips.map(({ name }) => name);
+}
+export const shown = (element: MuaAvatar): number => element.avatars.length;
+"""
+WRONG = 'import { createPlayer } from "@mua/player";\nexport const wrong: Promise<number> = createPlayer(1);\n'
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the package is installed."""
+    if missing := pack_npm.lacking():
+        pytest.skip(missing)
+    folder = tmp_path_factory.mktemp("npm")
+    with tarfile.open(pack_npm.pack(folder)) as packed:
+        packed.extractall(folder / "unpacked", filter="data")
+    (folder / "node_modules" / "@mua").mkdir(parents=True)
+    (folder / "unpacked" / "package").rename(folder / "node_modules" / "@mua" / "player")
+    return folder
+
+
+def compiled(folder: Path, program: str) -> str:
+    """What tsc says of a program beside the installed package."""
+    (folder / "use.ts").write_text(program)
+    line = ["node", str(pack_npm.TSC), "--noEmit", "--strict", "--skipLibCheck", "--module", "ES2022"]
+    line += ["--moduleResolution", "bundler", "--target", "ES2024", "--lib", "ES2024,DOM,DOM.Iterable", "use.ts"]
+    return subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False).stdout
+
+
+def test_its_version_is_that_of_the_project() -> None:
+    assert json.loads((PLAYER / "package.json").read_text())["version"] == mua.__version__
+
+
+def test_it_holds_every_module_and_no_settings(installed: Path) -> None:
+    package = installed / "node_modules" / "@mua" / "player"
+    held = {path.relative_to(package).as_posix() for path in package.rglob("*") if path.is_file()}
+    assert set(player_files()) | {"index.html", "package.json", "LICENSE", "README.md"} <= held
+    assert {path.split(".", 1)[1] for path in held if path.startswith("types/")} == {"d.ts"}
+    assert "tsconfig.json" not in held
+
+
+def test_its_entries_are_there(installed: Path) -> None:
+    package = installed / "node_modules" / "@mua" / "player"
+    for entry in json.loads((package / "package.json").read_text())["exports"].values():
+        assert (package / entry["types"]).is_file()
+        assert (package / entry["default"]).is_file()
+
+
+def test_a_program_can_use_its_types(installed: Path) -> None:
+    assert compiled(installed, USE) == ""
+
+
+def test_its_types_find_a_mistake(installed: Path) -> None:
+    assert "use.ts(2,14)" in compiled(installed, WRONG)
+
+
+def test_importing_the_element_needs_no_browser(installed: Path) -> None:
+    code = "import('@mua/player/element.js').then(({ MuaAvatar }) => console.log(typeof MuaAvatar))"
+    ran = subprocess.run(["node", "-e", code], cwd=installed, capture_output=True, text=True, check=False)
+    assert (ran.stdout, ran.stderr) == ("function\n", "")
+
+
+def test_the_players_comments_are_types_that_hold() -> None:
+    if missing := pack_npm.lacking():
+        pytest.skip(missing)
+    line = ["node", str(pack_npm.TSC), "-p", str(pack_npm.TESTS / "tsconfig.json")]
+    assert subprocess.run(line, capture_output=True, text=True, check=False).stdout == ""

@@ -1,0 +1,170 @@
+"""What mua-share writes, in a browser with the real engine: it plays, and what is wrong is a sentence on the page."""
+
+import gzip
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+from synthetic_avatar import synthetic_avatar
+from web.browser import Browser, Page, Serve
+from web.pages import ELEMENT, SENTENCE
+from web.test_engine import LOSABLE
+
+from mua.asset.write import encode
+from mua.share.single import single_page
+from mua.share.site import Content, Shown, player_files, player_site
+
+LARGEST_PLAYER = 150_000  # bytes, compressed as a web server would
+PLAIN = b'<!doctype html><script type="module" src="element.js"></script><mua-avatar controls></mua-avatar>'
+FULL = "GPUDevice.prototype.popErrorScope = async () => new GPUOutOfMemoryError('full')"
+DRAWN = f"{ELEMENT}?.firstPicture > 0 && {ELEMENT}.avatars.length > 0"
+Open = Callable[..., Page]
+
+
+@pytest.fixture
+def folder(avatar_file: Path) -> dict[str, Content]:
+    """A shared folder with one avatar."""
+    return player_site([avatar_file], Shown("A small avatar"))
+
+
+@pytest.fixture
+def opened(browser: Browser, serve: Serve) -> Iterator[Open]:
+    """Opens a site; at the end nothing but what a server refused is in its console."""
+    with ExitStack() as stack:
+
+        def begin(site: dict[str, Content], *, until: str = DRAWN, **how: Any) -> Page:
+            page = browser.page(serve(site), size=(320, 400), **how)
+            stack.callback(page.close)
+            stack.callback(lambda: _explained(page))
+            page.wait(until)
+            return page
+
+        yield begin
+
+
+def _explained(page: Page) -> None:
+    told = page.told
+    assert told["errors"] == []
+    known = ("Failed to load resource", "blocked by CORS policy")
+    assert [line for line in told["console"] if not any(word in line for word in known)] == []
+
+
+def test_a_shared_folder_plays(opened: Open, folder: dict[str, Content]) -> None:
+    page = opened(folder)
+    assert page.evaluate(f"[{ELEMENT}.player.playing, {ELEMENT}.avatars.length]") == [True, 1]
+    page.wait(f"{ELEMENT}.player.time > 0")
+    home = page.evaluate("location.origin")
+    assert all(url.startswith((home, "blob:")) for url in page.told["requests"])
+
+
+def test_the_picture_shows_the_figure_and_the_page_behind_it(opened: Open, folder: dict[str, Content]) -> None:
+    page = opened(folder, prefers_reduced_motion="reduce")
+    code = f"""{ELEMENT}.screenshot().then(createImageBitmap).then((picture) => {{
+      const flat = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
+      flat.drawImage(picture, 0, 0);
+      const alphas = flat.getImageData(0, 0, picture.width, picture.height).data.filter((_, i) => i % 4 === 3);
+      return [Math.min(...alphas), Math.max(...alphas)];
+    }})"""
+    assert page.evaluate(code) == [0, 255]
+
+
+def test_a_single_file_plays_from_the_disk(browser: Browser, avatar_file: Path, tmp_path: Path) -> None:
+    (tmp_path / "one.html").write_text(single_page([avatar_file], Shown("One file")), encoding="utf-8")
+    page = browser.page(f"file://{tmp_path / 'one.html'}", size=(320, 400))
+    page.wait(DRAWN)
+    told = page.told
+    assert (told["console"], told["errors"]) == ([], [])
+    assert all(url.startswith(("file:", "blob:", "data:")) for url in told["requests"])
+    assert page.evaluate(f"{ELEMENT}.avatars.length") == 1
+    page.close()
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"<!doctype html><p>not found", "a.muaavatar: "),
+        (encode(synthetic_avatar())[:-1000], "a.muaavatar: "),
+        (b"", "a.muaavatar: "),
+    ],
+    ids=["wrong file", "half a file", "empty"],
+)
+def test_a_file_that_is_no_avatar_is_a_sentence(
+    opened: Open, folder: dict[str, Content], content: bytes, said: str
+) -> None:
+    page = opened({**folder, "a.muaavatar": content}, until=f"{SENTENCE}.startsWith('{said}')")
+    sentence = page.evaluate(SENTENCE)
+    assert len(sentence) > len(said) + 10
+    assert "undefined" not in sentence
+
+
+def test_an_absent_avatar_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:
+    del folder["a.muaavatar"]
+    page = opened(folder, until=f"{SENTENCE}.includes('cannot be fetched')")
+    assert "404" in page.evaluate(SENTENCE)
+
+
+def test_no_webgpu_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:
+    before = "Object.defineProperty(Navigator.prototype, 'gpu', { get: () => undefined })"
+    opened(folder, until=f"{SENTENCE}.includes('WebGPU')", before=before)
+
+
+def test_no_graphics_device_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:
+    before = "GPU.prototype.requestAdapter = async () => null"
+    page = opened(folder, until=f"{SENTENCE} && !{SENTENCE}.includes('Starting')", before=before)
+    assert page.evaluate(SENTENCE).endswith(".")
+
+
+def test_too_little_memory_is_a_sentence(opened: Open, folder: dict[str, Content]) -> None:
+    opened(folder, until=f"{SENTENCE}.includes('too little free memory')", before=FULL)
+
+
+def test_a_device_that_is_lost_for_good_is_a_sentence_and_can_be_tried_again(
+    opened: Open, folder: dict[str, Content]
+) -> None:
+    page = opened(folder, before=LOSABLE)
+    page.evaluate("globalThis.ask = GPU.prototype.requestAdapter, null")
+    page.evaluate("GPU.prototype.requestAdapter = async () => null, lose('unknown')")
+    page.wait(f"{SENTENCE} !== ''")
+    page.evaluate(f"GPU.prototype.requestAdapter = ask, {ELEMENT}.shadowRoot.querySelector('.again').click()")
+    page.wait(f"{SENTENCE} === '' && {DRAWN}")
+
+
+@pytest.fixture
+def elsewhere() -> Iterator[str]:
+    """A server of another origin: it forbids others to read /closed and breaks the connection within /broken."""
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Length", "1000000")
+            if self.path.startswith("/broken"):
+                self.send_header("Access-Control-Allow-Origin", "*")
+            self.end_headers()
+            self.wfile.write(bytes(100_000))
+
+        def log_message(self, format: str, *arguments: object) -> None:
+            """Say nothing."""
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = Thread(target=server.serve_forever, args=(0.02,))
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+        thread.join()
+
+
+@pytest.mark.parametrize(
+    ("path", "said"), [("closed", "does not allow this page to read it"), ("broken", "was not fetched whole")]
+)
+def test_what_another_server_does_not_give_is_a_sentence(opened: Open, elsewhere: str, path: str, said: str) -> None:
+    page = opened({**player_files(), "index.html": PLAIN}, until="Boolean(customElements.get('mua-avatar'))")
+    page.evaluate(f"{ELEMENT}.setAttribute('src', '{elsewhere}/{path}.muaavatar')")
+    page.wait(f"{SENTENCE}.includes('{said}')")
+
+
+def test_the_player_is_small() -> None:
+    assert sum(len(gzip.compress(path.read_bytes())) for path in player_files().values()) < LARGEST_PLAYER

@@ -1,0 +1,65 @@
+"""Pack the browser player as the npm package @mua/player, with types that tsc writes from its comments.
+
+Needs Node, npm and the packages of tests/web/package.json (npm ci --prefix tests/web). Nothing is published.
+"""
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PLAYER, TESTS = ROOT / "python" / "mua" / "web", ROOT / "tests" / "web"
+TSC = TESTS / "node_modules" / "typescript" / "bin" / "tsc"
+ENTRIES = ("player.js", "element.js")  # what others import
+
+
+def lacking() -> str | None:
+    """What would have to be installed first; None where nothing is missing."""
+    if shutil.which("npm") is None:
+        return "needs Node and npm"
+    if not TSC.is_file():
+        return "needs the packages of tests/web/package.json: npm ci --prefix tests/web"
+    return None
+
+
+def write_types(folder: Path) -> None:
+    """The types of a copy of the player, below `types`."""
+    settings = json.loads((TESTS / "tsconfig.json").read_text())
+    options = settings["compilerOptions"] | {"noEmit": False, "declaration": True, "emitDeclarationOnly": True}
+    options |= {"outDir": "types", "rootDir": "."}
+    known = [str(path) for path in TESTS.glob("*.d.ts")]  # of what lib.dom does not have yet
+    written = folder / "tsconfig.json"
+    written.write_text(json.dumps({"compilerOptions": options, "files": [*ENTRIES, "worker.js", *known]}))
+    subprocess.run(["node", str(TSC), "-p", str(written)], check=True, stdout=sys.stderr)
+    written.unlink()
+
+
+def pack(output: Path) -> Path:
+    """Write the package's tarball into a folder."""
+    output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / "player"
+        shutil.copytree(PLAYER, folder)
+        shutil.copyfile(ROOT / "LICENSE", folder / "LICENSE")
+        write_types(folder)
+        line = ["npm", "pack", "--json", "--pack-destination", str(output.resolve())]
+        packed = subprocess.run(line, cwd=folder, check=True, capture_output=True, text=True)
+    return output / json.loads(packed.stdout)[0]["filename"]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "build", help="folder for the tarball")
+    options = parser.parse_args()
+    if missing := lacking():
+        sys.exit(f"error: {missing}")
+    path = pack(options.output)
+    print(f"{path}: {path.stat().st_size / 1000:.0f} KB")
+
+
+if __name__ == "__main__":
+    main()
