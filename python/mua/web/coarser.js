@@ -11,9 +11,9 @@ import { expanded } from "./format/tensors.js";
 const STATIC_LEVELS = 2; // at most
 const MOST_TAPS = 32; // of a wavelet that has coarser levels
 const REACH = 6; // texels: what lies farther apart in space belongs to other surfaces
-const GROWTH = 1.8; // of the standard deviations where one splat stands for four
+const GROWTH = 1.85; // of the standard deviations where one splat stands for four
 const TURN = 1; // between quaternions: what is turned farther has no part in a mean rotation
-const LARGEST_TEXEL = 1; // pixels along a side, up to which a texel is not told from a smaller one
+const LARGEST_TEXEL = 0.7; // pixels along a side, up to which a texel is hardly told from a smaller one
 const HYSTERESIS = 1.15; // times: texels must look so much larger before a finer level comes back
 
 /** The coarsest level that an avatar has, 0 where it has but one. */
