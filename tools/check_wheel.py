@@ -54,9 +54,19 @@ STEPS = (
             Run(("mua-view", "{avatar}", "--reference", *SMALL, "-o", "cpu.png"), writes="cpu.png"),
             Run(("mua-view", "{avatar}", *SMALL, "-o", "gpu.png"), prints=f'{SENTENCE} "mua[view]"', status=1),
             Run(("mua-export", "{avatar}", "-o", "a.spz"), writes="a.spz"),
+            Run(("mua-export", "{avatar}", "-o", "a.glb"), prints=f'{SENTENCE} "mua[export]"', status=1),
             Run(("mua-bench", "{avatar}"), prints=f'{SENTENCE} "mua[view]"', status=1),
             Run(BAKE, prints=f'{SENTENCE} "mua[bake]"', status=1),
             Run(("mua-deploy", "{avatar}"), prints=f'{SENTENCE} "mua[deploy]"', status=1),
+        ),
+    ),
+    Step(
+        "export",
+        ("{wheel}[export]",),
+        (
+            Run(("mua-export", "{avatar}", "-o", "a.glb"), writes="a.glb"),
+            Run(("mua-export", "{avatar}", "-o", "a.usdz"), writes="a.usdz"),
+            Run(("mua-export", "{avatar}", "-o", "a.bvh"), writes="a.bvh"),
         ),
     ),
     Step(
