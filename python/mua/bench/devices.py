@@ -47,9 +47,12 @@ DEVICES = {
         passes=2,
         rest=Range(1, 2, 3),
         sources=(
-            "599 MHz: https://www.uploadvr.com/meta-quest-3-gpu-clock-speed-performance-boost/",
+            "599 MHz, without dynamic resolution 545: "
+            "https://www.uploadvr.com/meta-quest-3-gpu-clock-speed-performance-boost/",
+            "the highest level needs dynamic resolution: "
+            "https://developers.meta.com/horizon/documentation/native/android/po-quest-boost",
             "64 GB/s: https://nanoreview.net/en/soc/qualcomm-snapdragon-8-gen-2",
-            "3.7 TFLOPS at 719 MHz, here at 599 MHz: https://primua.com",
+            "3.7 TFLOPS at 719 MHz, here at 599 MHz: https://primua.com/adreno-740/",
             "48 % of the bandwidth in a copy, of an Adreno X1: https://github.com/krrishnarraj/clpeak/issues/210",
             "0.2 TFLOPS of plain kernels: https://github.com/ggml-org/llama.cpp/pull/10693",
         ),
@@ -90,8 +93,8 @@ DEVICES = {
         passes=1,
         rest=Range(0.2, 0.5, 1),
         sources=(
-            "936 GB/s, 35.6 TFLOPS, 1.695 GHz, 112 render outputs: "
-            "https://holynerdvana.blogspot.com/2022/10/nvidia-geforce-rtx-3090-specifications.html",
+            "35.6 TFLOPS, 1.695 GHz, 112 render outputs: https://chipversus.com/hardware/gpu/geforce-rtx-3090",
+            "936 GB/s: https://holynerdvana.blogspot.com/2022/10/nvidia-geforce-rtx-3090-specifications.html",
         ),
         assumed="all shares, triangles a clock, the rest of a frame",
     ),
