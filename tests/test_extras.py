@@ -110,7 +110,7 @@ def run_bare(code: str, *arguments: str | Path) -> Ended:
     return python(f"sys.modules |= dict.fromkeys({absent})\n{code}", *arguments)
 
 
-@pytest.mark.parametrize("module", ["mua.asset", "mua.decode", "mua.rendering", "mua.cli.inspect"])
+@pytest.mark.parametrize("module", ["mua.asset", "mua.decode", "mua.rendering", "mua.cli.inspect", "mua.cli.pack"])
 def test_reading_and_picturing_on_the_cpu_need_no_extra(module: str) -> None:
     assert run_bare(f"import {module}") == Ended(0, "", "")
 
@@ -124,7 +124,7 @@ def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) 
         assert image.size == (32, 32)
 
 
-@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect"}))
+@pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect", "pack"}))
 def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, written: Path, avatar_file: Path) -> None:
     given = {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
     given["export"] = (avatar_file, "-o", "a.glb")

@@ -62,6 +62,24 @@ def test_json_holds_all_that_the_tables_show_and_the_names_that_the_guide_lists(
         assert f"{number:,}" in shown
 
 
+def test_a_packed_file_shows_what_it_holds_packed_and_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "packed.muaavatar"
+    write(path, synthetic_avatar(), storage="packed")
+    held = json.loads(inspect("--json", path).out)
+    assert (held["format"], held["storage"]) == ("3.0", "packed")
+    assert all(held["bytes_by_part"][part] <= size for part, size in held["unpacked_bytes_by_part"].items())
+    assert sum(held["bytes_by_part"].values()) < held["bytes"] < sum(held["unpacked_bytes_by_part"].values())
+    shown = inspect(path).out
+    assert "unpacked" in shown
+    assert f"{held['unpacked_bytes_by_part']['geometry']:,}" in shown
+
+
+def test_a_plain_file_shows_its_bytes_once(avatar_file: Path) -> None:
+    held = json.loads(inspect("--json", avatar_file).out)
+    assert held["bytes_by_part"] == held["unpacked_bytes_by_part"]
+    assert "unpacked" not in inspect(avatar_file).out
+
+
 def test_json_and_verify_are_one_or_the_other(avatar_file: Path) -> None:
     refused = inspect("--json", "--verify", avatar_file)
     assert refused.sentence.startswith("error: --json and --verify are both given")

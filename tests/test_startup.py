@@ -10,7 +10,7 @@ import mua
 from mua import inputs
 from mua.recording import layout
 
-COMMANDS = ("bake", "bench", "deploy", "eval", "export", "inspect", "share", "train", "view")
+COMMANDS = ("bake", "bench", "deploy", "eval", "export", "inspect", "pack", "share", "train", "view")
 # What takes long to load, or is not there unless its extra was asked for.
 SLOW = ("torch", "warp", "wgpu", "pxr", "scipy", "matplotlib", "moderngl", "meshoptimizer", "xatlas", "adbutils")
 RUN = """
@@ -43,7 +43,7 @@ def test_a_wrong_name_is_told_before_anything_is_loaded(name: str, tmp_path: Pat
     assert refused(started(name, absent)) == f"{absent}: there is no such {kind}"
 
 
-@pytest.mark.parametrize("name", ["bench", "deploy", "export", "inspect", "share", "view"])
+@pytest.mark.parametrize("name", ["bench", "deploy", "export", "inspect", "pack", "share", "view"])
 def test_a_directory_in_place_of_a_file_is_told_likewise(name: str, tmp_path: Path) -> None:
     assert refused(started(name, tmp_path)) == f"{tmp_path}: is a directory, expected a file"
 

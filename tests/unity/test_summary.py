@@ -24,7 +24,7 @@ def program(csharp: CSharp) -> Path:
     return csharp.build([RUNTIME / "Format", *ENGINE_FREE, PROGRAMS / "EditorProgram.cs"])
 
 
-@pytest.mark.parametrize("storage", ["golden", "f32", "f16", "i8"])
+@pytest.mark.parametrize("storage", ["golden", "f32", "f16", "i8", "packed"])
 def test_the_summary_is_that_of_mua_inspect(csharp: CSharp, program: Path, tmp_path: Path, storage: str) -> None:
     path = GOLDEN
     if storage != "golden":

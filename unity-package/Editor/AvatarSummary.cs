@@ -26,7 +26,7 @@ namespace Mua.Editor
             var text = new StringBuilder();
             Overview(text, tree, avatar);
             Row(text);
-            Bytes(text, tree, avatar.Content.Length);
+            Bytes(text, tree, avatar.Content);
             Row(text);
             Costs(text, AvatarCost.Of(avatar));
             Row(text);
@@ -44,7 +44,8 @@ namespace Mua.Editor
                 text, "format",
                 Format(
                     "{0}.{1}, {2}, metres, Y up, right-handed", tree.Number("version_major"),
-                    tree.Number("version_minor"), avatar.Geometry.LlBasis.Type.ToString().ToLowerInvariant()));
+                    tree.Number("version_minor"),
+                    Unpacking.IsPacked(tree) ? "packed" : avatar.Geometry.LlBasis.Type.ToString().ToLowerInvariant()));
             Row(text, "producer", avatar.Producer);
             Row(text, "notes", avatar.Notes);
             Row(text, "skeleton", Format("{0} joints, root {1}", skeleton.JointCount, skeleton.Names[skeleton.Root]));
@@ -67,13 +68,18 @@ namespace Mua.Editor
             Row(text, "appearance ranks", Ranks(avatar.Appearance));
         }
 
-        private static void Bytes(StringBuilder text, Table tree, int length)
+        private static void Bytes(StringBuilder text, Table tree, byte[] content)
         {
-            Row(text, Format("{0:F2} MB", length / Mega));
-            Row(text, "part", "bytes");
-            foreach (string part in Parts)
+            long[] stored = Parts.Select(tree.Held).ToArray();
+            Unpacking.Of(tree, content);
+            long[] unpacked = Parts.Select(tree.Held).ToArray();
+            bool isPacked = !stored.SequenceEqual(unpacked);
+            Row(text, Format("{0:F2} MB", content.Length / Mega));
+            Row(text, isPacked ? new[] { "part", "bytes", "unpacked" } : new[] { "part", "bytes" });
+            for (int i = 0; i < Parts.Length; i++)
             {
-                Row(text, part, Format("{0:N0}", tree.Held(part)));
+                string size = Format("{0:N0}", stored[i]);
+                Row(text, isPacked ? new[] { Parts[i], size, Format("{0:N0}", unpacked[i]) } : new[] { Parts[i], size });
             }
         }
 

@@ -38,12 +38,25 @@ def flops(avatar: Avatar) -> dict[str, int]:
 
 
 def stored_bytes(value: object) -> int:
-    """Bytes of all vectors below one part of a file's tree."""
+    """Bytes of all vectors below one part of a loaded file's tree, packed ones as they stand in the file."""
+    return unpacked_bytes(value) - _saved(value)
+
+
+def unpacked_bytes(value: object) -> int:
+    """The same once they are unpacked."""
     if isinstance(value, dict):
-        return sum(stored_bytes(child) for name, child in value.items() if name != "_at")
+        return sum(unpacked_bytes(child) for name, child in value.items() if name != "_at")
     if isinstance(value, list):
-        return sum(stored_bytes(child) for child in value)
+        return sum(unpacked_bytes(child) for child in value)
     return int(getattr(value, "nbytes", 0))
+
+
+def _saved(value: object) -> int:
+    """Bytes that packing saves below one part."""
+    if isinstance(value, dict):
+        own = value["data"].nbytes - value["_stored"] if "_stored" in value else 0
+        return own + sum(_saved(child) for child in value.values())
+    return sum(_saved(child) for child in value) if isinstance(value, list) else 0
 
 
 def _weights(mlp: Mlp) -> int:

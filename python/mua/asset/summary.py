@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from mua.asset.avatar import Avatar
-from mua.asset.count import flops, parameters, stored_bytes
+from mua.asset.count import flops, parameters, stored_bytes, unpacked_bytes
 from mua.asset.flatbuffer import Tree
+from mua.asset.packing import tensors
 
 PARTS = (
     "skeleton",
@@ -31,7 +32,7 @@ def summary(
         "file": str(path),
         "bytes": path.stat().st_size,
         "format": f"{tree['version_major']}.{tree['version_minor']}",
-        "storage": tree["geometry"]["ll_basis"]["type"].lower(),
+        "storage": storage_of(tree),
         "name": avatar.name,
         "producer": avatar.producer,
         "notes": avatar.notes,
@@ -46,6 +47,7 @@ def summary(
         "wavelet": {"name": avatar.wavelet.name, "levels": avatar.wavelet.levels},
         "ranks": {"geometry": list(avatar.geometry.ranks), "appearance": list(avatar.appearance.ranks)},
         "bytes_by_part": {part: stored_bytes(tree.get(part)) for part in PARTS},
+        "unpacked_bytes_by_part": {part: unpacked_bytes(tree.get(part)) for part in PARTS},
         "parameters": parameters(avatar),
         "flops_per_frame": flops(avatar),
         "clips": [
@@ -53,6 +55,13 @@ def summary(
             for clip in avatar.clips
         ],
     }
+
+
+def storage_of(tree: Tree) -> str:
+    """The storage that a loaded file was written with: packed, or the element type of bases and weights."""
+    if any("_stored" in tensor for _, tensor in tensors(tree)):
+        return "packed"
+    return str(tree["geometry"]["ll_basis"]["type"].lower())
 
 
 def _skeleton(avatar: Avatar) -> dict[str, Any]:

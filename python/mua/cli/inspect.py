@@ -71,10 +71,12 @@ def _whole(held: dict[str, Any]) -> Table:
 
 
 def _bytes(held: dict[str, Any]) -> Table:
-    table = Table("part", "bytes", title=f"{held['bytes'] / 1e6:.2f} MB")
-    table.columns[1].justify = "right"
+    unpacked = held["unpacked_bytes_by_part"] if held["storage"] == "packed" else {}
+    table = Table("part", "bytes", *(["unpacked"] if unpacked else []), title=f"{held['bytes'] / 1e6:.2f} MB")
+    for column in table.columns[1:]:
+        column.justify = "right"
     for part, size in held["bytes_by_part"].items():
-        table.add_row(part, f"{size:,}")
+        table.add_row(part, f"{size:,}", *([f"{unpacked[part]:,}"] if unpacked else []))
     return table
 
 

@@ -25,7 +25,9 @@ BOTH = {
             help="How to train: closed-form starts from least squares, paper from random weights with a million steps.",
         ),
     ],
-    "storage": Annotated[Storage, typer.Option(help="Number type of the stored bases and weights.")],
+    "storage": Annotated[
+        Storage, typer.Option(help="Number type of the stored bases and weights; packed is for the network.")
+    ],
     "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
     "device": Annotated[DeviceName, typer.Option(help="Where to train the student.")],
 }

@@ -10,6 +10,7 @@ import torch
 from mua.arrays import Array
 from mua.asset.count import flops, parameters
 from mua.asset.read import load
+from mua.asset.summary import storage_of
 from mua.bench.measure import measure
 from mua.bench.report import total_milliseconds
 from mua.compare.motion import motion_of
@@ -48,7 +49,7 @@ class Cost:
     flops: int | None = None  # of a frame; posing and drawing excluded
     bytes: int | None = None  # of the file, or 4 a parameter
     fps: float | None = None  # of the player on this device; decoding, posing and drawing included
-    storage: str = ""  # f32, f16 or i8, of a file
+    storage: str = ""  # f32, f16, i8 or packed, of a file
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def avatar_entries(device: Device, path: Path, rig: Rig, *, size: int, played: b
         flops=sum(flops(avatar).values()),
         bytes=path.stat().st_size,
         fps=frames_per_second(device, path, size=size),
-        storage=load(path)["geometry"]["ll_basis"]["type"].lower(),
+        storage=storage_of(load(path)),
     )
     entries = [Entry(path.stem, lambda frame: Picture(decoder(frame).texture), cost)]
     return [*entries, Entry(path.stem + PLAYED, decoder, cost, own_mesh=True)] if played else entries

@@ -20,7 +20,7 @@ HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "ms_ssim": "MS-SSIM", "flip": "FLIP"
 DIGITS = {"psnr": 2, "ssim": 4, "ms_ssim": 4, "flip": 4, "lpips": 2}
 COSTS = ("GFLOPs", "Param (M)", "MB", "FPS")
 NOTHING = "-"
-STORAGES = ("f32", "f16", "i8")
+STORAGES = ("f32", "f16", "i8", "packed")
 
 
 @dataclass(frozen=True)

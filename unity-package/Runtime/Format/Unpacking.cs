@@ -31,6 +31,13 @@ namespace Mua.Format
             Walk(tree, "", unpacking.Unpack);
         }
 
+        public static bool IsPacked(Table tree)
+        {
+            bool found = false;
+            Walk(tree, "", (tensor, path) => found = true);
+            return found;
+        }
+
         /// <summary>Visits every packed tensor below a table, in the schema's order.</summary>
         private static void Walk(Table table, string path, Action<Table, string> visit)
         {

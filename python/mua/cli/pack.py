@@ -1,0 +1,43 @@
+"""mua-pack: the same avatar in a file of another size, for the network or for players of older versions."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mua.asset.read import decode_tree, load
+from mua.asset.summary import storage_of
+from mua.asset.tensors import Storage
+from mua.asset.write import write
+from mua.cli.console import printer, say
+from mua.cli.failure import run_command
+from mua.errors import InputError
+from mua.files import require_writable
+from mua.inputs import require_file
+
+
+def pack(
+    file: Annotated[Path, typer.Argument(help="Avatar file (.muaavatar).")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="File to write.", show_default="FILE's name with the storage behind it"),
+    ] = None,
+    storage: Annotated[
+        Storage, typer.Option(help="packed is the smallest; the others are read by players older than format 3.0 too.")
+    ] = "packed",
+) -> None:
+    """Write the avatar of FILE again, small enough to be sent: a third of the bytes, the pictures as they were."""
+    require_file(file)
+    target = output or file.with_name(f"{file.stem}_{storage}{file.suffix}")
+    require_writable(target)
+    tree = load(file)
+    if storage_of(tree) == storage:
+        raise InputError(f"{file}: its storage is {storage} already")
+    write(target, decode_tree(tree), storage=storage)
+    before, after = file.stat().st_size, target.stat().st_size
+    say(printer(), f"{target}: {after / 1e6:.2f} MB, {file.name}: {before / 1e6:.2f} MB")
+
+
+def run() -> None:
+    """Entry point of the command."""
+    run_command(pack)

@@ -1,0 +1,42 @@
+"""mua-pack writes an avatar again in another storage, and says what it saved."""
+
+from pathlib import Path
+
+import numpy as np
+from commands import Commands
+
+from mua.asset.read import load, read
+from mua.asset.summary import storage_of
+
+
+def test_packs_beside_the_file_by_default_and_names_both_sizes(command: Commands, avatar_file: Path) -> None:
+    ended = command("pack", avatar_file)
+    packed = avatar_file.with_name(f"{avatar_file.stem}_packed.muaavatar")
+    assert ended.status == 0
+    assert ended.out.startswith(f"{packed}: ")
+    assert storage_of(load(packed)) == "packed"
+    assert packed.stat().st_size < avatar_file.stat().st_size
+
+
+def test_a_packed_file_becomes_a_plain_one_with_the_same_numbers(
+    command: Commands, avatar_file: Path, tmp_path: Path
+) -> None:
+    packed, plain = tmp_path / "p.muaavatar", tmp_path / "f.muaavatar"
+    assert command("pack", avatar_file, "-o", packed).status == 0
+    assert command("pack", packed, "--storage", "f16", "-o", plain).status == 0
+    assert (storage_of(load(plain)), load(plain)["version_major"]) == ("f16", 2)
+    first, second = read(packed), read(plain)
+    for name in ("geometry", "appearance"):
+        np.testing.assert_array_equal(getattr(first, name).static, getattr(second, name).static)
+        np.testing.assert_array_equal(getattr(first, name).ll_basis, getattr(second, name).ll_basis)
+
+
+def test_what_has_the_storage_already_is_refused(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
+    packed, again = tmp_path / "p.muaavatar", tmp_path / "again.muaavatar"
+    command("pack", avatar_file, "-o", packed)
+    assert command("pack", packed, "-o", again).sentence == f"error: {packed}: its storage is packed already"
+    assert not again.exists()
+
+
+def test_an_absent_file_is_refused(command: Commands, tmp_path: Path) -> None:
+    assert "absent.muaavatar" in command("pack", tmp_path / "absent.muaavatar").sentence
