@@ -39,7 +39,18 @@ FRAMES = [0, 1, 3, 5]
 MUTANTS = 400
 CUT = 97  # so many bytes apart a file is cut off
 
-pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node 20 or later")
+TSC = HERE / "node_modules" / ".bin" / "tsc"
+OLDEST = (20, 12)  # of Node, that unpacks what has no zlib header
+
+
+def lacking() -> bool:
+    if shutil.which("node") is None:
+        return True
+    told = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
+    return tuple(int(part) for part in told.lstrip("v").split(".")[:2]) < OLDEST
+
+
+pytestmark = pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
 
 
 def node(what: str, *given: object) -> list[Any]:
@@ -209,6 +220,12 @@ def test_cameras_are_those_of_python() -> None:
     assert len(set(found["seen"])) == 2
     for name, value in expected.items():
         np.testing.assert_allclose(found[name], np.ravel(value) if np.ndim(value) else value, atol=EXACT, err_msg=name)
+
+
+@pytest.mark.skipif(not TSC.exists(), reason="needs the packages of tests/web/package.json: npm ci --prefix tests/web")
+def test_types_hold() -> None:
+    ran = subprocess.run([TSC, "-p", str(HERE)], capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout
 
 
 def test_every_finite_half_is_expanded_exactly() -> None:
