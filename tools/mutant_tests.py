@@ -43,7 +43,7 @@ IMPORTED = (  # slow ones of those that tests import; none of this repository, w
     *("wgpu", "typer", "rich.table", "trimesh", "pygltflib", "pxr.Usd", "PIL.Image", "matplotlib.pyplot", "pywt"),
     *("moderngl", "xatlas", "imgui_bundle"),
 )
-BOUND = 120  # seconds of CPU that the tests of one fault may take
+BOUND = 240  # seconds of CPU that the tests of one fault may take
 SLOW = 10  # seconds beyond which a test comes behind others
 LEAST_SECONDS = 0.3  # that any test takes
 WAITING = 60  # seconds that they may spend without using the CPU
