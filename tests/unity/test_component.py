@@ -104,6 +104,7 @@ def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path)
     assert (told["name"], told["progress"], told["frames"]) == ([avatar.name], ["1"], [str(counts[0])])
     assert told["clip"] == [f"{index} 0 {counts[index]}" for index in (0, 1, 1, 0)]
     assert told["still"] == ["0.25"]
+    assert float(told["half"][0]) == pytest.approx(36 / SECOND)
     assert float(told["slow"][0]) == pytest.approx(0.5)
     assert float(told["back"][0]) == pytest.approx(0.5)
 

@@ -41,6 +41,7 @@ namespace Mua
             shown.Seconds = 0;
             Frames(36);
             double half = shown.Seconds;
+            Say("half", half);
             shown.Seconds = 0;
             shown.Speed = 0.5f;
             Frames(36);
