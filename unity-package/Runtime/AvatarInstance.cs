@@ -169,9 +169,7 @@ namespace Mua
             return new AvatarSeen
             {
                 Distance = distance,
-                Texel = Decoded.IsDecoded
-                    ? buffers.TexelLength * Math.Abs(focal) / Math.Max(distance, eyes.Near)
-                    : double.MaxValue, // nobody knows yet where its box is
+                Texel = buffers.TexelLength * Math.Abs(focal) / Math.Max(distance, eyes.Near),
                 Counts = buffers.SplatCounts,
                 Level = level,
             };

@@ -5,8 +5,8 @@ using UnityEngine;
 namespace Mua
 {
     /// <summary>
-    /// Chooses the levels of detail of all avatars together, once in a frame: for the camera to which each is nearest, of those of
-    /// the last frame and the first of this one.
+    /// Chooses the levels of detail of all avatars in view together, once in a frame: for the camera to which each is nearest,
+    /// of those of the last frame and the first of this one.
     /// </summary>
     internal sealed class AvatarLevels
     {
@@ -24,7 +24,7 @@ namespace Mua
             frame = -1;
             for (int i = 0; i < count; i++)
             {
-                nearest[i].Distance = double.MaxValue;
+                nearest[i] = Unseen(nearest[i]);
             }
         }
 
@@ -38,10 +38,18 @@ namespace Mua
             for (int i = 0; i < avatars.Count; i++)
             {
                 AvatarSeen now = avatars[i].Seen(eyes), before = nearest[i];
+                if (!avatars[i].IsSeenBy(eyes))
+                {
+                    now = Unseen(now);
+                }
                 AvatarSeen both = now;
                 both.Distance = Math.Min(now.Distance, before.Distance);
                 both.Texel = Math.Max(now.Texel, before.Texel);
                 nearest[i] = isFirst ? now : both;
+                if (both.Distance == double.MaxValue)
+                {
+                    continue; // it costs nothing
+                }
                 if (avatars[i].ChoosesLevel)
                 {
                     places[count] = i;
@@ -60,6 +68,13 @@ namespace Mua
                     avatars[places[i]].Level = chosen[i].Level;
                 }
             }
+        }
+
+        private static AvatarSeen Unseen(AvatarSeen seen)
+        {
+            seen.Distance = double.MaxValue;
+            seen.Texel = 0;
+            return seen;
         }
     }
 }

@@ -41,6 +41,9 @@ namespace Mua
             budget.Splats = Full(second);
             second.Level = AvatarLevel.Full;
             Say("fixed", Splats(first) + " " + Splats(second));
+            second.transform.position = new Vector3(0, 0, -1000); // behind the camera
+            Say("alone", Splats(first));
+            second.transform.position = new Vector3(0, 0, 5);
             budget.enabled = false;
             Say("free", Splats(first) + " " + Splats(second));
             long before = System.GC.GetAllocatedBytesForCurrentThread();
