@@ -116,6 +116,18 @@ def test_another_level_of_detail_comes_with_the_next_frame_and_at_rest_at_once(d
     assert display.show(1, 1, level=2) == 0
 
 
+def test_a_decode_at_once_disturbs_no_decode_that_was_begun(display: Display) -> None:
+    frame, commands = display.frame, display.device.commands()
+    frame.begin(*display.window(("", 5)))
+    frame.advance(commands)
+    frame.decode_channels(commands, *display.window(("", 2)))
+    frame.advance(commands)
+    commands.submit()
+    display.require(2, 0)
+    frame.show()
+    display.require(5, 0)
+
+
 class Watched:
     """A session that is drawn, and what its schedule was asked."""
 

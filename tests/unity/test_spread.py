@@ -110,6 +110,12 @@ def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_
     assert (spread.sets, at_once.sets) == (2, 1)
 
 
+def test_a_displayed_frame_of_two_cameras_decodes_one_part(watched: Watched) -> None:
+    spread, at_once = watched.play("SpreadsForTwoCameras")
+    assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
+    assert max(spread.dispatches[3:]) == 2 * POSED - 1 + max(map(len, PARTS_ORDER))  # posed once, sorted for each
+
+
 def test_a_shadow_falls_from_the_mesh_that_is_shown(watched: Watched) -> None:
     """But for the first frame that is due before it is whole, as there was no time to look ahead."""
     spread, _ = watched.play("SpreadsClip")

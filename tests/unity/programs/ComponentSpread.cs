@@ -19,6 +19,12 @@ namespace Mua
             Watch(Step, shown => shown.Speed = 25f / 24, null);
         }
 
+        private static void SpreadsForTwoCameras()
+        {
+            Make("second camera").AddComponent<Camera>();
+            Watch(Step, null, null);
+        }
+
         private static void SpreadsBackwards()
         {
             Watch(Step, shown => shown.Speed = -1, null);
