@@ -18,6 +18,7 @@ from mua.asset.write import encode
 from mua.share.single import single_page
 from mua.share.site import Content, Shown, player_files, player_site
 
+EXAMPLES = Path(__file__).parents[2] / "docs" / "examples" / "web"
 LARGEST_PLAYER = 150_000  # bytes, compressed as a web server would
 PLAIN = b'<!doctype html><script type="module" src="element.js"></script><mua-avatar controls></mua-avatar>'
 FULL = "GPUDevice.prototype.popErrorScope = async () => new GPUOutOfMemoryError('full')"
@@ -59,6 +60,12 @@ def test_a_shared_folder_plays(opened: Open, folder: dict[str, Content]) -> None
     page.wait(f"{ELEMENT}.player.time > 0")
     home = page.evaluate("location.origin")
     assert all(url.startswith((home, "blob:")) for url in page.told["requests"])
+
+
+def test_the_example_of_plain_html_plays(opened: Open, avatar_file: Path) -> None:
+    player = {f"player/{path}": file for path, file in player_files().items()}
+    page = opened({**player, "index.html": EXAMPLES / "plain.html", "hero.muaavatar": avatar_file})
+    assert page.evaluate("document.querySelector('#says').textContent").endswith(": 1 clips")
 
 
 def test_the_picture_shows_the_figure_and_the_page_behind_it(opened: Open, folder: dict[str, Content]) -> None:

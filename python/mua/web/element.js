@@ -14,6 +14,7 @@
 // Events: `load` when an avatar is shown, `error` with the error in `detail`, `picture` when the first one is drawn.
 
 import { Controls } from "./controls.js";
+import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
 import { pressed, SHOWN } from "./keys.js";
 import { look } from "./look.js";
@@ -68,7 +69,7 @@ export class MuaAvatar extends HTMLElementOrNone {
     listen(this.#controls.canvas, { camera: () => this.player?.camera, framed: () => this.#framed, moved });
     this.addEventListener("keydown", (event) => pressed(event, this));
     this.addEventListener("fullscreenchange", () => this.#controls.update());
-    this.#acceptFiles();
+    acceptFiles(this);
   }
 
   connectedCallback() {
@@ -390,24 +391,6 @@ export class MuaAvatar extends HTMLElementOrNone {
     const { poster } = this.#controls;
     poster.hidden = !address || this.avatars.length > 0;
     if (address) poster.src = address;
-  }
-
-  /** Files that are dropped here are shown. */
-  #acceptFiles() {
-    const over = (/** @type {boolean} */ is) => this.classList.toggle("dropping", is);
-    this.addEventListener("dragover", (event) => {
-      if (!event.dataTransfer?.types.includes("Files")) return;
-      event.preventDefault();
-      over(true);
-    });
-    this.addEventListener("dragleave", () => over(false));
-    this.addEventListener("drop", (event) => {
-      over(false);
-      const files = [...(event.dataTransfer?.files ?? [])];
-      if (!files.length) return;
-      event.preventDefault();
-      void this.add(...files);
-    });
   }
 }
 
