@@ -8,9 +8,9 @@ from synthetic_avatar import empty_avatar, synthetic_avatar, with_surface
 
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import Tree, parse
-from mua.asset.packing import tensors
+from mua.asset.packing import tensors, unpack
 from mua.asset.read import decode_tree, parse_checked
-from mua.asset.tensors import Storage
+from mua.asset.tensors import Storage, pack
 from mua.asset.write import encode
 from mua.decode import decode_clip_frame
 
@@ -115,3 +115,20 @@ def test_frames_are_those_of_the_rounded_avatar(content: bytes) -> None:
     ours, theirs = (decode_clip_frame(one, one.clips[0], frame=3) for one in (avatar, back))
     assert np.abs(ours.texture - theirs.texture).max() < 0.2  # random numbers, some of which are rounded coarsely
     assert np.isfinite(theirs.centres).all()
+
+
+def test_a_stage_decodes_before_the_rest_is_there(content: bytes) -> None:
+    """What has not come is zeros of its shape: then details and static offset add nothing."""
+    end = int(parse(content)["stages"][1])
+    tree = parse(content[:end] + bytes(len(content) - end))
+    for path, tensor in tensors(tree):
+        if "details" in path or "static_offset" in path or path.startswith(("clips[1]", "surface")):
+            tensor |= {**pack(np.zeros(tensor["shape"]), "f16"), "packing": "Plain"}
+    tree["clips"] = tree["clips"][:1]
+    del tree["surface"]
+    unpack(tree, len(content))
+    early, whole = decode_tree(tree), decode_tree(parse_checked(content))
+    np.testing.assert_array_equal(early.coarse.basis, whole.coarse.basis)
+    np.testing.assert_array_equal(early.geometry.ll_basis, whole.geometry.ll_basis)
+    assert not early.geometry.static.any()
+    assert np.isfinite(decode_clip_frame(early, early.clips[0], frame=2).centres).all()

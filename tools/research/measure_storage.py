@@ -1,4 +1,4 @@
-"""Print what f16 and i8 storage cost: bytes, and the error of each attribute beside the same avatar in f32.
+"""Print what f16, i8 and packed storage cost: bytes, and the error of each attribute beside the same avatar in f32.
 
 mua-bake --storage f32 -o hero.muaavatar ...; python tools/research/measure_storage.py hero.muaavatar
 """
@@ -19,7 +19,7 @@ from mua.channels import ATTRIBUTES
 from mua.decode import decode_clip_frame
 
 FRAMES = 3  # of each clip
-STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8")
+STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8", "packed")
 
 
 def main() -> None:
