@@ -26,7 +26,7 @@ def named() -> list[tuple[str, str]]:
             for folder, cell in zip(folders, row, strict=False):
                 path = ""
                 for span in SPAN.findall(cell):
-                    if "." in span and span.rpartition(".")[2] in ("py", "cs", "hlsl", "compute"):
+                    if "." in span and span.rpartition(".")[2] in ("py", "cs", "js", "hlsl", "compute"):
                         path = folder + span
                     found.append((path, "" if path == folder + span else span))
     return found
@@ -35,6 +35,8 @@ def named() -> list[tuple[str, str]]:
 def defined(path: Path) -> set[str]:
     """Functions and classes of a file; those within a Python class as Class.name."""
     text = path.read_text()
+    if path.suffix == ".js":
+        return set(re.findall(r"^(?:  |export )(?:async |function )*(\w+)\(.*\{$", text, re.MULTILINE))
     if path.suffix != ".py":
         return set(re.findall(r"^\s*(?:[\w<>\[\],]+ )+(\w+)\(", text, re.MULTILINE))
     kinds = (ast.FunctionDef, ast.ClassDef)
@@ -61,4 +63,6 @@ def test_a_name_that_is_not_there_is_found() -> None:
     assert "add" not in defined(ROOT / "python/mua/recording/writer.py")
     assert "TeacherWriter.add" in defined(ROOT / "python/mua/recording/writer.py")
     assert "Decode" in defined(ROOT / "unity-package/Runtime/AvatarFrame.cs")
+    assert "sort" in defined(ROOT / "python/mua/web/splats.js")
+    assert "draw" not in defined(ROOT / "python/mua/web/splats.js")
     assert "Sort" not in defined(ROOT / "unity-package/Runtime/AvatarFrame.cs")
