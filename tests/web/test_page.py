@@ -111,9 +111,11 @@ def test_a_control_that_has_the_focus_keeps_its_keys(opened: Open) -> None:
     page.evaluate(f"{part('.clips')}.focus()")
     page.press("c", "4")
     assert page.evaluate("[fake.clip, fake.show.skeleton]") == ["walk", False]
-    page.evaluate(f"{part('.play')}.focus()")
+    page.evaluate(f"{part('.settings')}.focus()")
     page.press(" ")
-    assert page.evaluate("fake.playing") is False
+    page.evaluate(f"{part('[name=skeleton]')}.focus()")
+    page.press(" ")
+    assert page.evaluate("[fake.playing, fake.show.skeleton]") == [True, True]
 
 
 def test_shift_and_arrows_turn(opened: Open) -> None:
