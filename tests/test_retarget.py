@@ -242,6 +242,19 @@ def test_a_figure_that_stands_still_in_a_pose_that_is_not_upright_is_taken_as_it
     assert angle(bone(target, found, "Hips", "Spine"), bone(target, expected, "Hips", "Spine")) < np.radians(10)
 
 
+def test_hips_and_shoulders_of_a_bind_pose_whose_chest_is_turned_each_face_where_the_source_does() -> None:
+    source, plain = person(), person(size=1.1)
+    clip = walk(source)
+    rotations = plain.bind_rotations.copy()
+    turn = Rotation.from_euler("y", 30, degrees=True).as_quat(scalar_first=True)
+    rotations[plain.names.index("Spine")] = rotation.multiply(turn, rotations[plain.names.index("Spine")])
+    target = replace(plain, bind_rotations=rotations)
+    found, _ = retarget(SourceMotion(*bone_aligned(source, clip)), target)
+    for part in ("UpLeg", "Arm"):
+        ends = (f"Right{part}", f"Left{part}")
+        assert angle(bone(target, found, *ends), bone(source, clip, *ends)) < np.radians(2 * ESTIMATE_BOUND)
+
+
 def test_rotations_are_copied_between_rigs_of_one_maker_whatever_the_rest_pose() -> None:
     source, target = person(axes=1), person(size=1.1, axes=1)
     plain = walk(person())

@@ -153,7 +153,7 @@ def test_tests_on_a_full_disk_are_watched_too(tree: Path, tmp_path: Path, checko
 def test_a_fault_that_never_ends_is_stopped(tree: Path, never_ends: str, checkout: Checkout) -> None:
     (tree / "tests" / "test_code_.py").write_text(never_ends)
     checkout.refresh(tree)
-    assert checkout.pytest(["tests/test_code_.py"], seconds=2, waiting=3)[0] is None
+    assert checkout.pytest(["tests/test_code_.py"], seconds=1.5, waiting=2)[0] is None
     (checkout.root / "tests" / "test_code_.py").write_text("def test_it():\n    assert False\n")
     assert checkout.pytest(["tests/test_code_.py"], seconds=60)[0] == ["tests/test_code_.py::test_it"]
 
@@ -178,9 +178,9 @@ def test_a_test_that_is_late_without_the_fault_too_has_not_caught_it(
 
 
 def test_only_cpu_time_counts_whatever_else_the_machine_does(tree: Path, checkout: Checkout) -> None:
-    (tree / "tests" / "test_code_.py").write_text("import time\ndef test_it():\n    time.sleep(4)\n")
+    (tree / "tests" / "test_code_.py").write_text("import time\ndef test_it():\n    time.sleep(2.5)\n")
     checkout.refresh(tree)
-    assert checkout.pytest(["tests/test_code_.py"], seconds=3)[0] == []
+    assert checkout.pytest(["tests/test_code_.py"], seconds=2)[0] == []
 
 
 def a_test(file: str, seconds: float, *places: str, fixtures: dict[str, float] | None = None) -> SeenTest:
