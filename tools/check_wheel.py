@@ -52,6 +52,7 @@ STEPS = (
         (
             Run(("mua-inspect", "{avatar}"), prints="GFLOPs"),
             Run(("mua-view", "{avatar}", "--reference", *SMALL, "-o", "cpu.png"), writes="cpu.png"),
+            Run(("mua-share", "{avatar}", "--reference", "-o", "shared"), writes="shared/index.html"),
             Run(("mua-view", "{avatar}", *SMALL, "-o", "gpu.png"), prints=f'{SENTENCE} "mua[view]"', status=1),
             Run(("mua-export", "{avatar}", "-o", "a.spz"), writes="a.spz"),
             Run(("mua-export", "{avatar}", "-o", "a.glb"), prints=f'{SENTENCE} "mua[export]"', status=1),
