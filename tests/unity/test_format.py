@@ -58,11 +58,12 @@ def test_format_knows_no_engine(csharp: CSharp) -> None:
     csharp.build([RUNTIME / "Format"], library=True)
 
 
-@pytest.mark.parametrize("storage", ["golden", "version 1", "f32", "f16", "i8", "packed"])
+@pytest.mark.parametrize("storage", ["golden", "version 1", "version 3", "f32", "f16", "i8", "packed"])
 def test_values_are_those_of_the_python_reader(
     csharp: CSharp, program: Path, tmp_path: Path, storage: Storage | str
 ) -> None:
     kept = {"golden": GOLDEN, "version 1": GOLDEN.with_name("version_1.muaavatar")}
+    kept["version 3"] = GOLDEN.with_name("packed.muaavatar")
     sound = kept[storage].read_bytes() if storage in kept else encode(with_surface(synthetic_avatar()), storage=storage)  # type: ignore
     [path] = write_all(tmp_path, [sound])
     expected = values(parse_checked(sound))
