@@ -158,7 +158,7 @@ def test_every_key_does_what_the_panel_says(window: Driven) -> None:
     assert session.file == session.files[1]
     window.press("c")
     assert session.clip.name == "twice"
-    assert set(KEYS) == {" ", "ArrowLeft", "ArrowRight", *"12345", *"acfrst"}
+    assert set(KEYS) == {" ", "ArrowLeft", "ArrowRight", *"12345", *"acflrst"}
 
 
 def test_shows_and_hides_by_the_boxes_of_the_panel(window: Driven) -> None:
