@@ -39,4 +39,5 @@ def test_the_choices_are_those_that_there_are() -> None:
 
 
 def test_the_script_for_a_shell_is_printed() -> None:
-    assert "_MUA_INSPECT_COMPLETE" in process("inspect", "--show-completion", "zsh").out
+    named = {"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}  # there may be no shell above the tests
+    assert "_MUA_INSPECT_COMPLETE" in process("inspect", "--show-completion", "zsh", **named).out
