@@ -23,7 +23,7 @@ test-long: setup
 
 # The browser player in a headless browser with WebGPU on the CPU. Tests skip and name what is missing.
 test-web: setup
-	command -v npm >/dev/null && npm ci --silent --prefix tests/web || true
+	sh tools/setup_web.sh
 	$(PYTEST) -m web
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
