@@ -1,12 +1,14 @@
 // Splats as quads: what the desktop player's shader and Unity's share, and splat_project.compute with them.
 //
-//   alpha = peak (1 - (along / (2 wide_major))^2) (1 - (across / (2 wide_minor))^2)        inside the quad, 0 at its edges
-//   peak  = 9 pi / 32 opacity (major minor) / (wide_major wide_minor),  wide = sqrt(deviation^2 + 5 / 48)
+//   alpha  = peak (1 - u^2) (1 - v^2)                                          inside the quad, 0 at its edges
+//   (u, v) = inverse(2 root) (pixel - middle),  root^2 = covariance + 5 / 48
+//   peak   = 9 pi / 32 opacity sqrt(|covariance|) / |root|
 //   color = max(0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3), 0)     (x, y, z) from camera to splat, turned back by its texel
 //
 // In place of the Gaussian a window of the same integral is drawn, whose quad has a third of the area that lies within
 // alpha = 1/255, and which costs no exponential; it ends at 2 deviations, where its quad does. What it takes from one splat
 // it gives to the next: tens of splats lie over one another. A pixel's own variance, 1/12 along any line, is added whole.
+// The root is the symmetric one: it changes little where the covariance does, also of round ellipses, whose axes are any.
 //
 // Six vertices a splat, two triangles, in the order of the sort: back to front. Blend One, OneMinusSrcAlpha.
 // Buffers are arguments, so that each includer declares only what it binds. Reference: python/mua/kernels/splat_draw.py.
@@ -31,7 +33,7 @@ static const float SMALLEST_DISTANCE = 1e-30; // metres; keeps the direction fin
 struct SplatVaryings
 {
     float4 position : SV_Position;
-    float2 offset : TEXCOORD0; // along and across the ellipse, -1 to 1 at the quad's edges
+    float2 offset : TEXCOORD0; // (u, v), -1 to 1 at the quad's edges
     nointerpolation float4 color : TEXCOORD1; // sRGB, not premultiplied; the peak
 };
 
@@ -57,10 +59,17 @@ float splatShare(float2 deviations, float2 wide)
     return WEIGHT * (deviations.x / wide.x) * (deviations.y / wide.y);
 }
 
-// Half lengths of the quad along the ellipse's axes, pixels.
-float2 splatHalfLengths(float2 deviations)
+// A corner of the quad from its middle, pixels: 2 root corner.
+float2 splatOffset(float2 axis, float2 wide, float2 corner)
 {
-    return REACH * splatWide(deviations);
+    return REACH * (wide.y * corner + (wide.x - wide.y) * dot(axis, corner) * axis);
+}
+
+// Half width and height of the upright box around the quad, pixels.
+float2 splatExtent(float2 axis, float2 wide)
+{
+    float2 size = abs(axis);
+    return REACH * (wide.y + (wide.x - wide.y) * (size.x + size.y) * size);
 }
 
 // Corner of a quad for one of its six vertices, each coordinate -1 or 1.
@@ -85,9 +94,9 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     float2 deviations = float2(length(major), halfAt(tail.w, eye));
     float2 axis = major / max(deviations.x, LEAST_NORM);
 
+    float2 wide = splatWide(deviations);
     float2 corner = splatCorner(vertex % 6);
-    float2 offset = corner * splatHalfLengths(deviations);
-    float2 pixels = float2(axis.x * offset.x - axis.y * offset.y, axis.y * offset.x + axis.x * offset.y);
+    float2 pixels = splatOffset(axis, wide, corner);
     float4 clip = mul(viewProjection, float4(asfloat(head.xyz), 1));
     float2 place = clip.xy / clip.w + pixels * float2(2, -2) / screen;
     float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
@@ -98,7 +107,7 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     if (seen)
         varyings.position = float4(place, depth, 1);
     varyings.offset = corner;
-    varyings.color = float4(color.rgb, color.a * splatShare(deviations, splatWide(deviations)));
+    varyings.color = float4(color.rgb, color.a * splatShare(deviations, wide));
     return varyings;
 }
 

@@ -92,12 +92,12 @@ def read_by_gaussforge(path: Path, kind: str) -> Read:
 
 
 def gaussian(u: Array, v: Array) -> Array:
-    """What is left of a splat, as published; u and v are in standard deviations along its axes."""
+    """What is left of a splat, as published; u and v are in standard deviations, of the screen's axes."""
     return np.exp(-(u * u + v * v) / 2)
 
 
 def window(u: Array, v: Array) -> Array:
-    """What our players draw instead: a parabola along each axis that ends at 2, with the same integral."""
+    """What our players draw instead: a parabola along either that ends at 2, with the same integral."""
     return 9 * np.pi / 32 * np.maximum(1 - u * u / 4, 0) * np.maximum(1 - v * v / 4, 0)
 
 
@@ -133,7 +133,7 @@ def draw(
         if depth[k] < camera.near or (low >= high).any():
             continue
         x, y = np.meshgrid(*(np.arange(a, b) + 0.5 - m for a, b, m in zip(low, high, middle[k], strict=True)))
-        (ux, vx), (uy, vy) = axes[k] / np.sqrt(wide[k])
+        (ux, uy), (vx, vy) = axes[k] / np.sqrt(wide[k]) @ axes[k].T
         alpha = np.minimum(opacity[k] * profile(ux * x + uy * y, vx * x + vy * y), 0.99)
         alpha[alpha < 1 / 255] = 0
         box = np.s_[low[1] : high[1], low[0] : high[0]]

@@ -13,7 +13,7 @@ from mua.bench import counts
 from mua.camera import orbit
 from mua.decode import decode_clip_frame
 from mua.gpu import Device
-from mua.kernels.splat_project import half_lengths
+from mua.kernels.splat_project import REACH, wide_deviations
 from mua.player.buffers import AvatarBuffers
 from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
@@ -73,5 +73,5 @@ def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path
     found = counts.fragments(device, frame.sorted, camera).sum()
     posed = decode_clip_frame(avatar, clip, frame=0, dtype=np.float64)
     seen = projected(posed, camera)
-    lengths = half_lengths(seen.ellipses)
+    lengths = REACH * wide_deviations(seen.ellipses[:, 4:6])
     assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the picture

@@ -14,7 +14,7 @@ from mua.camera import Camera, orbit, perspective
 from mua.decode import Splats, decode_clip_frame
 from mua.kernels.splat_project import REACH
 from mua.rendering import render_premultiplied
-from mua.splatting.projection import Eye, TorchSplats, project
+from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import draw_quads, rasterise
 from mua.splatting.tiles import TILE, assign
 
@@ -150,7 +150,7 @@ def test_splats_behind_the_camera_get_no_gradient() -> None:
 
 def test_a_pixel_that_is_done_blends_nothing_and_passes_no_gradient() -> None:
     half = 1 / (2 * TILE)
-    shapes = torch.tensor([[8.5, 8.5, 1, 0, half, half, 0.884]], dtype=torch.float64).repeat(40, 1)
+    shapes = torch.tensor([[8.5, 8.5, half, 0, half, 0.884]], dtype=torch.float64).repeat(40, 1)
     colors = torch.linspace(0, 1, 40, dtype=torch.float64)[:, None].repeat(1, 3).requires_grad_()
     draw_quads(shapes, colors, (TILE, TILE)).sum().backward()
     assert colors.grad is not None
@@ -180,4 +180,4 @@ def test_quads_are_drawn_as_far_as_the_reference_reaches() -> None:
     tensors = in_torch(splats)
     quads = project(tensors, Eye.of(camera(), tensors.centres), torch.tensor(splats.bounds))
     assert 0 < len(quads.splats) < 100  # some lie beyond the edges
-    assert (1 / quads.shapes[:, 4:6] > REACH * 0.3).all()  # half a pixel's own deviation at the least
+    assert (half_extents(quads.shapes) > REACH * 0.3).all()  # a pixel's own deviation at the least

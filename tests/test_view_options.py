@@ -35,6 +35,7 @@ def test_an_option_changes_what_window_and_file_show(option: str, output: Path |
 def test_no_option_is_forgotten() -> None:
     asked = {*VALUES, "ipd"}
     others = {"files", "clip", "frame", "frames", "motion", "mapping", "output", "turntable", "device", "list_devices"}
+    others |= {"web", "no_open"}
     assert set(inspect.signature(view).parameters) == asked | others | {"reference"}
     assert set(inspect.signature(Asked).parameters) == asked
 

@@ -18,7 +18,7 @@ from mua.kernels.splat_project import (
     REACH,
     eye_ellipses,
     half_extents,
-    half_lengths,
+    wide_deviations,
 )
 
 ULP = float(np.finfo(np.float32).eps)
@@ -85,8 +85,10 @@ def _extent_error(ellipses: Array, variance: Array) -> Array:
     deviation_error = (variance[:, None] / np.maximum(deviations, 1e-30) + 5 * ULP * deviations).max(axis=1)
     spread = (ellipses[:, 4] ** 2 - ellipses[:, 5] ** 2) / 2
     turn_error = np.minimum(variance / np.maximum(spread, 1e-30), np.pi / 2) + 8 * ULP
-    lengths = half_lengths(ellipses).sum(axis=1)
-    return 2 * REACH * deviation_error + lengths * turn_error + 14 * ULP * lengths
+    wide = wide_deviations(ellipses[:, 4:6])
+    lengths, longer = REACH * wide.sum(axis=1), REACH * (wide[:, 0] - wide[:, 1])
+    # The box grows with the difference of both by at most 2.5 for an angle.
+    return 2 * REACH * deviation_error + 2.5 * longer * turn_error + 14 * ULP * lengths
 
 
 def exact_keys(centres: Array, views: Array, bounds: Array) -> tuple[Array, float]:

@@ -13,6 +13,7 @@ import pytest
 import wgpu
 from drawn_splats import draw_frame, random_frame, reference_frame, sort_frame, stereo
 from packed_splats import unpacked
+from scipy.linalg import sqrtm
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
@@ -21,7 +22,7 @@ from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels import splat_draw as kernel
 from mua.kernels.splat_draw import WEIGHT, pixel_share, splat_draw
-from mua.kernels.splat_project import PIXEL_VARIANCE, REACH, half_lengths, pack_splats
+from mua.kernels.splat_project import PIXEL_VARIANCE, REACH, pack_splats
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image, read_image
 from mua.rendering import frame_bounds, render_premultiplied
 
@@ -38,17 +39,21 @@ def random_scene(count: int, screen: tuple[int, int]) -> tuple[Array, Array, Arr
     return ellipses, rng.random((count, 3)), rng.uniform(0.01, 1, count), rng.permutation(count)
 
 
+def places_in_quad(ellipse: Array, offsets: Array) -> Array:
+    """(u, v) [..., 2] of offsets [..., 2] from the middle, by scipy's square root of the covariance."""
+    axes = np.array([[ellipse[2], -ellipse[3]], [ellipse[3], ellipse[2]]])
+    root = sqrtm(axes @ np.diag(ellipse[4:] ** 2 + PIXEL_VARIANCE) @ axes.T)
+    return np.asarray(offsets @ np.linalg.inv(REACH * root))
+
+
 def painted(ellipses: Array, colors: Array, opacities: Array, order: Array, screen: tuple[int, int]) -> Array:
     """Each splat painted over the image, back to front, on all pixels whose centre lies in its quad."""
     row, column = np.mgrid[: screen[1], : screen[0]] + 0.5
     image = np.zeros((screen[1], screen[0], 4))
     for splat in order:
-        x, y, cosine, sine, major, minor = ellipses[splat]
-        along = cosine * (column - x) + sine * (row - y)
-        across = cosine * (row - y) - sine * (column - x)
-        reach = half_lengths(ellipses[splat])
-        inside = (np.abs(along) <= reach[0]) & (np.abs(across) <= reach[1])
-        alpha = opacities[splat] * pixel_share(along, across, major, minor) * inside
+        offsets = np.stack([column, row], axis=-1) - ellipses[splat, :2]
+        inside = (np.abs(places_in_quad(ellipses[splat], offsets)) <= 1).all(axis=-1)
+        alpha = opacities[splat] * pixel_share(offsets, ellipses[splat]) * inside
         image = image * (1 - alpha[..., None]) + alpha[..., None] * np.append(colors[splat], 1)
     return image
 
@@ -212,14 +217,14 @@ def integration_bound(exact: Array, opacity: float, major: float, minor: float) 
     """Error [H, W, 4] of one drawn splat whose premultiplied colours are at most 1.5 times its alpha.
 
     Corners of quads fall on a grid of pixels, which moves the offsets interpolated between them by half a step, and
-    centres are projected in float32: the slope of a window is at most 2 of its peak to its half width. Half floats
-    round to the nearest or towards zero.
+    centres are projected in float32: the slope of a window is at most 2 of its peak to the ellipse's lesser half width,
+    and there are two. Half floats round to the nearest or towards zero.
     """
     sigma = np.array([major, minor])
     wide = np.sqrt(sigma**2 + PIXEL_VARIANCE)
     peak = opacity * WEIGHT * np.prod(sigma / wide)
     shift = np.sqrt(0.5) * RASTER_GRID + PLACED
-    alpha = peak * (2 * shift * np.sum(1 / (REACH * wide)) + 64 * np.finfo(np.float32).eps)
+    alpha = peak * (2 * shift * 2 / (REACH * wide.min()) + 64 * np.finfo(np.float32).eps)
     half = np.finfo(np.float16)
     return np.asarray(1.5 * alpha + half.eps * exact + half.tiny)
 
@@ -232,15 +237,14 @@ def test_shader_integrates_a_splat_as_the_reference(
     rng = np.random.default_rng(screen[0])
     angle, middle = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.8, 2) * screen
     ellipses = in_halves(np.array([[*middle, np.cos(angle), np.sin(angle), *deviations]]))
-    angle = np.arctan2(ellipses[0, 3], ellipses[0, 2])
     colors, opacities = np.array([[0.25, 0.75, 1.5]]), np.array([0.875])  # half floats hold them exactly
     splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing(screen))
     exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
     row, column = np.mgrid[: screen[1], : screen[0]] + 0.5 - middle[::-1, None, None]
-    along, across = np.cos(angle) * column + np.sin(angle) * row, np.cos(angle) * row - np.sin(angle) * column
-    from_edge = np.abs(np.abs([along, across]) - half_lengths(ellipses)[0][:, None, None]).min(axis=0)
-    certain = from_edge > RASTER_GRID  # nearer, a pixel may count as in or as out
+    from_edge = np.abs(np.abs(places_in_quad(ellipses[0], np.stack([column, row], axis=-1))) - 1).min(axis=-1)
+    steepest = 1 / (REACH * np.sqrt(min(deviations) ** 2 + PIXEL_VARIANCE))  # change of (u, v) in a pixel
+    certain = from_edge > RASTER_GRID * steepest  # nearer, a pixel may count as in or as out
     assert np.all((np.abs(found - exact) <= integration_bound(exact, 0.875, *deviations))[certain])
 
 

@@ -32,31 +32,44 @@ def random_ellipses(count: int, least: float) -> tuple[Array, Array, Array, Arra
 def test_the_window_is_near_the_integral_over_a_pixel(turned: int) -> None:
     x, y, angle, major, minor = random_ellipses(400, 0.05)
     angle *= turned
-    along, across = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
-    found = pixel_share(along, across, major, minor)
+    ellipses = np.stack([0 * x, 0 * y, np.cos(angle), np.sin(angle), major, minor], axis=1)
+    found = pixel_share(np.stack([x, y], axis=1), ellipses)
     assert np.all(np.abs(found - quadrature(x, y, angle, major, minor)) <= WINDOW_BOUND)
 
 
-@pytest.mark.parametrize("deviation", [0.01, 0.3, 5.0])
-def test_the_window_holds_all_of_a_gaussian(deviation: float) -> None:
-    """And the variance of a pixel whole, beside what the window has of the splat's."""
-    offsets = (np.arange(4000) + 0.5) / 4000 * 2 - 1
-    across, along = np.meshgrid(*2 * [offsets * REACH * np.sqrt(deviation**2 + PIXEL_VARIANCE)])
-    shares = pixel_share(along, across, np.array(deviation), np.array(deviation))
-    total = shares.mean() * np.prod([np.ptp(a) * 4000 / 3999 for a in (along, across)])
-    assert total == pytest.approx(2 * np.pi * deviation**2, rel=1e-6)
-    variance = np.sum(shares * along**2) / np.sum(shares)
-    assert variance == pytest.approx(REACH**2 / 5 * deviation**2 + 1 / 12, rel=1e-6)
+def slanting(major: float, minor: float, *, angle: float = 0.7) -> np.ndarray:
+    return np.array([0, 0, np.cos(angle), np.sin(angle), major, minor])
+
+
+@pytest.mark.parametrize(("major", "minor"), [(0.01, 0.01), (0.3, 0.3), (5.0, 5.0), (6.0, 0.5)])
+def test_the_window_holds_all_of_a_gaussian(major: float, minor: float) -> None:
+    """And the variance of a pixel whole along any line, beside what the window has of the splat's."""
+    ellipse = slanting(major, minor)
+    side = 1.5 * REACH * np.sqrt(major**2 + PIXEL_VARIANCE)
+    step = (np.arange(2000) + 0.5) / 2000 * 2 - 1
+    offsets = side * np.stack(np.meshgrid(step, step), axis=-1)
+    shares = pixel_share(offsets, ellipse)
+    assert shares.mean() * (2 * side) ** 2 == pytest.approx(2 * np.pi * major * minor, rel=1e-3)
+    axis = ellipse[2:4]
+    for line, deviation in ((axis, major), (np.array([-axis[1], axis[0]]), minor)):
+        variance = np.sum(shares * (offsets @ line) ** 2) / np.sum(shares)
+        assert variance == pytest.approx(REACH**2 / 5 * deviation**2 + 1 / 12, rel=1e-3)
+
+
+def test_where_the_axes_of_a_round_ellipse_lie_changes_nothing() -> None:
+    offsets = np.random.default_rng(1).normal(size=(100, 2))
+    level, turned = (pixel_share(offsets, slanting(1, 1 - 1e-6, angle=angle)) for angle in (0.0, 0.7))
+    np.testing.assert_allclose(turned, level, rtol=0, atol=1e-5)
 
 
 def test_pixels_together_hold_about_all_of_a_gaussian() -> None:
     rows, columns = np.mgrid[-40:41, -40:41]
     for deviation, aliased in ((0.3, 0.2), (1.0, 0.02), (5.0, 1e-3)):  # pixels sample the window
-        total = pixel_share(columns + 0.3, rows - 0.2, np.array(deviation), np.array(deviation)).sum()
+        total = pixel_share(np.stack([columns + 0.3, rows - 0.2], axis=-1), slanting(deviation, deviation)).sum()
         assert total == pytest.approx(2 * np.pi * deviation**2, rel=aliased)
 
 
 def test_the_window_keeps_float32_and_raises_no_warning_far_away() -> None:
-    found = pixel_share(np.float32([1e4]), np.float32([-1e4]), np.float32([0.01]), np.float32([0.01]))
+    found = pixel_share(np.float32([1e4, -1e4]), np.float32([0, 0, 0.6, 0.8, 0.01, 0.01]))
     assert found.dtype == np.float32
     assert found == 0

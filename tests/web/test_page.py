@@ -103,7 +103,7 @@ def test_every_key_of_the_desktop_is_here_or_known_not_to_be() -> None:
     text = (Path(__file__).parents[2] / "python" / "mua" / "web" / "keys.js").read_text()
     here = {key for key in KEYS if f"\n  {key}: [" in text or f'\n  "{key}": [' in text}
     numbers = {str(i) for i in range(1, 6)}
-    assert set(KEYS) - here - numbers == {"s", "f"}  # stereo and following
+    assert set(KEYS) - here - numbers == {"s", "f", "l"}  # stereo, following and the level of detail by hand
 
 
 def test_a_control_that_has_the_focus_keeps_its_keys(opened: Open) -> None:

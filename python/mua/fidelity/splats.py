@@ -10,7 +10,7 @@ from mua.camera import Camera
 from mua.decode import Splats
 from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.kernels.splat_draw import WEIGHT
-from mua.kernels.splat_project import PIXEL_VARIANCE, REACH, half_lengths
+from mua.kernels.splat_project import REACH, wide_deviations
 from mua.rendering import projected
 
 SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part
@@ -19,41 +19,33 @@ VERTEX = """
 #version 330
 uniform vec2 screen;
 in vec4 ellipse; // centre column and row, cosine and sine of the major axis
-in vec4 lengths; // standard deviations along and across, half lengths of the quad
+in vec4 lengths; // standard deviations along and across, those of what is drawn
 in vec4 shade; // colour and opacity
-flat out vec4 axes;
-flat out vec2 deviations;
+out vec2 corner;
 flat out vec4 tint;
 void main()
 {
-    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    vec2 apart = corner * lengths.zw;
-    vec2 at = ellipse.xy + vec2(ellipse.z * apart.x - ellipse.w * apart.y, ellipse.w * apart.x + ellipse.z * apart.y);
+    corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+    vec2 apart = lengths.w * corner + (lengths.z - lengths.w) * dot(ellipse.zw, corner) * ellipse.zw;
+    vec2 at = ellipse.xy + REACH * apart;
     gl_Position = vec4(at.x / screen.x * 2.0 - 1.0, 1.0 - at.y / screen.y * 2.0, 0.0, 1.0);
-    axes = ellipse;
-    deviations = lengths.xy;
-    tint = shade;
+    tint = vec4(shade.rgb, shade.a * WEIGHT * (lengths.x / lengths.z) * (lengths.y / lengths.w));
 }
 """
 FRAGMENT = """
 #version 330
-uniform vec2 screen;
-flat in vec4 axes;
-flat in vec2 deviations;
+in vec2 corner;
 flat in vec4 tint;
 out vec4 color;
 void main()
 {
-    vec2 apart = vec2(gl_FragCoord.x, screen.y - gl_FragCoord.y) - axes.xy;
-    vec2 at = vec2(axes.z * apart.x + axes.w * apart.y, axes.z * apart.y - axes.w * apart.x);
-    vec2 wide = sqrt(deviations * deviations + PIXEL_VARIANCE);
-    vec2 window = (1.0 - min(at * at / (wide * wide * REACH2), 1.0)) * deviations / wide;
-    float alpha = tint.a * WEIGHT * window.x * window.y;
+    vec2 window = 1.0 - min(corner * corner, 1.0);
+    float alpha = tint.a * window.x * window.y;
     color = vec4(tint.rgb * alpha, alpha);
 }
 """
-for name, number in {"PIXEL_VARIANCE": PIXEL_VARIANCE, "REACH2": float(REACH**2), "WEIGHT": WEIGHT}.items():
-    FRAGMENT = FRAGMENT.replace(name, str(number))
+for name, number in {"REACH": float(REACH), "WEIGHT": WEIGHT}.items():
+    VERTEX = VERTEX.replace(name, str(number))
 
 
 class SplatPainter:
@@ -70,8 +62,8 @@ class SplatPainter:
         splats = projected(frame, replace(camera, screen=self._canvas.size))
         visible = splats.order[splats.ellipses[splats.order, 4] > 0]
         ellipses, opacities = splats.ellipses[visible], splats.opacities[visible]
-        lengths = half_lengths(ellipses)
-        rows = np.concatenate([ellipses, lengths, splats.colors[visible], opacities[:, None]], axis=1)
+        wide = wide_deviations(ellipses[:, 4:6])
+        rows = np.concatenate([ellipses, wide, splats.colors[visible], opacities[:, None]], axis=1)
         self._canvas.begin()
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = LAID_OVER

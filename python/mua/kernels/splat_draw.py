@@ -1,9 +1,10 @@
 """Draw sorted splats: a quad each, a window for the Gaussian over every pixel, degree-1 SH colour, blended by depth.
 
-The window 1 - x^2 along either axis of the ellipse has the Gaussian's integral and ends at REACH deviations: its quad
-has a third of the area on which the Gaussian is above LEAST_OPACITY. To its variance that of the pixel's unit square is
-added, 1/12 along any line, so that the ellipse keeps its axes. One splat is off by up to 0.14 of its opacity; where
-splats lie over one another, what one lacks its neighbours have.
+The window (1 - u^2) (1 - v^2) has the Gaussian's integral and ends at REACH deviations: its quad has a third of the
+area on which the Gaussian is above LEAST_OPACITY. (u, v) is the pixel's offset turned back by the symmetric root of the
+covariance, which changes little where the covariance does, also of round ellipses, whose axes may lie anywhere. To its
+variance that of the pixel's unit square is added, 1/12 along any line. One splat is off by up to 0.14 of its opacity;
+where splats lie over one another, what one lacks its neighbours have.
 
 Colours are display-referred, as in 3D Gaussian Splatting: sRGB values are blended, and no transfer function is applied.
 """
@@ -37,24 +38,20 @@ def splat_colors(
 
 
 def pixel_share(
-    along: Array,  # [...] pixel centre minus ellipse centre, along the major axis, pixels
-    across: Array,  # [...] across it
-    major: Array,  # [...] standard deviation, pixels
-    minor: Array,  # [...]
+    offsets: Array,  # [..., 2] pixel centre minus ellipse centre (columns, rows), pixels
+    ellipses: Array,  # [..., 6] (mua.kernels.splat_project)
 ) -> Array:
-    """Share [...] of its opacity that a splat has at a pixel.
+    """Share [...] of its opacity that a splat has at a pixel, 0 outside its quad.
 
-    It stands for the integral of exp(-along^2 / 2 major^2 - across^2 / 2 minor^2) over the pixel's square.
+    It stands for the integral over the pixel's square of the Gaussian that is 1 in the ellipse's middle.
     """
-    wide_major, wide_minor = wide_deviations(major), wide_deviations(minor)
-    share = major.dtype.type(WEIGHT) * (major / wide_major) * (minor / wide_minor)
-    return np.asarray(share * _window(along / (REACH * wide_major)) * _window(across / (REACH * wide_minor)))
-
-
-def _window(
-    offset: Array,  # [...] 1 at the quad's edge
-) -> Array:
-    return np.asarray(1 - np.minimum(offset * offset, 1))
+    axis, deviations = ellipses[..., 2:4], ellipses[..., 4:6]
+    wide = wide_deviations(deviations)
+    major, minor = wide[..., :1], wide[..., 1:]
+    along = np.sum(axis * offsets, axis=-1, keepdims=True)
+    place = (offsets / minor + (1 / major - 1 / minor) * along * axis) / REACH  # (u, v)
+    window = np.prod(1 - np.minimum(place * place, 1), axis=-1)
+    return np.asarray(ellipses.dtype.type(WEIGHT) * np.prod(deviations / wide, axis=-1) * window)
 
 
 def splat_draw(
@@ -122,9 +119,7 @@ def _shares(
     row: Array,  # [P]
 ) -> Array:
     """Share [P] of its opacity that each pair's splat has, 0 where the pixel centre is outside the quad."""
-    middle_x, middle_y, cosine, sine, major, minor = ellipses.T
-    x, y = column + 0.5 - middle_x, row + 0.5 - middle_y
-    return pixel_share(cosine * x + sine * y, cosine * y - sine * x, major, minor)
+    return pixel_share(np.stack([column, row], axis=-1) + ellipses.dtype.type(0.5) - ellipses[:, :2], ellipses)
 
 
 def _blend(

@@ -51,13 +51,6 @@ def splat_project(
     return splats, _keys(centres[splats], view, near, bounds), ellipses
 
 
-def half_lengths(
-    ellipses: Array,  # [..., M, 6]
-) -> Array:
-    """Half lengths [..., M, 2] of the quad along the ellipse's axes, pixels."""
-    return np.asarray(REACH * wide_deviations(ellipses[..., 4:6]))
-
-
 def wide_deviations(
     deviations: Array,  # [...] pixels
 ) -> Array:
@@ -69,9 +62,9 @@ def half_extents(
     ellipses: Array,  # [..., M, 6]
 ) -> Array:
     """Half width and height [..., M, 2] of the upright box around the quad, pixels."""
-    along, across = np.moveaxis(half_lengths(ellipses), -1, 0)
-    cosine, sine = np.abs(ellipses[..., 2]), np.abs(ellipses[..., 3])
-    return np.stack([cosine * along + sine * across, sine * along + cosine * across], axis=-1)
+    wide = wide_deviations(ellipses[..., 4:6])
+    size, longer = np.abs(ellipses[..., 2:4]), wide[..., :1] - wide[..., 1:]
+    return np.asarray(REACH * (wide[..., 1:] + longer * size.sum(axis=-1, keepdims=True) * size))
 
 
 def eye_ellipses(

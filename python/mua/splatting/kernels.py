@@ -1,6 +1,6 @@
 """The two passes of the rasteriser over the pixels of tiles, for the CPU and for CUDA from one source.
 
-    alpha = peak (1 - a^2) (1 - b^2),   a = (cosine dx + sine dy) along,   b = (cosine dy - sine dx) across
+    alpha = peak (1 - u^2) (1 - v^2),   u = uu dx + uv dy,   v = uv dx + vv dy
     image = sum_i T_i alpha_i (color_i, 1),   T_i = product of (1 - alpha_j) over the quads j before i
 
 (dx, dy) from the quad's middle to the pixel's centre. `shapes` are those of mua.splatting.projection.Quads. A pixel is
@@ -51,10 +51,10 @@ def passes(real: Any) -> Passes:
 
     @wp.struct
     class Place:
-        along: real  # from the quad's middle, pixels, along its axes
-        across: real
-        a: real  # 1 at the quad's edge
-        b: real
+        x: real  # from the quad's middle, pixels
+        y: real
+        u: real  # -1 to 1 at the quad's edges
+        v: real
 
     @wp.func
     def pixel_of(thread: int, columns: int, width: int, height: int, starts: wp.array[wp.int32]):
@@ -73,17 +73,15 @@ def passes(real: Any) -> Passes:
     @wp.func
     def place_in(pixel: Pixel, shapes: wp.array2d[real], quad: int):
         place = Place()
-        dx = pixel.x - shapes[quad, 0]
-        dy = pixel.y - shapes[quad, 1]
-        place.along = shapes[quad, 2] * dx + shapes[quad, 3] * dy
-        place.across = shapes[quad, 2] * dy - shapes[quad, 3] * dx
-        place.a = place.along * shapes[quad, 4]
-        place.b = place.across * shapes[quad, 5]
+        place.x = pixel.x - shapes[quad, 0]
+        place.y = pixel.y - shapes[quad, 1]
+        place.u = shapes[quad, 2] * place.x + shapes[quad, 3] * place.y
+        place.v = shapes[quad, 3] * place.x + shapes[quad, 4] * place.y
         return place
 
     @wp.func
     def window(place: Place):
-        return wp.max(one - place.a * place.a, zero) * wp.max(one - place.b * place.b, zero)
+        return wp.max(one - place.u * place.u, zero) * wp.max(one - place.v * place.v, zero)
 
     @wp.kernel(enable_backward=False, module="unique")
     def forward(
@@ -108,7 +106,7 @@ def passes(real: Any) -> Passes:
         pair = pixel.first
         while pair < pixel.end and transmittance > least:
             quad = quads[pair]
-            alpha = shapes[quad, 6] * window(place_in(pixel, shapes, quad))
+            alpha = shapes[quad, 5] * window(place_in(pixel, shapes, quad))
             weight = transmittance * alpha
             red += weight * colors[quad, 0]
             green += weight * colors[quad, 1]
@@ -134,7 +132,7 @@ def passes(real: Any) -> Passes:
         left: wp.array[real],
         ends: wp.array[wp.int32],
         wanted: wp.array2d[real],  # [W H, 4] gradient of the image
-        shapes_gradient: wp.array2d[real],  # [M, 7]
+        shapes_gradient: wp.array2d[real],  # [M, 6]
         colors_gradient: wp.array2d[real],  # [M, 3]
     ):
         pixel = pixel_of(wp.tid(), columns, width, height, starts)
@@ -152,7 +150,7 @@ def passes(real: Any) -> Passes:
             shown = window(place)
             pair -= 1
             if shown > zero:
-                peak = shapes[quad, 6]
+                peak = shapes[quad, 5]
                 alpha = peak * shown
                 transmittance /= one - alpha
                 weight = transmittance * alpha
@@ -162,20 +160,13 @@ def passes(real: Any) -> Passes:
                 wp.atomic_add(colors_gradient, quad, 0, weight * red)
                 wp.atomic_add(colors_gradient, quad, 1, weight * green)
                 wp.atomic_add(colors_gradient, quad, 2, weight * blue)
-                by_a = -two * place.a * (one - place.b * place.b) * peak * by_alpha
-                by_b = -two * place.b * (one - place.a * place.a) * peak * by_alpha
-                by_along = by_a * shapes[quad, 4]
-                by_across = by_b * shapes[quad, 5]
-                cosine = shapes[quad, 2]
-                sine = shapes[quad, 3]
-                dx = pixel.x - shapes[quad, 0]
-                dy = pixel.y - shapes[quad, 1]
-                wp.atomic_add(shapes_gradient, quad, 0, sine * by_across - cosine * by_along)
-                wp.atomic_add(shapes_gradient, quad, 1, -sine * by_along - cosine * by_across)
-                wp.atomic_add(shapes_gradient, quad, 2, dx * by_along + dy * by_across)
-                wp.atomic_add(shapes_gradient, quad, 3, dy * by_along - dx * by_across)
-                wp.atomic_add(shapes_gradient, quad, 4, by_a * place.along)
-                wp.atomic_add(shapes_gradient, quad, 5, by_b * place.across)
-                wp.atomic_add(shapes_gradient, quad, 6, by_alpha * shown)
+                by_u = -two * place.u * (one - place.v * place.v) * peak * by_alpha
+                by_v = -two * place.v * (one - place.u * place.u) * peak * by_alpha
+                wp.atomic_add(shapes_gradient, quad, 0, -shapes[quad, 2] * by_u - shapes[quad, 3] * by_v)
+                wp.atomic_add(shapes_gradient, quad, 1, -shapes[quad, 3] * by_u - shapes[quad, 4] * by_v)
+                wp.atomic_add(shapes_gradient, quad, 2, place.x * by_u)
+                wp.atomic_add(shapes_gradient, quad, 3, place.y * by_u + place.x * by_v)
+                wp.atomic_add(shapes_gradient, quad, 4, place.y * by_v)
+                wp.atomic_add(shapes_gradient, quad, 5, by_alpha * shown)
 
     return Passes(forward, backward)

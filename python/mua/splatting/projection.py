@@ -12,8 +12,6 @@ from mua.channels import SH_C0, SH_C1
 from mua.kernels.splat_draw import WEIGHT
 from mua.kernels.splat_project import GUARD, LAST_KEY, LEAST_OPACITY, LEAST_VARIANCE, PIXEL_VARIANCE, REACH
 
-ROUND = 1e-6  # of an ellipse's mean variance: with a smaller spread it has no axes, and none that could be turned
-
 
 @dataclass(frozen=True, eq=False)
 class TorchSplats:
@@ -47,7 +45,7 @@ class Quads:
     """The M splats that are seen, front to back."""
 
     splats: torch.Tensor  # [M] int64 into the splats
-    shapes: torch.Tensor  # [M, 7] middle (column, row), cosine, sine, 1 / half length along and across, peak of alpha
+    shapes: torch.Tensor  # [M, 6] middle (column, row); uu, uv, vv from offset to (u, v) in the quad; peak of alpha
     colors: torch.Tensor  # [M, 3] sRGB, not below 0
 
 
@@ -58,25 +56,25 @@ def project(
 ) -> Quads:
     """What the camera sees, front to back."""
     near = eye.projection.detach()[2, 3] / -2
-    ellipses = _ellipses(splats, eye, near)
+    shapes, before = _shapes(splats, eye, near)
     with torch.no_grad():
-        seen = torch.nonzero(_is_seen(ellipses, splats.opacities, eye.screen))[:, 0]
+        seen = torch.nonzero(before & _on_screen(shapes, eye.screen) & (splats.opacities >= LEAST_OPACITY))[:, 0]
         keys = _keys(splats.centres[seen], eye.view, near, bounds)
         chosen = seen[torch.sort(keys, stable=True).indices].flip(0)
-    shapes = _shapes(ellipses[chosen], splats.opacities[chosen])
-    return Quads(chosen, shapes, _colors(splats, chosen, eye))
+    return Quads(chosen, shapes[chosen], _colors(splats, chosen, eye))
 
 
 def half_extents(
-    shapes: torch.Tensor,  # [M, 7]
+    shapes: torch.Tensor,  # [M, 6]
 ) -> torch.Tensor:
     """Half width and height [M, 2] of the upright box around each quad, pixels."""
-    _, _, cosine, sine, along, across, _ = shapes.abs().unbind(1)
-    return torch.stack([cosine / along + sine / across, sine / along + cosine / across], dim=1)
+    uu, uv, vv = shapes[:, 2:5].unbind(1)
+    size = torch.stack([vv.abs() + uv.abs(), uu.abs() + uv.abs()], dim=1)
+    return size / (uu * vv - uv * uv)[:, None]
 
 
-def _ellipses(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> torch.Tensor:
-    """Ellipses [N, 6] as of mua.kernels.splat_project.eye_ellipses; deviations 0 before the near plane."""
+def _shapes(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    """[N, 6] of Quads, and whether each splat [N] lies beyond the near plane."""
     turn = eye.view[:3, :3]
     at = splats.centres @ turn.T + eye.view[:3, 3]
     depth = (-at[:, 2]).clamp(min=near)
@@ -90,15 +88,19 @@ def _ellipses(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> torch.Tensor
     covariance = half_axes @ half_axes.mT
     a, b, c = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     mean, stretch = (a + c) / 2, (a - c) / 2
-    is_round = stretch**2 + b**2 <= (ROUND * mean) ** 2
-    level = torch.where(is_round, mean.detach(), stretch)  # a round ellipse lies level
-    upright = torch.where(is_round, torch.zeros_like(b), b)
-    angle = torch.atan2(upright, level) / 2
-    spread = torch.where(is_round, torch.zeros_like(mean), torch.hypot(upright, level))
+    tiny = torch.finfo(at.dtype).tiny
+    spread = (stretch**2 + b**2 + tiny).sqrt()
     variances = torch.stack([mean + spread, mean - spread], dim=1).clamp(min=LEAST_VARIANCE)
-    deviations = variances.sqrt() * (-at[:, 2:] > near)
+    wide = (variances + PIXEL_VARIANCE).sqrt()
+    # The symmetric root of the wide covariance is total / 2 + turned (stretch, b; b, -stretch).
+    total = wide.sum(dim=1)
+    unclamped = mean - spread > LEAST_VARIANCE
+    turned = torch.where(unclamped, 1.0, (variances[:, 0] - variances[:, 1]) / (2 * spread)) / total
+    size = REACH * wide.prod(dim=1)
+    inverse = torch.stack([total / 2 - turned * stretch, -turned * b, total / 2 + turned * stretch]) / size
+    peak = WEIGHT * splats.opacities * (variances.prod(dim=1).sqrt() / wide.prod(dim=1))
     middle = (ndc * flip + 1) * half.abs()
-    return torch.cat([middle, angle.cos()[:, None], angle.sin()[:, None], deviations], dim=1)
+    return torch.cat([middle, inverse.T, peak[:, None]], dim=1), -at[:, 2] > near
 
 
 def _matrices(quaternions: torch.Tensor) -> torch.Tensor:
@@ -112,20 +114,10 @@ def _matrices(quaternions: torch.Tensor) -> torch.Tensor:
     return torch.stack([torch.stack(row, dim=1) for row in rows], dim=1)
 
 
-def _is_seen(ellipses: torch.Tensor, opacities: torch.Tensor, screen: tuple[int, int]) -> torch.Tensor:
-    """Whether each quad [N] reaches into the screen and is more than nothing."""
-    extent = half_extents(_shapes(ellipses, opacities))
-    middle = ellipses[:, 0:2]
-    on_screen = (middle + extent > 0) & (middle - extent < torch.tensor(screen).to(middle))
-    return on_screen.all(dim=1) & (ellipses[:, 4] > 0) & (opacities >= LEAST_OPACITY)
-
-
-def _shapes(ellipses: torch.Tensor, opacities: torch.Tensor) -> torch.Tensor:
-    """[M, 7] of Quads from ellipses [M, 6]."""
-    deviations = ellipses[:, 4:6]
-    wide = (deviations**2 + PIXEL_VARIANCE).sqrt()
-    peak = WEIGHT * opacities * (deviations / wide).prod(dim=1)
-    return torch.cat([ellipses[:, 0:4], 1 / (REACH * wide), peak[:, None]], dim=1)
+def _on_screen(shapes: torch.Tensor, screen: tuple[int, int]) -> torch.Tensor:
+    """Whether the box around each quad [N] reaches into the screen."""
+    extent, middle = half_extents(shapes), shapes[:, 0:2]
+    return ((middle + extent > 0) & (middle - extent < torch.tensor(screen).to(middle))).all(dim=1)
 
 
 def _keys(centres: torch.Tensor, view: torch.Tensor, near: torch.Tensor, bounds: torch.Tensor) -> torch.Tensor:

@@ -31,7 +31,7 @@ def rasterise(
 
 
 def draw_quads(
-    shapes: torch.Tensor,  # [M, 7] of mua.splatting.projection.Quads, front to back
+    shapes: torch.Tensor,  # [M, 6] of mua.splatting.projection.Quads, front to back
     colors: torch.Tensor,  # [M, 3]
     screen: tuple[int, int],  # width, height, pixels
 ) -> torch.Tensor:

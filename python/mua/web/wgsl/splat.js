@@ -30,6 +30,11 @@ fn unpackHalves_0( word_1 : u32) -> vec2<f32>
     return vec2<f32>(halfAt_0(word_1, u32(0)), halfAt_0(word_1, u32(1)));
 }
 
+fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
+{
+    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.1041666641831398f));
+}
+
 fn splatCorner_0( corner_0 : u32) -> vec2<f32>
 {
     var right_0 : bool;
@@ -87,19 +92,15 @@ fn splatCorner_0( corner_0 : u32) -> vec2<f32>
     return vec2<f32>(_S2, f32(_S1));
 }
 
-fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
+fn splatOffset_0( axis_0 : vec2<f32>,  wide_0 : vec2<f32>,  corner_1 : vec2<f32>) -> vec2<f32>
 {
-    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.1041666641831398f));
+    var _S3 : f32 = wide_0.y;
+    return vec2<f32>(2.0f) * (vec2<f32>(_S3) * corner_1 + vec2<f32>(((wide_0.x - _S3) * dot(axis_0, corner_1))) * axis_0);
 }
 
-fn splatHalfLengths_0( deviations_1 : vec2<f32>) -> vec2<f32>
+fn splatShare_0( deviations_1 : vec2<f32>,  wide_1 : vec2<f32>) -> f32
 {
-    return vec2<f32>(2.0f) * splatWide_0(deviations_1);
-}
-
-fn splatShare_0( deviations_2 : vec2<f32>,  wide_0 : vec2<f32>) -> f32
-{
-    return 0.88357293605804443f * (deviations_2.x / wide_0.x) * (deviations_2.y / wide_0.y);
+    return 0.88357293605804443f * (deviations_1.x / wide_1.x) * (deviations_1.y / wide_1.y);
 }
 
 struct SplatVaryings_0
@@ -109,45 +110,40 @@ struct SplatVaryings_0
     @interpolate(flat) @location(1) color_0 : vec4<f32>,
 };
 
-fn splatVertex_0( _S3 : u32,  _S4 : u32,  _S5 : vec2<f32>,  _S6 : mat4x4<f32>) -> SplatVaryings_0
+fn splatVertex_0( _S4 : u32,  _S5 : u32,  _S6 : vec2<f32>,  _S7 : mat4x4<f32>) -> SplatVaryings_0
 {
-    var splat_0 : u32 = u32(2) * order_0[_S3 / u32(6)];
+    var splat_0 : u32 = u32(2) * order_0[_S4 / u32(6)];
     var head_0 : vec4<u32> = splats_0[splat_0];
     var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
     var color_1 : vec4<f32> = vec4<f32>(unpackHalves_0(head_0.w), unpackHalves_0(tail_0.x));
-    var _S7 : u32;
-    if(_S4 == u32(0))
+    var _S8 : u32;
+    if(_S5 == u32(0))
     {
-        _S7 = tail_0.y;
+        _S8 = tail_0.y;
     }
     else
     {
-        _S7 = tail_0.z;
+        _S8 = tail_0.z;
     }
-    var major_0 : vec2<f32> = unpackHalves_0(_S7);
-    var _S8 : f32 = length(major_0);
-    var _S9 : f32 = halfAt_0(tail_0.w, _S4);
-    var deviations_3 : vec2<f32> = vec2<f32>(_S8, _S9);
-    var axis_0 : vec2<f32> = major_0 / vec2<f32>(max(_S8, 1.17549435082228751e-38f));
-    var corner_1 : vec2<f32> = splatCorner_0(_S3 % u32(6));
-    var offset_1 : vec2<f32> = corner_1 * splatHalfLengths_0(deviations_3);
-    var _S10 : f32 = axis_0.x;
-    var _S11 : f32 = offset_1.x;
-    var _S12 : f32 = axis_0.y;
-    var _S13 : f32 = offset_1.y;
-    var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S6)));
-    var _S14 : f32 = clip_0.w;
-    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S14) + vec2<f32>(_S10 * _S11 - _S12 * _S13, _S12 * _S11 + _S10 * _S13) * vec2<f32>(2.0f, -2.0f) / _S5;
-    var depth_0 : f32 = clamp(clip_0.z / _S14, 0.0f, 1.0f);
-    var seen_0 : bool = _S9 > 0.0f;
+    var major_0 : vec2<f32> = unpackHalves_0(_S8);
+    var _S9 : f32 = length(major_0);
+    var _S10 : f32 = halfAt_0(tail_0.w, _S5);
+    var deviations_2 : vec2<f32> = vec2<f32>(_S9, _S10);
+    var wide_2 : vec2<f32> = splatWide_0(deviations_2);
+    var corner_2 : vec2<f32> = splatCorner_0(_S4 % u32(6));
+    var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S7)));
+    var _S11 : f32 = clip_0.w;
+    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S11) + splatOffset_0(major_0 / vec2<f32>(max(_S9, 1.17549435082228751e-38f)), wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S6;
+    var depth_0 : f32 = clamp(clip_0.z / _S11, 0.0f, 1.0f);
+    var seen_0 : bool = _S10 > 0.0f;
     var varyings_0 : SplatVaryings_0;
     varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
     if(seen_0)
     {
         varyings_0.position_0 = vec4<f32>(place_0, depth_0, 1.0f);
     }
-    varyings_0.offset_0 = corner_1;
-    varyings_0.color_0 = vec4<f32>(color_1.xyz, color_1.w * splatShare_0(deviations_3, splatWide_0(deviations_3)));
+    varyings_0.offset_0 = corner_2;
+    varyings_0.color_0 = vec4<f32>(color_1.xyz, color_1.w * splatShare_0(deviations_2, wide_2));
     return varyings_0;
 }
 

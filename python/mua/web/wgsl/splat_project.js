@@ -323,20 +323,16 @@ fn splatWide_0( deviations_2 : vec2<f32>) -> vec2<f32>
     return sqrt(deviations_2 * deviations_2 + vec2<f32>(0.1041666641831398f));
 }
 
-fn splatHalfLengths_0( deviations_3 : vec2<f32>) -> vec2<f32>
+fn splatExtent_0( axis_2 : vec2<f32>,  wide_0 : vec2<f32>) -> vec2<f32>
 {
-    return vec2<f32>(2.0f) * splatWide_0(deviations_3);
+    var size_0 : vec2<f32> = abs(axis_2);
+    var _S42 : f32 = wide_0.y;
+    return vec2<f32>(2.0f) * (vec2<f32>(_S42) + vec2<f32>(((wide_0.x - _S42) * (size_0.x + size_0.y))) * size_0);
 }
 
 fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
 {
-    var quad_0 : vec2<f32> = splatHalfLengths_0(ellipse_1.deviations_1);
-    var axis_2 : vec2<f32> = abs(ellipse_1.axis_1);
-    var _S42 : f32 = axis_2.x;
-    var _S43 : f32 = quad_0.x;
-    var _S44 : f32 = axis_2.y;
-    var _S45 : f32 = quad_0.y;
-    var extent_0 : vec2<f32> = vec2<f32>(_S42 * _S43 + _S44 * _S45, _S44 * _S43 + _S42 * _S45);
+    var extent_0 : vec2<f32> = splatExtent_0(ellipse_1.axis_1, splatWide_0(ellipse_1.deviations_1));
     var onScreen_0 : bool;
     if((all(((ellipse_1.middle_0 + extent_0) > vec2<f32>(0.0f)))))
     {
@@ -408,22 +404,22 @@ fn depthKey_0( centre_2 : vec3<f32>) -> u32
     {
         depthOf_1 = depthOf_0;
     }
-    var _S46 : vec3<f32> = depthOf_1.xyz;
-    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S46;
-    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S46;
+    var _S43 : vec3<f32> = depthOf_1.xyz;
+    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S43;
+    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S43;
     var spare_0 : f32 = 0.5f * distance(Constants_0.bounds_low_0.xyz, Constants_0.bounds_high_0.xyz);
-    var _S47 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
-    var _S48 : f32 = depthOf_1.w;
-    var farthest_0 : f32 = dot(max(low_0, high_0), _S47) + _S48 + spare_0;
-    return u32(saturate((farthest_0 - (dot(centre_2, _S46) + _S48)) / max(farthest_0 - max(dot(min(low_0, high_0), _S47) + _S48 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
+    var _S44 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
+    var _S45 : f32 = depthOf_1.w;
+    var farthest_0 : f32 = dot(max(low_0, high_0), _S44) + _S45 + spare_0;
+    return u32(saturate((farthest_0 - (dot(centre_2, _S43) + _S45)) / max(farthest_0 - max(dot(min(low_0, high_0), _S44) + _S45 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
 }
 
 fn projectTexel_0( texel_3 : u32) -> u32
 {
     var gaussian_3 : Gaussian_0 = poseTexel_0(texel_3);
-    var _S49 : Ellipse_0 = project_0(gaussian_3, u32(0));
-    var first_2 : Ellipse_0 = _S49;
-    var second_1 : Ellipse_0 = _S49;
+    var _S46 : Ellipse_0 = project_0(gaussian_3, u32(0));
+    var first_2 : Ellipse_0 = _S46;
+    var second_1 : Ellipse_0 = _S46;
     if((Constants_0.eyes_0) == u32(2))
     {
         second_1 = project_0(gaussian_3, u32(1));
@@ -437,24 +433,24 @@ fn projectTexel_0( texel_3 : u32) -> u32
         second_1.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
     var splat_0 : u32 = u32(2) * (Constants_0.first_splat_0 + texel_3);
-    var _S50 : bool;
+    var _S47 : bool;
     if((first_2.deviations_1.x) > 0.0f)
     {
-        _S50 = true;
+        _S47 = true;
     }
     else
     {
-        _S50 = (second_1.deviations_1.x) > 0.0f;
+        _S47 = (second_1.deviations_1.x) > 0.0f;
     }
     var redGreen_0 : u32;
     var key_0 : u32;
-    if(_S50)
+    if(_S47)
     {
         var color_0 : vec3<f32> = colorOf_0(gaussian_3, texel_3);
         splats_0[splat_0 + u32(1)] = vec4<u32>(packBounded_0(vec2<f32>(color_0.z, gaussian_3.opacity_0)), packedAxis_0(first_2), packedAxis_0(second_1), packBounded_0(vec2<f32>(first_2.deviations_1.y, second_1.deviations_1.y)));
-        var _S51 : u32 = depthKey_0(gaussian_3.centre_0);
+        var _S48 : u32 = depthKey_0(gaussian_3.centre_0);
         redGreen_0 = packBounded_0(color_0.xy);
-        key_0 = _S51;
+        key_0 = _S48;
     }
     else
     {
@@ -471,12 +467,12 @@ var<workgroup> groupKeys_0 : array<u32, i32(256)>;
 @workgroup_size(256, 1, 1)
 fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_index) place_2 : u32)
 {
-    var _S52 : u32 = thread_0.x;
+    var _S49 : u32 = thread_0.x;
     var key_1 : u32;
-    if(_S52 < (Constants_0.texel_count_0))
+    if(_S49 < (Constants_0.texel_count_0))
     {
-        var _S53 : u32 = projectTexel_0(_S52);
-        key_1 = _S53;
+        var _S50 : u32 = projectTexel_0(_S49);
+        key_1 = _S50;
     }
     else
     {
@@ -485,16 +481,16 @@ fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(wo
     groupKeys_0[place_2] = key_1;
     workgroupBarrier();
     var pair_0 : u32 = u32(2) * place_2;
-    var _S54 : bool;
+    var _S51 : bool;
     if(pair_0 < u32(256))
     {
-        _S54 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
+        _S51 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
     }
     else
     {
-        _S54 = false;
+        _S51 = false;
     }
-    if(_S54)
+    if(_S51)
     {
         keys_0[(Constants_0.first_splat_0 + u32(256) * group_0.x) / u32(2) + place_2] = ((groupKeys_0[pair_0]) | ((((groupKeys_0[pair_0 + u32(1)]) << (u32(16))))));
     }
