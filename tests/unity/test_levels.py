@@ -1,6 +1,7 @@
 """Levels of detail in C# are those of Python, and chosen alike."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,14 +33,21 @@ def test_levels_are_those_of_python(csharp: CSharp, program: Path, tmp_path: Pat
     assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", sparse_avatar(seed), storage)
 
 
+def test_rotations_of_either_sign_are_kept_apart_as_in_python(csharp: CSharp, program: Path, tmp_path: Path) -> None:
+    avatar = sparse_avatar(0)
+    static = avatar.geometry.static.copy()
+    signs = np.random.default_rng(2).choice([-1, 1], static.shape[1])
+    static[3:7] = 0.9 * signs + 0.1 * static[3:7]
+    turned = replace(avatar, geometry=replace(avatar.geometry, static=static))
+    assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", turned, "f32")
+
+
 def test_levels_without_texels_are_those_of_python(csharp: CSharp, program: Path, tmp_path: Path) -> None:
     assert_levels_alike(csharp, program, tmp_path / "a.muaavatar", empty_avatar(), "f32")
 
 
 @pytest.mark.parametrize("taps", [32, 34])
 def test_a_wavelet_of_many_taps_has_no_levels(csharp: CSharp, program: Path, tmp_path: Path, taps: int) -> None:
-    from dataclasses import replace
-
     avatar = synthetic_avatar()
     filters = {name: np.pad(getattr(avatar.wavelet, name), (taps - 10) // 2) for name in ("rec_lo", "rec_hi")}
     long = replace(avatar, wavelet=replace(avatar.wavelet, **filters))
