@@ -1,0 +1,76 @@
+"""Posing in torch against the reference kernels and finite differences."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+import torch
+from synthetic_avatar import synthetic_avatar
+
+from mua.decode import Splats, decode_clip_frame
+from mua.model import Model
+from mua.splatting.posing import TorchRig, pose_splats
+
+FRAME = 3
+
+
+@pytest.fixture(scope="module")
+def avatar() -> Model:
+    return synthetic_avatar()
+
+
+@pytest.fixture(scope="module")
+def decoded(avatar: Model) -> Splats:
+    return decode_clip_frame(avatar, avatar.clips[0], frame=FRAME, dtype=np.float64)
+
+
+def joints_of(avatar: Model) -> torch.Tensor:
+    pose = avatar.clips[0].pose(FRAME)
+    return torch.tensor(avatar.rig.skeleton.skinning(pose.rotations, pose.translations))
+
+
+def test_splats_are_those_of_the_reference(avatar: Model, decoded: Splats) -> None:
+    joints, canonical, texture = joints_of(avatar), torch.tensor(decoded.canonical), torch.tensor(decoded.texture)
+    splats = pose_splats(TorchRig.of(avatar.rig, canonical), joints, canonical, texture)
+    wanted = {field.name: getattr(decoded, field.name, None) for field in fields(splats)}
+    wanted["turns"] = decoded.texel_dq[:, :4]
+    for name, values in wanted.items():
+        np.testing.assert_allclose(getattr(splats, name).numpy(), values, rtol=1e-7, atol=1e-9, err_msg=name)
+
+
+def test_terms_on_the_other_hemisphere_change_nothing(avatar: Model, decoded: Splats) -> None:
+    joints, canonical, texture = joints_of(avatar), torch.tensor(decoded.canonical), torch.tensor(decoded.texture)
+    rig = TorchRig.of(avatar.rig, canonical)
+    straight = pose_splats(rig, joints, canonical, texture)
+    joints[::2] *= -1
+    turned = pose_splats(rig, joints, canonical, texture)
+    torch.testing.assert_close(turned.centres, straight.centres, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("of", [0, 1, 2], ids=["joints", "mesh", "texture"])
+def test_gradients_are_those_of_finite_differences(avatar: Model, decoded: Splats, of: int) -> None:
+    inputs = [joints_of(avatar), torch.tensor(decoded.canonical), torch.tensor(decoded.texture)]
+    rig = TorchRig.of(avatar.rig, inputs[1])
+    generator = torch.Generator().manual_seed(0)
+    weights: dict[str, torch.Tensor] = {}
+
+    def value(tensors: list[torch.Tensor]) -> torch.Tensor:
+        splats = pose_splats(rig, *tensors)
+        for field in fields(splats):
+            shape = getattr(splats, field.name).shape
+            weights.setdefault(field.name, torch.randn(shape, generator=generator, dtype=torch.float64))
+        return torch.stack(
+            [(weights[field.name] * getattr(splats, field.name)).sum() for field in fields(splats)]
+        ).sum()
+
+    towards = torch.randn(inputs[of].shape, generator=generator, dtype=torch.float64)
+    leaves = [tensor.clone().requires_grad_(index == of) for index, tensor in enumerate(inputs)]
+    value(leaves).backward()  # type: ignore[no-untyped-call]
+    gradient = leaves[of].grad
+    assert gradient is not None
+    ends = []
+    for step in (1e-6, -1e-6):
+        moved = list(inputs)
+        moved[of] = inputs[of] + step * towards
+        ends.append(value(moved))
+    torch.testing.assert_close((gradient * towards).sum(), (ends[0] - ends[1]) / 2e-6, rtol=1e-6, atol=1e-6)
