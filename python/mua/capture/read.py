@@ -1,0 +1,227 @@
+"""Reading and checking capture.json; every error names file, field and value."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from string import Formatter
+from typing import Any
+
+import numpy as np
+
+from mua.arguments import PathLike, as_path, describe, finite_array
+from mua.arrays import Array
+from mua.capture.capture import (
+    COEFFICIENTS,
+    FILE,
+    FORMAT,
+    FRAME,
+    UNDISTORTED,
+    VERSION,
+    Capture,
+    CaptureCamera,
+    CaptureClip,
+)
+from mua.characters.figure_size import LEAST, MOST
+from mua.errors import InputError
+from mua.inputs import require_file
+from mua.pose.clip import LARGEST_RATE, LEAST_RATE
+
+LARGEST_SIDE = 1 << 15  # pixels
+ROTATION_BOUND = 1e-3  # what rounding to four digits leaves of a rotation
+PLACES = {  # what each pattern may name
+    "images": ("clip", "camera", "frame"),
+    "masks": ("clip", "camera", "frame"),
+    "backgrounds": ("camera",),
+    "meshes": ("clip", "frame"),
+    "tracks": ("clip",),
+}
+NEEDED = ("format", "version", "name", "rate", "template", "clips", "images", "cameras")
+OPTIONAL = ("masks", "backgrounds", "meshes", "tracks", "template_height", "leave_out")
+
+
+def open_capture(folder: PathLike) -> Capture:
+    """Read the capture.json of a folder.
+
+    Pictures are not opened yet. Errors: InputError with one sentence that names file, field and value where anything
+    that it says cannot be, or where the template or a motion that it names is not there.
+    """
+    file = as_path(folder, "capture") / FILE
+    said = _object(_parsed(file), str(file), NEEDED, OPTIONAL)
+    if said["format"] != FORMAT or said["version"] != VERSION:
+        found = f"{describe(said['format'])}, version {describe(said['version'])}"
+        raise InputError(f"{file}: format is {found}; this program reads {FORMAT!r}, version {VERSION}")
+    capture = Capture(
+        folder=file.parent,
+        name=_name(said["name"], f"{file}: name"),
+        rate=_number(said["rate"], f"{file}: rate", LEAST_RATE, LARGEST_RATE, "frames per second"),
+        template=file.parent / _text(said["template"], f"{file}: template"),
+        template_height=_height(said.get("template_height"), f"{file}: template_height"),
+        leave_out=_texts(said.get("leave_out", []), f"{file}: leave_out"),
+        clips=tuple(_clip(clip, f"{file}: clips[{i}]", file) for i, clip in enumerate(_list(said, "clips", file))),
+        cameras=tuple(_camera(one, f"{file}: cameras[{i}]") for i, one in enumerate(_list(said, "cameras", file))),
+        images=_text(said["images"], f"{file}: images"),
+        **{field: _text(said[field], f"{file}: {field}") for field in PLACES if field != "images" and field in said},
+    )
+    _check_whole(capture)
+    return capture
+
+
+def _parsed(file: Path) -> Any:
+    if not file.parent.is_dir():
+        raise InputError(f"{file.parent}: there is no such directory, expected the folder of a capture")
+    if not file.is_file():
+        raise InputError(f"{file.parent}: not a capture, it holds no {FILE}")
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file}: cannot be read as JSON: {error}") from error
+
+
+def _check_whole(capture: Capture) -> None:
+    """What only all fields together show."""
+    for field, listed in (("cameras", capture.cameras), ("clips", capture.clips)):
+        names = [one.name for one in listed]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise InputError(f"{capture.file}: {field}: two are called {twice!r}, expected a name for each")
+    counts = {"clip": len(capture.clips), "camera": len(capture.cameras), "frame": 1}
+    for field, places in PLACES.items():
+        if getattr(capture, field) is not None:
+            _check_pattern(getattr(capture, field), f"{capture.file}: {field}", places, counts)
+    if capture.meshes is not None and FRAME not in capture.meshes:
+        raise InputError(f"{capture.file}: meshes is {capture.meshes!r}; expected a file for each {{frame}}")
+    require_file(capture.template)
+    for clip in capture.clips:
+        require_file(clip.motion)
+
+
+def _check_pattern(pattern: str, where: str, places: Sequence[str], counts: dict[str, int]) -> None:
+    try:
+        named = {name for _, name, _, _ in Formatter().parse(pattern) if name is not None}
+        pattern.format(**dict.fromkeys(places, "") | ({"frame": 0} if "frame" in places else {}))
+    except (ValueError, KeyError, IndexError) as error:
+        listed = " and ".join(f"{{{place}}}" for place in places)
+        raise InputError(f"{where} is {pattern!r}; expected a path with {listed} and no other braces") from error
+    for place in places:
+        if place not in named and counts[place] > 1:
+            raise InputError(f"{where} is {pattern!r}; expected {{{place}}} in it: there are {counts[place]}")
+
+
+def _clip(value: Any, where: str, file: Path) -> CaptureClip:
+    said = _object(value, where, ("name", "motion", "frames"), ("first", "held_out"))
+    name = _name(said["name"], f"{where}: name")
+    where = f"{where} ({name})"
+    return CaptureClip(
+        name=name,
+        motion=file.parent / _text(said["motion"], f"{where}: motion"),
+        first=_count(said.get("first", 0), f"{where}: first", 0),
+        frames=_count(said["frames"], f"{where}: frames", 1),
+        held_out=_flag(said.get("held_out", False), f"{where}: held_out"),
+    )
+
+
+def _camera(value: Any, where: str) -> CaptureCamera:
+    said = _object(value, where, ("name", "size", "focal", "centre", "world_to_camera"), ("distortion", "held_out"))
+    name = _name(said["name"], f"{where}: name")
+    where = f"{where} ({name})"
+    size = finite_array(said["size"], f"{where}: size", (2,))
+    if (size != np.rint(size)).any() or (size < 1).any() or (size > LARGEST_SIDE).any():
+        raise InputError(f"{where}: size is {said['size']}; expected width and height, 1 to {LARGEST_SIDE} pixels")
+    focal = finite_array(said["focal"], f"{where}: focal", (2,))
+    if (focal <= 0).any():
+        raise InputError(f"{where}: focal is {said['focal']}; expected two lengths above 0, in pixels")
+    column, row = finite_array(said["centre"], f"{where}: centre", (2,))
+    return CaptureCamera(
+        name=name,
+        size=(int(size[0]), int(size[1])),
+        focal=(float(focal[0]), float(focal[1])),
+        centre=(float(column), float(row)),
+        world_to_camera=_rigid(said["world_to_camera"], f"{where}: world_to_camera"),
+        distortion=_distortion(said.get("distortion", UNDISTORTED), f"{where}: distortion"),
+        held_out=_flag(said.get("held_out", False), f"{where}: held_out"),
+    )
+
+
+def _rigid(value: Any, where: str) -> Array:
+    """A rotation and a translation [4, 4]."""
+    matrix = finite_array(value, where, (4, 4))
+    if not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        raise InputError(f"{where}: the last row is {matrix[3].tolist()}; expected 0, 0, 0, 1 (rows of the matrix)")
+    turn = matrix[:3, :3]
+    if np.abs(turn @ turn.T - np.eye(3)).max() > ROTATION_BOUND:
+        lengths = ", ".join(f"{length:.4g}" for length in np.linalg.norm(turn, axis=1))
+        raise InputError(f"{where}: not a rotation: its rows have lengths {lengths} or are not at right angles")
+    if np.linalg.det(turn) < 0:
+        raise InputError(f"{where}: it mirrors (determinant -1); expected x to the right, y down and z forward")
+    return matrix
+
+
+def _distortion(value: Any, where: str) -> tuple[float, ...]:
+    model = f"OpenCV's {', '.join(COEFFICIENTS)}"
+    if isinstance(value, list) and len(value) not in (0, 4, len(COEFFICIENTS)):
+        raise InputError(
+            f"{where}: has {len(value)} coefficients; expected {model}; undistort the pictures of other models first"
+        )
+    given = finite_array(value or UNDISTORTED, where, (None,))
+    return (*given.tolist(), *UNDISTORTED[len(given) :])
+
+
+def _object(value: Any, where: str, needed: Sequence[str], optional: Sequence[str]) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise InputError(f"{where}: is {describe(value)}; expected a JSON object")
+    for field in needed:
+        if field not in value:
+            raise InputError(f"{where}: holds no {field}; expected {', '.join(needed)}")
+    for field in value:
+        if field not in (*needed, *optional):
+            raise InputError(f"{where}: {field!r} is no field; there are {', '.join((*needed, *optional))}")
+    return value
+
+
+def _list(said: dict[str, Any], field: str, file: Path) -> list[Any]:
+    value = said[field]
+    if not isinstance(value, list) or not value:
+        raise InputError(f"{file}: {field} is {describe(value)}; expected a list of at least one")
+    return value
+
+
+def _text(value: Any, where: str) -> str:
+    if not isinstance(value, str) or not value or "\0" in value:
+        raise InputError(f"{where} is {describe(value)}; expected a text")
+    return value
+
+
+def _texts(value: Any, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise InputError(f"{where} is {describe(value)}; expected a list of names")
+    return tuple(_text(one, where) for one in value)
+
+
+def _name(value: Any, where: str) -> str:
+    """A name that may become part of a file's name."""
+    if set("/\\") & set(_text(value, where)) or value in (".", ".."):
+        raise InputError(f"{where} is {describe(value)}; expected a name that can be that of a folder")
+    return str(value)
+
+
+def _flag(value: Any, where: str) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{where} is {describe(value)}; expected true or false")
+    return value
+
+
+def _count(value: Any, where: str, least: int) -> int:
+    if not isinstance(value, int) or isinstance(value, bool) or value < least:
+        raise InputError(f"{where} is {describe(value)}; expected a whole number of at least {least}")
+    return value
+
+
+def _number(value: Any, where: str, least: float, most: float, unit: str) -> float:
+    given = float(finite_array(value, where, ()))
+    if not least <= given <= most:
+        raise InputError(f"{where} is {given:g}; expected {least:g} to {most:g} {unit}")
+    return given
+
+
+def _height(value: Any, where: str) -> float | None:
+    return None if value is None else _number(value, where, LEAST, MOST, "metres")
