@@ -34,11 +34,12 @@ class TorchRig:
 
 
 def blend_vertices(
-    rig: TorchRig,
-    joints: Tensor,  # [J, 8] bind pose to world
+    indices: Tensor,  # [V, K] int64 joints, largest weight first
+    weights: Tensor,  # [V, K] rows sum to 1
+    joints: Tensor,  # [..., J, 8] bind pose to world
 ) -> Tensor:
-    """Dual quaternions [V, 8] of the vertices, bind pose to world."""
-    return _blend(joints[rig.skin_indices], rig.skin_weights, joints[rig.skin_indices[:, 0], :4])
+    """Dual quaternions [..., V, 8] of the vertices, bind pose to world."""
+    return _blend(joints[..., indices, :], weights, joints[..., indices[:, 0], :4])
 
 
 def blend_texels(
@@ -57,7 +58,7 @@ def pose_splats(
     texture: Tensor,  # [N, 23] raw channels (mua.channels)
 ) -> TorchSplats:
     """Activate the channels and pose them: the splats of one frame in the world."""
-    texel_dq = blend_texels(rig, blend_vertices(rig, joints))
+    texel_dq = blend_texels(rig, blend_vertices(rig.skin_indices, rig.skin_weights, joints))
     points = torch.einsum("nk,nkc->nc", rig.barycentrics, canonical[rig.corners]) + texture[:, 0:3]
     turns = texel_dq[:, :4]
     return TorchSplats(
@@ -99,17 +100,17 @@ def dual_transform(
 
 
 def _blend(
-    terms: Tensor,  # [N, K, 8]
+    terms: Tensor,  # [..., N, K, 8]
     weights: Tensor,  # [N, K]
-    reference: Tensor,  # [N, 4] on whose hemisphere all terms are added
+    reference: Tensor,  # [..., N, 4] on whose hemisphere all terms are added
 ) -> Tensor:
-    away = (terms[..., :4] * reference[:, None]).sum(-1) < 0
-    total = (torch.where(away, -weights, weights)[..., None] * terms).sum(1)
-    return total / _norm(total[:, :4])
+    away = (terms[..., :4] * reference[..., None, :]).sum(-1) < 0
+    total = (torch.where(away, -weights, weights)[..., None] * terms).sum(-2)
+    return total / _norm(total[..., :4])
 
 
 def _norm(
-    q: Tensor,  # [N, 4]
+    q: Tensor,  # [..., 4]
 ) -> Tensor:
-    """Norms [N, 1], never zero."""
-    return torch.linalg.vector_norm(q, dim=1, keepdim=True).clamp(min=torch.finfo(q.dtype).tiny)
+    """Norms [..., 1], never zero."""
+    return torch.linalg.vector_norm(q, dim=-1, keepdim=True).clamp(min=torch.finfo(q.dtype).tiny)
