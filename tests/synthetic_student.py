@@ -7,9 +7,9 @@ import torch
 from torch import Tensor
 
 from mua.channels import ATTRIBUTES, CHANNELS
+from mua.checkpoint import Checkpoints
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
-from mua.student.checkpoint import Checkpoints
 from mua.student.model import Student
 from mua.student.optimise import Progress, Report, Run
 from mua.student.settings import Ranks, Schedule, Settings

@@ -6,7 +6,7 @@ from typing import BinaryIO
 import pytest
 import torch
 
-from mua.student.checkpoint import Checkpoints, run_key
+from mua.checkpoint import Checkpoints, run_key
 
 
 def test_returns_what_was_saved(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 import torch
 from limbs import limb_steps, limbs_apart, two_limbs
 
-from mua.student.checkpoint import Checkpoints
+from mua.checkpoint import Checkpoints
 from mua.student.conditioned import Whitening
 from mua.student.optimise import Run
 from mua.student.points import BLEND, RADII, draw_points, exchange, scatter

@@ -22,7 +22,7 @@ from recordings import write
 from trainings import STAGE_NAMES, Training, one_by_one, process
 
 from mua.arrays import Array
-from mua.student.checkpoint import Checkpoints
+from mua.checkpoint import Checkpoints
 
 EARLIER = b"an earlier result"
 

@@ -27,9 +27,9 @@ from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
+from mua.checkpoint import Checkpoints, run_key
 from mua.files import replacing
 from mua.recording import Recording
-from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
 from mua.student.model import Student

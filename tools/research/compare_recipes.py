@@ -24,9 +24,9 @@ import torch
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
 from mua.channels import APPEARANCE, GEOMETRY
+from mua.checkpoint import Checkpoints
 from mua.files import replacing
 from mua.recording import Recording
-from mua.student.checkpoint import Checkpoints
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
 from mua.student.model import Branch

@@ -18,13 +18,13 @@ import torch
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.baking.evaluate import Errors, Picture
 from mua.channels import ATTRIBUTES
+from mua.checkpoint import Checkpoints, run_key
 from mua.compare.motion import motion_of, training_frames
 from mua.compare.network import NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
 from mua.compare.systems import SYSTEMS
 from mua.files import replacing
 from mua.recording import Recording
-from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.optimise import Run
 from mua.student.settings import preset
 

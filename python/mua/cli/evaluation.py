@@ -7,6 +7,7 @@ from pathlib import Path
 
 import torch
 
+from mua.checkpoint import Checkpoints, run_key
 from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.compare import entries, plots, report, scores
@@ -20,7 +21,6 @@ from mua.files import replacing, write_bytes
 from mua.gpu import Device, open_device
 from mua.locks import DirectoryLock
 from mua.recording import Recording
-from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.optimise import Progress, Run
 from mua.student.settings import Settings, preset
 

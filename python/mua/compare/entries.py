@@ -13,6 +13,7 @@ from mua.asset.read import load
 from mua.asset.summary import storage_of
 from mua.bench.measure import measure
 from mua.bench.report import total_milliseconds
+from mua.checkpoint import Checkpoints
 from mua.compare.motion import motion_of
 from mua.compare.network import NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
@@ -24,7 +25,6 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.frame import AvatarFrame
 from mua.recording import Recording, WholeFrame
 from mua.rig.rig import Rig
-from mua.student.checkpoint import Checkpoints
 from mua.student.optimise import Report
 
 FLOAT = 4  # bytes of a system's number; avatar files count as stored

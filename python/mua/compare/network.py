@@ -14,9 +14,9 @@ import torch
 from torch import Tensor, nn
 
 from mua.channels import CHANNELS
+from mua.checkpoint import Checkpoints
 from mua.compare.optimise import Groups, optimise
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames, coarse_flops, coarse_parameters
-from mua.student.checkpoint import Checkpoints
 from mua.student.conditioned import fold
 from mua.student.finetune import BASIS_RATE
 from mua.student.model import Coarse, linear_layers

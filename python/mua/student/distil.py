@@ -12,13 +12,13 @@ import torch
 
 from mua import __version__
 from mua.arrays import Array
+from mua.checkpoint import Checkpoints, run_key
 from mua.errors import InputError
 from mua.pose.descriptor import choose_joints, choose_translated, describe, normalization, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.rig.rig import Rig
-from mua.student.checkpoint import Checkpoints, run_key
 from mua.student.local import body_parts
 from mua.student.model import Student
 from mua.student.optimise import Progress

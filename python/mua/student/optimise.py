@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor, nn
 
+from mua.checkpoint import Checkpoints
 from mua.processes import ALONE, Processes
-from mua.student.checkpoint import Checkpoints
 from mua.student.settings import Schedule
 
 CHECKPOINT_STEPS = 200

@@ -8,11 +8,11 @@ import torch
 from torch import Tensor
 
 from mua.channels import APPEARANCE, GEOMETRY
+from mua.checkpoint import Checkpoints
 from mua.errors import InputError
 from mua.memory import release_memory
 from mua.processes import ALONE, Processes
 from mua.student.branches import each_branch, side_by_side
-from mua.student.checkpoint import Checkpoints
 from mua.student.coarse import fit_coarse
 from mua.student.conditioned import fold
 from mua.student.factorize import blendshapes, separable_blendshapes

@@ -1,4 +1,4 @@
-"""Checkpoints of a distillation: one file per stage, replaced atomically, ignored where they belong to another run."""
+"""Checkpoints of a training: one file per stage, replaced atomically, ignored where they belong to another run."""
 
 import hashlib
 import pickle
