@@ -84,7 +84,7 @@ def _shapes(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> tuple[torch.Te
     ndc = at[:, :2] / depth[:, None] * focal - skew
     slope = (ndc.clamp(-GUARD, GUARD) + skew) / focal
     jacobian = (half * focal / depth[:, None])[:, :, None] * (turn[:2] + slope[:, :, None] * turn[2])
-    half_axes = jacobian @ (_matrices(splats.rotations) * splats.scales[:, None, :])  # [N, 2, 3]
+    half_axes = jacobian @ (matrices(splats.rotations) * splats.scales[:, None, :])  # [N, 2, 3]
     covariance = half_axes @ half_axes.mT
     a, b, c = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     mean, stretch = (a + c) / 2, (a - c) / 2
@@ -103,15 +103,15 @@ def _shapes(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> tuple[torch.Te
     return torch.cat([middle, inverse.T, peak[:, None]], dim=1), -at[:, 2] > near
 
 
-def _matrices(quaternions: torch.Tensor) -> torch.Tensor:
-    """Rotation matrices [N, 3, 3] of unit quaternions [N, 4]."""
-    w, x, y, z = quaternions.unbind(1)
+def matrices(quaternions: torch.Tensor) -> torch.Tensor:
+    """Rotation matrices [..., 3, 3] of unit quaternions [..., 4]."""
+    w, x, y, z = quaternions.unbind(-1)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
     ]
-    return torch.stack([torch.stack(row, dim=1) for row in rows], dim=1)
+    return torch.stack([torch.stack(row, dim=-1) for row in rows], dim=-2)
 
 
 def _on_screen(shapes: torch.Tensor, screen: tuple[int, int]) -> torch.Tensor:
@@ -136,7 +136,7 @@ def _colors(splats: TorchSplats, chosen: torch.Tensor, eye: Eye) -> torch.Tensor
     """Colours [M, 3] of mua.kernels.splat_draw.splat_colors."""
     position = -eye.view[:3, :3].T @ eye.view[:3, 3]
     direction = torch.nn.functional.normalize(splats.centres[chosen] - position, dim=1)
-    turned = (direction[:, None] @ _matrices(splats.turns[chosen]))[:, 0]  # by the transpose: back
+    turned = (direction[:, None] @ matrices(splats.turns[chosen]))[:, 0]  # by the transpose: back
     x, y, z = turned[:, :, None].unbind(1)
     c0, c1, c2, c3 = splats.sh[chosen].reshape(-1, 4, 3).unbind(1)
     return (0.5 + SH_C0 * c0 + SH_C1 * (-y * c1 + z * c2 - x * c3)).clamp(min=0)
