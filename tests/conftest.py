@@ -22,6 +22,7 @@ from mua.pose.clip import Clip
 if TYPE_CHECKING:
     from trainings import Training
 
+    from mua.capture import Capture
     from mua.compare.system import TrainingFrames
     from mua.gpu import Device
     from mua.recording import Recording
@@ -47,6 +48,14 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("recordings") / "undisturbed"
     write(directory)
     return directory
+
+
+@pytest.fixture(scope="session")
+def small_capture(tmp_path_factory: pytest.TempPathFactory) -> "Capture":
+    """A capture of the procedural character by four cameras; tests leave it as it is."""
+    from captures import make_capture  # here, because few tests need one
+
+    return make_capture(tmp_path_factory.mktemp("captures") / "figure")
 
 
 @pytest.fixture

@@ -1,7 +1,9 @@
 """Captures: calibrated pictures of a person, with a rigged template and its poses, in a folder with a capture.json."""
 
-from mua.capture.capture import Capture, CaptureCamera, CaptureClip
+from mua.capture.camera import CaptureCamera
+from mua.capture.capture import Capture, CaptureClip
 from mua.capture.read import open_capture
+from mua.capture.view import View
 from mua.capture.write import write_capture
 
-__all__ = ["Capture", "CaptureCamera", "CaptureClip", "open_capture", "write_capture"]
+__all__ = ["Capture", "CaptureCamera", "CaptureClip", "View", "open_capture", "write_capture"]

@@ -1,68 +1,26 @@
-"""What a capture is: cameras around a person, clips that they filmed, and where the files lie.
-
-The world is in metres, right-handed and Y up. Cameras have OpenCV's axes: x to the right, y down, z forward.
-Pixels count from the picture's upper left corner, so the first pixel's centre lies at (0.5, 0.5).
-"""
+"""What a capture is: cameras around a person, clips that they filmed, and where the files lie."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import TypeVar
 
-import numpy as np
-
-from mua.arrays import Array
-from mua.camera import NEAR, Camera
+from mua.atlas.detail import UvMode
+from mua.atlas.surfaces import Surfaces
+from mua.atlas.uv import build_atlas
+from mua.capture.camera import CaptureCamera
+from mua.capture.poses import template_poses
+from mua.capture.view import Files, View, read_view
+from mua.characters.figure_size import FigureSize
+from mua.characters.read import read_surfaces
 from mua.errors import InputError
+from mua.pose.clip import Clip
+from mua.rig.character import Character
 
 FILE, FORMAT, VERSION = "capture.json", "mua-capture", 1
-COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3")  # of OpenCV's distortion
-UNDISTORTED = (0.0,) * len(COEFFICIENTS)
 FRAME = "{frame"  # how the place of a frame's number begins in a pattern
-_AXES = np.diag([1.0, -1, -1, 1])  # OpenCV's camera axes and an eye's: y down and up, z forward and back
-
-
-@dataclass(frozen=True, eq=False)
-class CaptureCamera:
-    """One calibrated camera; its distortion is undone where pictures are read."""
-
-    name: str
-    size: tuple[int, int]  # width, height, pixels
-    focal: tuple[float, float]  # along columns and rows, pixels
-    centre: tuple[float, float]  # column and row of the principal point, pixels
-    world_to_camera: Array  # [4, 4] metres
-    distortion: tuple[float, ...] = UNDISTORTED  # COEFFICIENTS
-    held_out: bool = False
-
-    def camera(self) -> Camera:
-        """The same pinhole as a view; of a distorted camera, what it would see without distortion."""
-        (width, height), (fx, fy), (cx, cy) = self.size, self.focal, self.centre
-        projection = np.array(
-            [
-                [2 * fx / width, 0, 1 - 2 * cx / width, 0],
-                [0, 2 * fy / height, 2 * cy / height - 1, 0],
-                [0, 0, -1, -2 * NEAR],
-                [0, 0, -1, 0],
-            ]
-        )
-        return Camera(_AXES @ self.world_to_camera, projection, self.size)
-
-    @property
-    def position(self) -> Array:
-        """[3] world, metres."""
-        return np.asarray(-self.world_to_camera[:3, :3].T @ self.world_to_camera[:3, 3])
-
-    def cropped(self, box: tuple[int, int, int, int]) -> Self:
-        """The camera of a part of its picture: left, upper, right and lower edge in pixels, which may lie outside."""
-        left, upper, right, lower = box
-        centre = (self.centre[0] - left, self.centre[1] - upper)
-        return replace(self, size=(right - left, lower - upper), centre=centre)
-
-    def resized(self, size: tuple[int, int]) -> Self:
-        """The camera of its whole picture at another size."""
-        x, y = size[0] / self.size[0], size[1] / self.size[1]
-        focal = (self.focal[0] * x, self.focal[1] * y)
-        return replace(self, size=size, focal=focal, centre=(self.centre[0] * x, self.centre[1] * y))
+ATLAS = 1024  # texels of the template's base-colour atlas along a side
 
 
 @dataclass(frozen=True)
@@ -74,6 +32,7 @@ class CaptureClip:
     first: int  # pose of the motion, at the capture's rate, that frame 0 shows
     frames: int
     held_out: bool = False
+    first_image: int = 0  # what {frame} is for frame 0, or the frame of the video that shows it
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +67,56 @@ class Capture:
         return _named(self.clips, name, f"{self.file}: clips")
 
     def place(self, pattern: str, *, clip: str = "", camera: str = "", frame: int = 0) -> Path:
-        """The file that a pattern names."""
-        return self.folder / pattern.format(clip=clip, camera=camera, frame=frame)
+        """The file that a pattern names; `frame` counts from 0 in the clip."""
+        number = frame + (self.clip(clip).first_image if clip else 0)
+        return self.folder / pattern.format(clip=clip, camera=camera, frame=number)
+
+    def view(
+        self,
+        clip: str,
+        frame: int,  # from 0 in the clip
+        camera: str,
+        *,
+        crop: bool = False,
+        rows: int | None = None,
+    ) -> View:
+        """What a camera saw of a frame, without distortion: picture, mask, background and the pinhole that fits them.
+
+        With `crop` only the box around the mask and a margin; with `rows` as if the whole picture had so many rows.
+        Errors: InputError with one sentence that names the file where a picture is missing or is not the camera's.
+        """
+        seen, filmed = self.camera(camera), self.clip(clip)
+        if not 0 <= frame < filmed.frames:
+            raise InputError(f"{self.file}: frame is {frame}; clip {clip!r} has frames 0 to {filmed.frames - 1}")
+        return read_view(self.files(clip, frame, camera), seen, crop=crop, rows=rows)
+
+    def files(self, clip: str, frame: int, camera: str) -> Files:
+        """Where a view's pictures lie."""
+        image, mask, background = (
+            None if pattern is None else self.place(pattern, clip=clip, camera=camera, frame=frame)
+            for pattern in (self.images, self.masks, self.backgrounds)
+        )
+        assert image is not None
+        return Files(image, mask, background, self.clip(clip).first_image + frame)
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The template's skinned surface as its file has it, in metres; read once."""
+        return read_surfaces(self.template, size=FigureSize(height=self.template_height), leave_out=self.leave_out)
+
+    def character(self, *, uv: UvMode = "auto") -> Character:
+        """The template with one UV layout and one picture for all its materials; charts are cut where it has none."""
+        return build_atlas(self.surfaces, uv=uv, size=ATLAS)
+
+    def motion(self, clip: str) -> Clip:
+        """The poses of a clip's frames on the template's skeleton, at the capture's rate: one for each frame.
+
+        Errors: InputError where the motion cannot be read, does not fit the template, or is too short.
+        """
+        filmed = self.clip(clip)
+        return template_poses(
+            filmed.motion, self.surfaces, rate=self.rate, name=clip, first=filmed.first, frames=filmed.frames
+        )
 
 
 Named = TypeVar("Named", CaptureCamera, CaptureClip)

@@ -10,17 +10,8 @@ import numpy as np
 
 from mua.arguments import PathLike, as_path, describe, finite_array
 from mua.arrays import Array
-from mua.capture.capture import (
-    COEFFICIENTS,
-    FILE,
-    FORMAT,
-    FRAME,
-    UNDISTORTED,
-    VERSION,
-    Capture,
-    CaptureCamera,
-    CaptureClip,
-)
+from mua.capture.camera import COEFFICIENTS, UNDISTORTED, CaptureCamera
+from mua.capture.capture import FILE, FORMAT, FRAME, VERSION, Capture, CaptureClip
 from mua.characters.figure_size import LEAST, MOST
 from mua.errors import InputError
 from mua.inputs import require_file
@@ -108,7 +99,7 @@ def _check_pattern(pattern: str, where: str, places: Sequence[str], counts: dict
 
 
 def _clip(value: Any, where: str, file: Path) -> CaptureClip:
-    said = _object(value, where, ("name", "motion", "frames"), ("first", "held_out"))
+    said = _object(value, where, ("name", "motion", "frames"), ("first", "first_image", "held_out"))
     name = _name(said["name"], f"{where}: name")
     where = f"{where} ({name})"
     return CaptureClip(
@@ -117,6 +108,7 @@ def _clip(value: Any, where: str, file: Path) -> CaptureClip:
         first=_count(said.get("first", 0), f"{where}: first", 0),
         frames=_count(said["frames"], f"{where}: frames", 1),
         held_out=_flag(said.get("held_out", False), f"{where}: held_out"),
+        first_image=_count(said.get("first_image", 0), f"{where}: first_image", 0),
     )
 
 

@@ -5,7 +5,8 @@ import os
 from pathlib import Path
 from typing import Any
 
-from mua.capture.capture import FORMAT, UNDISTORTED, VERSION, Capture, CaptureCamera, CaptureClip
+from mua.capture.camera import UNDISTORTED, CaptureCamera
+from mua.capture.capture import FORMAT, VERSION, Capture, CaptureClip
 from mua.files import write_bytes
 
 
@@ -39,13 +40,14 @@ def _described(capture: Capture) -> dict[str, Any]:
 
 
 def _clip(clip: CaptureClip, folder: Path) -> dict[str, Any]:
-    return {
+    described = {
         "name": clip.name,
         "motion": _from(folder, clip.motion),
         "first": int(clip.first),
         "frames": int(clip.frames),
         "held_out": bool(clip.held_out),
     }
+    return described | ({"first_image": int(clip.first_image)} if clip.first_image else {})
 
 
 def _camera(camera: CaptureCamera) -> dict[str, Any]:
