@@ -1,0 +1,190 @@
+"""Losses of the template against plain loops, known answers and finite differences."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from scipy import ndimage
+from scipy.spatial.distance import cdist
+from tube import HEIGHT, RADIUS, tube
+
+from mua.camera import Camera, orbit
+from mua.rig.character import Mesh
+from mua.splatting.projection import Eye
+from mua.teaching.mesh_losses import (
+    FACING,
+    REACH,
+    SIDEWAYS,
+    Cloud,
+    Samples,
+    Tracks,
+    chamfer,
+    edges_of,
+    roughness,
+    track_error,
+)
+from mua.teaching.silhouette import outline, outline_surfels, silhouette_error
+
+BOUND = 1e-12  # some 100 operations on lengths of up to 2 metres in float64
+
+
+@pytest.fixture(scope="module")
+def mesh() -> Mesh:
+    return tube().mesh
+
+
+def moved(mesh: Mesh, *, seed: int = 0, by: float = 0.01) -> torch.Tensor:
+    """Vertices [V, 3] a little away from those of the mesh."""
+    return torch.tensor(mesh.vertices + np.random.default_rng(seed).normal(scale=by, size=mesh.vertices.shape))
+
+
+def check_gradient(value: Callable[[torch.Tensor], torch.Tensor], at: torch.Tensor, *, relative: float = 1e-6) -> None:
+    """Against a central difference along a random direction."""
+    towards = torch.randn(at.shape, generator=torch.Generator().manual_seed(7), dtype=torch.float64)
+    leaf = at.clone().requires_grad_()
+    value(leaf).backward()  # type: ignore[no-untyped-call]
+    assert leaf.grad is not None
+    step = 1e-7
+    difference = (value(at + step * towards) - value(at - step * towards)) / (2 * step)
+    assert difference.abs() > 0
+    torch.testing.assert_close((leaf.grad * towards).sum(), difference, rtol=relative, atol=0)
+
+
+@pytest.mark.parametrize("sideways", [1.0, SIDEWAYS])
+def test_chamfer_is_the_sum_over_nearest_pairs(mesh: Mesh, sideways: float) -> None:
+    samples, cloud, posed = Samples.of(mesh, 150), Cloud.of(mesh, 200), moved(mesh)
+    points, normals = (values.numpy() for values in samples.on(posed))
+    away = np.sqrt(
+        cdist(points, cloud.points) ** 2 + FACING**2 * cdist(normals, cloud.normals) ** 2
+    )  # by place and facing
+    expected = 0.0
+    for first, second, across, nearest in (
+        (points, cloud.points, cloud.normals, away.argmin(axis=1)),
+        (cloud.points, points, None, away.argmin(axis=0)),
+    ):
+        terms = []
+        for i, j in enumerate(nearest):
+            apart = first[i] - second[j]
+            normal = cloud.normals[i] if across is None else across[j]
+            if np.linalg.norm(apart) < REACH:
+                terms.append((1 - sideways) * (apart @ normal) ** 2 + sideways * apart @ apart)
+        expected += float(np.mean(terms))
+    assert float(chamfer(posed, samples, cloud, sideways=sideways)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_chamfer_has_the_gradient_of_finite_differences(mesh: Mesh) -> None:
+    samples, cloud = Samples.of(mesh, 150), Cloud.of(mesh, 200)
+    check_gradient(lambda posed: chamfer(posed, samples, cloud), moved(mesh))
+
+
+def test_chamfer_pulls_a_wider_tube_in(mesh: Mesh) -> None:
+    samples, cloud = Samples.of(mesh, 400), Cloud.of(mesh, 400)
+    wider = torch.tensor(mesh.vertices * [1.2, 1, 1.2]).requires_grad_()
+    loss = chamfer(wider, samples, cloud)
+    assert float(loss.detach()) == pytest.approx(2 * (0.2 * RADIUS) ** 2, rel=0.2)
+    loss.backward()  # type: ignore[no-untyped-call]
+    assert wider.grad is not None
+    outward = (wider.grad[:, [0, 2]] * wider.detach()[:, [0, 2]]).sum(1)
+    assert (outward > 0).double().mean() > 0.95
+
+
+def test_a_surface_that_faces_the_other_way_is_no_match(mesh: Mesh) -> None:
+    """Two shells 2 cm apart, as the inside and the outside of a sleeve."""
+    inner = replace(mesh, vertices=mesh.vertices * [0.83, 1, 0.83], faces=mesh.faces[:, ::-1])
+    outer, within = Cloud.of(mesh, 600), Cloud.of(inner, 600)
+    both = Cloud(np.concatenate([outer.points, within.points]), np.concatenate([outer.normals, within.normals]))
+    near = torch.tensor(mesh.vertices * [0.9, 1, 0.9])  # between them, nearer to the inner one
+    points, normals = (values.numpy() for values in Samples.of(mesh, 300).on(near))
+    _, there = both.tree.query(both.features(points, normals))
+    assert (there < 600).mean() > 0.95
+
+
+def test_what_is_out_of_reach_does_not_count(mesh: Mesh) -> None:
+    samples, cloud = Samples.of(mesh, 150), Cloud.of(mesh, 200)
+    litter = Cloud(np.concatenate([cloud.points, [[3.0, 0, 0]]]), np.concatenate([cloud.normals, [[1.0, 0, 0]]]))
+    posed = moved(mesh)
+    torch.testing.assert_close(chamfer(posed, samples, litter), chamfer(posed, samples, cloud), rtol=1e-12, atol=0)
+
+
+def tracks_at(mesh: Mesh, posed: torch.Tensor, *, by: float) -> Tracks:
+    samples = Samples.of(mesh, 20)
+    points = samples.on(posed)[0]
+    weights = torch.ones(20, dtype=torch.float64)
+    weights[3] = 0
+    points = points + torch.tensor([by, 0, 0], dtype=torch.float64)
+    points[3] = torch.nan_to_num(points[3]) + 50
+    return Tracks(samples.corners, samples.barycentrics, points, weights)
+
+
+def test_tracks_count_where_they_were_seen(mesh: Mesh) -> None:
+    posed = moved(mesh)
+    for by, expected in ((0.0, 0.0), (0.02, 0.02**2), (0.5, 2 * REACH * 0.5 - REACH**2)):
+        assert float(track_error(posed, tracks_at(mesh, posed, by=by))) == pytest.approx(expected, abs=BOUND)
+    tracks = tracks_at(mesh, posed, by=0.09)
+    check_gradient(lambda vertices: track_error(vertices, tracks), moved(mesh, seed=1))
+
+
+def test_roughness_is_nothing_for_what_all_share(mesh: Mesh) -> None:
+    edges = edges_of(mesh)
+    assert len({frozenset(edge) for edge in edges.tolist()}) == len(edges)
+    field = torch.ones(2, len(mesh.vertices), 3, dtype=torch.float64)
+    assert roughness(field, edges) == 0
+    field[0, 5, 1] += 0.1
+    touching = int((edges == 5).any(dim=1).sum())
+    assert float(roughness(field, edges)) == pytest.approx(0.01 * touching / (2 * len(edges)))
+    check_gradient(lambda values: roughness(values, edges), moved(mesh))
+
+
+def camera(side: int = 48) -> Camera:
+    """The whole tube from the side."""
+    bounds = np.array([[-RADIUS, 0, -RADIUS], [RADIUS, HEIGHT, RADIUS]])
+    return orbit(bounds, screen=(side, side), azimuth=0.4, elevation=0.2)
+
+
+def test_an_outline_covers_what_triangles_cover(mesh: Mesh) -> None:
+    posed, faces = torch.tensor(mesh.vertices), torch.tensor(mesh.faces).long()
+    seen = camera()
+    cover = outline(posed, faces, outline_surfels(posed, faces), Eye.of(seen, posed)).numpy()
+    clip = np.column_stack([mesh.vertices, np.ones(len(mesh.vertices))]) @ (seen.projection @ seen.view).T
+    x, y = (clip[:, axis] / clip[:, 3] for axis in (0, 1))
+    columns, rows = (x + 1) * 24, (1 - y) * 24
+    inside = np.zeros((48, 48), bool)
+    grid = np.stack(np.meshgrid(np.arange(48) + 0.5, np.arange(48) + 0.5), axis=-1).reshape(-1, 2)
+    for a, b, c in mesh.faces:
+        one, two, three = (np.array([columns[v], rows[v]]) for v in (a, b, c))
+        corners = ((one, two), (two, three), (three, one))
+        signs = [(q - p)[0] * (grid - p)[:, 1] - (q - p)[1] * (grid - p)[:, 0] for p, q in corners]
+        inside |= ((np.array(signs) >= 0).all(axis=0) | (np.array(signs) <= 0).all(axis=0)).reshape(48, 48)
+    within, about = ndimage.binary_erosion(inside, iterations=2), ndimage.binary_dilation(inside, iterations=2)
+    assert within.sum() > 50
+    assert cover[within].min() > 0.9
+    assert cover[~about].max() < 0.1
+
+
+def test_silhouettes_have_the_gradient_of_finite_differences(mesh: Mesh) -> None:
+    posed, faces = moved(mesh, by=0.003), torch.tensor(mesh.faces).long()
+    eye, surfels = Eye.of(camera(), posed), outline_surfels(posed, faces)
+    mask = outline(posed * 1.1, faces, surfels, eye)
+    check_gradient(lambda at: (outline(at, faces, surfels, eye) - mask).square().mean(), posed, relative=1e-4)
+
+
+def test_silhouettes_pull_a_shifted_tube_to_its_mask(mesh: Mesh) -> None:
+    posed, faces = torch.tensor(mesh.vertices), torch.tensor(mesh.faces).long()
+    eye = Eye.of(camera(), posed)
+    mask = outline(posed, faces, outline_surfels(posed, faces), eye)
+    right = torch.tensor(np.linalg.inv(camera().view)[:3, 0])
+    shift = torch.tensor(0.05, dtype=torch.float64, requires_grad=True)
+    before = silhouette_error(posed + shift * right, faces, eye, mask)
+    before.backward()  # type: ignore[no-untyped-call]
+    assert shift.grad is not None
+    assert shift.grad > 0
+    assert silhouette_error(posed, faces, eye, mask) < before / 100
+
+
+def test_a_triangle_without_area_has_a_surfel_of_finite_size() -> None:
+    posed = torch.tensor([[0.0, 1, 0], [0.0, 1, 0], [0.0, 1, 0]], dtype=torch.float64)
+    surfels = outline_surfels(posed, torch.tensor([[0, 1, 2]]))
+    assert torch.isfinite(surfels.rotations).all()
+    assert (surfels.scales > 0).all()
