@@ -176,6 +176,7 @@ MALFORMED = [
     ("range", "texels.texels", poke("texels.texels", 0, 1024)),
     ("range", "texels.triangles", poke("texels.triangles", 0, 18)),
     ("value", "texels.barycentrics", poke("texels.barycentrics", 0, 1.5)),
+    *[("shape", "texels.one_sided", put("texels.one_sided", np.zeros(n, np.uint8))) for n in (0, 84, 86)],
     ("value", "wavelet.levels", put("wavelet.levels", 99)),
     ("value", "wavelet.rec_lo", put("wavelet.rec_lo", np.zeros(3))),
     ("finite", "wavelet.rec_lo", put("wavelet.rec_lo", np.full(10, NAN))),

@@ -60,9 +60,18 @@ def with_surface(avatar: Avatar) -> Avatar:
 
 
 def sparse_avatar(seed: int) -> Avatar:
-    """A synthetic avatar of which a fifth of the texels is not valid, with the surface over the others."""
+    """A synthetic avatar of which a fifth of the texels is not valid, with a surface, and more than half one-sided."""
     avatar = synthetic_avatar(seed)
-    return with_surface(with_texels(avatar, np.random.default_rng(seed).random(len(avatar.rig.texels.texels)) < 0.8))
+    kept, one_sided = np.random.default_rng(seed).random((2, len(avatar.rig.texels.texels))) < [[0.8], [0.6]]
+    return with_surface(with_texels(with_one_sided(avatar, one_sided), kept))
+
+
+def with_one_sided(
+    avatar: Avatar,
+    one_sided: Array,  # [N] bool
+) -> Avatar:
+    """The same avatar, some of whose texels are not seen from behind."""
+    return replace(avatar, rig=replace(avatar.rig, texels=replace(avatar.rig.texels, one_sided=one_sided)))
 
 
 def texels_at(texels: TexelMap, kept: Array | slice) -> TexelMap:
@@ -72,6 +81,7 @@ def texels_at(texels: TexelMap, kept: Array | slice) -> TexelMap:
         texels=texels.texels[kept],
         triangles=texels.triangles[kept],
         barycentrics=texels.barycentrics[kept],
+        one_sided=None if texels.one_sided is None else texels.one_sided[kept],
     )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_one_sided, with_surface, with_texels
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import parse
@@ -149,6 +149,26 @@ def test_a_surface_comes_back_and_is_what_makes_a_file_one_of_2_1() -> None:
     assert encode(found) == content
     versions = [parse(encode(each))["version_minor"] for each in (avatar, replace(avatar, surface=None))]
     assert versions == [1, 0]
+
+
+@pytest.mark.parametrize("storage", ["f16", "packed"])
+@pytest.mark.parametrize("count", [676, 673, 8, 1, 0])
+def test_which_texels_are_one_sided_comes_back(count: int, storage: Storage) -> None:
+    one_sided = np.random.default_rng(count).random(676) < 0.5
+    avatar = with_texels(with_one_sided(synthetic_avatar(), one_sided), np.arange(676) < count)
+    content = encode(avatar, storage=storage)
+    found = decode_tree(parse_checked(content))
+    np.testing.assert_array_equal(found.rig.texels.one_sided, one_sided[:count])
+    assert len(parse(content)["texels"]["one_sided"]) == -(-count // 8)
+    assert decode_tree(parse_checked(encode(synthetic_avatar(), storage=storage))).rig.texels.one_sided is None
+
+
+def test_one_sided_texels_raise_the_minor_version_alone() -> None:
+    """Older readers skip the field, and draw all splats."""
+    plain, one_sided = synthetic_avatar(), sparse_avatar(0)
+    kinds: tuple[Storage, ...] = ("f16", "packed")
+    trees = [parse(encode(avatar, storage=kind)) for kind in kinds for avatar in (plain, one_sided)]
+    assert [(tree["version_major"], tree["version_minor"]) for tree in trees] == [(2, 0), (2, 2), (3, 0), (3, 1)]
 
 
 def test_translations_of_joints_come_back(tmp_path: Path) -> None:

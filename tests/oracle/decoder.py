@@ -230,6 +230,12 @@ def places(template: Tree, texels: Tree) -> Array:
     return two
 
 
+def one_sided(texels: Tree) -> Array:
+    """5.6: [N] bool."""
+    content = texels.get("one_sided", bytes(-(-len(texels["texels"]) // 8)))
+    return np.array([int(content[e // 8]) >> e % 8 & 1 for e in range(len(texels["texels"]))], dtype=bool)
+
+
 def blend(duals: Array, weights: Array, references: Array) -> Array:
     """6.2: of duals [N, K, 8] by weights [N, K]; references [N, 8]."""
     signs = np.where(np.einsum("nki,ni->nk", duals[..., :4], references[:, :4]) < 0, -1, 1)

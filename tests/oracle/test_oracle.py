@@ -158,6 +158,15 @@ def test_surfaces_hold_the_same_triangles(tmp_path: Path, seed: int) -> None:
     np.testing.assert_array_equal(found, avatar.surface.triangles(avatar.rig.texels))
 
 
+@pytest.mark.parametrize("storage", ["f16", "packed"])
+def test_the_same_texels_are_one_sided(tmp_path: Path, storage: Storage) -> None:
+    path = tmp_path / "a.muaavatar"
+    write(path, sparse_avatar(5), storage=storage)
+    np.testing.assert_array_equal(decoder.one_sided(decoder.read(path)["texels"]), read(path).rig.texels.one_sided)
+    write(path, synthetic_avatar(), storage=storage)
+    assert not decoder.one_sided(decoder.read(path)["texels"]).any()
+
+
 @pytest.mark.parametrize("level", [1, 2])
 @pytest.mark.parametrize("wavelet", ["bior1.1", "bior4.4"])
 def test_coarser_levels_decode_alike(tmp_path: Path, wavelet: str, level: int) -> None:

@@ -65,6 +65,7 @@ TABLES = {
         Field("triangles", "Tensor", required=True),
         Field("barycentrics", "Tensor", required=True),
         Field("listed", "Tensor"),
+        Field("one_sided", "ubyte", vector=True),
     ),
     "Wavelet": (
         Field("name", "string", required=True),

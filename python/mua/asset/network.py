@@ -11,14 +11,14 @@ from mua.asset.tensors import pack, pack_indices
 from mua.rig.rig import Rig
 from mua.rig.texel_map import centre_barycentrics
 
-VERSION = (3, 0)
+MAJOR = 3
 COMPUTED = 1e-4  # of a triangle, by which a computed barycentric may be beside the avatar's
 BRANCHES = ("geometry.", "appearance.")
 
 
 def build_packed(tree: Tree, rig: Rig) -> bytes:
     """The bytes of a plain file's tree as one for the network, not yet sealed."""
-    tree = {**tree, "version_major": VERSION[0], "version_minor": VERSION[1]}
+    tree = {**tree, "version_major": MAJOR, "version_minor": int("one_sided" in tree["texels"])}
     tree["texels"] = {**tree["texels"], **_listed(rig)}
     for _, tensor in tensors(tree):
         tensor.update(packed(tensor))
@@ -57,6 +57,8 @@ def _stages(tree: Tree) -> Sequence[Sequence[Array]]:
         late = next((number for number, holds in enumerate(STAGES) if holds(path)), len(STAGES))
         stages[len(STAGES) - late].append(tensor["data"])
     stages[0].insert(0, tree["thumbnail"])
+    if "one_sided" in tree["texels"]:
+        stages[1].append(tree["texels"]["one_sided"])
     if "surface" in tree:
         stages[-1].append(tree["surface"]["runs"])
     return stages

@@ -241,8 +241,21 @@ def _texels(tree: Tree, mesh: Mesh) -> TexelMap:
     if barycentrics.min(initial=0) < -slack:
         _refuse("texels.barycentrics", f"{barycentrics.min():.3g}, expected 0 to 1")
     return TexelMap(
-        size=size, texels=texels, triangles=triangles, barycentrics=np.maximum(barycentrics, 0), claimed_twice=0
+        size=size,
+        texels=texels,
+        triangles=triangles,
+        barycentrics=np.maximum(barycentrics, 0),
+        claimed_twice=0,
+        one_sided=_one_sided(tree["one_sided"], len(texels)) if "one_sided" in tree else None,
     )
+
+
+def _one_sided(content: Array, count: int) -> Array:
+    """[N] bool, from a bit for each texel."""
+    expected = -(-count // 8)
+    if len(content) != expected:
+        raise FormatError("shape", "texels.one_sided", f"{len(content)} bytes, expected {expected}")
+    return np.unpackbits(content, count=count, bitorder="little").astype(bool)
 
 
 def _barycentrics(tree: Tree, mesh: Mesh, texels: Array, triangles: Array) -> Array:

@@ -24,7 +24,7 @@ from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
 from mua.rig.surface import Surface
 
-PLAIN_VERSION = (2, 1)  # of a file without packed tensors
+PLAIN_MAJOR = 2  # of a file without packed tensors
 
 
 def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
@@ -75,8 +75,8 @@ def seal(content: bytes) -> bytes:
 def _avatar(avatar: Avatar, element: Element) -> Tree:
     translated = _translated(avatar)
     return {
-        "version_major": PLAIN_VERSION[0],
-        "version_minor": PLAIN_VERSION[1] if avatar.surface else 0,  # a file without a surface is one of 2.0
+        "version_major": PLAIN_MAJOR,
+        "version_minor": _minor(avatar),
         "crc32": 0,
         "axes": "MetresYUpRightHanded",
         "name": avatar.name,
@@ -90,6 +90,7 @@ def _avatar(avatar: Avatar, element: Element) -> Tree:
             "texels": pack_indices(avatar.rig.texels.texels),
             "triangles": pack_indices(avatar.rig.texels.triangles),
             "barycentrics": pack(avatar.rig.texels.barycentrics[:, :2]),
+            **_one_sided(avatar.rig.texels.one_sided),
         },
         "wavelet": {
             "name": avatar.wavelet.name,
@@ -105,6 +106,18 @@ def _avatar(avatar: Avatar, element: Element) -> Tree:
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
         **_surface(avatar.surface),
     }
+
+
+def _minor(avatar: Avatar) -> int:
+    """Of a plain file's version: that which brought the youngest of its fields."""
+    if avatar.rig.texels.one_sided is not None:
+        return 2
+    return 1 if avatar.surface else 0
+
+
+def _one_sided(texels: Array | None) -> Tree:
+    """Absent where it was not measured."""
+    return {} if texels is None else {"one_sided": np.packbits(texels, bitorder="little")}
 
 
 def _surface(surface: Surface | None) -> Tree:

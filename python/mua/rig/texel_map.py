@@ -20,6 +20,7 @@ class TexelMap:
     triangles: Array  # [N] int32 into the mesh's faces
     barycentrics: Array  # [N, 3] float32, sum 1, all >= 0
     claimed_twice: int  # texels that more than one triangle covers (beyond shared edges)
+    one_sided: Array | None = None  # [N] bool: not drawn from behind its triangle, where others hide it; None: none
 
 
 def build_texel_map(mesh: Mesh, size: int) -> TexelMap:

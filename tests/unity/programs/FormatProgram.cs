@@ -178,6 +178,10 @@ internal static class FormatProgram
         Print("wavelet.rec_lo", avatar.Wavelet.RecLo);
         Print("wavelet.rec_hi", avatar.Wavelet.RecHi);
         Print("texels.size", new[] { avatar.Texels.Size });
+        if (avatar.Texels.OneSided != null)
+        {
+            print("texels.one_sided", "u1", avatar.Texels.OneSided);
+        }
         Print("bounds", avatar.Bounds);
         ArraySegment<byte> thumbnail = avatar.Thumbnail;
         print("thumbnail", "u1", thumbnail.Array.Skip(thumbnail.Offset).Take(thumbnail.Count).ToArray());

@@ -41,7 +41,7 @@ namespace Mua.Format
             avatar.Coarse = model.Coarse(tree.Child("coarse"), width);
             int vertices = avatar.Coarse.Mean.Shape[0];
             avatar.Template = rig.Template(tree.Child("template"), vertices, avatar.Skeleton.JointCount);
-            avatar.Texels = rig.Texels(tree.Child("texels"), avatar.Template);
+            avatar.Texels = rig.Texels(tree.Child("texels"), content, avatar.Template);
             int size = avatar.Texels.Size, count = avatar.Texels.Count, side = size >> levels;
             avatar.Geometry = model.Geometry(tree.Child("geometry"), count, width, side);
             avatar.Appearance = model.Appearance(tree.Child("appearance"), count, width, side);

@@ -51,7 +51,8 @@ namespace Mua.Format
             new Field("texels", Kind.Table, required: true, table: Tensor),
             new Field("triangles", Kind.Table, required: true, table: Tensor),
             new Field("barycentrics", Kind.Table, required: true, table: Tensor),
-            new Field("listed", Kind.Table, table: Tensor));
+            new Field("listed", Kind.Table, table: Tensor),
+            new Field("one_sided", Kind.U8, vector: true));
 
         public static readonly Layout Wavelet = new Layout(
             new Field("name", Kind.Text, required: true),

@@ -100,7 +100,7 @@ namespace Mua.Format
             };
         }
 
-        public Texels Texels(Table tree, Template template)
+        public Texels Texels(Table tree, byte[] content, Template template)
         {
             long size = tree.Number("size");
             if (size < 1 || size > MaxSize)
@@ -122,8 +122,28 @@ namespace Mua.Format
             RequireBarycentrics(barycentrics);
             return new Texels
             {
-                Size = (int)size, Indices = indices, Triangles = triangles, Barycentrics = barycentrics,
+                Size = (int)size,
+                Indices = indices,
+                Triangles = triangles,
+                Barycentrics = barycentrics,
+                OneSided = OneSided(tree.Block("one_sided"), content, texels.Length),
             };
+        }
+
+        /// <summary>A bit for each texel; null where the file has none.</summary>
+        private static byte[] OneSided(Block block, byte[] content, int count)
+        {
+            if (block == null)
+            {
+                return null;
+            }
+            int expected = (count + 7) / 8;
+            if (block.Count != expected)
+            {
+                throw new AvatarFormatException(
+                    "shape", "texels.one_sided", block.Count + " bytes, expected " + expected);
+            }
+            return new ArraySegment<byte>(content, block.Offset, block.Count).ToArray();
         }
 
         /// <summary>[N, 2] as stored, or computed where only those of the listed texels are.</summary>

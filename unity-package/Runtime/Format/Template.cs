@@ -34,6 +34,9 @@ namespace Mua.Format
         /// <summary>[N, 2] the first two; the third is 1 - a - b.</summary>
         public Tensor Barycentrics { get; internal set; }
 
+        /// <summary>A bit for each texel, the lowest of a byte first: not drawn from behind. Null where the file has none.</summary>
+        public byte[] OneSided { get; internal set; }
+
         /// <summary>N.</summary>
         public int Count => Indices.Count;
     }

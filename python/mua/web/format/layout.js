@@ -48,6 +48,7 @@ export const TABLES = {
     { name: "triangles", kind: "Tensor", required: true },
     { name: "barycentrics", kind: "Tensor", required: true },
     { name: "listed", kind: "Tensor" },
+    { name: "one_sided", kind: "ubyte", vector: true },
   ],
   Wavelet: [
     { name: "name", kind: "string", required: true },

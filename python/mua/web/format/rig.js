@@ -130,7 +130,16 @@ export function readTexels(/** @type {Tree} */ tree, /** @type {Template} */ tem
     least = Math.min(least, barycentrics[at], barycentrics[at + 1], third);
   }
   if (least < -SLACK) throw refuse("texels.barycentrics", `${general(least, 3)}, expected 0 to 1`);
-  return { size, texels, triangles, barycentrics: barycentrics.map((share) => Math.max(share, 0)) };
+  const oneSided = readOneSided(tree.one_sided, texels.length);
+  return { size, texels, triangles, barycentrics: barycentrics.map((share) => Math.max(share, 0)), oneSided };
+}
+
+/** A bit for each texel, the lowest of a byte first: not drawn from behind. None where the file has none. @param {Uint8Array | undefined} content @param {number} count */
+function readOneSided(content, count) {
+  const expected = Math.ceil(count / 8);
+  if (content && content.length !== expected)
+    throw fault("shape", "texels.one_sided", `${content.length} bytes, expected ${expected}`);
+  return content ?? new Uint8Array(expected);
 }
 
 /** [N, 2] as stored, or computed where only those of the listed texels are. @param {Tree} tree @param {Template} template @param {Int32Array} texels @param {Int32Array} triangles */
