@@ -56,6 +56,12 @@ float2 unpackHalves(uint word)
     return float2(halfAt(word, 0), halfAt(word, 1));
 }
 
+// Planes of half floats that follow each other: each row is whole words, two columns to a word, the last padded.
+uint rowWords(uint size)
+{
+    return (size + 1) / 2;
+}
+
 // Quaternions are float4(w, x, y, z).
 
 // Hamilton product: the rotation b, then a.

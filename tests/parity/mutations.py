@@ -71,7 +71,7 @@ FAULTS = {
             "factor(h, h_layout, plane, r, corner.y + position)",
             "factor(h, h_layout, plane, r, corner.x + position)",
         ),
-        Fault("w by rows", "uint column = k * TILE + thread.x;", "uint column = k * TILE + thread.y;"),
+        Fault("w by rows", "uint column = k * TILE + 2 * thread.x;", "uint column = k * TILE + 2 * thread.y;"),
         Fault("read past the rank", "if (r < rank && position < size)", "if (position < size)"),
         Fault("write past the side", "if (at.x < size && at.y < size)", "if (at.y < size)"),
         Fault(
@@ -92,7 +92,17 @@ FAULTS = {
             "return max(sample, 1) - 1;",
         ),
         Fault("rows off by one round the edge", "- (taps / 2 - 1)) % size;", "- (taps / 2 - 1)) % (size + 1);"),
-        Fault("fine samples not wrapped", "(near + 1) % side", "near + 1"),
+        Fault(
+            "fine samples not wrapped",
+            "taps * size - (taps / 2 - 1)) % side;",
+            "taps * size - (taps / 2 - 1)) % (2 * side);",
+        ),
+        Fault("halves of a word swapped", "column & 1);", "~column & 1);"),
+        Fault(
+            "rows without their padding",
+            "(planes * size + row) * rowWords(size);",
+            "(planes * size + row) * (size / 2);",
+        ),
         Fault(
             "wrong phase of the taps",
             "float2(filter[2 * j], filter[2 * j + 1])",
@@ -115,8 +125,8 @@ FAULTS = {
         ),
         Fault(
             "rows and columns of a square swapped",
-            "fine[rows.x + far.x] = square.y;",
-            "fine[rows.x + far.x] = square.z;",
+            "packBounded(square.xy)",
+            "packBounded(square.xz)",
         ),
         Fault("write past the side", "if (coarse.x >= size || coarse.y >= size)", "if (coarse.y >= size)"),
         Fault(

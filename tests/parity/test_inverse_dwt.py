@@ -17,10 +17,13 @@ from mua.kernels.inverse_dwt import (
     halve,
     inverse_dwt,
     pack_channels,
+    pack_planes,
     texel_tiles,
     unpack_channels,
+    unpack_planes,
     upsample_texels,
     upsampling_taps,
+    whole_words,
 )
 
 WAVELETS = pywt.wavelist("bior")
@@ -28,7 +31,7 @@ SIDES = [1, 2, 3, 5, 8, 13]
 PAPER_LEVELS = [(11, 48), (12, 96)]  # channels, side of the coarse level
 LONGEST = 40  # taps that a file may hold
 TILE = 16
-UNTOUCHED = np.float32(-7)
+UNTOUCHED = np.float16(-7)
 
 
 def taps(name: str) -> tuple[Array, Array]:
@@ -174,8 +177,27 @@ def test_channels_beyond_half_floats_are_held_at_the_largest() -> None:
     np.testing.assert_array_equal(unpack_channels(pack_channels(texture)), np.resize([65504.0, -65504.0], (1, 23)))
 
 
+@pytest.mark.parametrize("side", [0, 1, 4, 7])
+def test_planes_are_halves_in_rows_of_whole_words(side: int) -> None:
+    planes = np.random.default_rng(side).normal(size=(3, 2, side, side)).astype(np.float32)
+    words = pack_planes(planes)
+    assert words.shape == (3, 2, side, -(-side // 2))
+    np.testing.assert_array_equal(unpack_planes(words), planes.astype(np.float16))
+
+
+@pytest.mark.parametrize("length", [2, 4, 10, LONGEST])
+def test_taps_for_whole_words_filter_the_same(length: int) -> None:
+    lo, hi = np.random.default_rng(length).normal(size=(2, length))
+    bands = np.random.default_rng(1).normal(size=(4, 2, 7, 7))
+    assert len(whole_words(lo)) % 4 == 2
+    np.testing.assert_array_equal(
+        inverse_dwt(bands[0], bands[1:], whole_words(lo), whole_words(hi)), inverse_dwt(bands[0], bands[1:], lo, hi)
+    )
+
+
 def shader_level(device: Device, ll: Array, details: Array, lo: Array, hi: Array) -> Array:
-    """One level by the shader, after checking that it wrote nothing else."""
+    """One level of packed bands by the shader, after checking that it wrote nothing else."""
+    lo, hi = whole_words(lo), whole_words(hi)
     channels, side, _ = ll.shape
     fine = run(
         device,
@@ -202,9 +224,10 @@ def check_level(device: Device, bands: Array, lo: Array, hi: Array) -> None:
     lo, hi = lo.astype(np.float32), hi.astype(np.float32)
     gain = (np.abs(lo.astype(float)).sum() + np.abs(hi.astype(float)).sum()) ** 2
     sums_bound = 2 * (len(lo) + 1) * np.finfo(np.float32).eps * gain * np.abs(bands).max(initial=0)
-    ll, details = bands[0], bands[1:]
+    packed = pack_planes(bands)
+    ll, details = unpack_planes(packed)[0], unpack_planes(packed)[1:]
     expected = inverse_dwt(ll.astype(float), details.astype(float), lo.astype(float), hi.astype(float))
-    np.testing.assert_allclose(shader_level(device, ll, details, lo, hi), expected, rtol=0, atol=sums_bound)
+    assert_halves(shader_level(device, packed[0], packed[1:], lo, hi), expected, sums_bound)
 
 
 @pytest.mark.parametrize("name", WAVELETS)
@@ -253,6 +276,8 @@ def check_texels(
 ) -> None:
     """The shader against the reference at `count` valid texels; nothing else is written."""
     channels, side, _ = ll.shape
+    packed = pack_planes(ll)
+    ll = unpack_planes(packed)
     rows, fine = -(-channels // BATCH), side << levels - coarser
     rng = np.random.default_rng(count)
     texels = np.sort(rng.permutation(fine * fine)[:count])
@@ -266,7 +291,7 @@ def check_texels(
         "UpsampleTexels",
         (len(tiles), 1, rows),
         {
-            **{"ll": ll, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
+            **{"ll": packed, "upsampling": filtered.astype(np.float32), "tiles": tiles, "tile_rows": tile_rows},
             "static_offset": static_offset.words,
             "texel_channels": np.full((first_row + rows + 1, count, BATCH), UNTOUCHED, np.float16),
         },

@@ -24,8 +24,8 @@ namespace Mua
             Mesh = MeshOf(avatar.Coarse);
             Geometry = BranchOf(avatar.Geometry, "geometry");
             Appearance = BranchOf(avatar.Appearance, "appearance");
-            recLo = Add(new Upload("wavelet.rec_lo", Array.ConvertAll(avatar.Wavelet.RecLo, tap => (float)tap), sizeof(float)));
-            recHi = Add(new Upload("wavelet.rec_hi", Array.ConvertAll(avatar.Wavelet.RecHi, tap => (float)tap), sizeof(float)));
+            recLo = Add(new Upload("wavelet.rec_lo", WholeWords(avatar.Wavelet.RecLo), sizeof(float)));
+            recHi = Add(new Upload("wavelet.rec_hi", WholeWords(avatar.Wavelet.RecHi), sizeof(float)));
             skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
             skinWeights = Add(new Upload("template.skin_weights", avatar.Template.SkinWeights.ToFloats(), sizeof(float)));
             faces = Add(Stored(avatar.Template.Faces, "template.faces"));
@@ -60,7 +60,7 @@ namespace Mua
 
         public int VertexCount => Avatar.Coarse.Mean.Shape[0];
 
-        public int Taps => Avatar.Wavelet.RecLo.Length;
+        public int Taps => recLo.Count;
 
         public GraphicsBuffer RecLo => recLo.Buffer;
 
@@ -123,6 +123,20 @@ namespace Mua
                 Inputs = coarse.Basis.Shape[0],
                 Outputs = 3 * coarse.Basis.Shape[1],
             };
+        }
+
+        /// <summary>
+        /// The same filter with as many taps that a thread of InverseDwt finishes whole words: twice an odd number.
+        /// </summary>
+        private static float[] WholeWords(double[] taps)
+        {
+            int padding = taps.Length % 4 == 0 ? 1 : 0;
+            var padded = new float[taps.Length + 2 * padding];
+            for (int i = 0; i < taps.Length; i++)
+            {
+                padded[i + padding] = (float)taps[i];
+            }
+            return padded;
         }
 
         private BranchBuffers BranchOf(Branch branch, string name)

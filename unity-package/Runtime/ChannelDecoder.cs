@@ -66,13 +66,13 @@ namespace Mua
         {
             int layers = Math.Max(Widest(avatar.CoarseMlp), 1);
             layers = Math.Max(layers, Math.Max(Widest(avatar.Geometry.Mlp), Widest(avatar.Appearance.Mlp)));
-            long texture = Math.Max(Detailed(avatar.Geometry), Detailed(avatar.Appearance));
             long bands = Math.Max(LargestBand(avatar.Geometry), LargestBand(avatar.Appearance));
-            details = buffers.Structured("details", bands, sizeof(float));
+            details = buffers.Structured("details", bands, sizeof(uint));
             for (int i = 0; i < 2; i++)
             {
                 activations[i] = buffers.Structured("activations", layers, sizeof(float));
-                textures[i] = buffers.Structured("texture", texture >> 2 * i, sizeof(float));
+                long texture = Math.Max(Detailed(avatar.Geometry, i), Detailed(avatar.Appearance, i));
+                textures[i] = buffers.Structured("texture", texture, sizeof(uint));
             }
         }
 
@@ -132,11 +132,17 @@ namespace Mua
             return widest;
         }
 
-        /// <summary>Numbers of a branch's texture where its details end.</summary>
-        private long Detailed(BranchBuffers branch)
+        /// <summary>Words of a branch's texture where its details end, or a level before.</summary>
+        private long Detailed(BranchBuffers branch, int before)
         {
-            long size = (long)(avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels) << branch.Details.Length;
-            return branch.Channels * size * size;
+            int low = avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels;
+            return branch.Channels * PlaneWords(low << branch.Details.Length >> before);
+        }
+
+        /// <summary>Of a plane of half floats, whose rows are whole words.</summary>
+        private static long PlaneWords(int size)
+        {
+            return (long)size * Kernel.Groups(size, 2);
         }
 
         private static long LargestBand(BranchBuffers branch)
@@ -144,7 +150,7 @@ namespace Mua
             long largest = 0;
             foreach (BandBuffers band in branch.Details)
             {
-                largest = Math.Max(largest, 3L * branch.Channels * band.Size * band.Size);
+                largest = Math.Max(largest, 3L * branch.Channels * PlaneWords(band.Size));
             }
             return largest;
         }

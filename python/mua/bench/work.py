@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from mua.gpu import Bound
-from mua.kernels.inverse_dwt import BATCH, ROWS
+from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes
 
 FLOAT = UINT = 4  # bytes
 HALF = 2
@@ -77,21 +77,21 @@ def mlp_matmul(dispatch: Bound, _: float) -> Work:
 def blend_ll(dispatch: Bound, _: float) -> Work:
     """Mean, basis [C, R, n, n] and alpha [C, R] read, C n^2 written; C R n^2 multiply-adds."""
     channels, rank, size = _constants(dispatch, "channels", "rank", "size")
-    moved = _bound(dispatch, "mean", "basis") + FLOAT * channels * (rank + size**2)
+    moved = _bound(dispatch, "mean", "basis") + channels * (FLOAT * rank + plane_bytes(size))
     return Work(moved, 2 * channels * rank * size**2)
 
 
 def blend_detail(dispatch: Bound, _: float) -> Work:
     """Mean, h, w [3, C, R, n] and alpha read, 3 C n^2 written; alpha h: 3 C R n, its products with w: 3 C R n^2."""
     channels, rank, size = _constants(dispatch, "channels", "rank", "size")
-    moved = _bound(dispatch, "mean", "h", "w") + FLOAT * channels * (rank + 3 * size**2)
+    moved = _bound(dispatch, "mean", "h", "w") + channels * (FLOAT * rank + 3 * plane_bytes(size))
     return Work(moved, 2 * 3 * channels * rank * (size + size**2))
 
 
 def inverse_dwt(dispatch: Bound, _: float) -> Work:
     """Four bands [C, n, n] and two filters read, [C, 2n, 2n] written; taps (2n)^2 multiply-adds along either axis."""
     channels, size, taps = _constants(dispatch, "channels", "size", "taps")
-    moved = FLOAT * (channels * (4 * size**2 + (2 * size) ** 2) + 2 * taps)
+    moved = channels * (4 * plane_bytes(size) + plane_bytes(2 * size)) + FLOAT * 2 * taps
     return Work(moved, 2 * channels * 2 * taps * (2 * size) ** 2)
 
 
@@ -103,7 +103,7 @@ def upsample_texels(dispatch: Bound, _: float) -> Work:
     """
     channels, size, texels = _constants(dispatch, "channels", "size", "texel_count")
     reach, factor = _constants(dispatch, "reach", "factor")
-    moved = _bound(dispatch, "static_offset", "tiles", "tile_rows", "upsampling") + FLOAT * channels * size**2
+    moved = _bound(dispatch, "static_offset", "tiles", "tile_rows", "upsampling") + channels * plane_bytes(size)
     moved += HALF * BATCH * _groups(channels, BATCH) * texels
     return Work(moved, channels * texels * (2 * reach + 2 * reach // factor + 1))
 

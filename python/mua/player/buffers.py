@@ -16,7 +16,7 @@ from mua.coarser import at_level
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
-from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
+from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps, whole_words
 from mua.kernels.splat_project import pack_texels
 from mua.model import Model
 from mua.rig.rig import Rig
@@ -144,8 +144,8 @@ class AvatarBuffers:
         self.mesh = self._mesh(tree["coarse"])
         self.geometry = self._branch(tree, "geometry")
         self.appearance = self._branch(tree, "appearance")
-        self.rec_lo = self._upload(self.avatar.wavelet.rec_lo.astype(np.float32), "wavelet.rec_lo")
-        self.rec_hi = self._upload(self.avatar.wavelet.rec_hi.astype(np.float32), "wavelet.rec_hi")
+        self.rec_lo = self._upload(whole_words(self.avatar.wavelet.rec_lo).astype(np.float32), "wavelet.rec_lo")
+        self.rec_hi = self._upload(whole_words(self.avatar.wavelet.rec_hi).astype(np.float32), "wavelet.rec_hi")
         self.rig = self._named(lambda: upload_rig(device, rig))
         stored = {name: self._stored(tree[name]["static_offset"], f"{name}.static_offset") for name in BRANCHES}
         self._levels = [self._level(self.avatar, self.rig, stored)]

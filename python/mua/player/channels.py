@@ -6,13 +6,13 @@ Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelD
 from dataclasses import dataclass
 
 from mua.gpu import Buffer, Commands, Device
-from mua.kernels.inverse_dwt import BATCH, ROWS
+from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes, whole_words
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, BranchLevel, LayerBuffers, LevelBuffers
 
 FLOAT = 4  # bytes
 TEXEL_CHANNELS = 2 * ROWS * BATCH  # bytes
 LAYER_ROWS, MESH_COLUMNS = 8, 64  # outputs of a group of MlpMatmul and of MlpMatmulTransposed
-LL_TEXELS = 64  # of a group of BlendLl
+LL_PAIRS = 64  # texels that share a word, of a group of BlendLl
 DETAIL_TILE = 24  # texels along a side of a group of BlendDetail
 COARSE_TILE = 16  # samples along a side that a group of InverseDwt doubles
 PARTS = 2  # of a decode, that move about as many bytes: geometry; mesh and appearance
@@ -50,13 +50,13 @@ class ChannelDecoder:
         layers = [*self.avatar.coarse_mlp, *(layer for branch in branches for layer in branch.mlp)]
         activations = FLOAT * max(layer.outputs for layer in layers)
         low = avatar.rig.texels.size >> avatar.wavelet.levels
-        texture = FLOAT * max(b.channels * (low << len(b.details)) ** 2 for b in branches)
-        details = [3 * b.channels * d.size**2 for b in branches for d in b.details]
+        details = [3 * b.channels * plane_bytes(d.size) for b in branches for d in b.details]
         self.activations = tuple(device.buffer(activations, name=f"activations {i}") for i in range(2))
-        self.details = device.buffer(FLOAT * max(details, default=0), name="details")
-        self.textures = tuple(
-            device.buffer(texture >> 2 * i, name=f"texture {i}") for i in range(2)
-        )  # finest with details, its ll
+        self.details = device.buffer(max(details, default=0), name="details")
+        textures = [  # finest with details, its ll
+            max(b.channels * plane_bytes(low << len(b.details) >> i) for b in branches) for i in range(2)
+        ]
+        self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
         """Append one of PARTS, from the descriptor of `channels` to what it makes of it."""
@@ -118,7 +118,7 @@ class ChannelDecoder:
     def _blend_low(self, commands: Commands, branch: BranchBuffers, alpha: Buffer, size: int, blended: Buffer) -> None:
         commands.dispatch(
             self._blend_ll,
-            (groups(size * size, LL_TEXELS), branch.channels, 1),
+            (groups(size * groups(size, 2), LL_PAIRS), branch.channels, 1),
             {"mean": branch.ll_mean.words, "basis": branch.ll_basis.words, "alpha": alpha, "blended": blended},
             mean_layout=branch.ll_mean.layout,
             basis_layout=branch.ll_basis.layout,
@@ -160,7 +160,7 @@ class ChannelDecoder:
             },
             channels=branch.channels,
             size=size,
-            taps=len(self.avatar.avatar.wavelet.rec_lo),
+            taps=len(whole_words(self.avatar.avatar.wavelet.rec_lo)),
         )
 
     def _upsample(

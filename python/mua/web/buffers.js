@@ -27,6 +27,10 @@ import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 const ELEMENT_TYPES = ["F32", "F16", "I8"];
 
 /** Everything of a file that does not change from frame to frame. */
+/** The same filter with as many taps that a thread of InverseDwt finishes whole words: twice an odd number. */
+const wholeWords = (/** @type {ArrayLike<number>} */ taps) =>
+  Float32Array.from(taps.length % 4 ? Array.from(taps) : [0, ...Array.from(taps), 0]);
+
 export class AvatarBuffers {
   constructor(/** @type {Memory} */ memory, /** @type {Avatar} */ avatar) {
     const { coarse, wavelet, template, texels } = avatar;
@@ -37,8 +41,9 @@ export class AvatarBuffers {
     this.mesh = { weight, bias, inputs: coarse.basis.shape[0], outputs: 3 * coarse.vertices };
     this.geometry = this.branch(avatar.geometry, "geometry");
     this.appearance = this.branch(avatar.appearance, "appearance");
-    this.recLo = memory.buffer(Float32Array.from(wavelet.recLo), "wavelet.rec_lo");
-    this.recHi = memory.buffer(Float32Array.from(wavelet.recHi), "wavelet.rec_hi");
+    this.recLo = memory.buffer(wholeWords(wavelet.recLo), "wavelet.rec_lo");
+    this.recHi = memory.buffer(wholeWords(wavelet.recHi), "wavelet.rec_hi");
+    this.taps = wholeWords(wavelet.recLo).length;
     this.faces = memory.buffer(template.faces, "template.faces");
     this.skinIndices = memory.buffer(template.skinIndices, "template.skin_indices");
     this.skinWeights = memory.buffer(template.skinWeights, "template.skin_weights");

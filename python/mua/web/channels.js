@@ -21,7 +21,7 @@ import { MlpMatmul, MlpMatmulTransposed } from "./wgsl/mlp_matmul.js";
 
 export const FLOAT = 4; // bytes
 const [LAYER_ROWS, MESH_COLUMNS] = [8, 64]; // outputs of a group of MlpMatmul and of MlpMatmulTransposed
-const LL_TEXELS = 64; // of a group of BlendLl
+const LL_PAIRS = 64; // texels that share a word, of a group of BlendLl
 const DETAIL_TILE = 24; // texels along a side of a group of BlendDetail
 const COARSE_TILE = 16; // samples along a side that a group of InverseDwt doubles
 const [ROWS, BATCH] = [6, 4]; // of texel_channels, and channels of each
@@ -31,6 +31,9 @@ export const KERNELS = { MlpMatmul, MlpMatmulTransposed, BlendLl, BlendDetail, I
 
 /** Groups of `size` that hold `count`. */
 export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);
+
+/** Of a plane of half floats, whose rows are whole words. */
+const planeBytes = (/** @type {number} */ size) => FLOAT * size * groups(size, 2);
 
 /** The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another. */
 export class ChannelDecoder {
@@ -42,13 +45,13 @@ export class ChannelDecoder {
     const layers = [...coarseMlp, ...branches.flatMap((branch) => branch.mlp)];
     const activations = FLOAT * Math.max(...layers.map((layer) => layer.outputs));
     const low = avatar.texels.size / 2 ** avatar.wavelet.levels;
-    const planes = branches.map((branch) => branch.channels * (low * 2 ** branch.details.length) ** 2);
-    const texture = FLOAT * Math.max(...planes);
-    const details = branches.flatMap((branch) => branch.details.map((band) => 3 * branch.channels * band.size ** 2));
+    const texture = (/** @type {Branch} */ branch, /** @type {number} */ before) =>
+      branch.channels * planeBytes(Math.floor((low * 2 ** branch.details.length) / 2 ** before));
+    const details = branches.flatMap(({ channels, details }) => details.map((band) => 3 * channels * planeBytes(band.size)));
     this.activations = [0, 1].map((i) => memory.buffer(activations, `activations ${i}`));
-    this.details = memory.buffer(FLOAT * Math.max(0, ...details), "details");
+    this.details = memory.buffer(Math.max(0, ...details), "details");
     // the finest texture with details, and its ll
-    this.textures = [texture, texture / 4].map((bytes, i) => memory.buffer(bytes, `texture ${i}`));
+    this.textures = [0, 1].map((i) => memory.buffer(Math.max(...branches.map((b) => texture(b, i))), `texture ${i}`));
   }
 
   /** Append one of PARTS, from the descriptor of `channels` to what it makes of it. */
@@ -123,7 +126,7 @@ export class ChannelDecoder {
   blendLow(pass, branch, alpha, size, blended) {
     this.kernels.BlendLl.dispatch(
       pass,
-      [groups(size * size, LL_TEXELS), branch.channels, 1],
+      [groups(size * groups(size, 2), LL_PAIRS), branch.channels, 1],
       { mean: branch.llMean.words, basis: branch.llBasis.words, alpha, blended },
       {
         mean_layout: branch.llMean.layout,
@@ -157,13 +160,13 @@ export class ChannelDecoder {
 
   /** One level, from planes of `size` to twice that. @param {GPUComputePassEncoder} pass @param {Branch} branch @param {GPUBuffer} ll @param {GPUBuffer} fine @param {number} size */
   synthesise(pass, branch, ll, fine, size) {
-    const { recLo: rec_lo, recHi: rec_hi, avatar } = this.buffers;
+    const { recLo: rec_lo, recHi: rec_hi, taps } = this.buffers;
     const tiles = groups(size, COARSE_TILE);
     this.kernels.InverseDwt.dispatch(
       pass,
       [tiles, tiles, branch.channels],
       { ll, details: this.details, rec_lo, rec_hi, fine },
-      { channels: branch.channels, size, taps: avatar.wavelet.recLo.length },
+      { channels: branch.channels, size, taps },
     );
   }
 

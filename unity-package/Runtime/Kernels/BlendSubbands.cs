@@ -7,7 +7,7 @@ namespace Mua
     internal sealed class BlendSubbands
     {
         private const string File = "blend_subbands.compute";
-        private const int LlTexels = 64; // of a group of BlendLl
+        private const int LlPairs = 64; // texels that share a word, of a group of BlendLl
         private const int DetailTile = 24; // texels along a side of a group of BlendDetail
         private const int Bands = 3;
 
@@ -47,7 +47,7 @@ namespace Mua
             low.Set(commands, Rank, branch.Rank);
             low.Set(commands, Size, size);
             low.Set(commands, AlphaOffset, 0);
-            low.Dispatch(commands, Kernel.Groups(size * size, LlTexels), branch.Channels, 1);
+            low.Dispatch(commands, Kernel.Groups(size * Kernel.Groups(size, 2), LlPairs), branch.Channels, 1);
         }
 
         /// <summary>The three detail subbands of a level, with coefficients from `alphaOffset` on.</summary>

@@ -2,7 +2,7 @@
 
 /** @type {import("../shader.js").Shader} */
 export const InverseDwt = {
-  ...{"stage": "comp", "entry": "InverseDwt", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "float", "stride": 4}, {"name": "details", "binding": 1, "read_only": true, "scalar": "float", "stride": 4}, {"name": "rec_lo", "binding": 2, "read_only": true, "scalar": "float", "stride": 4}, {"name": "rec_hi", "binding": 3, "read_only": true, "scalar": "float", "stride": 4}, {"name": "fine", "binding": 8, "read_only": false, "scalar": "float", "stride": 4}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": false}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 10, "threads": [16, 16, 1]},
+  ...{"stage": "comp", "entry": "InverseDwt", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "details", "binding": 1, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "rec_lo", "binding": 2, "read_only": true, "scalar": "float", "stride": 4}, {"name": "rec_hi", "binding": 3, "read_only": true, "scalar": "float", "stride": 4}, {"name": "fine", "binding": 8, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": false}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": false}], "constants_binding": 10, "threads": [16, 16, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) static_offset_layout_0 : vec3<u32>,
@@ -17,15 +17,15 @@ export const InverseDwt = {
 };
 
 @binding(10) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
-@binding(0) @group(0) var<storage, read> ll_0 : array<f32>;
+@binding(0) @group(0) var<storage, read> ll_0 : array<u32>;
 
 @binding(2) @group(0) var<storage, read> rec_lo_0 : array<f32>;
 
-@binding(1) @group(0) var<storage, read> details_0 : array<f32>;
+@binding(1) @group(0) var<storage, read> details_0 : array<u32>;
 
 @binding(3) @group(0) var<storage, read> rec_hi_0 : array<f32>;
 
-@binding(8) @group(0) var<storage, read_write> fine_0 : array<f32>;
+@binding(8) @group(0) var<storage, read_write> fine_0 : array<u32>;
 
 fn rowCount_0() -> u32
 {
@@ -38,7 +38,17 @@ fn coarseRow_0( tile_0 : u32,  i_0 : u32) -> u32
     return _S1;
 }
 
-var<workgroup> filtered_0 : array<vec2<f32>, i32(1120)>;
+var<workgroup> filtered_0 : array<vec2<f32>, i32(1152)>;
+
+fn rowWords_0( size_1 : u32) -> u32
+{
+    return (size_1 + u32(1)) / u32(2);
+}
+
+fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
+{
+    return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
+}
 
 fn olderSample_0( sample_0 : u32) -> u32
 {
@@ -52,6 +62,16 @@ fn olderSample_0( sample_0 : u32) -> u32
         _S2 = sample_0;
     }
     return _S2 - u32(1);
+}
+
+fn packHalves_0( values_0 : vec2<f32>) -> u32
+{
+    return ((pack2x16float(vec2f((values_0.x),0.0))) | ((((pack2x16float(vec2f((values_0.y),0.0))) << (u32(16))))));
+}
+
+fn packBounded_0( values_1 : vec2<f32>) -> u32
+{
+    return packHalves_0(clamp(values_1, vec2<f32>(-65504.0f), vec2<f32>(65504.0f)));
 }
 
 fn writeSquare_0( coarse_0 : vec3<u32>,  square_0 : vec4<f32>)
@@ -70,34 +90,31 @@ fn writeSquare_0( coarse_0 : vec3<u32>,  square_0 : vec4<f32>)
         return;
     }
     var side_0 : u32 = u32(2) * Constants_0.size_0;
-    var _S4 : vec2<u32> = vec2<u32>(side_0);
-    var near_0 : vec2<u32> = (vec2<u32>(u32(2)) * coarse_0.xy + vec2<u32>((Constants_0.taps_0 * Constants_0.size_0)) - vec2<u32>((Constants_0.taps_0 / u32(2) - u32(1)))) % _S4;
-    var far_0 : vec2<u32> = (near_0 + vec2<u32>(u32(1))) % _S4;
-    var rows_0 : vec2<u32> = (vec2<u32>((coarse_0.z * side_0)) + vec2<u32>(near_0.y, far_0.y)) * _S4;
-    var _S5 : u32 = rows_0.x;
-    var _S6 : u32 = near_0.x;
-    fine_0[_S5 + _S6] = square_0.x;
-    var _S7 : u32 = far_0.x;
-    fine_0[_S5 + _S7] = square_0.y;
-    var _S8 : u32 = rows_0.y;
-    fine_0[_S8 + _S6] = square_0.z;
-    fine_0[_S8 + _S7] = square_0.w;
+    var near_0 : vec2<u32> = (vec2<u32>(u32(2)) * coarse_0.xy + vec2<u32>((Constants_0.taps_0 * Constants_0.size_0)) - vec2<u32>((Constants_0.taps_0 / u32(2) - u32(1)))) % vec2<u32>(side_0);
+    var start_0 : u32 = (coarse_0.z * side_0 + near_0.y) * Constants_0.size_0 + near_0.x / u32(2);
+    fine_0[start_0] = packBounded_0(square_0.xy);
+    fine_0[start_0 + Constants_0.size_0] = packBounded_0(square_0.zw);
     return;
 }
 
-fn tapPair_0( _S9 : u32) -> vec2<f32>
+fn tapPair_0( _S4 : u32) -> vec2<f32>
 {
-    var _S10 : u32 = u32(2) * _S9;
-    return vec2<f32>(rec_lo_0[_S10], rec_lo_0[_S10 + u32(1)]);
+    var _S5 : u32 = u32(2) * _S4;
+    return vec2<f32>(rec_lo_0[_S5], rec_lo_0[_S5 + u32(1)]);
 }
 
-fn filterRow_0( _S11 : u32,  _S12 : u32,  _S13 : u32) -> vec2<f32>
+fn sampleAt_0( _S6 : u32,  _S7 : u32) -> f32
 {
-    var _S14 : u32 = (_S11 * Constants_0.size_0 + _S12) * Constants_0.size_0;
-    var _S15 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
-    var older_0 : u32 = min(_S13, Constants_0.size_0 - u32(1));
+    return halfAt_0(ll_0[_S6 + _S7 / u32(2)], (_S7 & (u32(1))));
+}
+
+fn filterRow_0( _S8 : u32,  _S9 : u32,  _S10 : u32) -> vec2<f32>
+{
+    var _S11 : u32 = (_S8 * Constants_0.size_0 + _S9) * rowWords_0(Constants_0.size_0);
+    var _S12 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
+    var older_0 : u32 = min(_S10, Constants_0.size_0 - u32(1));
     var j_0 : u32 = u32(0);
-    var pair_0 : vec2<f32> = _S15;
+    var pair_0 : vec2<f32> = _S12;
     for(;;)
     {
         if(j_0 < (Constants_0.taps_0 / u32(2)))
@@ -107,29 +124,34 @@ fn filterRow_0( _S11 : u32,  _S12 : u32,  _S13 : u32) -> vec2<f32>
         {
             break;
         }
-        var pair_1 : vec2<f32> = pair_0 + tapPair_0(j_0) * vec2<f32>(ll_0[_S14 + older_0]);
-        var _S16 : u32 = olderSample_0(older_0);
-        var _S17 : u32 = j_0 + u32(1);
-        older_0 = _S16;
-        j_0 = _S17;
+        var pair_1 : vec2<f32> = pair_0 + tapPair_0(j_0) * vec2<f32>(sampleAt_0(_S11, older_0));
+        var _S13 : u32 = olderSample_0(older_0);
+        var _S14 : u32 = j_0 + u32(1);
+        older_0 = _S13;
+        j_0 = _S14;
         pair_0 = pair_1;
     }
     return pair_0;
 }
 
-fn tapPair_1( _S18 : u32) -> vec2<f32>
+fn tapPair_1( _S15 : u32) -> vec2<f32>
 {
-    var _S19 : u32 = u32(2) * _S18;
-    return vec2<f32>(rec_hi_0[_S19], rec_hi_0[_S19 + u32(1)]);
+    var _S16 : u32 = u32(2) * _S15;
+    return vec2<f32>(rec_hi_0[_S16], rec_hi_0[_S16 + u32(1)]);
 }
 
-fn filterRow_1( _S20 : u32,  _S21 : u32,  _S22 : u32) -> vec2<f32>
+fn sampleAt_1( _S17 : u32,  _S18 : u32) -> f32
 {
-    var _S23 : u32 = (_S20 * Constants_0.size_0 + _S21) * Constants_0.size_0;
-    var _S24 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
-    var older_1 : u32 = min(_S22, Constants_0.size_0 - u32(1));
+    return halfAt_0(details_0[_S17 + _S18 / u32(2)], (_S18 & (u32(1))));
+}
+
+fn filterRow_1( _S19 : u32,  _S20 : u32,  _S21 : u32) -> vec2<f32>
+{
+    var _S22 : u32 = (_S19 * Constants_0.size_0 + _S20) * rowWords_0(Constants_0.size_0);
+    var _S23 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
+    var older_1 : u32 = min(_S21, Constants_0.size_0 - u32(1));
     var j_1 : u32 = u32(0);
-    var pair_2 : vec2<f32> = _S24;
+    var pair_2 : vec2<f32> = _S23;
     for(;;)
     {
         if(j_1 < (Constants_0.taps_0 / u32(2)))
@@ -139,23 +161,23 @@ fn filterRow_1( _S20 : u32,  _S21 : u32,  _S22 : u32) -> vec2<f32>
         {
             break;
         }
-        var pair_3 : vec2<f32> = pair_2 + tapPair_1(j_1) * vec2<f32>(details_0[_S23 + older_1]);
-        var _S25 : u32 = olderSample_0(older_1);
-        var _S26 : u32 = j_1 + u32(1);
-        older_1 = _S25;
-        j_1 = _S26;
+        var pair_3 : vec2<f32> = pair_2 + tapPair_1(j_1) * vec2<f32>(sampleAt_1(_S22, older_1));
+        var _S24 : u32 = olderSample_0(older_1);
+        var _S25 : u32 = j_1 + u32(1);
+        older_1 = _S24;
+        j_1 = _S25;
         pair_2 = pair_3;
     }
     return pair_2;
 }
 
-fn filterRow_2( _S27 : u32,  _S28 : u32,  _S29 : u32) -> vec2<f32>
+fn filterRow_2( _S26 : u32,  _S27 : u32,  _S28 : u32) -> vec2<f32>
 {
-    var _S30 : u32 = (_S27 * Constants_0.size_0 + _S28) * Constants_0.size_0;
-    var _S31 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
-    var older_2 : u32 = min(_S29, Constants_0.size_0 - u32(1));
+    var _S29 : u32 = (_S26 * Constants_0.size_0 + _S27) * rowWords_0(Constants_0.size_0);
+    var _S30 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
+    var older_2 : u32 = min(_S28, Constants_0.size_0 - u32(1));
     var j_2 : u32 = u32(0);
-    var pair_4 : vec2<f32> = _S31;
+    var pair_4 : vec2<f32> = _S30;
     for(;;)
     {
         if(j_2 < (Constants_0.taps_0 / u32(2)))
@@ -165,22 +187,22 @@ fn filterRow_2( _S27 : u32,  _S28 : u32,  _S29 : u32) -> vec2<f32>
         {
             break;
         }
-        var pair_5 : vec2<f32> = pair_4 + tapPair_0(j_2) * vec2<f32>(details_0[_S30 + older_2]);
-        var _S32 : u32 = olderSample_0(older_2);
-        var _S33 : u32 = j_2 + u32(1);
-        older_2 = _S32;
-        j_2 = _S33;
+        var pair_5 : vec2<f32> = pair_4 + tapPair_0(j_2) * vec2<f32>(sampleAt_1(_S29, older_2));
+        var _S31 : u32 = olderSample_0(older_2);
+        var _S32 : u32 = j_2 + u32(1);
+        older_2 = _S31;
+        j_2 = _S32;
         pair_4 = pair_5;
     }
     return pair_4;
 }
 
-fn filterColumns_0( _S34 : u32,  _S35 : vec2<u32>) -> vec4<f32>
+fn filterColumns_0( _S33 : u32,  _S34 : vec2<u32>) -> vec4<f32>
 {
-    var _S36 : u32 = _S35.y + Constants_0.taps_0 / u32(2) - u32(1);
-    var _S37 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var _S35 : u32 = _S34.y + Constants_0.taps_0 / u32(2) - u32(1);
+    var _S36 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
     var j_3 : u32 = u32(0);
-    var square_1 : vec4<f32> = _S37;
+    var square_1 : vec4<f32> = _S36;
     for(;;)
     {
         if(j_3 < (Constants_0.taps_0 / u32(2)))
@@ -190,19 +212,19 @@ fn filterColumns_0( _S34 : u32,  _S35 : vec2<u32>) -> vec4<f32>
         {
             break;
         }
-        var square_2 : vec4<f32> = square_1 + tapPair_0(j_3).xxyy * filtered_0[_S34 + (_S36 - j_3) * u32(16) + _S35.x].xyxy;
+        var square_2 : vec4<f32> = square_1 + tapPair_0(j_3).xxyy * filtered_0[_S33 + (_S35 - j_3) * u32(16) + _S34.x].xyxy;
         j_3 = j_3 + u32(1);
         square_1 = square_2;
     }
     return square_1;
 }
 
-fn filterColumns_1( _S38 : u32,  _S39 : vec2<u32>) -> vec4<f32>
+fn filterColumns_1( _S37 : u32,  _S38 : vec2<u32>) -> vec4<f32>
 {
-    var _S40 : u32 = _S39.y + Constants_0.taps_0 / u32(2) - u32(1);
-    var _S41 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var _S39 : u32 = _S38.y + Constants_0.taps_0 / u32(2) - u32(1);
+    var _S40 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
     var j_4 : u32 = u32(0);
-    var square_3 : vec4<f32> = _S41;
+    var square_3 : vec4<f32> = _S40;
     for(;;)
     {
         if(j_4 < (Constants_0.taps_0 / u32(2)))
@@ -212,7 +234,7 @@ fn filterColumns_1( _S38 : u32,  _S39 : vec2<u32>) -> vec4<f32>
         {
             break;
         }
-        var square_4 : vec4<f32> = square_3 + tapPair_1(j_4).xxyy * filtered_0[_S38 + (_S40 - j_4) * u32(16) + _S39.x].xyxy;
+        var square_4 : vec4<f32> = square_3 + tapPair_1(j_4).xxyy * filtered_0[_S37 + (_S39 - j_4) * u32(16) + _S38.x].xyxy;
         j_4 = j_4 + u32(1);
         square_3 = square_4;
     }
@@ -235,15 +257,15 @@ fn InverseDwt(@builtin(global_invocation_id) id_0 : vec3<u32>, @builtin(workgrou
         }
         var row_0 : u32 = coarseRow_0(group_0.y, i_1);
         var at_0 : u32 = i_1 * u32(16) + thread_0.x;
-        var _S42 : u32 = id_0.z;
-        var _S43 : u32 = id_0.x;
-        filtered_0[at_0] = filterRow_0(_S42, row_0, _S43) + filterRow_1(Constants_0.channels_0 + _S42, row_0, _S43);
-        filtered_0[u32(560) + at_0] = filterRow_2(_S42, row_0, _S43) + filterRow_1(u32(2) * Constants_0.channels_0 + _S42, row_0, _S43);
+        var _S41 : u32 = id_0.z;
+        var _S42 : u32 = id_0.x;
+        filtered_0[at_0] = filterRow_0(_S41, row_0, _S42) + filterRow_1(Constants_0.channels_0 + _S41, row_0, _S42);
+        filtered_0[u32(576) + at_0] = filterRow_2(_S41, row_0, _S42) + filterRow_1(u32(2) * Constants_0.channels_0 + _S41, row_0, _S42);
         i_1 = i_1 + u32(16);
     }
     workgroupBarrier();
-    var _S44 : vec2<u32> = thread_0.xy;
-    writeSquare_0(id_0, filterColumns_0(u32(0), _S44) + filterColumns_1(u32(560), _S44));
+    var _S43 : vec2<u32> = thread_0.xy;
+    writeSquare_0(id_0, filterColumns_0(u32(0), _S43) + filterColumns_1(u32(576), _S43));
     return;
 }
 
@@ -252,7 +274,7 @@ fn InverseDwt(@builtin(global_invocation_id) id_0 : vec3<u32>, @builtin(workgrou
 
 /** @type {import("../shader.js").Shader} */
 export const UpsampleTexels = {
-  ...{"stage": "comp", "entry": "UpsampleTexels", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "float", "stride": 4}, {"name": "upsampling", "binding": 4, "read_only": true, "scalar": "float", "stride": 4}, {"name": "tiles", "binding": 5, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "tile_rows", "binding": 6, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "static_offset", "binding": 7, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texel_channels", "binding": 9, "read_only": false, "scalar": "uint", "stride": 8}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": true}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 10, "threads": [16, 16, 1]},
+  ...{"stage": "comp", "entry": "UpsampleTexels", "buffers": [{"name": "ll", "binding": 0, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "upsampling", "binding": 4, "read_only": true, "scalar": "float", "stride": 4}, {"name": "tiles", "binding": 5, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "tile_rows", "binding": 6, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "static_offset", "binding": 7, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texel_channels", "binding": 9, "read_only": false, "scalar": "uint", "stride": 8}], "constants": [{"name": "static_offset_layout", "offset": 0, "scalar": "uint", "shape": [3], "strides": [4], "used": true}, {"name": "channels", "offset": 12, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "size", "offset": 16, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "taps", "offset": 20, "scalar": "uint", "shape": [], "strides": [], "used": false}, {"name": "factor", "offset": 24, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "reach", "offset": 28, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "delay", "offset": 32, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 36, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "first_row", "offset": 40, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 10, "threads": [16, 16, 1]},
   code: `struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) static_offset_layout_0 : vec3<u32>,
@@ -269,7 +291,7 @@ export const UpsampleTexels = {
 @binding(10) @group(0) var<uniform> Constants_0 : SLANG_ParameterGroup_Constants_std140_0;
 @binding(5) @group(0) var<storage, read> tiles_0 : array<u32>;
 
-@binding(0) @group(0) var<storage, read> ll_0 : array<f32>;
+@binding(0) @group(0) var<storage, read> ll_0 : array<u32>;
 
 @binding(4) @group(0) var<storage, read> upsampling_0 : array<f32>;
 
@@ -285,12 +307,22 @@ fn newestSample_0( position_0 : u32) -> u32
     return _S1;
 }
 
-var<workgroup> upsampled_0 : array<vec4<f32>, i32(640)>;
+var<workgroup> upsampled_0 : array<vec4<f32>, i32(672)>;
+
+fn rowWords_0( size_1 : u32) -> u32
+{
+    return (size_1 + u32(1)) / u32(2);
+}
 
 fn phase_0( position_1 : u32) -> u32
 {
     var _S2 : u32 = (position_1 + Constants_0.delay_0) % Constants_0.factor_0;
     return _S2;
+}
+
+fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
+{
+    return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
 }
 
 fn olderSample_0( sample_0 : u32) -> u32
@@ -307,17 +339,22 @@ fn olderSample_0( sample_0 : u32) -> u32
     return _S3 - u32(1);
 }
 
+fn sampleAt_0( _S4 : u32,  _S5 : u32) -> f32
+{
+    return halfAt_0(ll_0[_S4 + _S5 / u32(2)], (_S5 & (u32(1))));
+}
+
 fn upsampleRow_0( planes_0 : vec4<u32>,  row_0 : u32,  column_0 : u32) -> vec4<f32>
 {
-    var _S4 : vec4<u32> = (planes_0 * vec4<u32>(Constants_0.size_0) + vec4<u32>(row_0)) * vec4<u32>(Constants_0.size_0);
-    var _S5 : u32 = newestSample_0(column_0);
-    var _S6 : u32 = _S5 % Constants_0.size_0;
-    var _S7 : u32 = phase_0(column_0);
-    var _S8 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
-    var older_0 : u32 = _S6;
+    var _S6 : vec4<u32> = (planes_0 * vec4<u32>(Constants_0.size_0) + vec4<u32>(row_0)) * vec4<u32>(rowWords_0(Constants_0.size_0));
+    var _S7 : u32 = newestSample_0(column_0);
+    var _S8 : u32 = _S7 % Constants_0.size_0;
+    var _S9 : u32 = phase_0(column_0);
+    var _S10 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var older_0 : u32 = _S8;
     var j_0 : u32 = u32(0);
-    var tap_0 : u32 = _S7;
-    var sum_0 : vec4<f32> = _S8;
+    var tap_0 : u32 = _S9;
+    var sum_0 : vec4<f32> = _S10;
     for(;;)
     {
         if(j_0 < (Constants_0.reach_0))
@@ -327,12 +364,12 @@ fn upsampleRow_0( planes_0 : vec4<u32>,  row_0 : u32,  column_0 : u32) -> vec4<f
         {
             break;
         }
-        var sum_1 : vec4<f32> = sum_0 + vec4<f32>(upsampling_0[tap_0]) * vec4<f32>(ll_0[_S4.x + older_0], ll_0[_S4.y + older_0], ll_0[_S4.z + older_0], ll_0[_S4.w + older_0]);
+        var sum_1 : vec4<f32> = sum_0 + vec4<f32>(upsampling_0[tap_0]) * vec4<f32>(sampleAt_0(_S6.x, older_0), sampleAt_0(_S6.y, older_0), sampleAt_0(_S6.z, older_0), sampleAt_0(_S6.w, older_0));
         var tap_1 : u32 = tap_0 + Constants_0.factor_0;
-        var _S9 : u32 = olderSample_0(older_0);
-        var _S10 : u32 = j_0 + u32(1);
-        older_0 = _S9;
-        j_0 = _S10;
+        var _S11 : u32 = olderSample_0(older_0);
+        var _S12 : u32 = j_0 + u32(1);
+        older_0 = _S11;
+        j_0 = _S12;
         tap_0 = tap_1;
         sum_0 = sum_1;
     }
@@ -341,9 +378,9 @@ fn upsampleRow_0( planes_0 : vec4<u32>,  row_0 : u32,  column_0 : u32) -> vec4<f
 
 fn upsampleColumn_0( newest_0 : u32,  tap_2 : u32,  column_1 : u32) -> vec4<f32>
 {
-    var _S11 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var _S13 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
     var j_1 : u32 = u32(0);
-    var sum_2 : vec4<f32> = _S11;
+    var sum_2 : vec4<f32> = _S13;
     for(;;)
     {
         if(j_1 < (Constants_0.reach_0))
@@ -358,11 +395,6 @@ fn upsampleColumn_0( newest_0 : u32,  tap_2 : u32,  column_1 : u32) -> vec4<f32>
         sum_2 = sum_3;
     }
     return sum_2;
-}
-
-fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
-{
-    return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
 }
 
 fn byteAt_0( word_1 : u32,  lane_1 : u32) -> i32
@@ -380,28 +412,28 @@ fn packBounded_0( values_1 : vec2<f32>) -> u32
     return packHalves_0(clamp(values_1, vec2<f32>(-65504.0f), vec2<f32>(65504.0f)));
 }
 
-fn stored_0( _S12 : vec3<u32>,  _S13 : u32) -> f32
+fn stored_0( _S14 : vec3<u32>,  _S15 : u32) -> f32
 {
-    var _S14 : u32 = _S12.x;
-    var word_2 : u32 = static_offset_0[(_S13 >> (_S14))];
-    var lane_2 : u32 = (_S13 & ((((u32(1) << (_S14))) - u32(1))));
+    var _S16 : u32 = _S14.x;
+    var word_2 : u32 = static_offset_0[(_S15 >> (_S16))];
+    var lane_2 : u32 = (_S15 & ((((u32(1) << (_S16))) - u32(1))));
     var value_0 : f32;
-    if(_S14 == u32(0))
+    if(_S16 == u32(0))
     {
         value_0 = (bitcast<f32>((word_2)));
     }
     else
     {
-        if(_S14 == u32(1))
+        if(_S16 == u32(1))
         {
             value_0 = halfAt_0(word_2, lane_2);
         }
         else
         {
-            var _S15 : f32 = f32(byteAt_0(word_2, lane_2));
-            var _S16 : u32 = _S12.z;
-            var _S17 : u32 = _S13 / _S12.y;
-            value_0 = _S15 * (bitcast<f32>((static_offset_0[_S16 + _S17])));
+            var _S17 : f32 = f32(byteAt_0(word_2, lane_2));
+            var _S18 : u32 = _S14.z;
+            var _S19 : u32 = _S15 / _S14.y;
+            value_0 = _S17 * (bitcast<f32>((static_offset_0[_S18 + _S19])));
         }
     }
     return value_0;
@@ -420,11 +452,11 @@ fn writeTexel_0( texel_0 : u32,  first_0 : u32,  values_2 : vec4<f32>)
         {
             break;
         }
-        var _S18 : u32 = first_0 + i_0;
-        if(_S18 < (Constants_0.channels_0))
+        var _S20 : u32 = first_0 + i_0;
+        if(_S20 < (Constants_0.channels_0))
         {
-            var _S19 : f32 = stored_0(Constants_0.static_offset_layout_0, _S18 * Constants_0.texel_count_0 + texel_0);
-            whole_0[i_0] = values_2[i_0] + _S19;
+            var _S21 : f32 = stored_0(Constants_0.static_offset_layout_0, _S20 * Constants_0.texel_count_0 + texel_0);
+            whole_0[i_0] = values_2[i_0] + _S21;
         }
         i_0 = i_0 + u32(1);
     }
@@ -437,18 +469,18 @@ fn writeTexel_0( texel_0 : u32,  first_0 : u32,  values_2 : vec4<f32>)
 fn UpsampleTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_id) thread_0 : vec3<u32>)
 {
     var first_1 : u32 = u32(4) * group_0.z;
-    var _S20 : vec4<u32> = min(vec4<u32>(first_1) + vec4<u32>(u32(0), u32(1), u32(2), u32(3)), vec4<u32>((Constants_0.channels_0 - u32(1))));
-    var _S21 : u32 = group_0.x;
-    var corner_0 : vec2<u32> = vec2<u32>(u32(16)) * vec2<u32>((tiles_0[_S21] & (u32(65535))), (tiles_0[_S21] >> (u32(16))));
-    var _S22 : u32 = corner_0.y;
-    var before_0 : u32 = newestSample_0(_S22);
-    var _S23 : u32 = newestSample_0(_S22 + u32(16) - u32(1));
-    var _S24 : u32 = _S23 - before_0 + Constants_0.reach_0;
-    var _S25 : u32 = thread_0.y;
-    var i_1 : u32 = _S25;
+    var _S22 : vec4<u32> = min(vec4<u32>(first_1) + vec4<u32>(u32(0), u32(1), u32(2), u32(3)), vec4<u32>((Constants_0.channels_0 - u32(1))));
+    var _S23 : u32 = group_0.x;
+    var corner_0 : vec2<u32> = vec2<u32>(u32(16)) * vec2<u32>((tiles_0[_S23] & (u32(65535))), (tiles_0[_S23] >> (u32(16))));
+    var _S24 : u32 = corner_0.y;
+    var before_0 : u32 = newestSample_0(_S24);
+    var _S25 : u32 = newestSample_0(_S24 + u32(16) - u32(1));
+    var _S26 : u32 = _S25 - before_0 + Constants_0.reach_0;
+    var _S27 : u32 = thread_0.y;
+    var i_1 : u32 = _S27;
     for(;;)
     {
-        if(i_1 < _S24)
+        if(i_1 < _S26)
         {
         }
         else
@@ -456,25 +488,25 @@ fn UpsampleTexels(@builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_inv
             break;
         }
         var row_1 : u32 = (before_0 + i_1 + Constants_0.reach_0 * Constants_0.size_0 - (Constants_0.reach_0 - u32(1))) % Constants_0.size_0;
-        var _S26 : u32 = thread_0.x;
-        var _S27 : vec4<f32> = upsampleRow_0(_S20, row_1, corner_0.x + _S26);
-        upsampled_0[i_1 * u32(16) + _S26] = _S27;
+        var _S28 : u32 = thread_0.x;
+        var _S29 : vec4<f32> = upsampleRow_0(_S22, row_1, corner_0.x + _S28);
+        upsampled_0[i_1 * u32(16) + _S28] = _S29;
         i_1 = i_1 + u32(16);
     }
     workgroupBarrier();
-    var run_0 : vec2<u32> = tile_rows_0[u32(16) * _S21 + _S25];
-    var _S28 : u32 = run_0.y;
-    var _S29 : u32 = thread_0.x;
-    if(((((_S28 >> (_S29))) & (u32(1)))) == u32(0))
+    var run_0 : vec2<u32> = tile_rows_0[u32(16) * _S23 + _S27];
+    var _S30 : u32 = run_0.y;
+    var _S31 : u32 = thread_0.x;
+    if(((((_S30 >> (_S31))) & (u32(1)))) == u32(0))
     {
         return;
     }
-    var texel_1 : u32 = run_0.x + countOneBits((_S28 & ((((u32(1) << (_S29))) - u32(1)))));
-    var position_2 : u32 = _S22 + _S25;
-    var _S30 : u32 = newestSample_0(position_2);
-    var newest_1 : u32 = _S30 - before_0 + Constants_0.reach_0 - u32(1);
-    var _S31 : u32 = phase_0(position_2);
-    writeTexel_0(texel_1, first_1, upsampleColumn_0(newest_1, _S31, _S29));
+    var texel_1 : u32 = run_0.x + countOneBits((_S30 & ((((u32(1) << (_S31))) - u32(1)))));
+    var position_2 : u32 = _S24 + _S27;
+    var _S32 : u32 = newestSample_0(position_2);
+    var newest_1 : u32 = _S32 - before_0 + Constants_0.reach_0 - u32(1);
+    var _S33 : u32 = phase_0(position_2);
+    writeTexel_0(texel_1, first_1, upsampleColumn_0(newest_1, _S33, _S31));
     return;
 }
 
