@@ -27,13 +27,14 @@ PCA = 4
 HIDDEN = 16
 
 
-def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4") -> Avatar:
+def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4", levels: int = LEVELS) -> Avatar:
     """The same avatar for the same arguments; all tensors float32, wavelet taps and UV float64."""
     rng = np.random.default_rng(seed)
     rig = synthetic_rig()
     encoding = PoseEncoding(joints=(1, 2), rate=24.0, translated=(2,))
     scale = rng.uniform(0.5, 2, encoding.width).astype(np.float32)
     taps = pywt.Wavelet(wavelet)
+    side, texels = SIZE >> levels, len(rig.texels.texels)
     vertices = rig.mesh.vertices.astype(np.float32)
     return Avatar(
         name="synthetic",
@@ -42,9 +43,9 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4") -> Avatar:
         encoding=encoding,
         normalization=Normalization(_normal(rng, encoding.width, 0.1), scale),
         coarse=Coarse(_mlp(rng, encoding.width, PCA), vertices, _normal(rng, (PCA, *vertices.shape), 0.01)),
-        geometry=_branch(rng, encoding.width, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], len(rig.texels.texels)),
-        appearance=_branch(rng, encoding.width, [0] * 12, len(rig.texels.texels)),
-        wavelet=Wavelet(wavelet, LEVELS, np.array(taps.rec_lo), np.array(taps.rec_hi)),
+        geometry=_branch(rng, encoding.width, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], side, texels),
+        appearance=_branch(rng, encoding.width, [0] * 12, side, texels),
+        wavelet=Wavelet(wavelet, levels, np.array(taps.rec_lo), np.array(taps.rec_hi)),
         clips=(synthetic_clip(rig.skeleton, rng),),
         bounds=np.array([[-1, -1, -1], [1, 2, 1]], dtype=np.float32),
         thumbnail=b"",
@@ -147,9 +148,9 @@ def _texel_map(mesh: Mesh) -> TexelMap:
     )
 
 
-def _branch(rng: np.random.Generator, inputs: int, means: Sequence[float], texels: int) -> Branch:
-    channels, side = len(means), SIZE >> LEVELS
-    gain = 2**LEVELS  # of a constant through the analysis, two per level in 2D
+def _branch(rng: np.random.Generator, inputs: int, means: Sequence[float], side: int, texels: int) -> Branch:
+    channels = len(means)
+    gain = SIZE // side  # of a constant through the analysis, two per level in 2D
     constant = np.array(means, dtype=np.float32)[:, None, None] * gain
     return Branch(
         mlp=_mlp(rng, inputs, channels * sum(RANKS)),

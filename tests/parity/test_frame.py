@@ -162,9 +162,16 @@ def test_a_frame_is_few_dispatches_in_the_order_of_the_kernels(device: Device, t
     assert len(listed.names) < FEWER_THAN
 
 
-@pytest.mark.parametrize("wavelet", ["bior1.1", "bior6.8"])
+@pytest.mark.parametrize("wavelet", ["bior1.1", "bior3.3", "bior6.8"])  # 2, 8 and 18 taps
 def test_other_wavelets_agree(device: Device, tmp_path: Path, wavelet: str) -> None:
     frame = opened(device, synthetic_avatar(wavelet=wavelet), tmp_path)
+    errors = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], 4, eyes=1, screen=64).errors()
+    assert errors.position < POSITION_BOUND
+    assert errors.color < COLOR_BOUND
+
+
+def test_planes_that_are_not_whole_words_agree(device: Device, tmp_path: Path) -> None:
+    frame = opened(device, synthetic_avatar(levels=5), tmp_path)  # whose lowest plane is a single sample
     errors = PosedFrame(device, frame, frame.avatars[0].avatar.avatar.clips[0], 4, eyes=1, screen=64).errors()
     assert errors.position < POSITION_BOUND
     assert errors.color < COLOR_BOUND

@@ -166,8 +166,8 @@ def recorded(
     count, storage = request.param
     avatars = [
         synthetic_avatar(1),
-        part(synthetic_avatar(2, wavelet="bior3.1"), slice(0, 301)),  # whose filter has an odd delay
-        part(synthetic_avatar(3), slice(100, 457)),
+        part(synthetic_avatar(2, wavelet="bior3.1"), slice(0, 301)),  # whose filter of 4 taps has an odd delay
+        part(synthetic_avatar(3, levels=5), slice(100, 457)),  # whose lowest plane is a single sample
     ]
     return Recorded(csharp, program, device, tmp_path_factory.mktemp("recorded"), avatars[:count], storage)
 

@@ -157,6 +157,17 @@ def test_the_demo_looks_as_on_the_desktop(opened: Open, device: Device) -> None:
     assert psnr(screenshot(page), desktop(device, DEMO, page, 9, Toggles(shadow=True))) > LEAST_PSNR
 
 
+def test_filters_and_planes_that_are_not_whole_words_look_as_on_the_desktop(
+    opened: Open, device: Device, tmp_path: Path
+) -> None:
+    file = tmp_path / "a.muaavatar"
+    file.write_bytes(encode(synthetic_avatar(wavelet="bior3.1", levels=5), storage="f32"))
+    page = opened(a=file.read_bytes())
+    assert load(page) == ""
+    show(page, SPLATS, 3, read(file).encoding.rate)
+    assert psnr(screenshot(page), desktop(device, file, page, 3)) > LEAST_PSNR
+
+
 @pytest.mark.parametrize("size", [16, 8])
 def test_coarser_levels_are_those_of_the_desktop(opened: Open, device: Device, small: Path, size: int) -> None:
     page = opened(a=small.read_bytes())

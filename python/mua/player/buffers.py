@@ -144,8 +144,10 @@ class AvatarBuffers:
         self.mesh = self._mesh(tree["coarse"])
         self.geometry = self._branch(tree, "geometry")
         self.appearance = self._branch(tree, "appearance")
-        self.rec_lo = self._upload(whole_words(self.avatar.wavelet.rec_lo).astype(np.float32), "wavelet.rec_lo")
-        self.rec_hi = self._upload(whole_words(self.avatar.wavelet.rec_hi).astype(np.float32), "wavelet.rec_hi")
+        lo, hi = (whole_words(taps) for taps in (self.avatar.wavelet.rec_lo, self.avatar.wavelet.rec_hi))
+        self.rec_lo = self._upload(lo.astype(np.float32), "wavelet.rec_lo")
+        self.rec_hi = self._upload(hi.astype(np.float32), "wavelet.rec_hi")
+        self.taps = len(lo)  # of both
         self.rig = self._named(lambda: upload_rig(device, rig))
         stored = {name: self._stored(tree[name]["static_offset"], f"{name}.static_offset") for name in BRANCHES}
         self._levels = [self._level(self.avatar, self.rig, stored)]

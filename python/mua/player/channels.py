@@ -6,7 +6,7 @@ Kept a plain list in the order of the kernels, as unity-package/Runtime/ChannelD
 from dataclasses import dataclass
 
 from mua.gpu import Buffer, Commands, Device
-from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes, whole_words
+from mua.kernels.inverse_dwt import BATCH, ROWS, plane_bytes
 from mua.player.buffers import AvatarBuffers, BandBuffers, BranchBuffers, BranchLevel, LayerBuffers, LevelBuffers
 
 FLOAT = 4  # bytes
@@ -160,7 +160,7 @@ class ChannelDecoder:
             },
             channels=branch.channels,
             size=size,
-            taps=len(whole_words(self.avatar.avatar.wavelet.rec_lo)),
+            taps=self.avatar.taps,
         )
 
     def _upsample(
