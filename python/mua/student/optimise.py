@@ -69,6 +69,7 @@ def optimise(
     parameters: list[dict[str, object]],
     stage: str,
     run: Run,
+    every: int | None = None,  # steps from checkpoint to checkpoint; None: CHECKPOINT_STEPS
 ) -> None:
     """Run AdamW over `schedule` from the stage's last checkpoint; a group's `lr` is relative to the schedule's.
 
@@ -87,7 +88,7 @@ def optimise(
         value.backward()
         optimizer.step()
         done = step + 1
-        if done % CHECKPOINT_STEPS == 0 or done == schedule.steps:
+        if done % (every or CHECKPOINT_STEPS) == 0 or done == schedule.steps:
             _keep(module, optimizer, done, finished=done == schedule.steps, stage=stage, run=run)
         pace = (done - first) / max(time.monotonic() - started, 1e-9)
         run.report(Progress(stage, done, schedule.steps, run.processes.mean(value), pace))

@@ -1,0 +1,102 @@
+"""What a teacher is trained to: pictures like those of the cameras (paper, Preliminaries)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from mua.channels import GEOMETRY
+from mua.splatting.likeness import structural_similarity
+from mua.teaching.colour_correction import ColourCorrection
+from mua.teaching.model import Frame, TeacherModel, draw
+from mua.teaching.pose_refinement import PoseRefinement
+from mua.teaching.settings import TeacherSettings
+from mua.teaching.views import Seen, Views
+from mua.teaching.windows import Window
+
+Perceptual = Callable[[Tensor, Tensor], Tensor]  # of two pictures [1, 3, H, W] in 0..1
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """What a training has of a person; windows and rows of poses are those of the frames of `views`."""
+
+    views: Views
+    windows: Sequence[Window]
+    poses: Sequence[list[int]]  # of each frame's window, newest first, among those of the refinement
+    perceptual: Perceptual | None = None
+
+
+class Lesson(nn.Module):
+    """The teacher with what is learnt beside it and needed in training alone."""
+
+    def __init__(
+        self,
+        teacher: TeacherModel,
+        material: Material,
+        settings: TeacherSettings,
+        *,
+        refinement: PoseRefinement | None = None,
+    ) -> None:
+        super().__init__()
+        self.teacher = teacher
+        self.correction = ColourCorrection(material.views.cameras)
+        self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
+        self.refinement = refinement
+        self._material, self._weights = material, settings.weights
+
+    def forward(
+        self,
+        rows: Tensor,  # [B] of views
+        backgrounds: Tensor,  # [B, 3] sRGB, where a camera has no picture of the empty set
+        moving: bool = True,  # False: the mean texture alone
+    ) -> Tensor:
+        """The mean loss over the views."""
+        frames: dict[int, tuple[Frame, Window]] = {}
+        losses = []
+        for row, colour in zip(rows.tolist(), backgrounds, strict=True):
+            frame, camera = divmod(row, self._material.views.cameras)
+            if frame not in frames:
+                window = self.window(frame)
+                frames[frame] = self.teacher(window, look=self.looks[frame], moving=moving), window
+            losses.append(self._of_view(*frames[frame], frame, camera, colour))
+        return torch.stack(losses).mean()
+
+    def window(self, frame: int) -> Window:
+        """The window of a frame, its poses refined where they are learnt."""
+        window = self._material.windows[frame].to(self.looks.device)
+        if self.refinement is None:
+            return window
+        joints = self.refinement(self._material.poses[frame])
+        return Window(joints, window.descriptors, window.root, window.back)
+
+    @torch.no_grad()
+    def keep_mean_look(self) -> None:
+        """Give the teacher the mean of the looks: what it shows of any motion."""
+        self.teacher.look.copy_(self.looks.mean(dim=0))
+
+    def _of_view(self, frame: Frame, window: Window, index: int, camera: int, colour: Tensor) -> Tensor:
+        seen = self._material.views.see(index, camera)
+        image = self.correction(draw(self.teacher.splats(frame, window.joints[0]), seen.eye), camera)
+        background = colour if seen.background is None else seen.background
+        shown = image[..., :3] + (1 - image[..., 3:]) * background
+        return self._difference(shown, image[..., 3], seen, background) + self._restraint(frame, index)
+
+    def _difference(self, shown: Tensor, alpha: Tensor, seen: Seen, background: Tensor) -> Tensor:
+        weights, truth = self._weights, seen.over(background)
+        loss = weights.l1 * (shown - truth).abs().mean()
+        loss = loss + weights.ssim * (1 - structural_similarity(shown, truth))
+        loss = loss + weights.alpha * (alpha - seen.mask).abs().mean()
+        if self._material.perceptual is not None:
+            pair = (picture.permute(2, 0, 1)[None].clamp(0, 1) for picture in (shown, truth))
+            loss = loss + weights.perceptual * self._material.perceptual(*pair)
+        return loss
+
+    def _restraint(self, frame: Frame, index: int) -> Tensor:
+        """Keeps what pictures do not decide near nothing."""
+        loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
+        beside = self.correction.size() + self.looks[index].square().sum()
+        if self.refinement is not None:
+            beside = beside + self.refinement.size()
+        return loss + self._weights.correction * beside

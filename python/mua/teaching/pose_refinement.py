@@ -1,0 +1,62 @@
+"""Poses that fit the pictures: small turns of every joint of every frame, learnt beside the teacher and bounded."""
+
+import math
+
+import torch
+from torch import Tensor, nn
+
+from mua.pose.skeleton import Skeleton
+from mua.splatting.posing import multiply, rotate
+
+
+class PoseRefinement(nn.Module):
+    """Of the frames of one training; unseen motion is posed as it is given."""
+
+    rotations: Tensor  # [F, J, 4]
+    translations: Tensor  # [F, J, 3]
+    unbind: Tensor  # [J, 8]
+
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        rotations: Tensor,  # [F, J, 4] local
+        translations: Tensor,  # [F, J, 3] local, metres
+        *,
+        most: float,  # degrees about each axis
+    ) -> None:
+        super().__init__()
+        self.most = math.radians(most)
+        self.parents = [int(parent) for parent in skeleton.parents]
+        self.register_buffer("rotations", rotations.float(), persistent=False)
+        self.register_buffer("translations", translations.float(), persistent=False)
+        self.register_buffer("unbind", torch.as_tensor(skeleton.bind_inverse).float(), persistent=False)
+        self.turns = nn.Parameter(torch.zeros(len(rotations), len(self.parents), 3))  # half angles in shares of `most`
+
+    def forward(
+        self,
+        frames: list[int],  # of a window
+    ) -> Tensor:
+        """Dual quaternions [k, J, 8], bind pose to world."""
+        half = torch.tanh(self.turns[frames]) * (self.most / 2)
+        turn = nn.functional.normalize(torch.cat([torch.ones_like(half[..., :1]), half], dim=-1), dim=-1)
+        return self._skinning(multiply(self.rotations[frames], turn), self.translations[frames])
+
+    def size(self) -> Tensor:
+        """The mean square of what is learnt."""
+        return self.turns.square().mean()
+
+    def _skinning(self, rotations: Tensor, translations: Tensor) -> Tensor:
+        """As `mua.pose.skeleton.Skeleton.skinning`."""
+        turned: list[Tensor] = []
+        placed: list[Tensor] = []
+        for joint, parent in enumerate(self.parents):
+            turn, place = rotations[:, joint], translations[:, joint]
+            if parent >= 0:
+                place = placed[parent] + rotate(turned[parent], place)
+                turn = multiply(turned[parent], turn)
+            turned.append(turn)
+            placed.append(place)
+        turns, places = torch.stack(turned, dim=1), torch.stack(placed, dim=1)
+        moved = multiply(torch.cat([torch.zeros_like(places[..., :1]), places], dim=-1), turns) / 2
+        real, dual = self.unbind[:, :4].expand_as(turns), self.unbind[:, 4:].expand_as(turns)
+        return torch.cat([multiply(turns, real), multiply(turns, dual) + multiply(moved, real)], dim=-1)

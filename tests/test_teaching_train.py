@@ -1,0 +1,135 @@
+"""A teacher learns from pictures, goes on after a kill to the same bytes, and is the same in two processes."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from synthetic_avatar import synthetic_avatar
+from taught import CAMERAS, FRAMES, SETTINGS, errors, material, run_in, subject, taught, teacher
+
+from mua.processes import Processes
+from mua.student.optimise import Progress
+from mua.student.settings import Schedule
+from mua.teaching.lesson import Lesson
+from mua.teaching.pose_refinement import PoseRefinement
+from mua.teaching.train import MEAN, TEXTURE, _loss, train_teacher
+from mua.teaching.views import Seen, Views
+
+
+class Killed(BaseException):
+    """What nothing catches."""
+
+
+def state(lesson: Lesson) -> dict[str, torch.Tensor]:
+    return {name: tensor.clone() for name, tensor in lesson.state_dict().items()}
+
+
+def same(a: dict[str, torch.Tensor], b: dict[str, torch.Tensor]) -> bool:
+    return all(torch.equal(a[name], b[name]) for name in a)
+
+
+def test_training_comes_nearer_to_the_pictures_than_a_mean_texture(tmp_path: Path) -> None:
+    shown = material()
+    before = errors(Lesson(teacher(), shown, SETTINGS), shown)
+    lesson = taught(tmp_path, settings=replace(SETTINGS, texture=replace(SETTINGS.texture, steps=40)), shown=shown)
+    mean = errors(lesson, shown, moving=False)
+    assert mean < 0.8 * before
+    assert errors(lesson, shown) < 0.6 * mean
+
+
+@pytest.mark.parametrize("killed", [(MEAN, 5), (TEXTURE, 3), (TEXTURE, 11)])
+def test_a_killed_training_ends_in_the_same_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: tuple[str, int]
+) -> None:
+    monkeypatch.setattr("mua.teaching.train.CHECKPOINT_STEPS", 4)
+    whole = state(taught(tmp_path / "whole"))
+
+    def die(progress: Progress) -> None:
+        if (progress.stage, progress.step) == killed:
+            raise Killed
+
+    with pytest.raises(Killed):
+        taught(tmp_path / "killed", die)
+    steps: list[tuple[str, int]] = []
+    again = state(taught(tmp_path / "killed", lambda progress: steps.append((progress.stage, progress.step))))
+    assert same(whole, again)
+    assert steps[0] == (killed[0], killed[1] // 4 * 4 + 1)  # it went on and did not begin anew
+
+
+def test_another_seed_is_another_training(tmp_path: Path) -> None:
+    other = state(taught(tmp_path / "b", settings=replace(SETTINGS, seed=1)))
+    assert not same(state(taught(tmp_path / "a")), other)
+
+
+@torch.no_grad()
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_parts_of_a_batch_add_up_to_its_loss(tmp_path: Path, count: int) -> None:
+    shown = material()
+    lesson = Lesson(teacher(), shown, SETTINGS)
+
+    def part(rank: int, count: int) -> float:
+        run = run_in(tmp_path, processes=Processes(rank, count))
+        return float(_loss(lesson, material=shown, batch=4, run=run, moving=True))
+
+    assert np.mean([part(rank, count) for rank in range(count)]) == pytest.approx(part(0, 1), rel=1e-5)
+
+
+def test_a_camera_with_colours_of_its_own_does_not_stain_the_teacher(tmp_path: Path) -> None:
+    def redder(seen: Seen, camera: int) -> Seen:
+        red = torch.tensor([0.1, 0, 0]) * (1 if camera else -1)
+        return replace(seen, image=(seen.image + red).clamp(0, 1))
+
+    longer = replace(SETTINGS, texture=Schedule(steps=25, batch=4, lr=2e-2))
+    lesson = taught(tmp_path, settings=longer, shown=material(redder))
+    change = lesson.correction.change - lesson.correction.change.mean(dim=0)
+    assert change[1, 0].sum() > 0.01
+    assert change[1, 0].sum() > 3 * change[1, 1:].sum(dim=1).abs().max()
+
+
+def test_the_teacher_keeps_the_mean_look(tmp_path: Path) -> None:
+    lesson = taught(tmp_path)
+    assert lesson.looks.any()
+    torch.testing.assert_close(lesson.teacher.look, lesson.looks.mean(dim=0))
+
+
+def refinement(most: float) -> PoseRefinement:
+    clip = synthetic_avatar().clips[0]
+    poses = torch.from_numpy(clip.rotations), torch.from_numpy(clip.translations)
+    return PoseRefinement(subject().rig.skeleton, *poses, most=most)
+
+
+def test_unrefined_poses_are_those_of_the_clip() -> None:
+    clip, skeleton = synthetic_avatar().clips[0], subject().rig.skeleton
+    wanted = skeleton.skinning(clip.rotations, clip.translations)
+    found = refinement(3.0)(list(range(len(clip)))).detach().numpy()
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=60 * np.finfo(np.float32).eps)
+
+
+def away(poses: PoseRefinement) -> float:
+    """Degrees by which joint 1 is turned in the first frame."""
+    with torch.no_grad():
+        turned, straight = (own([0])[0, 1, :4] for own in (poses, refinement(3.0)))
+    return 2 * float(torch.rad2deg(torch.asin((turned - straight).norm() / 2))) * 2
+
+
+def test_poses_are_turned_to_fit_the_pictures(tmp_path: Path) -> None:
+    poses = refinement(3.0)
+    with torch.no_grad():
+        poses.turns[0, 1] = 1.0  # the pictures show what is not turned
+    before = away(poses)
+    assert 3 < before < 3 * 3**0.5
+    shown = replace(material(), poses=[[0] * 3, [2] * 3, [4] * 3])
+    settings = replace(SETTINGS, texture=Schedule(steps=12, batch=6, lr=3e-2, cosine=False), code=0)
+    lesson = Lesson(teacher(settings), shown, settings, refinement=poses)
+    train_teacher(lesson, shown, settings, run=run_in(tmp_path))
+    assert away(poses) < 0.9 * before
+
+
+def test_views_of_a_batch_are_cameras_of_few_frames() -> None:
+    views = Views(FRAMES * 10, CAMERAS * 3, lambda frame, camera: pytest.fail("nothing is seen yet"))
+    rows = views.draw(6, torch.Generator().manual_seed(0))
+    assert len(rows) == len(set(rows.tolist())) == 6
+    assert len({row // views.cameras for row in rows.tolist()}) <= 3
+    assert len(Views(5, 1, views.see).draw(4, torch.Generator())) == 4
