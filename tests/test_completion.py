@@ -19,6 +19,11 @@ def test_a_shell_completes_options() -> None:
     assert completed("view", "mua-view --a") == ["--azimuth"]
 
 
+def test_a_shell_completes_what_a_command_does() -> None:
+    assert "check" in completed("capture", "mua-capture ")
+    assert completed("capture", "mua-capture check --fr") == ["--frames"]
+
+
 @pytest.mark.parametrize(
     ("name", "option", "choices"),
     [

@@ -125,9 +125,13 @@ def test_a_picture_by_the_cpu_needs_no_extra(avatar_file: Path, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("name", sorted(set(COMMANDS) - {"inspect", "pack"}))
-def test_a_missing_extra_is_told_with_the_command_that_brings_it(name: str, written: Path, avatar_file: Path) -> None:
+def test_a_missing_extra_is_told_with_the_command_that_brings_it(
+    name: str, written: Path, avatar_file: Path, tmp_path: Path
+) -> None:
     given = {"bake": (), "eval": (written,), "train": (written,), "view": (avatar_file, "-o", "a.png")}
     given["export"] = (avatar_file, "-o", "a.glb")
+    (tmp_path / "capture.json").touch()
+    given["capture"] = ("check", tmp_path)
     given["share"] = (avatar_file, "-o", "shared")
     code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
     ended = run_bare(code, *given.get(name, (avatar_file,)))

@@ -17,6 +17,7 @@ EXTRAS = {  # the smaller ones first: of several that bring a package the first 
 }
 OF_COMMAND = {  # where the extra is not called as the command or the function
     "mua-bench": "view",
+    "mua-capture": "view",
     "mua-share": "view",
     "mua.Recording": "train",
     "mua.TeacherWriter": "train",

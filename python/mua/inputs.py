@@ -5,6 +5,7 @@ from pathlib import Path
 from mua.errors import InputError
 
 HEADER = "recording.json"  # as mua.recording, which takes torch to load, calls it
+CAPTURE = "capture.json"
 
 
 def require_file(path: Path) -> None:
@@ -27,3 +28,12 @@ def require_recording(path: Path) -> None:
         raise InputError(f"{path}: {problem}")
     if not (path / HEADER).is_file():
         raise InputError(f"{path}: not a recording, it holds no {HEADER}")
+
+
+def require_capture(path: Path) -> None:
+    """Raises InputError where there is no directory of that name, or one that is no capture."""
+    if not path.is_dir():
+        problem = "is a file, expected the folder of a capture" if path.is_file() else "there is no such directory"
+        raise InputError(f"{path}: {problem}")
+    if not (path / CAPTURE).is_file():
+        raise InputError(f"{path}: not a capture, it holds no {CAPTURE}")

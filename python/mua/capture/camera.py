@@ -47,6 +47,12 @@ class CaptureCamera:
         """[3] world, metres."""
         return np.asarray(-self.world_to_camera[:3, :3].T @ self.world_to_camera[:3, 3])
 
+    @property
+    def field_of_view(self) -> float:
+        """From the left to the right edge of the picture, degrees."""
+        left, right = self.centre[0] / self.focal[0], (self.size[0] - self.centre[0]) / self.focal[0]
+        return float(np.degrees(np.arctan(left) + np.arctan(right)))
+
     def cropped(self, box: tuple[int, int, int, int]) -> Self:
         """The camera of a part of its picture: left, upper, right and lower edge in pixels, which may lie outside."""
         left, upper, right, lower = box

@@ -10,15 +10,16 @@ from mua.atlas.detail import UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.capture.camera import CaptureCamera
-from mua.capture.poses import template_poses
+from mua.capture.poses import cut_poses, template_poses
 from mua.capture.view import Files, View, read_view
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
+from mua.inputs import CAPTURE
 from mua.pose.clip import Clip
 from mua.rig.character import Character
 
-FILE, FORMAT, VERSION = "capture.json", "mua-capture", 1
+FORMAT, VERSION = "mua-capture", 1
 FRAME = "{frame"  # how the place of a frame's number begins in a pattern
 ATLAS = 1024  # texels of the template's base-colour atlas along a side
 
@@ -56,7 +57,7 @@ class Capture:
     @property
     def file(self) -> Path:
         """What describes the capture."""
-        return self.folder / FILE
+        return self.folder / CAPTURE
 
     def camera(self, name: str) -> CaptureCamera:
         """The camera of a name; raises InputError where there is none."""
@@ -114,9 +115,11 @@ class Capture:
         Errors: InputError where the motion cannot be read, does not fit the template, or is too short.
         """
         filmed = self.clip(clip)
-        return template_poses(
-            filmed.motion, self.surfaces, rate=self.rate, name=clip, first=filmed.first, frames=filmed.frames
-        )
+        return cut_poses(self.whole_motion(clip), filmed.motion, first=filmed.first, frames=filmed.frames)
+
+    def whole_motion(self, clip: str) -> Clip:
+        """All poses of a clip's motion, also those before and after what was filmed."""
+        return template_poses(self.clip(clip).motion, self.surfaces, rate=self.rate, name=clip)
 
 
 Named = TypeVar("Named", CaptureCamera, CaptureClip)

@@ -17,22 +17,24 @@ def template_poses(
     *,
     rate: float,  # frames per second
     name: str,  # of the clip; of a file with several motions, it is the one of this name
-    first: int,  # pose that the first frame shows
-    frames: int,
 ) -> Clip:
-    """`frames` poses from `first` on. Feet stay where the motion has them: they were measured, not made up."""
+    """All poses of a motion. Feet stay where the motion has them: they were measured, not made up."""
     loaded = load_motions(motion, surfaces.skeleton, mapping=None, rate=rate, said=surfaces.roles, feet="keep")
     called = [one.clip for one in loaded if one.clip.name == name] or [one.clip for one in loaded]
     if len(called) > 1:
         names = ", ".join(repr(clip.name) for clip in called)
         raise InputError(f"{motion}: holds {len(called)} motions ({names}), none of which is called {name!r}")
-    clip = called[0]
-    if len(clip) < first + frames:
-        wanted = f"clip {name!r} needs {frames} from pose {first} on"
-        raise InputError(f"{motion}: has {len(clip)} poses at {rate:g} frames per second; {wanted}")
-    cut = replace(clip.cut(slice(first, first + frames)), name=name)
-    for values in (cut.rotations, cut.translations):
+    clip = replace(called[0], name=name)
+    for values in (clip.rotations, clip.translations):
         wrong = np.flatnonzero(~np.isfinite(values).all(axis=(1, 2)))
         if len(wrong):
-            raise InputError(f"{motion}: pose {first + wrong[0]}: a joint's place or turn is not finite")
-    return cut
+            raise InputError(f"{motion}: pose {wrong[0]}: a joint's place or turn is not finite")
+    return clip
+
+
+def cut_poses(clip: Clip, motion: Path, *, first: int, frames: int) -> Clip:
+    """`frames` poses from `first` on; raises InputError where there are not so many."""
+    if len(clip) < first + frames:
+        wanted = f"clip {clip.name!r} needs {frames} from pose {first} on"
+        raise InputError(f"{motion}: has {len(clip)} poses at {clip.rate:g} frames per second; {wanted}")
+    return clip.cut(slice(first, first + frames))

@@ -11,10 +11,10 @@ import numpy as np
 from mua.arguments import PathLike, as_path, describe, finite_array
 from mua.arrays import Array
 from mua.capture.camera import COEFFICIENTS, UNDISTORTED, CaptureCamera
-from mua.capture.capture import FILE, FORMAT, FRAME, VERSION, Capture, CaptureClip
+from mua.capture.capture import FORMAT, FRAME, VERSION, Capture, CaptureClip
 from mua.characters.figure_size import LEAST, MOST
 from mua.errors import InputError
-from mua.inputs import require_file
+from mua.inputs import CAPTURE, require_capture, require_file
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE
 
 LARGEST_SIDE = 1 << 15  # pixels
@@ -36,7 +36,8 @@ def open_capture(folder: PathLike) -> Capture:
     Pictures are not opened yet. Errors: InputError with one sentence that names file, field and value where anything
     that it says cannot be, or where the template or a motion that it names is not there.
     """
-    file = as_path(folder, "capture") / FILE
+    require_capture(path := as_path(folder, "capture"))
+    file = path / CAPTURE
     said = _object(_parsed(file), str(file), NEEDED, OPTIONAL)
     if said["format"] != FORMAT or said["version"] != VERSION:
         found = f"{describe(said['format'])}, version {describe(said['version'])}"
@@ -58,10 +59,6 @@ def open_capture(folder: PathLike) -> Capture:
 
 
 def _parsed(file: Path) -> Any:
-    if not file.parent.is_dir():
-        raise InputError(f"{file.parent}: there is no such directory, expected the folder of a capture")
-    if not file.is_file():
-        raise InputError(f"{file.parent}: not a capture, it holds no {FILE}")
     try:
         return json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:

@@ -30,7 +30,7 @@ def video_frames(path: Path, first: int = 0) -> Generator[Array, None, None]:
     """Frames [H, W, 3] uint8 sRGB from `first` on; raises InputError where the file is no video."""
     from imageio_ffmpeg import get_ffmpeg_exe
 
-    start = max(first - EARLIER, 0) / _rate(path)
+    start = max(first - EARLIER, 0) / video_rate(path)
     command = [get_ffmpeg_exe(), "-v", "error", "-ss", f"{start:.6f}", "-i", str(path), *EACH_ONCE, *AS_PICTURES]
     with Popen(command, stdin=DEVNULL, stdout=PIPE, stderr=DEVNULL) as decoder:
         assert decoder.stdout is not None  # as asked for
@@ -48,7 +48,7 @@ def count_frames(path: Path) -> int:
     return int(count_frames_and_secs(str(path))[0])
 
 
-def _rate(path: Path) -> float:
+def video_rate(path: Path) -> float:
     """Frames a second; raises InputError where ffmpeg finds no video."""
     from imageio_ffmpeg import get_ffmpeg_exe
 

@@ -6,7 +6,7 @@ from typing import NoReturn
 
 import typer
 
-from mua.cli.options import command_name, with_common_options
+from mua.cli.options import command_name, with_common_options, with_version
 from mua.errors import InputError
 from mua.extras import missing_package
 
@@ -16,9 +16,22 @@ def run_command(command: Callable[..., None]) -> None:
 
     An InputError, or a package that is not installed, ends it with one sentence.
     """
-    try:
-        app = typer.Typer()  # adds --install-completion and --show-completion
+    app = typer.Typer()  # adds --install-completion and --show-completion
+    app.command()(with_common_options(command))
+    _run(app)
+
+
+def run_commands(about: str, *commands: Callable[..., None]) -> None:
+    """Run the one of several commands that the command line names first; `about` is the help of them all."""
+    app = typer.Typer(no_args_is_help=True)
+    app.callback(help=about)(with_version)
+    for command in commands:
         app.command()(with_common_options(command))
+    _run(app)
+
+
+def _run(app: typer.Typer) -> None:
+    try:
         app(prog_name=command_name())
     except InputError as error:
         _end(str(error))

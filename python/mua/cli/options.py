@@ -53,6 +53,10 @@ def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
+def with_version(*, version: Version = False) -> None:
+    """What a command of several commands can do by itself."""
+
+
 def lent_by(
     function: Callable[..., object],
     kinds: Mapping[str, Any],  # of each argument that is an option: a terminal's type, with its help

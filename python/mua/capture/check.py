@@ -1,0 +1,116 @@
+"""Everything that can be said of a capture before hours are spent on it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.capture.camera import CaptureCamera
+from mua.capture.capture import Capture
+from mua.capture.diagnose import unlikely
+from mua.capture.fit import Posed, Seen, chosen_frames, look_at
+from mua.capture.inventory import missing_files
+from mua.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class CameraFit:
+    """What was found of one camera."""
+
+    camera: CaptureCamera
+    views: tuple[Seen, ...]
+    distance: float | None  # metres to the template; None where no pose could be read
+
+    @property
+    def mean(self) -> float | None:
+        """Mean overlap of outline and mask."""
+        return float(np.mean([view.overlap for view in self.views])) if self.views else None
+
+    @property
+    def least(self) -> Seen | None:
+        """The view that fits worst."""
+        return min(self.views, key=lambda view: view.overlap, default=None)
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """What a check found."""
+
+    capture: Capture
+    cameras: tuple[CameraFit, ...]
+    problems: tuple[str, ...]  # what cannot be right, a sentence each
+    notes: tuple[str, ...]  # what the reader of the template decided
+    posed: Posed
+
+    @property
+    def views(self) -> list[Seen]:
+        """All views that were looked at."""
+        return [view for camera in self.cameras for view in camera.views]
+
+
+def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
+    """Compare the posed template with the masks of some frames in all cameras.
+
+    `frames` of each clip are looked at, all for 0; None looks at a few. Errors: InputError where the template cannot be
+    read; all else is told as a problem.
+    """
+    problems = list(missing_files(capture))
+    posed = _posed(capture, problems)
+    views = _views(capture, posed, frames, problems)
+    problems += unlikely(capture, posed, views)
+    person = [vertices.mean(axis=(0, 1)) for vertices in posed.vertices.values()]
+    cameras = tuple(
+        CameraFit(
+            camera,
+            tuple(view for view in views if view.camera.name == camera.name),
+            float(np.linalg.norm(camera.position - np.mean(person, axis=0))) if person else None,
+        )
+        for camera in capture.cameras
+    )
+    return Checked(capture, cameras, tuple(problems), capture.surfaces.notes, posed)
+
+
+def _posed(capture: Capture, problems: list[str]) -> Posed:
+    """The template in the poses of each clip whose motion can be read."""
+    read = []
+    for clip in capture.clips:
+        try:
+            capture.motion(clip.name)
+        except InputError as error:
+            problems.append(f"Clip {clip.name}: {error}.")
+        else:
+            read.append(clip)
+    return Posed.of(capture, read)
+
+
+def _views(capture: Capture, posed: Posed, frames: int | None, problems: list[str]) -> list[Seen]:
+    """Views of the clips that were posed; what cannot be read of a camera and clip is told once."""
+    seen, told = [], set()
+    for clip in capture.clips:
+        for frame in chosen_frames(capture, clip, frames) if clip.name in posed.vertices else ():
+            for camera in capture.cameras:
+                try:
+                    seen.append(look_at(capture, posed, clip.name, frame, camera))
+                except InputError as error:
+                    if (clip.name, camera.name) not in told and not str(error).endswith("there is no such file"):
+                        told.add((clip.name, camera.name))
+                        problems.append(f"Camera {camera.name}, clip {clip.name}, frame {frame}: {error}.")
+    return seen
+
+
+def summary(capture: Capture) -> Sequence[str]:
+    """What a capture is understood to be, a line each."""
+    held_out = [camera.name for camera in capture.cameras if camera.held_out]
+    clips = [
+        f"{clip.name} ({clip.frames} frames, poses {clip.first} to {clip.first + clip.frames - 1}"
+        f"{', held out' if clip.held_out else ''})"
+        for clip in capture.clips
+    ]
+    template, joints = capture.surfaces, len(capture.surfaces.skeleton.names)
+    height = np.ptp(template.vertices[:, 1])
+    return (
+        f"{capture.name}: {len(capture.cameras)} cameras, {capture.rate:g} frames per second",
+        f"held out: {', '.join(held_out) or 'no camera'}",
+        f"clips: {', '.join(clips)}",
+        f"template: {capture.template.name}, {height:.2f} m tall, {len(template.vertices):,} vertices, {joints} joints",
+    )

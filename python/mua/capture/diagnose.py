@@ -1,0 +1,138 @@
+"""What cannot be right in a capture, from how the template fits the masks: a sentence each, most of all first."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+
+import numpy as np
+
+from mua.capture.capture import Capture
+from mua.capture.conventions import better_convention
+from mua.capture.fit import Posed, Seen, mean_overlap
+from mua.capture.outline import overlap, posed_template, rough_overlap, silhouette
+
+POOR = 0.6  # of overlap, below which outline and mask are not of the same thing
+OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apart from others
+GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask better
+SHIFT_GAIN = 0.03  # the same for all views of a clip together
+FAR = 100.0  # metres from the template to cameras, beyond which lengths have another unit
+FARTHEST_SHIFT = 30  # frames by which pictures and poses may be apart
+TRIED = 6  # views that such shifts are tried on
+
+
+def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]:
+    """All that is unlikely to be meant; where one thing explains all the rest, it alone."""
+    told = list(_empty(views))
+    filled = [view for view in views if view.mask.any()]
+    if mean_overlap(filled) < POOR and filled and (found := better_convention(posed, filled)) is not None:
+        convention, fitting, now = found
+        return [*told, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
+    told += _far(capture, posed)
+    unseen = _unseen(views)
+    told += [f"Camera {name} sees nobody: the posed template is outside its picture." for name in unseen]
+    filled = [view for view in filled if view.camera.name not in unseen]
+    if shifted := list(_shifted(capture, posed, filled)):
+        return told + shifted
+    apart = list(_apart(posed, filled))
+    if not apart and filled and mean_overlap(filled) < POOR:
+        apart = [
+            f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
+            "tried fit better: look at the picture."
+        ]
+    return told + apart
+
+
+def _by_camera(views: Sequence[Seen]) -> Mapping[str, list[Seen]]:
+    ordered = sorted(views, key=lambda view: view.camera.name)
+    return {name: list(of) for name, of in groupby(ordered, key=lambda view: view.camera.name)}
+
+
+def _empty(views: Sequence[Seen]) -> Iterator[str]:
+    for name, of in _by_camera(views).items():
+        if not any(view.mask.any() for view in of):
+            yield f"Camera {name}: all masks that were looked at ({len(of)}) are empty."
+
+
+def _unseen(views: Sequence[Seen]) -> list[str]:
+    """Cameras in none of whose views the template is."""
+    return [name for name, of in _by_camera(views).items() if not any(view.covered.any() for view in of)]
+
+
+def _far(capture: Capture, posed: Posed) -> Iterator[str]:
+    person = np.concatenate([vertices.reshape(-1, 3) for vertices in posed.vertices.values()]).mean(axis=0)
+    distances = [float(np.linalg.norm(camera.position - person)) for camera in capture.cameras]
+    if distances and np.median(distances) > FAR:
+        yield f"The cameras are {np.median(distances):,.0f} metres away from the template: expected lengths in metres."
+
+
+def _shifted(capture: Capture, posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
+    """Clips whose pictures fit other poses of their motion, all by the same number of frames."""
+    for clip in capture.clips:
+        own = [view for view in views if view.clip == clip.name]
+        if not own:
+            continue
+        some = [own[i] for i in np.unique(np.linspace(0, len(own) - 1, TRIED).astype(int))]
+        now = mean_overlap(some)
+        shift, fitting = _best_shift(capture, posed, some)
+        if fitting > now + SHIFT_GAIN:
+            yield (
+                f"Clip {clip.name}: outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} with "
+                f"first = {clip.first + shift} in place of {clip.first}."
+            )
+
+
+def _best_shift(capture: Capture, posed: Posed, views: Sequence[Seen]) -> tuple[int, float]:
+    """By how many frames later poses fit some views of one clip best, and their overlap then."""
+    clip, motion = capture.clip(views[0].clip), capture.whole_motion(views[0].clip)
+    last = len(motion) - clip.first - clip.frames
+    shifts = range(max(-FARTHEST_SHIFT, -clip.first), min(FARTHEST_SHIFT, last) + 1)
+    wanted = np.array([[clip.first + view.frame + shift for view in views] for shift in shifts])
+    poses, place = np.unique(wanted, return_inverse=True)
+    vertices = posed_template(posed.surfaces, motion.cut(poses))[place.reshape(wanted.shape)]
+    rough = [np.mean([rough_overlap(v, s.camera, s.mask) for v, s in zip(of, views, strict=True)]) for of in vertices]
+    nearest = np.argsort(rough)[::-1][:TRIED]
+    faces = posed.surfaces.faces
+    exact = [
+        np.mean([overlap(silhouette(v, faces, s.camera), s.mask) for v, s in zip(vertices[i], views, strict=True)])
+        for i in nearest
+    ]
+    best = int(np.argmax(exact))
+    return shifts[nearest[best]], float(exact[best])
+
+
+def _apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
+    """Cameras that fit worse than the others, and views that fit worse than others of their camera."""
+    means = {name: mean_overlap(of) for name, of in _by_camera(views).items()}
+    typical = float(np.median(list(means.values()))) if means else 0.0
+    for name, of in _by_camera(views).items():
+        if means[name] < OUTLIER * typical:
+            yield _camera_apart(posed, of, views, means[name], typical)
+            continue
+        middle = float(np.median([view.overlap for view in of]))
+        yield from (_view_apart(posed, view, middle) for view in of if view.overlap < OUTLIER * middle)
+
+
+def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
+    """Whose pictures these may be: those of the camera whose calibration fits them best."""
+    name, told = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
+    others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
+    fits = {
+        other: float(np.mean([overlap(posed.covers(v.clip, v.frame, camera), v.mask) for v in of]))
+        for other, camera in others.items()
+    }
+    best = max(fits, key=lambda other: fits[other])
+    if best != name and fits[best] > max(mean + GAIN, POOR):
+        return f"Camera {name}: {told}; its pictures fit the calibration of camera {best} by {fits[best]:.0%}."
+    return f"Camera {name}: {told}; its calibration, or which pictures it has, cannot be right."
+
+
+def _view_apart(posed: Posed, view: Seen, middle: float) -> str:
+    """Which frame a mask may be of."""
+    fits = [
+        overlap(posed.covers(view.clip, frame, view.camera), view.mask)
+        for frame in range(len(posed.vertices[view.clip]))
+    ]
+    best = int(np.argmax(fits))
+    told = f"{str(view).capitalize()}: overlaps by {view.overlap:.0%}, its camera typically by {middle:.0%}"
+    if best != view.frame and fits[best] > max(view.overlap + GAIN, POOR):
+        return f"{told}; the mask fits frame {best} by {fits[best]:.0%}."
+    return f"{told}; the mask or the pose cannot be right."

@@ -1,0 +1,229 @@
+"""mua-capture check: what is right passes, and each thing that cannot be right has its sentence."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from captures import FRAMES, SIDE, make_capture
+from commands import Commands
+from PIL import Image
+
+from mua.arrays import Array
+from mua.capture import Capture, write_capture
+from mua.capture.check import Checked, check_capture
+from mua.capture.fit import chosen_frames
+from mua.capture.outline import overlap, pixels, silhouette
+from mua.capture.sheet import MASK, OUTLINE, check_sheet
+from mua.player.video import write_video
+
+OPENGL = np.diag([1.0, -1, -1, 1])
+Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # from our world to one with Z up
+
+
+@pytest.fixture
+def damaged(tmp_path: Path) -> Capture:
+    """A capture of its own, to be damaged."""
+    return make_capture(tmp_path / "damaged")
+
+
+def everything(capture: Capture) -> Checked:
+    """All frames in all cameras, checked."""
+    return check_capture(capture, frames=0)
+
+
+def calibrated(capture: Capture, change: Callable[[Array], Array]) -> Capture:
+    """The capture with other matrices; the template, which is slow to read, is the same."""
+    cameras = tuple(replace(one, world_to_camera=change(one.world_to_camera)) for one in capture.cameras)
+    return replace(capture, cameras=cameras)
+
+
+def millimetres(matrix: Array) -> Array:
+    return matrix * np.array([[1, 1, 1, 1e3]] * 3 + [[1, 1, 1, 1]])
+
+
+def test_a_capture_that_is_right_has_no_problems(small_capture: Capture) -> None:
+    checked = everything(small_capture)
+    assert checked.problems == ()
+    assert len(checked.views) == 4 * sum(FRAMES.values())
+    for fit in checked.cameras:
+        assert fit.mean is not None
+        assert fit.mean > 0.9
+        assert fit.least is not None
+        assert fit.least.overlap <= fit.mean
+        assert fit.distance == pytest.approx(3.2, abs=0.3)
+
+
+CONVENTIONS: dict[str, tuple[Callable[[Array], Array], str]] = {
+    "OpenGL's axes": (lambda m: OPENGL @ m, r"the cameras' axes are OpenGL's \(y up, z back\)\."),
+    "the inverse": (np.linalg.inv, r"the matrices are camera_to_world, expected their inverse\."),
+    "another axis up": (lambda m: m @ Z_UP, r"the calibration's world has other axes: its X, Y, Z are our X, -Z, Y\."),
+    "millimetres": (millimetres, r"lengths are in millimetres\."),
+    "all at once": (
+        lambda m: millimetres(np.linalg.inv(OPENGL @ m @ Z_UP)),
+        r"the matrices .* and the cameras' .* and the calibration's .* X, -Z, Y and lengths are in millimetres\.",
+    ),
+}
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+def test_another_convention_is_found_by_what_fits(small_capture: Capture, convention: str) -> None:
+    change, sentence = CONVENTIONS[convention]
+    (told,) = check_capture(calibrated(small_capture, change), frames=1).problems
+    assert re.search(rf"^Outlines and masks overlap by \d+%; they would by 9\d% if {sentence}", told), told
+
+
+def test_poses_that_began_earlier_are_found(small_capture: Capture) -> None:
+    walk, reach = small_capture.clips
+    (told,) = everything(replace(small_capture, clips=(replace(walk, first=0), reach))).problems
+    assert re.fullmatch(r"Clip walk: outlines .* they would by 9\d% with first = 1 in place of 0\.", told)
+
+
+def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> None:
+    for clip, frames in FRAMES.items():
+        for frame in range(frames):
+            own, other = (damaged.files(clip, frame, name).image for name in ("front", "above"))
+            own.write_bytes(other.read_bytes())
+    (told,) = everything(damaged).problems
+    assert re.fullmatch(
+        r"Camera front: overlaps by .*; its pictures fit the calibration of camera above by 9\d%\.", told
+    )
+
+
+def test_a_camera_that_nothing_explains_is_named(small_capture: Capture) -> None:
+    front, left, *others = small_capture.cameras
+    wrong = replace(front, world_to_camera=left.world_to_camera)
+    (told,) = everything(replace(small_capture, cameras=(wrong, left, *others))).problems
+    assert told.startswith("Camera front: overlaps by")
+    assert told.endswith("its calibration, or which pictures it has, cannot be right.")
+
+
+def test_a_camera_that_sees_nobody_is_named(small_capture: Capture) -> None:
+    front, *others = small_capture.cameras
+    away = replace(front, world_to_camera=np.diag([-1.0, 1, -1, 1]) @ front.world_to_camera)
+    (told,) = everything(replace(small_capture, cameras=(away, *others))).problems
+    assert told == "Camera front sees nobody: the posed template is outside its picture."
+
+
+def test_a_mask_of_another_frame_is_named_with_the_frame(damaged: Capture) -> None:
+    images = [damaged.files("walk", frame, "left").image for frame in (0, 3)]
+    images[0].write_bytes(images[1].read_bytes())
+    (told,) = everything(damaged).problems
+    assert re.fullmatch(r"Camera left, clip walk, frame 0: overlaps by .* the mask fits frame 3 by 9\d%\.", told)
+
+
+def test_empty_masks_are_named(damaged: Capture) -> None:
+    for image in damaged.folder.glob("images/*/right/*.png"):
+        Image.new("RGBA", (SIDE, SIDE)).save(image)
+    assert everything(damaged).problems == ("Camera right: all masks that were looked at (6) are empty.",)
+
+
+def test_missing_frames_and_cameras_are_named(damaged: Capture) -> None:
+    frame, camera = damaged.files("walk", 2, "front").image, damaged.folder / "images" / "reach" / "above"
+    frame.unlink()
+    for image in camera.iterdir():
+        image.unlink()
+    assert everything(damaged).problems == (
+        f"Camera front, clip walk: 1 of 4 frames are missing ({frame}).",
+        f"Camera above, clip reach: there is no {camera / '000000.png'}, nor any of the 1 frames after it.",
+    )
+
+
+def test_a_picture_of_another_size_is_named(damaged: Capture) -> None:
+    image = damaged.files("walk", 1, "left").image
+    Image.new("RGBA", (9, 7)).save(image)
+    (told,) = everything(damaged).problems
+    assert told.startswith(f"Camera left, clip walk, frame 1: {image}: the picture is 9 x 7 pixels; ")
+
+
+def test_a_video_that_ends_early_is_named(damaged: Capture) -> None:
+    capture = replace(damaged, images="{clip}.mp4", masks="{clip}.mp4", cameras=damaged.cameras[:1])
+    for clip, frames in FRAMES.items():
+        video = (np.full((SIDE, SIDE, 3), 255, np.uint8) for _ in range(frames - (clip == "walk")))
+        write_video(capture.folder / f"{clip}.mp4", video, rate=30)
+    short = f"{capture.folder / 'walk.mp4'} has 3 frames; 4 are wanted"
+    told = everything(capture).problems
+    assert f"Camera front, clip walk: {short}." in told
+
+
+def test_a_motion_that_is_too_short_is_a_problem_of_its_clip_alone(small_capture: Capture) -> None:
+    walk, reach = small_capture.clips
+    checked = everything(replace(small_capture, clips=(replace(walk, frames=9), reach)))
+    assert [told for told in checked.problems if "images" not in told] == [
+        f"Clip walk: {walk.motion}: has 5 poses at 30 frames per second; clip 'walk' needs 9 from pose 1 on."
+    ]
+    assert {view.clip for view in checked.views} == {"reach"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"), [(None, [3, 5]), (1, [4]), (3, [2, 4, 6]), (0, list(range(9))), (99, list(range(9)))]
+)
+def test_frames_are_spread_over_the_clip(small_capture: Capture, asked: int | None, expected: list[int]) -> None:
+    """Of 40 cameras and two clips, two frames of each clip make 160 views."""
+    clip = replace(small_capture.clips[0], frames=9)
+    many = replace(small_capture, cameras=small_capture.cameras * 10)
+    assert chosen_frames(many, clip, asked) == expected
+
+
+def test_an_outline_covers_what_splats_do(small_capture: Capture) -> None:
+    """Against point-in-triangle at every pixel's middle, by signed areas."""
+    rng = np.random.default_rng(4)
+    camera = small_capture.cameras[0]
+    vertices = rng.normal([0, 0.85, 0], [0.5, 0.5, 0.3], (12, 3))
+    faces = np.arange(12).reshape(4, 3)
+    found = silhouette(vertices, faces, camera)
+    places, _ = pixels(camera, vertices)
+    rows, columns = np.mgrid[:SIDE, :SIDE] + 0.5
+    expected, near = np.zeros((SIDE, SIDE), bool), np.zeros((SIDE, SIDE), bool)
+    for corners in places[faces]:
+        turned = np.roll(corners, -1, axis=0) - corners
+        sides = [
+            ((columns - x) * dy - (rows - y) * dx) / np.hypot(dx, dy)
+            for (x, y), (dx, dy) in zip(corners, turned, strict=True)
+        ]
+        expected |= (np.min(sides, axis=0) >= 0) | (np.max(sides, axis=0) <= 0)
+        near |= np.abs(sides).min(axis=0) < 0.4  # what drawing at three times the size may be off, in pixels
+    assert expected.any()
+    np.testing.assert_array_equal(found[~near], expected[~near])
+
+
+def test_what_lies_behind_a_camera_is_not_drawn(small_capture: Capture) -> None:
+    camera = small_capture.cameras[0]
+    behind = camera.position + np.array([[0, 0, 1.0], [1, 0, 1], [0, 1, 1]])
+    assert not silhouette(behind, np.array([[0, 1, 2]]), camera).any()
+
+
+def test_overlap_is_what_both_cover_of_what_either_does() -> None:
+    row = np.array([[True, True, False, False]])
+    assert overlap(row, np.roll(row, 1)) == pytest.approx(1 / 3)
+    assert overlap(row & False, row & False) == 0
+
+
+def test_the_picture_shows_both_outlines_where_the_person_is(small_capture: Capture) -> None:
+    checked = everything(small_capture)
+    sheet = np.asarray(check_sheet(checked))
+    for color in (OUTLINE, MASK):
+        assert np.count_nonzero((sheet == color).all(axis=-1)) > 2000
+
+
+def test_the_command_prints_what_it_found(small_capture: Capture, command: Commands, tmp_path: Path) -> None:
+    ended = command("capture", "check", small_capture.folder, "-o", tmp_path / "check.png")
+    assert ended.status == 0
+    for told in ("4 cameras, 30 frames", "held out: above", "walk (4 frames", "1.71 m tall", "Nothing was found"):
+        assert told in ended.out
+    with Image.open(tmp_path / "check.png") as picture:
+        assert picture.width > 1000
+
+
+def test_the_command_fails_where_something_cannot_be_right(command: Commands, damaged: Capture) -> None:
+    write_capture(calibrated(damaged, lambda m: OPENGL @ m))
+    ended = command("capture", "check", damaged.folder, "--frames", 1)
+    assert ended.status == 1
+    assert "problem: Outlines and masks overlap by" in ended.out
+
+
+def test_the_command_refuses_a_picture_it_cannot_write(small_capture: Capture, command: Commands) -> None:
+    ended = command("capture", "check", small_capture.folder, "-o", "check.bmp")
+    assert ended.sentence == "error: --output check.bmp: the suffix is .bmp, expected .png or .jpg"
