@@ -1,6 +1,7 @@
 // What the browser player's modules that need no graphics device make of files, for tests: modules.mjs WHAT FILE...
 //   answers        a line for each file: ok, or code, field and sentence as JSON
 //   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
+//   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   numbers        half floats, and numbers as sentences have them
 
 import { readFileSync } from "node:fs";
@@ -10,7 +11,8 @@ import { framesAt, sample, window } from "../../python/mua/web/clip.js";
 import { chooseLevel, coarserTexture, coarsest, texelLength, texelPixels, textureOf } from "../../python/mua/web/coarser.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
-import { read } from "../../python/mua/web/format/read.js";
+import { read, readStage } from "../../python/mua/web/format/read.js";
+import { Stages } from "../../python/mua/web/format/stages.js";
 import { expanded, half } from "../../python/mua/web/format/tensors.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
@@ -86,6 +88,29 @@ function views(box) {
   return { target, distance, ...camera, texel: texelPixels(0.01, box, camera), seen: seen(camera) };
 }
 
+/** What a file that arrives in steps shows before all of it is there. */
+async function stages(content, step) {
+  const arriving = new Uint8Array(content.byteLength);
+  const known = new Stages(arriving.buffer);
+  const found = [];
+  for (let got = 0; got <= content.byteLength; got += step) {
+    arriving.set(new Uint8Array(content, 0, got));
+    const end = known.reached(got);
+    if (!end) continue;
+    try {
+      const { clips, surface, texels, geometry } = await readStage(arriving.buffer, end);
+      const sum = ({ data }) => data.reduce((all, byte) => all + byte, 0);
+      const [low, details, fixed] = [geometry.llBasis, geometry.details[0].h, geometry.staticOffset].map(sum);
+      found.push({ end, got, clips: clips.length, surface, texels: texels.texels.length, low, details, fixed });
+    } catch (error) {
+      if (error.name !== "AvatarError") throw error;
+      found.push({ end, got, code: error.code, field: error.field });
+    }
+  }
+  return found;
+}
+
+if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));
 if (what === "truncated") {
   const content = bytes(given[0]);

@@ -272,25 +272,45 @@ export class MuaAvatar extends HTMLElementOrNone {
       if (run === this.#run) this.#controls.load(share, sentence);
     };
     const address = typeof source === "string" ? new URL(source, document.baseURI).href : source;
-    const handle = await player.load(address, { onProgress });
-    if (run !== this.#run) return handle.remove();
-    for (const name of ["clip", "speed", "show"]) this.#adopt(name);
-    this.#arrange();
-    await player.draw();
-    this.#shown(handle);
+    let begun = false; // with a part of it
+    const onPart = async (/** @type {AvatarHandle} */ part) => {
+      if (run !== this.#run || (!part.splats && !this.#controls.poster.hidden)) return; // a poster shows more than a mesh
+      const first = !begun;
+      begun = true;
+      await this.#show(first);
+    };
+    try {
+      const handle = await player.load(address, { onProgress, onPart: (part) => void onPart(part).catch(() => {}) });
+      if (run !== this.#run) return handle.remove();
+      await this.#show(!begun);
+      this.#controls.hush();
+      this.#controls.update();
+      this.dispatchEvent(new CustomEvent("load", { detail: handle }));
+    } catch (error) {
+      if (begun && run === this.#run) await this.#withdraw();
+      throw error;
+    }
   }
 
-  /** What follows the first picture of an avatar. */
-  #shown(/** @type {AvatarHandle} */ handle) {
-    this.#controls.hush();
+  /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */
+  async #show(/** @type {boolean} */ first) {
+    for (const name of first ? ["clip", "speed", "show"] : ["clip"]) this.#adopt(name);
+    if (first) this.#arrange();
+    await this.player?.draw();
     this.#controls.poster.hidden = true;
     if (!this.firstPicture) {
       this.firstPicture = performance.now();
       this.dispatchEvent(new Event("picture"));
     }
-    if (this.hasAttribute("autoplay") && !lessMotion()) this.play();
+    if (first && this.hasAttribute("autoplay") && !lessMotion()) this.play();
     this.#controls.update();
-    this.dispatchEvent(new CustomEvent("load", { detail: handle }));
+  }
+
+  /** After a part of an avatar was shown whose rest is damaged or did not come. */
+  async #withdraw() {
+    this.#setPoster(this.getAttribute("poster"));
+    this.#arrange();
+    await this.player?.draw();
   }
 
   /** The player; made when first needed. */

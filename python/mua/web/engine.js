@@ -1,5 +1,6 @@
 // State of a player, the loop that draws it, and what it does when the device is lost.
 
+import { Arrival } from "./arrival.js";
 import { framing, FOV } from "./camera.js";
 import { framesAt, sample } from "./clip.js";
 import { AvatarError } from "./error.js";
@@ -92,32 +93,44 @@ export class Engine {
   /** @returns {Promise<AvatarHandle>} */
   async load(
     /** @type {string | ArrayBuffer | File} */ source,
-    /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {} } = {},
+    /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {}, onPart = () => {} } = {},
   ) {
-    const avatar = await load(source, onProgress);
+    const arrival = new Arrival(this, onPart);
+    try {
+      const avatar = await load(source, onProgress, (part) => arrival.show(part));
+      onProgress(0.9, "Preparing the graphics device");
+      const handle = await arrival.complete(avatar);
+      onProgress(1, "Ready");
+      return handle;
+    } catch (error) {
+      await arrival.fail();
+      throw error;
+    }
+  }
+
+  /** Show an avatar, in the place of a part of it where that is shown. @param {Avatar} avatar @param {Entry | null} part @param {boolean} whole @returns {Promise<Entry>} */
+  async put(avatar, part, whole) {
     const { renderer } = this;
     if (!renderer) throw new AvatarError(AWAY);
-    onProgress(0.9, "Preparing the graphics device");
     const slot = await renderer.add(avatar);
     if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
-    const entry = { avatar, slot, grounds: new Map(), handle: this.handleOf(avatar) };
-    this.entries.push(entry);
-    if (this.entries.length === 1) this.frameAll();
-    onProgress(1, "Ready");
-    return entry.handle;
+    const entry = part ?? { avatar, slot, grounds: new Map(), handle: this.handleOf(avatar) };
+    if (!part) this.entries.push(entry);
+    else if (this.entries.includes(part)) renderer.replace(part.slot, slot);
+    else renderer.remove(slot); // its part was taken away meanwhile
+    Object.assign(entry, { avatar, slot, grounds: new Map() });
+    Object.assign(entry.handle, described(avatar), { whole });
+    if (!part && this.entries.length === 1) this.frameAll();
+    this.drawn = "";
+    return entry;
   }
 
   /** @returns {AvatarHandle} */
   handleOf(/** @type {Avatar} */ avatar) {
-    const [low, high] = [avatar.bounds.slice(0, 3), avatar.bounds.slice(3)].map((corner) => Array.from(corner));
-    const { name, notes } = avatar;
     /** @type {AvatarHandle} */
     const handle = {
-      name,
-      notes,
-      clips: clipsOf(avatar),
-      bounds: /** @type {import("./player.js").Box} */ ([low, high]),
-      splats: avatar.texels.texels.length,
+      ...described(avatar),
+      whole: false,
       place: [0, 0, 0],
       remove: () => this.remove(handle),
     };
@@ -278,6 +291,14 @@ export class Engine {
     this.renderer?.destroy();
     this.renderer = null;
   }
+}
+
+/** What a handle says of an avatar. */
+function described(/** @type {Avatar} */ avatar) {
+  const [low, high] = [avatar.bounds.slice(0, 3), avatar.bounds.slice(3)].map((corner) => Array.from(corner));
+  const bounds = /** @type {import("./player.js").Box} */ ([low, high]);
+  const { name, notes, texels } = avatar;
+  return { name, notes, clips: clipsOf(avatar), bounds, splats: texels.texels.length };
 }
 
 /** @returns {ClipInfo[]} */

@@ -59,6 +59,7 @@ export class Overlays {
     this.frame = frame;
     this.avatar = avatar;
     this.pipelines = device.once("overlays", () => pipelines(device, color, depth));
+    this.bare = avatar.texels.texels.length === 0; // without splats: its mesh is shown in their place
     this.template = this.indices(avatar.template.faces, "template");
     this.joints = memory.buffer(16 * avatar.skeleton.names.length, "joints");
     this.strokes = strokes(memory, avatar.skeleton.parents);

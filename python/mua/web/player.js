@@ -39,7 +39,8 @@ export { AvatarError };
  * @property {string} notes what the file says of itself, e.g. that its teacher was a simulated stand-in
  * @property {ClipInfo[]} clips
  * @property {Box} bounds about its root joint over all its clips
- * @property {number} splats
+ * @property {number} splats none while only its mesh is there
+ * @property {boolean} whole false while only a part of its file is there, whose checksum nobody knows yet
  * @property {[number, number, number]} place where it stands, world, metres; may be set
  * @property {() => void} remove gives its memory back; may be called twice
  */
@@ -47,6 +48,8 @@ export { AvatarError };
 /**
  * @typedef {object} LoadOptions
  * @property {(fraction: number, sentence: string) => void} [onProgress] fraction of 0 to 1
+ * @property {(avatar: AvatarHandle) => void} [onPart] a part of the avatar can be drawn, or more of it: of a packed file, its
+ *   mesh and then coarser splats. The handle is the one that `load` gives at last; where loading fails, the part goes again
  */
 
 /**

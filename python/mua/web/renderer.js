@@ -85,6 +85,12 @@ export class Renderer {
     return slot;
   }
 
+  /** Put an avatar that was added into the place of another one, which goes. */
+  replace(/** @type {Slot} */ old, /** @type {Slot} */ slot) {
+    this.rearrange(this.slots.filter((one) => one !== slot).map((one) => (one === old ? slot : one)));
+    old.memory.free();
+  }
+
   remove(/** @type {Slot} */ slot) {
     this.rearrange(this.slots.filter((one) => one !== slot));
     slot.memory.free();

@@ -42,7 +42,7 @@ export class Scene {
     });
     overlays.forEach((overlay, i) => {
       if (show.geometry && frame?.seen[i]) overlay.drawGeometry(pass, camera, frame.splats, frame.starts[i]);
-      if (show.mesh) overlay.drawTemplate(pass, camera);
+      if (show.mesh || (show.splats && overlay.bare)) overlay.drawTemplate(pass, camera);
     });
     for (const overlay of overlays) if (show.shadow) overlay.drawGround(pass, camera);
     if (show.splats && frame) this.drawSplats(pass, frame, camera);

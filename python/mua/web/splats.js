@@ -68,7 +68,7 @@ export class SplatFrame {
 
   /** Append the dispatches from posed texels to `order`, the splats that a camera sees, back to front. */
   sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera} */ camera) {
-    this.seen = this.avatars.map((avatar) => sees(camera, reach(avatar.bounds)));
+    this.seen = this.avatars.map((avatar) => avatar.places.length > 0 && sees(camera, reach(avatar.bounds)));
     const { starts } = this;
     this.avatars.forEach((avatar, i) => {
       if (this.seen[i]) this.project(pass, avatar, starts[i], camera);

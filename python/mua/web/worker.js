@@ -1,13 +1,15 @@
-// Fetches and reads an avatar away from the page's own thread: takes a source, answers progress, then the avatar, whose
-// bytes change hands without a copy, or what is wrong with it.
+// Fetches and reads an avatar away from the page's own thread: takes a source, answers progress, previews, then the avatar,
+// whose bytes change hands without a copy, or what is wrong with it.
 
 import { AvatarError } from "./error.js";
 import { loadHere } from "./load.js";
 
 self.onmessage = async ({ data: source }) => {
   try {
-    const avatar = await loadHere(source, (fraction, sentence) =>
-      self.postMessage({ progress: { fraction, sentence } }),
+    const avatar = await loadHere(
+      source,
+      (fraction, sentence) => self.postMessage({ progress: { fraction, sentence } }),
+      (preview) => self.postMessage({ preview }, { transfer: [...new Set(memories(preview))] }),
     );
     self.postMessage({ avatar }, { transfer: [...new Set(memories(avatar))] });
   } catch (error) {

@@ -3,6 +3,7 @@
 
 import { ROOT, TABLES } from "./layout.js";
 import { fault } from "./parser.js";
+import { isThere } from "./stages.js";
 import { SIZES, sides } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
@@ -11,11 +12,13 @@ const [TIMES, ROOM] = [16, 2 ** 20]; // what all packed tensors give: bytes for 
 
 /**
  * Unpack the packed tensors of a file of `size` bytes, in place. What a tensor gives is known from its shape, and what all
- * of them give is refused before any is unpacked.
- * @param {Tree} tree @param {number} size
+ * of them give is refused before any is unpacked. Those that end beyond `end` are zeros of their shape.
+ * @param {Tree} tree @param {number} size @param {number} [end]
  */
-export async function unpack(tree, size) {
-  const held = [...tensors(tree, ROOT, "")].filter(([, tensor]) => tensor.packing === "Deflate");
+export async function unpack(tree, size, end = size) {
+  const held = [...tensors(tree, ROOT, "")].filter(
+    ([, tensor]) => tensor.packing === "Deflate" || !isThere(tensor, end),
+  );
   const most = TIMES * size + ROOM;
   let all = 0;
   for (const [path, tensor] of held) {
@@ -26,7 +29,8 @@ export async function unpack(tree, size) {
     }
   }
   for (const [path, tensor] of held) {
-    const planes = await inflated(tensor.data, claimed(tensor, path), path);
+    const count = claimed(tensor, path);
+    const planes = isThere(tensor, end) ? await inflated(tensor.data, count, path) : new Uint8Array(count);
     tensor.data = interleaved(planes, SIZES[tensor.type]);
     tensor.packing = "Plain";
   }

@@ -7,6 +7,7 @@ import { general, shortest } from "./numbers.js";
 import { fault, parse } from "./parser.js";
 import { unpack } from "./packing.js";
 import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, refuse, translated, unit } from "./rig.js";
+import { leaveOut } from "./stages.js";
 import { reals } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
@@ -32,6 +33,21 @@ export async function read(/** @type {ArrayBuffer} */ content) {
   checkSum(content, tree, crcAt);
   checkStages(tree.stages ?? [], content.byteLength);
   await unpack(tree, content.byteLength);
+  return decode(tree);
+}
+
+/**
+ * What the first `end` bytes of a file show, a stage of it: mesh and motion, then splats, of which what is not there yet is
+ * zeros. All is checked but the checksum, which only the whole file has.
+ * @param {ArrayBuffer} content @param {number} end
+ */
+export async function readStage(content, end) {
+  const part = new Uint8Array(content.byteLength);
+  part.set(new Uint8Array(content, 0, end));
+  const { tree } = parse(part.buffer);
+  checkStages(tree.stages, part.length);
+  leaveOut(tree, end);
+  await unpack(tree, part.length, end);
   return decode(tree);
 }
 
