@@ -6,12 +6,13 @@ from pathlib import Path
 from threading import Thread
 
 import pytest
-from web.browser import Browser, Serve, lacking
+from web.browser import Browser, Page, Serve, lacking
 
 from mua.share.server import address, serving
-from mua.share.site import Site
+from mua.share.site import Site, player_files
 
 HERE = Path(__file__).parent
+PLAIN = b'<!doctype html><script type="module" src="element.js"></script><mua-avatar></mua-avatar>'
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -43,3 +44,13 @@ def serve() -> Iterator[Serve]:
             return address(server)
 
         yield begin
+
+
+@pytest.fixture
+def page(browser: Browser, serve: Serve) -> Iterator[Page]:
+    """A page with an empty element; at the end nothing was raised in it."""
+    opened = browser.page(serve({**player_files(), "index.html": PLAIN}), size=(160, 200))
+    opened.wait("Boolean(customElements.get('mua-avatar'))")
+    yield opened
+    assert opened.told["errors"] == []
+    opened.close()

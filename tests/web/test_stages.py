@@ -11,16 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar, with_surface
-from web.browser import Browser, Page, Serve
+from web.browser import Page
 from web.pages import ELEMENT, SENTENCE
 from web.test_modules import node, pytestmark  # noqa: F401  needs Node
 
 from mua.asset.read import parse_checked
 from mua.asset.write import encode
-from mua.share.site import player_files
 
 STEP = 101  # bytes that arrive together
-PLAIN = b'<!doctype html><script type="module" src="element.js"></script><mua-avatar></mua-avatar>'
 TIMEOUT = 60  # seconds, after which a server no longer waits for a test that failed
 Give = Callable[[bytes, bytes, int], str]  # first and second half of a file, and its length; its address
 
@@ -137,16 +135,6 @@ def halves() -> Iterator[tuple[Give, Event]]:
         rest.set()
         server.shutdown()
         thread.join()
-
-
-@pytest.fixture
-def page(browser: Browser, serve: Serve) -> Iterator[Page]:
-    """A page with an empty element; at the end nothing was raised in it."""
-    opened = browser.page(serve({**player_files(), "index.html": PLAIN}), size=(160, 200))
-    opened.wait("Boolean(customElements.get('mua-avatar'))")
-    yield opened
-    assert opened.told["errors"] == []
-    opened.close()
 
 
 # Counts what is not transparent in a picture.

@@ -1,9 +1,8 @@
-// From a source to a checked avatar: fetched with progress and read in a worker, or here where there can be none. Of a file
-// for the network, what has arrived is shown while the rest is still on its way, in one request that any host answers.
+// From a source to a checked avatar: fetched with progress and read in a worker, or here where there can be none.
 
+import { Download } from "./download.js";
 import { AvatarError } from "./error.js";
 import { read, readStage } from "./format/read.js";
-import { Stages } from "./format/stages.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {(fraction: number, sentence: string) => void} Progress */
@@ -12,7 +11,6 @@ import { Stages } from "./format/stages.js";
 /** @typedef {{message: string, code: string, field: string}} Told what an AvatarError says, which a message can carry */
 
 const FETCHED = 0.8; // of the progress, the rest is reading and upload
-const LARGEST = 2 ** 28; // bytes of a file that is shown before all of it is there: memory is taken on the server's word
 
 /** The avatar of a source, by a worker; the page goes on meanwhile. @returns {Promise<Avatar>} */
 export async function load(
@@ -56,9 +54,10 @@ export async function loadHere(
   /** @type {Progress} */ progress,
   /** @type {Preview} */ preview = () => {},
 ) {
-  const content = typeof source === "string" ? await fetched(source, progress, preview) : await bytesOf(source);
+  if (typeof source === "string") return loadFrom(new Download(source), progress, preview);
+  const content = await bytesOf(source);
   progress(FETCHED, "Reading the avatar");
-  return named(typeof source === "string" ? nameOf(source) : source instanceof File ? source.name : "", read(content));
+  return named(source instanceof File ? source.name : "", read(content));
 }
 
 /** With the file's name before what is wrong with it. @template T @param {string} name @param {Promise<T>} work @returns {Promise<T>} */
@@ -79,92 +78,35 @@ async function bytesOf(/** @type {ArrayBuffer | Blob} */ source) {
   }
 }
 
-async function fetched(
-  /** @type {string} */ url,
+/** An avatar from a server; what has arrived of a file for the network is shown while the rest is on its way. @returns {Promise<Avatar>} */
+async function loadFrom(
+  /** @type {Download} */ download,
   /** @type {Progress} */ progress,
   /** @type {Preview} */ preview,
 ) {
-  const name = nameOf(url);
-  const response = await fetch(url).catch(() => {
-    throw new AvatarError(
-      `${name} cannot be fetched: the server is out of reach, or does not allow this page to read it.`,
-    );
-  });
-  if (!response.ok)
-    throw new AvatarError(`${name} cannot be fetched: the server answers ${response.status} ${response.statusText}.`);
-  const total = response.headers.get("content-encoding") ? 0 : Number(response.headers.get("content-length") ?? 0);
-  const reader = response.body?.getReader();
-  if (!reader) return response.arrayBuffer();
-  const arriving = new Arriving(url.startsWith("http") && total <= LARGEST ? total : 0, preview);
-  const of = total ? ` of ${(total / 1e6).toFixed(1)}` : "";
-  try {
-    for (let part = await reader.read(); !part.done; part = await reader.read()) {
-      arriving.take(part.value);
-      const { got } = arriving;
-      progress(total ? Math.min((FETCHED * got) / total, FETCHED) : 0, `Fetching ${name}: ${(got / 1e6).toFixed(1)}${of} MB`);
-    }
-  } catch {
-    const { got } = arriving;
-    throw new AvatarError(`${name} was not fetched whole: the connection broke after ${(got / 1e6).toFixed(1)} MB.`);
-  }
-  await arriving.reading;
-  return arriving.whole();
-}
-
-/** The bytes of a file of `expected` bytes, 0 where that is not known, and previews of what they show. */
-class Arriving {
-  constructor(/** @type {number} */ expected, /** @type {Preview} */ preview) {
-    this.content = new Uint8Array(expected);
-    this.preview = preview;
-    this.stages = new Stages(this.content.buffer);
-    this.got = 0;
-    /** @type {Uint8Array[]} */
-    this.beyond = []; // what a server sends without having said so
-    /** @type {Promise<void> | null} */
-    this.reading = null; // of a stage; no other one begins meanwhile
-  }
-
-  take(/** @type {Uint8Array} */ bytes) {
-    const at = Math.min(this.got, this.content.length);
-    const room = this.content.length - at;
-    this.content.set(bytes.subarray(0, room), at);
-    if (bytes.length > room) this.beyond.push(bytes.subarray(room));
-    this.got += bytes.length;
-    this.look();
-  }
-
-  /** Show the newest stage that is there. */
-  look() {
-    const end = this.reading ? 0 : this.stages.reached(this.got);
+  /** @type {Promise<void> | null} */
+  let reading = null; // of a stage; no other one begins meanwhile
+  const look = () => {
+    const end = reading ? 0 : download.reached();
     if (!end) return;
-    this.reading = this.show(end).finally(() => {
-      this.reading = null;
-      this.look(); // for what has arrived meanwhile
+    reading = shown(download.content.buffer, end, preview).finally(() => {
+      reading = null;
+      look(); // for what has arrived meanwhile
     });
-  }
-
-  async show(/** @type {number} */ end) {
-    try {
-      this.preview(await readStage(this.content.buffer, end));
-    } catch (error) {
-      if (!(error instanceof AvatarError)) throw error; // what is wrong is said of the whole file
-    }
-  }
-
-  whole() {
-    if (this.got === this.content.length) return this.content.buffer;
-    return joined([this.content.subarray(0, this.got), ...this.beyond], this.got);
-  }
+  };
+  const content = await download.whole((share, sentence) => {
+    progress(FETCHED * share, sentence);
+    look();
+  });
+  while (reading) await reading;
+  progress(FETCHED, "Reading the avatar");
+  return named(download.name, read(content));
 }
 
-function joined(/** @type {Uint8Array[]} */ parts, /** @type {number} */ length) {
-  const whole = new Uint8Array(length);
-  let at = 0;
-  for (const part of parts) {
-    whole.set(part, at);
-    at += part.length;
+async function shown(/** @type {ArrayBuffer} */ content, /** @type {number} */ end, /** @type {Preview} */ preview) {
+  try {
+    preview(await readStage(content, end));
+  } catch (error) {
+    if (!(error instanceof AvatarError)) throw error; // what is wrong is said of the whole file
   }
-  return whole.buffer;
 }
-
-const nameOf = (/** @type {string} */ url) => decodeURIComponent(new URL(url).pathname.split("/").pop() || url);

@@ -1,0 +1,115 @@
+// A file from a server, in one request that any host answers: the sections of a file for the network lie in the order in which
+// they are shown. Where the connection breaks, the rest is asked for by range.
+
+import { AvatarError } from "./error.js";
+import { Stages } from "./format/stages.js";
+
+/** @typedef {(fraction: number, sentence: string) => void} Progress */
+
+const LARGEST = 2 ** 28; // bytes of a file that is shown before all of it is there: memory is taken on the server's word
+const WAITS = [200, 1000]; // milliseconds before the rest is asked for again
+const MARKS = ["etag", "last-modified"]; // that another version of the file would change
+
+const megabytes = (/** @type {number} */ bytes) => (bytes / 1e6).toFixed(1);
+
+export class Download {
+  constructor(/** @type {string} */ url) {
+    this.url = url;
+    this.name = decodeURIComponent(new URL(url).pathname.split("/").pop() || url);
+    this.got = 0;
+    this.total = 0; // 0 where the server does not say
+    this.content = new Uint8Array(); // of that size
+    this.stages = new Stages(this.content.buffer);
+    /** @type {Uint8Array[]} */
+    this.beyond = []; // what a server sends without having said so
+  }
+
+  /** The end of the newest stage that is there and was not told before; 0 where there is none. */
+  reached() {
+    return this.stages.reached(this.got);
+  }
+
+  /** All of it. @throws {AvatarError} where the server does not give it @returns {Promise<ArrayBuffer>} */
+  async whole(/** @type {Progress} */ progress) {
+    const first = await fetch(this.url).catch(() => {
+      throw this.absent("the server is out of reach, or does not allow this page to read it.");
+    });
+    if (!first.ok) throw this.absent(`the server answers ${first.status} ${first.statusText}.`);
+    this.begin(first);
+    let there = await this.take(first, progress);
+    for (let time = 0; !there; time++) {
+      if (!this.total || time === WAITS.length) throw this.broken();
+      await new Promise((resolve) => setTimeout(resolve, WAITS[time]));
+      there = await this.resume(first, progress);
+    }
+    if (this.got === this.content.length) return this.content.buffer;
+    return joined([this.content.subarray(0, this.got), ...this.beyond], this.got);
+  }
+
+  begin(/** @type {Response} */ { headers }) {
+    const total = headers.get("content-encoding") ? 0 : Number(headers.get("content-length") ?? 0);
+    if (!this.url.startsWith("http") || total > LARGEST) return;
+    this.total = total;
+    this.content = new Uint8Array(total);
+    this.stages = new Stages(this.content.buffer);
+  }
+
+  /** Take what an answer holds; whether it ended as it should. */
+  async take(/** @type {Response} */ { body }, /** @type {Progress} */ progress) {
+    const reader = body?.getReader();
+    const of = this.total ? ` of ${megabytes(this.total)}` : "";
+    try {
+      for (let part = await reader?.read(); part && !part.done; part = await reader?.read()) {
+        this.add(part.value);
+        const share = this.total ? Math.min(this.got / this.total, 1) : 0;
+        progress(share, `Fetching ${this.name}: ${megabytes(this.got)}${of} MB`);
+      }
+    } catch {
+      return false;
+    }
+    return true;
+  }
+
+  add(/** @type {Uint8Array} */ bytes) {
+    const at = Math.min(this.got, this.content.length);
+    const room = this.content.length - at;
+    this.content.set(bytes.subarray(0, room), at);
+    if (bytes.length > room) this.beyond.push(bytes.subarray(room));
+    this.got += bytes.length;
+  }
+
+  /** Ask for what is not there yet; a server that knows no ranges sends all of it again. @param {Response} first @param {Progress} progress */
+  async resume(first, progress) {
+    const answer = await fetch(this.url, { headers: { Range: `bytes=${this.got}-` }, cache: "no-store" }).catch(() => null);
+    if (!answer) return false;
+    const part = answer.status === 206;
+    if (!answer.ok && answer.status !== 416)
+      throw this.broken(`; then the server answers ${answer.status} ${answer.statusText}`);
+    const marked = MARKS.every((mark) => answer.headers.get(mark) === first.headers.get(mark));
+    const total = Number(answer.headers.get("content-length")) + (part ? this.got : 0);
+    if (!marked || !answer.ok || total !== this.total)
+      throw new AvatarError(`${this.name} has changed on the server while it was fetched; load it again.`);
+    if (!part) [this.got, this.beyond] = [0, []];
+    return this.take(answer, progress);
+  }
+
+  absent(/** @type {string} */ why) {
+    return new AvatarError(`${this.name} cannot be fetched: ${why}`);
+  }
+
+  broken(then = "") {
+    return new AvatarError(
+      `${this.name} was not fetched whole: the connection broke after ${megabytes(this.got)} MB${then}.`,
+    );
+  }
+}
+
+function joined(/** @type {Uint8Array[]} */ parts, /** @type {number} */ length) {
+  const whole = new Uint8Array(length);
+  let at = 0;
+  for (const part of parts) {
+    whole.set(part, at);
+    at += part.length;
+  }
+  return whole.buffer;
+}

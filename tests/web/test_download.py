@@ -1,0 +1,115 @@
+"""A file whose connection breaks: the rest is asked for by range, and what cannot be had is a sentence."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Event, Thread
+
+import pytest
+from synthetic_avatar import synthetic_avatar
+from web.browser import Page
+from web.pages import ELEMENT, SENTENCE
+
+from mua.asset.write import encode
+
+LOADED = f"{ELEMENT}.firstPicture > 0 && {ELEMENT}.avatars[0]?.whole"
+TIMEOUT = 60  # seconds, after which a server no longer waits for a test that failed
+BREAK = 10_000  # bytes after which the first answer breaks off
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is sent after the connection has broken."""
+
+    status: int
+    length: int  # that is claimed
+    body: bytes
+    etag: str = "one"
+
+
+@dataclass(frozen=True)
+class Breaking:
+    """A server whose first answer breaks off, and what it was asked for."""
+
+    address: str
+    asked: list[str | None]  # the range of each request
+    answers: list[Answer]  # to the requests after the first
+    arrived: Event  # of what was sent before the connection breaks
+
+
+@pytest.fixture(scope="module")
+def content() -> bytes:
+    return encode(synthetic_avatar())
+
+
+@pytest.fixture
+def breaking(content: bytes) -> Iterator[Breaking]:
+    asked: list[str | None] = []
+    answers: list[Answer] = []
+    arrived = Event()
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            first = Answer(200, len(content), content[:BREAK])
+            answer = answers[min(len(asked) - 1, len(answers) - 1)] if asked else first
+            asked.append(self.headers.get("Range"))
+            self.send_response(answer.status)
+            self.send_header("Content-Length", str(answer.length))
+            self.send_header("ETag", answer.etag)
+            self.send_header("Access-Control-Allow-Origin", "*")
+            self.send_header("Access-Control-Expose-Headers", "ETag")
+            self.end_headers()
+            self.wfile.write(answer.body)
+            self.wfile.flush()
+            arrived.wait(TIMEOUT)  # a browser forgets what it has not handed on when the connection breaks
+
+        def log_message(self, format: str, *arguments: object) -> None:
+            """Say nothing."""
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = Thread(target=server.serve_forever, args=(0.02,))
+        thread.start()
+        yield Breaking(f"http://127.0.0.1:{server.server_port}/a.muaavatar", asked, answers, arrived)
+        arrived.set()
+        server.shutdown()
+        thread.join()
+
+
+def load(page: Page, breaking: Breaking, *answers: Answer, until: str) -> None:
+    breaking.answers.extend(answers)
+    page.evaluate(f"{ELEMENT}.setAttribute('src', '{breaking.address}')")
+    page.wait(f"{SENTENCE}.includes('Fetching')")
+    breaking.arrived.set()
+    page.wait(until)
+
+
+def test_what_is_not_there_when_the_connection_breaks_is_asked_for_by_range(
+    page: Page, breaking: Breaking, content: bytes
+) -> None:
+    rest = content[BREAK:]
+    load(page, breaking, Answer(206, len(rest), rest), until=LOADED)
+    assert breaking.asked == [None, f"bytes={BREAK}-"]
+
+
+def test_a_server_that_refuses_ranges_sends_the_file_again(page: Page, breaking: Breaking, content: bytes) -> None:
+    load(page, breaking, Answer(200, len(content), content), until=LOADED)
+    assert breaking.asked == [None, f"bytes={BREAK}-"]
+
+
+CHANGED: dict[str, Callable[[int], Answer]] = {
+    "other mark": lambda size: Answer(206, size - BREAK, bytes(size - BREAK), etag="two"),
+    "other length": lambda size: Answer(206, size, bytes(size)),
+    "shorter than what is there": lambda size: Answer(416, 0, b""),
+}
+
+
+@pytest.mark.parametrize("change", CHANGED.values(), ids=CHANGED.keys())
+def test_a_file_that_changes_meanwhile_is_a_sentence(
+    page: Page, breaking: Breaking, content: bytes, change: Callable[[int], Answer]
+) -> None:
+    load(page, breaking, change(len(content)), until=f"{SENTENCE}.includes('has changed on the server')")
+
+
+def test_a_file_that_goes_meanwhile_is_a_sentence(page: Page, breaking: Breaking) -> None:
+    load(page, breaking, Answer(404, 0, b""), until=f"{SENTENCE}.includes('was not fetched whole')")
+    assert "then the server answers 404" in page.evaluate(SENTENCE)
