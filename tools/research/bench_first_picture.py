@@ -2,7 +2,7 @@
 
 python tools/research/bench_first_picture.py hero.muaavatar [more.muaavatar] [--rate 2.5] [--runs 3]: the page that
 mua-share writes, in a headless browser whose WebGPU is software, on a connection of so many megabytes a second. The
-files take turns, each time in a new browser. It needs what tests/web needs; processor time is read where there is a /proc.
+files take turns, each time in a new browser. It needs what tests/web needs, and /proc for the time of the processor.
 """
 
 import argparse
@@ -76,7 +76,7 @@ def measure(file: Path, rate: float) -> str:
     with sharing.serving(player_site([file], Shown(file.stem))) as server, closing(Browser()) as browser:
         Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
         before = processor_seconds(browser)
-        page = browser.page(sharing.address(server), size=SIZE, before=WATCH)
+        page = browser.page(sharing.address(server), size=SIZE, before=WATCH, prefers_reduced_motion="reduce")
         page.wait("globalThis.seen?.picture")
         spent = processor_seconds(browser) - before
         page.wait("globalThis.seen.load")
