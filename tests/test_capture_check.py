@@ -121,13 +121,16 @@ def test_empty_masks_are_named(damaged: Capture) -> None:
 
 
 def test_missing_frames_and_cameras_are_named(damaged: Capture) -> None:
-    frame, camera = damaged.files("walk", 2, "front").image, damaged.folder / "images" / "reach" / "above"
+    frame, camera = damaged.files("walk", 2, "front").image, damaged.folder / "images" / "walk" / "above"
     frame.unlink()
-    for image in camera.iterdir():
+    for image in damaged.folder.glob("images/*/above/*.png"):
         image.unlink()
+    last = damaged.files("reach", 1, "left").image
+    last.unlink()
     assert everything(damaged).problems == (
-        f"Camera front, clip walk: 1 of 4 frames are missing ({frame}).",
-        f"Camera above, clip reach: there is no {camera / '000000.png'}, nor any of the 1 frames after it.",
+        f"Camera front: 1 of 6 pictures are missing, first {frame} of clip walk, frame 2.",
+        f"Camera left: 1 of 6 pictures are missing, first {last} of clip reach, frame 1.",
+        f"Camera above: has no pictures: there is no {camera / '000000.png'}.",
     )
 
 
@@ -143,9 +146,8 @@ def test_a_video_that_ends_early_is_named(damaged: Capture) -> None:
     for clip, frames in FRAMES.items():
         video = (np.full((SIDE, SIDE, 3), 255, np.uint8) for _ in range(frames - (clip == "walk")))
         write_video(capture.folder / f"{clip}.mp4", video, rate=30)
-    short = f"{capture.folder / 'walk.mp4'} has 3 frames; 4 are wanted"
-    told = everything(capture).problems
-    assert f"Camera front, clip walk: {short}." in told
+    short = f"clip walk needs 4 frames of {capture.folder / 'walk.mp4'}, which has 3"
+    assert f"Camera front: {short}." in everything(capture).problems
 
 
 def test_a_motion_that_is_too_short_is_a_problem_of_its_clip_alone(small_capture: Capture) -> None:

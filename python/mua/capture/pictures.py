@@ -35,8 +35,15 @@ def read_picture(
 
 
 def read_mask(path: Path, *, number: int, size: tuple[int, int]) -> Array:
-    """Cover [H, W, 1] uint8: 255 inside; a mask of nothing but 0 and 1 is taken for 0 and 255."""
-    cover = read_picture(path, number=number, size=size)[..., :3].max(axis=2, keepdims=True)
+    """Cover [H, W, 1] uint8: 255 inside."""
+    return as_mask(read_picture(path, number=number, size=size))
+
+
+def as_mask(
+    picture: Array,  # [H, W, 3 or 4] uint8
+) -> Array:
+    """Cover [H, W, 1] uint8; a mask of nothing but 0 and 1 is taken for 0 and 255."""
+    cover = picture[..., :3].max(axis=2, keepdims=True)
     return cover * np.uint8(255) if cover.max() == 1 else cover
 
 

@@ -13,7 +13,8 @@ from mua.rendering import to_bytes
 CELL = 420  # pixels along the longer side of a picture
 COLUMNS, ROWS = 4, 2
 OUTLINE, MASK = (255, 0, 160), (0, 200, 255)  # of the template and of the mask
-CAPTION = 18  # pixels
+CAPTION = 32  # pixels, of two lines
+LEAST_WIDTH = 170  # of a caption, pixels
 BEHIND = 0.35  # grey of what is clear
 
 
@@ -55,11 +56,11 @@ def _cell(checked: Checked, view: Seen) -> Image.Image:
     if capture.masks is None:  # what is clear has no colour
         image = image * mask[..., None] + BEHIND * (1 - mask[..., None])
     covered = checked.posed.covers(view.clip, view.frame, camera)[part]
-    finer = max(1, CELL // max(mask.shape))
+    finer = max(1, round(CELL / max(mask.shape)))
     picture, masked, drawn = (enlarged(a, finer) for a in (to_bytes(image), mask >= COVERED, covered))
     picture[_edge(masked)] = MASK
     picture[_edge(drawn)] = OUTLINE
-    return _captioned(picture, f"{camera.name}, {view.clip} {view.frame}: {view.overlap:.0%}")
+    return _captioned(picture, f"{camera.name}: {view.overlap:.0%}\n{view.clip}, frame {view.frame}")
 
 
 def enlarged(picture: Array, times: int) -> Array:
@@ -75,7 +76,8 @@ def _edge(covered: Array) -> Array:
 
 
 def _captioned(picture: Array, caption: str) -> Image.Image:
-    cell = Image.new("RGB", (picture.shape[1] + 4, picture.shape[0] + CAPTION + 4), "white")
-    cell.paste(Image.fromarray(picture), (2, CAPTION))
+    width = max(picture.shape[1], LEAST_WIDTH) + 4
+    cell = Image.new("RGB", (width, picture.shape[0] + CAPTION + 4), "white")
+    cell.paste(Image.fromarray(picture), ((width - picture.shape[1]) // 2, CAPTION))
     ImageDraw.Draw(cell).text((4, 2), caption, fill="black")
     return cell

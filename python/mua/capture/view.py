@@ -1,13 +1,13 @@
 """What one camera saw of one frame: read, undistorted, cut to the person, made smaller."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.camera import Camera
-from mua.capture.camera import CaptureCamera
+from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.lens import undistort
 from mua.capture.pictures import read_mask, read_picture
 from mua.capture.smaller import area_average
@@ -34,8 +34,13 @@ class View:
 
     image: Array  # [H, W, 3] float32 sRGB, 0..1, in steps of 8 bits
     mask: Array  # [H, W] float32, 0..1, in steps of 8 bits
-    camera: Camera
+    pinhole: CaptureCamera  # the camera, cut and made smaller as the picture is
     background: Array | None = None  # [H, W, 3] float32 sRGB, 0..1: the empty set
+
+    @property
+    def camera(self) -> Camera:
+        """The pinhole as pictures are drawn with it."""
+        return self.pinhole.camera()
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +91,7 @@ def view_of(
     else:
         image = look(taken.image, camera, small, box)
     empty = None if background is None else in_steps(look(background, camera, small, box))
-    return View(in_steps(image), in_steps(mask)[..., 0], small.cropped(box).camera(), empty)
+    return View(in_steps(image), in_steps(mask)[..., 0], replace(small.cropped(box), distortion=UNDISTORTED), empty)
 
 
 def smaller(camera: CaptureCamera, rows: int | None) -> CaptureCamera:

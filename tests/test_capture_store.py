@@ -1,0 +1,144 @@
+"""Stored views are those of the capture, made once; masks that do not fit count less."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from captures import FRAMES, SIDE, make_capture
+from PIL import Image
+
+from mua.capture import Capture, View
+from mua.capture import store as stores
+from mua.capture.store import ViewStore
+from mua.capture.trust import MaskTrust
+from mua.errors import InputError
+from mua.player.video import write_video
+
+
+def same(a: View, b: View) -> None:
+    np.testing.assert_array_equal(a.image, b.image)
+    np.testing.assert_array_equal(a.mask, b.mask)
+    np.testing.assert_array_equal(a.camera.view, b.camera.view)
+    np.testing.assert_allclose(a.camera.projection, b.camera.projection, rtol=1e-15)
+    assert (a.background is None) == (b.background is None)
+    if a.background is not None:
+        np.testing.assert_array_equal(a.background, b.background)
+
+
+def filmed(folder: Path) -> Capture:
+    """The capture with distorted videos for pictures, and with backgrounds."""
+    capture = make_capture(folder, distortion=(-0.1, 0.05, 1e-3, 0.0, 0.0))
+    rng = np.random.default_rng(2)
+    for camera in capture.cameras:
+        for clip, frames in FRAMES.items():
+            taken = [capture.view(clip, frame, camera.name) for frame in range(frames)]
+            for name, pictures in (("video", [v.image for v in taken]), ("mask", [v.mask for v in taken])):
+                bytes_of = (np.rint(255 * p if p.ndim == 3 else 255 * np.dstack([p] * 3)) for p in pictures)
+                place = folder / name / clip / f"{camera.name}.mp4"
+                place.parent.mkdir(parents=True, exist_ok=True)
+                write_video(place, (b.astype(np.uint8) for b in bytes_of), rate=30)
+        empty = rng.integers(0, 256, (SIDE, SIDE, 3), dtype=np.uint8)
+        (folder / "empty").mkdir(exist_ok=True)
+        Image.fromarray(empty).save(folder / "empty" / f"{camera.name}.png")
+    return replace(
+        capture,
+        images="video/{clip}/{camera}.mp4",
+        masks="mask/{clip}/{camera}.mp4",
+        backgrounds="empty/{camera}.png",
+    )
+
+
+@pytest.mark.parametrize("rows", [None, 24])
+def test_a_stored_view_is_the_view(tmp_path: Path, rows: int | None) -> None:
+    capture = filmed(tmp_path / "filmed")
+    store = ViewStore(capture, tmp_path / "store", rows=rows)
+    for clip, frame in (("walk", 2), ("reach", 1), ("walk", 0), ("walk", 2)):
+        same(store.view(clip, frame, "left"), capture.view(clip, frame, "left", crop=True, rows=rows))
+
+
+def test_a_video_is_decoded_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    capture, decoded = filmed(tmp_path / "filmed"), []
+    of_video = stores.video_frames
+
+    def counted(path: Path, first: int = 0) -> object:
+        decoded.append(path.parent.parent.name)
+        return of_video(path, first)
+
+    monkeypatch.setattr(stores, "video_frames", counted)
+    for _ in range(2):
+        store = ViewStore(capture, tmp_path / "store")
+        for frame in range(FRAMES["walk"]):
+            store.view("walk", frame, "front")
+    assert sorted(decoded) == ["mask", "video"]
+
+
+CHANGES: dict[str, Callable[[Capture], Capture]] = {
+    "calibration": lambda c: replace(c, cameras=tuple(replace(one, focal=(80.0, 80.0)) for one in c.cameras)),
+    "numbers of images": lambda c: replace(c, clips=(replace(c.clips[0], first_image=1), c.clips[1])),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_was_stored_for_something_else_is_not_used(small_capture: Capture, tmp_path: Path, change: str) -> None:
+    ViewStore(small_capture, tmp_path, rows=32).view("walk", 1, "front")
+    changed = CHANGES[change](small_capture)
+    found = ViewStore(changed, tmp_path, rows=32).view("walk", 1, "front")
+    same(found, changed.view("walk", 1, "front", crop=True, rows=32))
+    assert len(list(tmp_path.rglob("*.png"))) == 2
+
+
+def test_a_store_asks_no_camera_for_more_rows_than_it_has(small_capture: Capture, tmp_path: Path) -> None:
+    store = ViewStore(small_capture, tmp_path, rows=999)
+    same(store.view("walk", 1, "front"), small_capture.view("walk", 1, "front", crop=True))
+
+
+def test_a_picture_that_changed_is_read_again(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path / "capture")
+    store = ViewStore(capture, tmp_path / "store")
+    store.view("walk", 0, "front")
+    Image.new("RGBA", (SIDE, SIDE), (9, 9, 9, 255)).save(capture.files("walk", 0, "front").image)
+    same(store.view("walk", 0, "front"), capture.view("walk", 0, "front", crop=True))
+
+
+def test_beyond_the_limit_views_are_read_but_not_stored(small_capture: Capture, tmp_path: Path) -> None:
+    store = ViewStore(small_capture, tmp_path, limit=1)
+    for frame in range(3):
+        same(store.view("walk", frame, "front"), small_capture.view("walk", frame, "front", crop=True))
+    assert len(list(tmp_path.rglob("*.png"))) == 1
+
+
+def test_a_video_that_ends_early_is_told_where_its_frame_is_wanted(tmp_path: Path) -> None:
+    capture = filmed(tmp_path / "filmed")
+    longer = replace(capture, clips=(replace(capture.clips[0], first_image=2), capture.clips[1]))
+    store = ViewStore(longer, tmp_path / "store")
+    store.view("walk", 1, "left")
+    with pytest.raises(InputError, match=r"left\.mp4: has 4 frames; frame 4, counted from 0, is wanted"):
+        store.view("walk", 2, "left")
+
+
+def test_masks_that_fit_count_in_full_and_those_of_other_things_not(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path)
+    images = [capture.files("walk", frame, "left").image for frame in (0, 3)]
+    images[0].write_bytes(images[1].read_bytes())
+    Image.new("RGBA", (SIDE, SIDE)).save(capture.files("walk", 1, "left").image)
+    trust = MaskTrust(capture)
+
+    def weight(frame: int, camera: str, *, crop: bool = True) -> float:
+        return trust.weight("walk", frame, capture.view("walk", frame, camera, crop=crop, rows=48))
+
+    assert (weight(0, "left"), weight(1, "left")) == (0, 0)
+    assert min(weight(frame, camera) for frame in range(4) for camera in ("front", "right", "above")) > 0.9
+
+
+def test_half_a_mask_counts_less(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path)
+    image = capture.files("walk", 0, "front").image
+    with Image.open(image) as opened:
+        picture = np.array(opened)
+    rows = np.flatnonzero(picture[..., 3].any(axis=1))
+    picture[: rows[len(rows) * 35 // 100], :, 3] = 0
+    Image.fromarray(picture).save(image)
+    trust = MaskTrust(capture)
+    assert 0 < trust.weight("walk", 0, capture.view("walk", 0, "front")) < 0.95
