@@ -12,8 +12,9 @@ from torch.nn import functional
 from torchmetrics.functional.image import lpips as perceptual
 
 from mua.arrays import Array
-from mua.compare.metrics import Lpips, Scores, compare, mean
+from mua.compare.metrics import Scores, compare, mean
 from mua.errors import InputError
+from mua.splatting.perceptual import Lpips
 
 SIZE = 180
 FLOAT_BOUND = 2e-5  # float32 convolutions of 121 taps, variances as differences of near squares, over C2 = 9e-4

@@ -132,6 +132,7 @@ def test_a_missing_extra_is_told_with_the_command_that_brings_it(
     given["export"] = (avatar_file, "-o", "a.glb")
     (tmp_path / "capture.json").touch()
     given["capture"] = ("check", tmp_path)
+    given["teach"] = (tmp_path,)
     given["share"] = (avatar_file, "-o", "shared")
     code = f"sys.argv[0] = 'mua-{name}'\nfrom mua.cli.{name} import run\nrun()"
     ended = run_bare(code, *given.get(name, (avatar_file,)))

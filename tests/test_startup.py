@@ -10,7 +10,20 @@ import mua
 from mua import inputs
 from mua.recording import layout
 
-COMMANDS = ("bake", "bench", "capture", "deploy", "eval", "export", "inspect", "pack", "share", "train", "view")
+COMMANDS = (
+    "bake",
+    "bench",
+    "capture",
+    "deploy",
+    "eval",
+    "export",
+    "inspect",
+    "pack",
+    "share",
+    "teach",
+    "train",
+    "view",
+)
 # What takes long to load, or is not there unless its extra was asked for.
 SLOW = ("torch", "warp", "wgpu", "pxr", "scipy", "matplotlib", "moderngl", "meshoptimizer", "xatlas", "adbutils")
 RUN = """
@@ -42,7 +55,7 @@ def refused(ended: Ended) -> str:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_wrong_name_is_told_before_anything_is_loaded(name: str, tmp_path: Path) -> None:
     absent = tmp_path / "absent.muaavatar"
-    kind = "directory" if name in ("capture", "eval", "train") else "file"
+    kind = "directory" if name in ("capture", "eval", "teach", "train") else "file"
     assert refused(started(name, absent)) == f"{absent}: there is no such {kind}"
 
 

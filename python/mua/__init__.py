@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from mua.asset.read import read as load
     from mua.asset.write import write as save
     from mua.baking.bake import bake
+    from mua.baking.teach import teach
     from mua.baking.train import train
     from mua.camera import Camera
     from mua.characters.load import load_rig
@@ -48,6 +49,7 @@ __all__ = [
     "load_rig",
     "render",
     "save",
+    "teach",
     "train",
 ]
 
@@ -64,6 +66,7 @@ _PLACES = {
     "load_rig": "mua.characters.load:load_rig",
     "render": "mua.rendering:render",
     "save": "mua.asset.write:write",
+    "teach": "mua.baking.teach:teach",
     "train": "mua.baking.train:train",
 }
 

@@ -12,6 +12,7 @@ EXTRAS = {  # the smaller ones first: of several that bring a package the first 
     "export": frozenset((*READING, "pxr")),
     "train": frozenset(TRAINING),
     "bake": frozenset((*READING, *TRAINING, "pxr", "warp")),
+    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "pxr", "torchmetrics", "warp")),
     "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
     "deploy": frozenset(("adbutils",)),
 }

@@ -12,7 +12,6 @@ from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.compare import entries, plots, report, scores
 from mua.compare.images import Studio
-from mua.compare.metrics import Lpips
 from mua.compare.motion import training_frames
 from mua.compare.order import ALL, EvaluationOrder
 from mua.compare.system import Budget
@@ -21,6 +20,7 @@ from mua.files import replacing, write_bytes
 from mua.gpu import Device, open_device
 from mua.locks import DirectoryLock
 from mua.recording import Recording
+from mua.splatting.perceptual import Lpips
 from mua.student.optimise import Progress, Run
 from mua.student.settings import Settings, preset
 

@@ -8,8 +8,9 @@ import numpy as np
 from mua.arrays import Array
 from mua.compare.entries import Entry, sentence
 from mua.compare.images import Studio
-from mua.compare.metrics import Lpips, Scores, compare, mean
+from mua.compare.metrics import Scores, compare, mean
 from mua.recording import Recording, WholeFrame
+from mua.splatting.perceptual import Lpips
 
 DARKEST = 1 / 255  # of what counts as the figure
 KINDS = {"training": False, "held out": True}

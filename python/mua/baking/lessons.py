@@ -1,0 +1,87 @@
+"""The stages of a teacher's training; each leaves its result in the teacher's folder and goes on from there."""
+
+from pathlib import Path
+
+import torch
+
+from mua import __version__
+from mua.baking.listener import Listener
+from mua.capture import open_capture
+from mua.checkpoint import Checkpoints, run_key
+from mua.processes import Processes
+from mua.student.optimise import Progress, Run
+from mua.teaching.folder import Description, save_teacher
+from mua.teaching.from_capture import Filmed, material_of, preview_of, read_filmed, refinement_of
+from mua.teaching.lesson import Lesson, Perceptual
+from mua.teaching.model import TeacherModel
+from mua.teaching.preview import Preview
+from mua.teaching.settings import TeacherSettings
+from mua.teaching.train import MEAN, STAGES, train_teacher
+
+
+def carry_out(
+    folder: Path,
+    output: Path,
+    settings: TeacherSettings,
+    device: torch.device,
+    listener: Listener,
+    processes: Processes,
+    *,
+    weights: Path | None,  # of LPIPS
+) -> None:
+    """Train the teacher of a capture and write it to `output`; the first of several processes writes and reports."""
+    listener.stage("capture")
+    capture = open_capture(folder)
+    filmed = read_filmed(capture, settings, device)
+    if weights is None:
+        listener.note("without --lpips-weights no perceptual term is trained on")
+    material = material_of(filmed, _perceptual(weights, device))
+    torch.manual_seed(settings.seed)
+    teacher = TeacherModel(filmed.subject, settings)
+    lesson = Lesson(teacher, material, settings, refinement=refinement_of(filmed, settings)).to(device)
+    checkpoints = Checkpoints(output / "work", _key(filmed, settings, weights), processes)
+    if processes.first:
+        checkpoints.remove_leftovers(STAGES)
+    preview = preview_of(filmed, output / "progress") if processes.first else None
+    report = _Reporter(lesson, preview, listener)
+    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
+    train_teacher(lesson, material, settings, run=run)
+    if processes.first:
+        save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding))
+
+
+def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None) -> str:
+    """Changes with everything that a training depends on but the pictures themselves."""
+    clips = [torch.from_numpy(values) for clip in filmed.clips for values in (clip.rotations, clip.translations)]
+    said = filmed.capture.file.read_bytes()
+    return run_key(
+        (__version__, settings, said, None if weights is None else weights.name), [filmed.subject.surfels, *clips]
+    )
+
+
+def _perceptual(weights: Path | None, device: torch.device) -> Perceptual | None:
+    if weights is None:
+        return None
+    from mua.splatting.perceptual import Lpips  # with torchmetrics, which takes seconds to load
+
+    return Lpips(weights).to(device).distance
+
+
+class _Reporter:
+    """Tells a listener of stages and steps, and looks at a camera that is not learnt from now and then."""
+
+    def __init__(self, lesson: Lesson, preview: Preview | None, listener: Listener) -> None:
+        self._lesson, self._preview, self._listener = lesson, preview, listener
+        self._stage, self._score = "", ""
+
+    def __call__(self, progress: Progress) -> None:
+        if self._preview is None:
+            return
+        if progress.stage != self._stage:
+            self._stage, self._score = progress.stage, ""
+            self._listener.stage(progress.stage)
+        if self._preview.due(progress.step, progress.steps):
+            name = f"{progress.stage.replace(' ', '_')}_{progress.step:07d}"
+            self._score = f", {self._preview(self._lesson, name, moving=progress.stage != MEAN):.1f} dB"
+        loss = f"loss {progress.loss:.4f}{self._score}"
+        self._listener.step(progress.step, progress.steps, detail=f"{loss}, {progress.rate:.1f} steps/s")

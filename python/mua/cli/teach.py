@@ -1,0 +1,65 @@
+"""mua-teach: the pictures of a capture become a teacher that mua-bake distils."""
+
+import os
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mua.baking.order import DeviceName
+from mua.baking.teach import teach
+from mua.cli.choice import choice
+from mua.cli.console import printer, say
+from mua.cli.display import Display
+from mua.cli.failure import run_command
+from mua.cli.options import lent_by
+from mua.teaching.settings import PRESETS
+
+# Of each argument of mua.teach what a terminal takes, and its help.
+OPTIONS = {
+    "capture": Annotated[Path, typer.Argument(metavar="CAPTURE", help="Folder of a capture; it holds a capture.json.")],
+    "output": Annotated[Path, typer.Option("--output", "-o", help="Folder to write the teacher to.")],
+    "preset": Annotated[
+        str, choice(tuple(PRESETS), "--preset", help="Size of the teacher; small and paper need a GPU.")
+    ],
+    "steps": Annotated[int | None, typer.Option(help="Number of training steps.", show_default="set by the preset")],
+    "texels": Annotated[
+        int | None,
+        typer.Option(help="Width and height of the texture, in texels.", show_default="set by the preset"),
+    ],
+    "refine": Annotated[
+        float,
+        typer.Option(help="Degrees by which each joint may be turned to fit the pictures better; 0 trusts the poses."),
+    ],
+    "lpips_weights": Annotated[
+        Path | None,
+        typer.Option(
+            help="Weights of torchvision's AlexNet or VGG16, for a perceptual term in the loss.", show_default="none"
+        ),
+    ],
+    "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
+    "device": Annotated[DeviceName, typer.Option(help="Where to train.")],
+}
+
+
+@lent_by(teach, OPTIONS)
+def main(**options: Any) -> None:
+    """Train a teacher on the videos of CAPTURE: how a person's body and clothes look in any motion.
+
+    Pictures of a camera that is held out are written to the folder 'progress' of the output while it trains. To resume
+    an interrupted run, give the same command again. Start it with torchrun to train in several processes.
+    """
+    first = os.environ.get("RANK", "0") == "0"
+    console = printer(quiet=not first)  # of several processes, only the first prints
+    with Display(console) as display:
+        folder = teach(**options, listener=display)
+    say(console, f"{folder}: the teacher; mua-bake --teacher {folder} --motion FILES makes an avatar of it")
+
+
+def run() -> None:
+    """Entry point of the command."""
+    run_command(main)
+
+
+if __name__ == "__main__":  # for torchrun -m
+    run()

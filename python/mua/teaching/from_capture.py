@@ -1,0 +1,109 @@
+"""What a training needs of a capture: its subject, the windows of its frames, and its pictures as tensors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mua.capture import Capture, CaptureCamera
+from mua.errors import InputError
+from mua.pose.clip import Clip
+from mua.pose.descriptor import choose_joints, choose_translated
+from mua.pose.encoding import PoseEncoding
+from mua.splatting.projection import Eye
+from mua.student.distil import moving_joints
+from mua.teachers.still import StillTeacher
+from mua.teaching.lesson import Material, Perceptual
+from mua.teaching.model import Subject
+from mua.teaching.pose_refinement import PoseRefinement
+from mua.teaching.preview import Preview
+from mua.teaching.settings import TeacherSettings
+from mua.teaching.views import Seen, Views
+from mua.teaching.windows import Window, windows
+
+
+@dataclass(frozen=True, eq=False)
+class Filmed:
+    """A capture as it is trained on and looked at; what is held out is only looked at."""
+
+    capture: Capture
+    subject: Subject
+    clips: tuple[Clip, ...]  # of the training
+    held: tuple[Clip, ...]
+    rows: int  # of a whole picture, at most
+    device: torch.device
+
+    @property
+    def cameras(self) -> list[CaptureCamera]:
+        """Those that are learnt from."""
+        return [camera for camera in self.capture.cameras if not camera.held_out]
+
+    def windows(self, clip: Clip) -> list[Window]:
+        return windows(self.subject.rig.skeleton, self.subject.encoding, clip)
+
+    def see(self, clip: str, frame: int, camera: CaptureCamera) -> Seen:
+        """A view, cut to the person."""
+        view = self.capture.view(clip, frame, camera.name, crop=True, rows=min(self.rows, camera.size[1]))
+        image, mask = self._tensor(view.image), self._tensor(view.mask)
+        background = None if view.background is None else self._tensor(view.background)
+        return Seen(image, mask, Eye.of(view.camera, image), background)
+
+    def _tensor(self, values: np.ndarray) -> Tensor:
+        return torch.from_numpy(np.ascontiguousarray(values)).float().to(self.device)
+
+
+def read_filmed(capture: Capture, settings: TeacherSettings, device: torch.device) -> Filmed:
+    """Read template and motion; raises InputError where either cannot be used or nothing is left to learn from."""
+    if all(clip.held_out for clip in capture.clips) or all(camera.held_out for camera in capture.cameras):
+        raise InputError(f"{capture.file}: every clip or every camera is held out, so nothing is left to learn from")
+    character = capture.character()
+    still = StillTeacher(character, texels=settings.texels)
+    surfels = torch.from_numpy(still.frame(character.skeleton.bind_pose).texture.copy())
+    clips, held = (
+        tuple(capture.motion(clip.name) for clip in capture.clips if clip.held_out == out) for out in (False, True)
+    )
+    used = moving_joints(still.rig)
+    encoding = PoseEncoding(
+        choose_joints(character.skeleton, clips, used),
+        rate=capture.rate,
+        window=settings.window,
+        translated=choose_translated(character.skeleton, clips, used),
+    )
+    return Filmed(capture, Subject(still.rig, surfels, encoding), clips, held, settings.rows, device)
+
+
+def material_of(filmed: Filmed, perceptual: Perceptual | None = None) -> Material:
+    """The views of all training frames; frames of one clip follow each other."""
+    frames = [(clip.name, frame) for clip in filmed.clips for frame in range(len(clip))]
+    starts = np.cumsum([0, *(len(clip) for clip in filmed.clips)])
+    poses = [
+        [int(start) + row for row in filmed.subject.encoding.frames(frame)]
+        for start, clip in zip(starts[:-1], filmed.clips, strict=True)
+        for frame in range(len(clip))
+    ]
+    cameras = filmed.cameras
+    views = Views(len(frames), len(cameras), lambda frame, camera: filmed.see(*frames[frame], cameras[camera]))
+    return Material(views, [window for clip in filmed.clips for window in filmed.windows(clip)], poses, perceptual)
+
+
+def refinement_of(filmed: Filmed, settings: TeacherSettings) -> PoseRefinement | None:
+    """The refinement of all training frames; None where poses are taken as they are."""
+    if not settings.refine:
+        return None
+    rotations, translations = (
+        torch.from_numpy(np.concatenate([getattr(clip, name) for clip in filmed.clips]))
+        for name in ("rotations", "translations")
+    )
+    return PoseRefinement(filmed.subject.rig.skeleton, rotations, translations, most=settings.refine)
+
+
+def preview_of(filmed: Filmed, folder: Path) -> Preview:
+    """The middle of a training clip and of one that is held out, by a camera that is held out; if there are such."""
+    camera = next((camera for camera in filmed.capture.cameras if camera.held_out), filmed.capture.cameras[0])
+    chosen: Sequence[Clip] = [*filmed.clips[:1], *filmed.held[:1]]
+    middles = [(clip, len(clip) // 2) for clip in chosen]
+    seen = [(filmed.see(clip.name, frame, camera), filmed.windows(clip)[frame]) for clip, frame in middles]
+    return Preview(folder, seen)

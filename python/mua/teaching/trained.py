@@ -1,0 +1,34 @@
+"""A taught teacher as what is recorded and distilled (mua.teachers.teacher)."""
+
+from collections.abc import Container, Iterator
+from dataclasses import replace
+
+import torch
+
+from mua.arguments import PathLike, as_path
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
+from mua.teachers.teacher import TeacherFrame
+from mua.teaching.folder import load_teacher
+from mua.teaching.windows import windows
+
+
+class TrainedTeacher:
+    """Frames of any motion on the skeleton of `rig`, as the folder's teacher learnt them from pictures."""
+
+    def __init__(self, folder: PathLike, *, moving: bool = True) -> None:
+        """Without `moving` only the mean texture on the skinned template, to compare with."""
+        self.model, self.description = load_teacher(as_path(folder, "teacher"))
+        self.rig = self.model.rig
+        self._moving = moving
+
+    def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
+        """Whole frames where wanted, else poses."""
+        encoding = replace(self.description.encoding, rate=clip.rate)
+        for index, window in enumerate(windows(self.rig.skeleton, encoding, clip)):
+            if index not in wanted:
+                yield clip.pose(index)
+                continue
+            with torch.no_grad():
+                frame = self.model(window, moving=self._moving)
+            yield TeacherFrame(clip.pose(index), frame.canonical.numpy(), frame.texture.numpy())

@@ -1,0 +1,130 @@
+"""mua-teach: what it leaves, what it tells, and the teacher that comes of it."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from captures import FRAMES, make_capture
+from commands import Commands, Ended
+
+import mua
+from mua.capture import open_capture
+from mua.channels import CHANNELS
+from mua.errors import InputError
+from mua.teachers.teacher import TeacherFrame
+from mua.teaching import settings
+from mua.teaching.trained import TrainedTeacher
+
+TEXELS = 64
+OPTIONS = ("--texels", str(TEXELS), "--steps", "3")
+Teach = Callable[..., Ended]
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_capture(tmp_path_factory.mktemp("capture")).folder
+
+
+@pytest.fixture(scope="module")
+def taught(capture: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A teacher of a few steps; tests leave it as it is."""
+    folder = tmp_path_factory.mktemp("taught") / "teacher"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(settings.PRESETS, "tiny", small())
+        return mua.teach(capture, output=folder, steps=3, texels=TEXELS)
+
+
+def small() -> settings.TeacherSettings:
+    tiny = settings.PRESETS["tiny"]
+    return replace(tiny, channels=4, mean=replace(tiny.mean, steps=4), rows=48)
+
+
+@pytest.fixture
+def teach(command: Commands, monkeypatch: pytest.MonkeyPatch) -> Teach:
+    monkeypatch.setitem(settings.PRESETS, "tiny", small())
+    return lambda *arguments: command("teach", *arguments)
+
+
+def test_it_leaves_a_teacher_and_pictures_of_its_progress(taught: Path) -> None:
+    assert {path.name for path in taught.iterdir()} >= {"teacher.json", "rig.npz", "weights.pt", "progress", "work"}
+    pictures = sorted(path.name for path in (taught / "progress").iterdir())
+    assert pictures == ["mean_texture_0000004.png", "texels_0000003.png"]
+
+
+def test_the_same_command_trains_nothing_again(capture: Path, taught: Path, teach: Teach) -> None:
+    before = (taught / "weights.pt").read_bytes()
+    ended = teach(capture, "-o", taught, *OPTIONS)
+    assert ended.status == 0
+    assert "texels" not in ended.out.split("capture", 1)[1].splitlines()[1:2]
+    assert (taught / "weights.pt").read_bytes() == before
+
+
+def test_a_teacher_has_frames_of_any_motion(capture: Path, taught: Path) -> None:
+    teacher = TrainedTeacher(taught)
+    clip = open_capture(capture).motion("reach")
+    frames = list(teacher.frames(clip, {1}))
+    assert len(frames) == FRAMES["reach"]
+    assert not isinstance(frames[0], TeacherFrame)
+    assert isinstance(frames[1], TeacherFrame)
+    assert frames[1].texture.shape == (len(teacher.rig.texels.texels), CHANNELS)
+    assert frames[1].mesh.shape == teacher.rig.mesh.vertices.shape
+    assert frames[1].texture.dtype == frames[1].mesh.dtype == np.float32
+    still = next(iter(TrainedTeacher(taught, moving=False).frames(clip, {0})))
+    assert isinstance(still, TeacherFrame)
+    assert not np.array_equal(still.texture, frames[1].texture)
+
+
+def test_a_capture_that_holds_all_cameras_out_is_refused(capture: Path, tmp_path: Path, teach: Teach) -> None:
+    said = json.loads((capture / "capture.json").read_text())
+    for camera in said["cameras"]:
+        camera["held_out"] = True
+    for entry in capture.iterdir():
+        if entry.name != "capture.json":
+            (tmp_path / entry.name).symlink_to(entry)
+    (tmp_path / "capture.json").write_text(json.dumps(said))
+    assert "every camera is held out" in teach(tmp_path, "-o", tmp_path / "teacher").sentence
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--steps", "0"), "--steps 0: expected at least 1"),
+        (("--texels", "100"), "--texels 100: expected a multiple of"),
+        (("--refine", "45"), "--refine 45: expected 0 to 10 degrees"),
+        (("--seed", "-1"), "--seed -1: expected 0 or more"),
+        (("--lpips-weights", "absent.pth"), "absent.pth: there is no such file"),
+    ],
+)
+def test_a_wrong_option_is_a_sentence(capture: Path, teach: Teach, options: tuple[str, str], sentence: str) -> None:
+    assert sentence in teach(capture, *options).sentence
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "sentence"),
+    [
+        ("teacher.json", b"{", "is damaged"),
+        ("teacher.json", b'{"format": "x", "version": 1}', "format is 'x'"),
+        ("weights.pt", b"half", "does not hold the weights"),
+        ("teacher.json", None, "holds no teacher.json"),
+    ],
+)
+def test_a_damaged_teacher_is_a_sentence(
+    taught: Path, tmp_path: Path, file: str, content: bytes | None, sentence: str
+) -> None:
+    for name in ("teacher.json", "rig.npz", "weights.pt"):
+        (tmp_path / name).write_bytes((taught / name).read_bytes())
+    if content is None:
+        (tmp_path / file).unlink()
+    else:
+        (tmp_path / file).write_bytes(content)
+    with pytest.raises(InputError, match=sentence):
+        TrainedTeacher(tmp_path)
+
+
+def test_weights_hold_nothing_but_tensors(taught: Path) -> None:
+    state = torch.load(taught / "weights.pt", weights_only=True)
+    assert all(isinstance(value, torch.Tensor) for value in state.values())
