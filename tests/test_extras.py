@@ -19,7 +19,10 @@ PACKAGE = Path(mua.__file__).parent
 PROJECT = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]
 COMMANDS = [name.removeprefix("mua-") for name in PROJECT["scripts"]]
 CALLED = {"PIL": "pillow", "pxr": "usd-core", "pywt": "pywavelets", "warp": "warp-lang"}  # distributions of packages
-FEW_USE = {"view": {"pxr"}}  # by extra: motion in USD files
+FEW_USE = {  # by extra: motion in USD files; videos of captures, and a perceptual term
+    "view": {"pxr"},
+    "bake": {"imageio_ffmpeg", "torchmetrics"},
+}
 
 
 def test_the_wheel_carries_the_whole_browser_player() -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from mua.errors import InputError
 
+TEACHER = "teacher.json"
 HEADER = "recording.json"  # as mua.recording, which takes torch to load, calls it
 CAPTURE = "capture.json"
 
@@ -19,6 +20,18 @@ def require_motion(path: Path) -> None:
     """Raises InputError where there is neither a file nor a directory of that name."""
     if not path.exists():
         raise InputError(f"--motion {path}: there is no such file or directory")
+
+
+def is_capture(path: Path) -> bool:
+    """Whether a directory is a capture."""
+    return (path / CAPTURE).is_file()
+
+
+def require_teacher(path: Path) -> None:
+    """Raises InputError where there is no directory of that name, or none that mua-teach wrote."""
+    if not (path / TEACHER).is_file():
+        problem = f"it holds no {TEACHER}" if path.is_dir() else "there is no such directory"
+        raise InputError(f"--teacher {path}: {problem}; expected the folder that mua-teach wrote")
 
 
 def require_recording(path: Path) -> None:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # torch takes seconds to load
 def bake(
     character: PathLike | None = None,
     *,
+    teacher: PathLike | None = None,
     motion: PathLike | Sequence[PathLike] = (),
     output: PathLike = "avatar.muaavatar",
     preset: str = "preview",
@@ -45,8 +46,9 @@ def bake(
 
     The arguments are the options of mua-bake (docs/bake.md) by the same names, and their errors name the options. Where
     an option may be repeated, one value or several are given; `mapping` is a file or a dictionary, `detail` is a
-    dictionary such as `{"head": 2}`. Without a `character` the procedural one is baked. A call that was interrupted
-    goes on where it stopped when the same one is made again.
+    dictionary such as `{"head": 2}`. Without a `character` the procedural one is baked; where it is the folder of a
+    capture, a teacher is taught first, and a `teacher` is the folder that `mua.teach` wrote. A call that was
+    interrupted goes on where it stopped when the same one is made again.
 
     `listener` hears of stages, steps and notes; without one they go to the log "mua" of Python's logging.
 

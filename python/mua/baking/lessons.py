@@ -47,7 +47,7 @@ def carry_out(
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
     train_teacher(lesson, material, settings, run=run)
     if processes.first:
-        save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding))
+        save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding, filmed.roles))
 
 
 def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None) -> str:

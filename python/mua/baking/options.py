@@ -13,19 +13,22 @@ from mua.baking.order import DeviceName, Order
 from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
 from mua.files import missing_directory
-from mua.inputs import require_file, require_motion
+from mua.inputs import is_capture, require_file, require_motion, require_teacher
 from mua.levels import COARSE_TEXELS
 from mua.motion.mapping import read_mapping
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings, preset, with_recipe
+from mua.teaching.settings import teacher_preset
 
 SUFFIX = ".muaavatar"
+LESSONS = {"tiny": "tiny", "preview": "small", "paper": "paper"}  # the teacher's preset by the student's
 LEAST_TEXELS = 2 * COARSE_TEXELS  # something must be left of a texture that is halved so many times
 
 
 def read_order(options: Mapping[str, Any]) -> Order:
     """The order of the options of `mua.bake`, all of them by name; raises InputError for what no bake can have."""
     written, uv = as_path(options["output"], "output"), one_of(options["uv"], "uv", get_args(UvMode))
+    character = None if options["character"] is None else as_path(options["character"], "character")
     order = Order(
         output=written,
         work=work_directory(written, options["work"]),
@@ -37,7 +40,8 @@ def read_order(options: Mapping[str, Any]) -> Order:
             texels=options["texels"],
         ),
         device=one_of(options["device"], "device", get_args(DeviceName)),
-        character=None if options["character"] is None else as_path(options["character"], "character"),
+        character=character,
+        teacher=None if options["teacher"] is None else as_path(options["teacher"], "teacher"),
         motions=as_paths(options["motion"], "motion"),
         hold_out=as_names(options["hold_out"], "hold_out"),
         mapping=_joints(options["mapping"]),
@@ -50,8 +54,36 @@ def read_order(options: Mapping[str, Any]) -> Order:
         jobs=check_jobs(options["jobs"]),
         clips=clip_names(options["clips"]),
     )
-    check_inputs(order.character, order.motions)
+    if order.teacher is None and (character is None or not is_capture(character)):
+        check_inputs(character, order.motions)
+    else:
+        order = _taught(order, options)
     check_output(order.output, order.work)
+    return order
+
+
+def _taught(order: Order, options: Mapping[str, Any]) -> Order:
+    """The order of a bake whose teacher learns, or has learnt, from pictures."""
+    for name in ("uv", "detail", "scale", "height", "leave_out"):
+        if options[name] not in (None, (), [], {}, "auto"):
+            raise InputError(
+                f"--{name.replace('_', '-')}: the capture's own capture.json says it; leave the option out"
+            )
+    check_inputs(None, order.motions)
+    if order.teacher is None:
+        lessons = replace(
+            teacher_preset(LESSONS[options["preset"]]), texels=order.settings.texels, seed=order.settings.seed
+        )
+        return replace(order, lessons=lessons)
+    if order.character is not None:
+        raise InputError(f"--teacher {order.teacher}: has its own character; leave {order.character} out")
+    if options["texels"] is not None:
+        raise InputError(
+            f"--texels {options['texels']}: the texture is as large as the teacher's; leave the option out"
+        )
+    require_teacher(order.teacher)
+    if not order.motions:
+        raise InputError(f"--teacher {order.teacher}: give the motion to record with --motion")
     return order
 
 

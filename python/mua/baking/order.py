@@ -10,6 +10,7 @@ from mua.atlas.detail import Detail, UvMode
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings
+from mua.teaching.settings import TeacherSettings
 
 ALL, NONE = "all", "none"  # of the clips
 DeviceName = Literal["auto", "cpu", "cuda"]
@@ -34,6 +35,8 @@ class Order:
     size: FigureSize = AS_FOUND
     storage: Storage = "f16"
     jobs: int = 1  # processes that record side by side
+    teacher: Path | None = None  # that was taught from pictures; None: the simulated character
+    lessons: TeacherSettings | None = None  # of the teacher that is taught first, where the character is a capture
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 
     def beside(self, ending: str) -> Path:

@@ -17,6 +17,7 @@ from mua.baking.plan import plan, split
 from mua.baking.playback import choose
 from mua.baking.report import STAND_IN
 from mua.baking.sources import RATE, load_clips, ordered_character
+from mua.baking.taught import bake_taught
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity
 from mua.files import require_writable
@@ -40,6 +41,8 @@ def bake(order: Order, listener: Listener) -> Baked:
     for directory in check_output(order.output, order.work):
         listener.note(f"There is no directory {directory}; it is created.")
     with DirectoryLock(order.work, name=f"--work {order.work}"):
+        if order.teacher is not None or order.lessons is not None:
+            return bake_taught(order, device, listener)
         return _bake(order, device, listener)
 
 

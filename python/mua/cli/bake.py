@@ -20,9 +20,13 @@ OPTIONS = {
     "character": Annotated[
         Path | None,
         typer.Argument(
-            help="Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz.",
+            help="Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz; or the folder of a capture.",
             show_default="a built-in procedural character",
         ),
+    ],
+    "teacher": Annotated[
+        Path | None,
+        typer.Option(help="Folder that mua-teach wrote, to distil instead of a character.", show_default="none"),
     ],
     "motion": Annotated[
         list[Path],
@@ -109,6 +113,8 @@ def main(
     if json is not None and not check:
         raise InputError("--json: only --check writes it; expected --check too")
     order = read_order(options)
+    if check and (order.teacher or order.lessons):
+        raise InputError("--check: compares a character with its file; look at a capture with mua-capture check")
     if check:
         from mua.cli.check import check_and_show
 

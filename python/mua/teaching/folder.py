@@ -2,7 +2,8 @@
 
 import json
 import pickle
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +29,7 @@ class Description:
     name: str  # of the person
     settings: TeacherSettings
     encoding: PoseEncoding
-
-
-def is_teacher(folder: Path) -> bool:
-    """Whether a folder holds a trained teacher."""
-    return (folder / FILE).is_file()
+    roles: Mapping[str, str] = field(default_factory=dict)  # joint to body part, where the template's file says it
 
 
 def save_teacher(folder: Path, model: TeacherModel, description: Description) -> None:
@@ -70,7 +67,7 @@ def _described(file: Path) -> Description:
             own[name] = Schedule(**own[name])
         for name in ("joints", "translated"):
             encoding[name] = tuple(encoding[name])
-        return Description(str(said["name"]), TeacherSettings(**own), PoseEncoding(**encoding))
+        return Description(str(said["name"]), TeacherSettings(**own), PoseEncoding(**encoding), dict(said["roles"]))
     except FileNotFoundError as error:
         raise InputError(f"{file.parent}: holds no {FILE}; expected the folder that mua-teach wrote") from error
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -1,6 +1,6 @@
 """What a training needs of a capture: its subject, the windows of its frames, and its pictures as tensors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,6 +31,7 @@ class Filmed:
 
     capture: Capture
     subject: Subject
+    roles: Mapping[str, str]  # joint to body part, where the template's file says it
     clips: tuple[Clip, ...]  # of the training
     held: tuple[Clip, ...]
     rows: int  # of a whole picture, at most
@@ -72,7 +73,7 @@ def read_filmed(capture: Capture, settings: TeacherSettings, device: torch.devic
         window=settings.window,
         translated=choose_translated(character.skeleton, clips, used),
     )
-    return Filmed(capture, Subject(still.rig, surfels, encoding), clips, held, settings.rows, device)
+    return Filmed(capture, Subject(still.rig, surfels, encoding), character.roles, clips, held, settings.rows, device)
 
 
 def material_of(filmed: Filmed, perceptual: Perceptual | None = None) -> Material:

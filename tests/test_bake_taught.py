@@ -1,0 +1,68 @@
+"""mua-bake of a taught teacher, and of a capture."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from captures import make_capture
+from commands import Commands
+
+import mua
+from mua.student.settings import PRESETS as STUDENTS
+from mua.student.settings import Ranks, Schedule
+from mua.teaching import settings as teaching
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_capture(tmp_path_factory.mktemp("capture")).folder
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Presets of few steps."""
+    tiny, few = teaching.PRESETS["tiny"], Schedule(steps=2, batch=2, lr=1e-3)
+    monkeypatch.setitem(teaching.PRESETS, "tiny", replace(tiny, channels=4, mean=few, texture=few, rows=48))
+    ranks = Ranks(2, 2, 2)
+    student = replace(STUDENTS["tiny"], texels=64, frames=4, geometry=ranks, appearance=ranks, components=2, hidden=8)
+    monkeypatch.setitem(STUDENTS, "tiny", replace(student, regression=few, finetune=few, sweeps=1))
+
+
+@pytest.mark.usefixtures("small")
+def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_path: Path, command: Commands) -> None:
+    given = ("--preset", "tiny", "--jobs", "1")
+    whole = command("bake", capture, "-o", tmp_path / "whole.muaavatar", *given)
+    assert whole.status == 0, whole
+    assert "taught from the pictures of a capture" in whole.out
+    avatar = mua.load(tmp_path / "whole.muaavatar")
+    assert avatar.name == "figure"
+    assert {clip.name for clip in avatar.clips} == {"walk", "reach"}
+    assert "held out of training: reach" in avatar.notes
+
+    teacher, motion = tmp_path / "whole.work" / "teacher", capture / "walk.bvh"
+    apart = command("bake", "--teacher", teacher, "--motion", motion, "-o", tmp_path / "apart.muaavatar", *given)
+    assert apart.status == 0, apart
+    assert [clip.name for clip in mua.load(tmp_path / "apart.muaavatar").clips] == ["walk"]
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--teacher", "absent"), "--teacher absent: there is no such directory"),
+        (("--teacher", "{folder}"), "it holds no teacher.json"),
+        (("{capture}", "--height", "1.7"), "--height: the capture's own capture.json says it"),
+        (("{capture}", "--detail", "head=2"), "--detail: the capture's own capture.json says it"),
+        (("{capture}", "--check"), "mua-capture check"),
+        (("--teacher", "{teacher}"), "give the motion to record with --motion"),
+        (("{capture}", "--teacher", "{teacher}"), "has its own character; leave"),
+        (("--teacher", "{teacher}", "--texels", "64"), "--texels 64: the texture is as large as the teacher's"),
+    ],
+)
+def test_a_wrong_option_is_a_sentence(
+    capture: Path, tmp_path: Path, command: Commands, options: tuple[str, ...], sentence: str
+) -> None:
+    teacher = tmp_path / "teacher"
+    teacher.mkdir()
+    (teacher / "teacher.json").touch()
+    places = {"capture": capture, "teacher": teacher, "folder": tmp_path}
+    assert sentence in command("bake", *(option.format(**places) for option in options)).sentence
