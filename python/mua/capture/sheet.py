@@ -2,6 +2,7 @@
 
 import numpy as np
 from PIL import Image, ImageDraw
+from PIL.Image import Resampling
 
 from mua.arrays import Array
 from mua.capture.check import Checked
@@ -55,17 +56,12 @@ def _cell(checked: Checked, view: Seen) -> Image.Image:
     mask, image = seen.mask[part], seen.image[part]
     if capture.masks is None:  # what is clear has no colour
         image = image * mask[..., None] + BEHIND * (1 - mask[..., None])
-    covered = checked.posed.covers(view.clip, view.frame, camera)[part]
-    finer = max(1, round(CELL / max(mask.shape)))
-    picture, masked, drawn = (enlarged(a, finer) for a in (to_bytes(image), mask >= COVERED, covered))
-    picture[_edge(masked)] = MASK
-    picture[_edge(drawn)] = OUTLINE
-    return _captioned(picture, f"{camera.name}: {view.overlap:.0%}\n{view.clip}, frame {view.frame}")
-
-
-def enlarged(picture: Array, times: int) -> Array:
-    """Every pixel as a square."""
-    return picture.repeat(times, axis=0).repeat(times, axis=1)
+    size = (round(CELL * (right - left) / max(mask.shape)), round(CELL * (lower - upper) / max(mask.shape)))
+    shown, masked = (np.array(Image.fromarray(to_bytes(a)).resize(size, Resampling.NEAREST)) for a in (image, mask))
+    camera = camera.cropped((left, upper, right, lower)).resized(size)
+    shown[_edge(masked >= 255 * COVERED)] = MASK
+    shown[_edge(checked.posed.covers(view.clip, view.frame, camera))] = OUTLINE
+    return _captioned(shown, f"{camera.name}: {view.overlap:.0%}\n{view.clip}, frame {view.frame}")
 
 
 def _edge(covered: Array) -> Array:

@@ -23,7 +23,7 @@ def run_command(command: Callable[..., None]) -> None:
 
 def run_commands(about: str, *commands: Callable[..., None]) -> None:
     """Run the one of several commands that the command line names first; `about` is the help of them all."""
-    app = typer.Typer(no_args_is_help=True)
+    app = typer.Typer()
     app.callback(help=about)(with_version)
     for command in commands:
         app.command()(with_common_options(command))
