@@ -71,8 +71,10 @@ def test_the_poster_shows_the_figure_on_nothing(command: Commands, avatar_file: 
 def test_everything_that_the_page_names_is_in_the_folder(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
     share(command, avatar_file, "-o", tmp_path / "out")
     tags = Tags((tmp_path / "out" / "index.html").read_text()).found
+    modules = [path for path in site.player_files() if path.endswith(".js") and path != "worker.js"]
+    assert [given["href"] for _, given in tags if given.get("rel") == "modulepreload"] == modules
     named = [value for _, given in tags for name, value in given.items() if name in ("src", "href", "poster")]
-    assert len(named) == 5
+    assert len(named) == 5 + len(modules)
     assert all((tmp_path / "out" / str(name)).is_file() for name in named)
 
 

@@ -1,10 +1,17 @@
 // Dispatches golden cases by the player's own device and kernels, in the browser's WGSL compiler.
 
+import { synthesis, upsampler } from "./channels.js";
 import { Device } from "./device.js";
 import { kernelsOf } from "./kernel.js";
 
 const device = await Device.open();
 device.gpu.onuncapturederror = ({ error }) => console.error(error.message);
+
+/** Kernels as the player makes them: with as much shared memory as the constants ask for. */
+const MADE = {
+  InverseDwt: ({ taps }) => synthesis(device, Number(taps)),
+  UpsampleTexels: ({ factor, reach }) => upsampler(device, { factor: Number(factor), reach: Number(reach) }),
+};
 
 /** The words of the writable buffers after a case of a kernel's file, as base64 by name. */
 globalThis.replay = async (stem, number) => {
@@ -14,9 +21,9 @@ globalThis.replay = async (stem, number) => {
     import(`./wgsl/${stem}.js`),
   ]);
   const golden = document.cases[number];
-  const kernel = kernelsOf(device, { kernel: shaders[golden.entry] }).kernel;
   const given = Object.fromEntries(golden.buffers.map((described) => [described.name, upload(described, binary)]));
   const constants = Object.fromEntries(golden.constants.map(({ name, values }) => [name, values]));
+  const kernel = MADE[golden.entry]?.(constants) ?? kernelsOf(device, { kernel: shaders[golden.entry] }).kernel;
   const encoder = device.gpu.createCommandEncoder();
   const pass = encoder.beginComputePass();
   kernel.dispatch(pass, golden.groups, given, constants);

@@ -62,6 +62,16 @@ def test_a_shared_folder_plays(opened: Open, folder: dict[str, Content]) -> None
     assert all(url.startswith((home, "blob:")) for url in page.told["requests"])
 
 
+def test_the_first_picture_is_drawn_once(opened: Open, folder: dict[str, Content]) -> None:
+    before = """globalThis.drawn = 0;
+    const submit = GPUQueue.prototype.submit;
+    GPUQueue.prototype.submit = function (...given) { globalThis.drawn += 1; return submit.apply(this, given); };
+    document.addEventListener("DOMContentLoaded", () => document.querySelector("mua-avatar")
+      .addEventListener("picture", () => (globalThis.first = globalThis.drawn)));"""
+    page = opened(folder, before=before)
+    assert page.evaluate("globalThis.first") == 1
+
+
 def test_the_example_of_plain_html_plays(opened: Open, avatar_file: Path) -> None:
     player = {f"player/{path}": file for path, file in player_files().items()}
     page = opened({**player, "index.html": EXAMPLES / "plain.html", "hero.muaavatar": avatar_file})

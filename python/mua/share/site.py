@@ -14,6 +14,8 @@ PLAYER = Path(mua.__file__).parent / "web"  # plain files, served as they are
 PAGE = "index.html"
 SERVED = (".js", ".css", ".wgsl", ".svg")  # of the player's files; the others are for builders
 POSTER = "poster.png"
+SCRIPT = '<script type="module"'  # of the page
+WORKER = "worker.js"  # begins a module graph of its own
 ELEMENT = "<mua-avatar "
 UNSAFE = re.compile(r"[^\w.-]+")  # in a file name, for some web host
 
@@ -55,7 +57,13 @@ def page(shown: Shown, attributes: Mapping[str, str]) -> str:
     written = "".join(f'{name}="{html.escape(value)}" ' for name, value in given.items() if value is not None)
     text = (PLAYER / PAGE).read_text(encoding="utf-8")
     titled = re.sub(r"<title>.*?</title>", lambda _: f"<title>{html.escape(shown.title)}</title>", text, count=1)
-    return titled.replace(ELEMENT, ELEMENT + written, 1)
+    return titled.replace(ELEMENT, ELEMENT + written, 1).replace(SCRIPT, _preloads() + SCRIPT, 1)
+
+
+def _preloads() -> str:
+    """Lines by which a browser fetches all modules at once, before it has read which of them imports which."""
+    modules = [path for path in player_files() if path.endswith(".js") and path != WORKER]
+    return "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
 
 
 def title_of(avatars: Sequence[Path]) -> str:

@@ -27,7 +27,7 @@ import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 const ELEMENT_TYPES = ["F32", "F16", "I8"];
 
 /** The same filter with as many taps that a thread of InverseDwt finishes whole words: twice an odd number. */
-const wholeWords = (/** @type {ArrayLike<number>} */ taps) =>
+export const wholeWords = (/** @type {ArrayLike<number>} */ taps) =>
   Float32Array.from(taps.length % 4 ? Array.from(taps) : [0, ...Array.from(taps), 0]);
 
 /** Everything of a file that does not change from frame to frame. */

@@ -1,12 +1,16 @@
 // From a window of poses to channels: the dispatches of a decode, a plain list in the order of the kernels, in parts that
 // displayed frames can share. Reference: python/mua/player/channels.py.
 
-import { kernelsOf } from "./kernel.js";
+import { wholeWords } from "./buffers.js";
+import { kernelWithRoom, kernelsOf } from "./kernel.js";
+import { upsamplingTaps } from "./prepare.js";
 import { BlendDetail, BlendLl } from "./wgsl/blend_subbands.js";
 import { InverseDwt, UpsampleTexels } from "./wgsl/inverse_dwt.js";
 import { MlpMatmul, MlpMatmulTransposed } from "./wgsl/mlp_matmul.js";
 
 /** @typedef {import("./buffers.js").AvatarBuffers} AvatarBuffers */
+/** @typedef {import("./device.js").Device} Device */
+/** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./buffers.js").BranchLevel} BranchLevel */
 /** @typedef {import("./buffers.js").LevelBuffers} LevelBuffers */
 /** @typedef {ReturnType<AvatarBuffers["branch"]>} Branch */
@@ -23,11 +27,12 @@ export const FLOAT = 4; // bytes
 const [LAYER_ROWS, MESH_COLUMNS] = [8, 64]; // outputs of a group of MlpMatmul and of MlpMatmulTransposed
 const LL_PAIRS = 64; // texels that share a word, of a group of BlendLl
 const DETAIL_TILE = 24; // texels along a side of a group of BlendDetail
+const TEXEL_TILE = 16; // texels along a side of a group of UpsampleTexels
 const COARSE_TILE = 16; // samples along a side that a group of InverseDwt doubles
 const [ROWS, BATCH] = [6, 4]; // of texel_channels, and channels of each
 export const TEXEL_CHANNELS = 2 * ROWS * BATCH; // bytes
 export const PARTS = 2; // of a decode, that move about as many bytes: geometry; mesh and appearance
-export const KERNELS = { MlpMatmul, MlpMatmulTransposed, BlendLl, BlendDetail, InverseDwt, UpsampleTexels };
+export const KERNELS = { BlendDetail, MlpMatmul, MlpMatmulTransposed, BlendLl };
 
 /** Groups of `size` that hold `count`. */
 export const groups = (/** @type {number} */ count, /** @type {number} */ size) => Math.ceil(count / size);
@@ -35,12 +40,30 @@ export const groups = (/** @type {number} */ count, /** @type {number} */ size) 
 /** Of a plane of half floats, whose rows are whole words. */
 const planeBytes = (/** @type {number} */ size) => FLOAT * size * groups(size, 2);
 
+/** InverseDwt, whose groups share the rows of ll that filters of so many taps need, low- and high-pass. @param {Device} device @param {number} taps */
+export function synthesis(device, taps) {
+  const rows = COARSE_TILE + taps / 2 - 1;
+  return kernelWithRoom(device, InverseDwt, "filtered", 2 * rows * COARSE_TILE);
+}
+
+/** UpsampleTexels, whose groups share the samples of ll that a tile of texels needs. @param {Device} device @param {{factor: number, reach: number}} upsampling */
+export function upsampler(device, { factor, reach }) {
+  const samples = groups(TEXEL_TILE - 1, factor) + reach;
+  return kernelWithRoom(device, UpsampleTexels, "upsampled", samples * TEXEL_TILE);
+}
+
+/** The kernels that depend on the avatar, for its finest level. @param {Device} device @param {Avatar} avatar */
+export function kernelsFor(device, { wavelet, geometry, appearance }) {
+  const upsamplings = [geometry, appearance].map(({ details }) => upsamplingTaps(wavelet.recLo, wavelet.levels - details.length));
+  return [synthesis(device, wholeWords(wavelet.recLo).length), ...upsamplings.map((one) => upsampler(device, one))];
+}
+
 /** The buffers between the kernels of a decode, sized once and reused by every part: none hands on to another. */
 export class ChannelDecoder {
   constructor(/** @type {AvatarBuffers} */ buffers) {
     const { avatar, geometry, appearance, coarseMlp, memory } = buffers;
     this.buffers = buffers;
-    this.kernels = kernelsOf(memory.device, KERNELS);
+    this.kernels = { ...kernelsOf(memory.device, KERNELS), InverseDwt: synthesis(memory.device, buffers.taps) };
     const branches = [geometry, appearance];
     const layers = [...coarseMlp, ...branches.flatMap((branch) => branch.mlp)];
     const activations = FLOAT * Math.max(...layers.map((layer) => layer.outputs));
@@ -178,7 +201,7 @@ export class ChannelDecoder {
   upsample(pass, branch, shown, channels, size, firstRow) {
     const { level } = channels;
     const { taps, factor, reach, delay } = shown.upsampling;
-    this.kernels.UpsampleTexels.dispatch(
+    upsampler(this.buffers.memory.device, shown.upsampling).dispatch(
       pass,
       [level.tileCount, 1, groups(branch.channels, BATCH)],
       {

@@ -296,7 +296,8 @@ export class MuaAvatar extends HTMLElementOrNone {
   async #show(/** @type {boolean} */ first) {
     for (const name of first ? ["clip", "speed", "show"] : ["clip"]) this.#adopt(name);
     if (first) this.#arrange();
-    await this.player?.draw();
+    this.#fit(); // the bar has taken its place
+    await this.#loop.draw();
     this.#controls.poster.hidden = true;
     if (!this.firstPicture) {
       this.firstPicture = performance.now();

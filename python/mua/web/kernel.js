@@ -2,7 +2,7 @@
 // bindings.py, draw.py, commands.py.
 
 import { AvatarError } from "./error.js";
-import { Packer } from "./shader.js";
+import { Packer, withRoom } from "./shader.js";
 
 /** @typedef {import("./device.js").Device} Device */
 /** @typedef {import("./shader.js").Shader} Shader */
@@ -76,11 +76,14 @@ export class Kernel {
     this.described = { label: shader.entry, layout, compute };
     /** @type {GPUComputePipeline | null} */
     this.pipeline = null;
+    /** @type {Promise<GPUComputePipeline> | null} */
+    this.compiling = null;
   }
 
   /** Compile beside others, before it is needed. */
   async compile() {
-    this.pipeline ??= await this.gpu.createComputePipelineAsync(this.described);
+    this.compiling ??= this.gpu.createComputePipelineAsync(this.described);
+    this.pipeline ??= await this.compiling;
   }
 
   /**
@@ -104,6 +107,11 @@ export function kernelsOf(/** @type {Device} */ device, /** @type {T} */ shaders
     device.once(shader, () => new Kernel(device, shader)),
   ]);
   return /** @type {Record<keyof T, Kernel>} */ (Object.fromEntries(made));
+}
+
+/** A kernel whose groups share so many elements of an array, compiled once for a device. @param {Device} device @param {Shader} shader @param {string} array @param {number} count @returns {Kernel} */
+export function kernelWithRoom(device, shader, array, count) {
+  return device.once(`${shader.entry} ${count}`, () => new Kernel(device, withRoom(shader, array, count)));
 }
 
 /**

@@ -56,12 +56,15 @@ export class Loop {
     requestAnimationFrame(() => void this.#drawChanged());
   }
 
+  /** Draw now, and with it what was to be drawn. */
+  async draw() {
+    this.#changed = false;
+    await this.avatar.player?.draw();
+  }
+
   async #drawChanged() {
     try {
-      while (this.#changed && this.avatar.player && !this.avatar.player.playing) {
-        this.#changed = false;
-        await this.avatar.player.draw();
-      }
+      while (this.#changed && this.avatar.player && !this.avatar.player.playing) await this.draw();
     } catch (error) {
       this.asks.fail(error);
     } finally {

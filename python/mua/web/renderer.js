@@ -3,7 +3,7 @@
 
 import { cameraOf } from "./camera.js";
 import { AvatarBuffers } from "./buffers.js";
-import { KERNELS as DECODING } from "./channels.js";
+import { KERNELS as DECODING, kernelsFor } from "./channels.js";
 import { window } from "./clip.js";
 import { Device, Memory } from "./device.js";
 import { AvatarError } from "./error.js";
@@ -64,7 +64,7 @@ export class Renderer {
   /** Upload an avatar. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
   async add(/** @type {Avatar} */ avatar) {
     const { gpu } = this.device;
-    await this.compiled;
+    await Promise.all([this.compiled, ...kernelsFor(this.device, avatar).map((one) => one.compile())]);
     const memory = new Memory(this.device);
     gpu.pushErrorScope("out-of-memory");
     /** @type {Slot | null} */
@@ -189,10 +189,10 @@ export class Renderer {
   }
 }
 
-/** Compiles all that every picture needs at once, while the avatar is still being fetched. @param {Device} device @param {import("./kernel.js").Pipeline} splats */
+/** Compiles what the pictures of all avatars need at once, while one is still being fetched; first what takes longest. @param {Device} device @param {import("./kernel.js").Pipeline} splats */
 function compiled(device, splats) {
-  const kernels = kernelsOf(device, { ...DECODING, ...SORTING, BlendVertices });
-  return Promise.all([splats, ...Object.values(kernels)].map((one) => one.compile()));
+  const kernels = kernelsOf(device, { ...SORTING, ...DECODING, BlendVertices });
+  return Promise.all([...Object.values(kernels), splats].map((one) => one.compile()));
 }
 
 function asked(/** @type {Posed} */ { clip, frame, following }, /** @type {number} */ level) {

@@ -24,6 +24,13 @@ import { AvatarError } from "./error.js";
  */
 /** @typedef {Record<string, number | ArrayLike<number>>} Values */
 
+/** A shader whose groups hold so many elements of an array that they share, in place of the most that any avatar needs. @param {Shader} shader @param {string} array @param {number} count @returns {Shader} */
+export function withRoom(shader, array, count) {
+  const declared = new RegExp(`(var<workgroup> ${array}_\\d+ : array<.*, i32\\()(\\d+)`);
+  const code = shader.code.replace(declared, (_, before, most) => `${before}${Math.min(count, Number(most))}`);
+  return { ...shader, code };
+}
+
 const BLOCK = 16; // bytes, of which a constant buffer is a multiple
 
 /** Bytes of an entry point's constant buffer. */

@@ -17,7 +17,7 @@ const PROJECTED = 256; // texels of a group of SplatProject
 const SORTED = 2048; // keys of a group of the sort
 const DIGITS = 256; // values of 8 bits
 const ARGUMENTS = 5; // words: of the draw, and how many splats are seen
-export const KERNELS = { SplatProject, CountDigits, ScanDigits, ScatterDigits };
+export const KERNELS = { ScatterDigits, SplatProject, CountDigits, ScanDigits };
 
 const even = (/** @type {number} */ count) => count + (count % 2);
 

@@ -212,7 +212,7 @@ fn filterColumns_0( _S33 : u32,  _S34 : vec2<u32>) -> vec4<f32>
         {
             break;
         }
-        var square_2 : vec4<f32> = square_1 + tapPair_0(j_3).xxyy * filtered_0[_S33 + (_S35 - j_3) * u32(16) + _S34.x].xyxy;
+        var square_2 : vec4<f32> = square_1 + tapPair_0(j_3).xxyy * filtered_0[(_S35 - j_3) * u32(2) * u32(16) + _S33 + _S34.x].xyxy;
         j_3 = j_3 + u32(1);
         square_1 = square_2;
     }
@@ -234,7 +234,7 @@ fn filterColumns_1( _S37 : u32,  _S38 : vec2<u32>) -> vec4<f32>
         {
             break;
         }
-        var square_4 : vec4<f32> = square_3 + tapPair_1(j_4).xxyy * filtered_0[_S37 + (_S39 - j_4) * u32(16) + _S38.x].xyxy;
+        var square_4 : vec4<f32> = square_3 + tapPair_1(j_4).xxyy * filtered_0[(_S39 - j_4) * u32(2) * u32(16) + _S37 + _S38.x].xyxy;
         j_4 = j_4 + u32(1);
         square_3 = square_4;
     }
@@ -256,16 +256,16 @@ fn InverseDwt(@builtin(global_invocation_id) id_0 : vec3<u32>, @builtin(workgrou
             break;
         }
         var row_0 : u32 = coarseRow_0(group_0.y, i_1);
-        var at_0 : u32 = i_1 * u32(16) + thread_0.x;
+        var at_0 : u32 = i_1 * u32(2) * u32(16) + thread_0.x;
         var _S41 : u32 = id_0.z;
         var _S42 : u32 = id_0.x;
         filtered_0[at_0] = filterRow_0(_S41, row_0, _S42) + filterRow_1(Constants_0.channels_0 + _S41, row_0, _S42);
-        filtered_0[u32(576) + at_0] = filterRow_2(_S41, row_0, _S42) + filterRow_1(u32(2) * Constants_0.channels_0 + _S41, row_0, _S42);
+        filtered_0[u32(16) + at_0] = filterRow_2(_S41, row_0, _S42) + filterRow_1(u32(2) * Constants_0.channels_0 + _S41, row_0, _S42);
         i_1 = i_1 + u32(16);
     }
     workgroupBarrier();
     var _S43 : vec2<u32> = thread_0.xy;
-    writeSquare_0(id_0, filterColumns_0(u32(0), _S43) + filterColumns_1(u32(576), _S43));
+    writeSquare_0(id_0, filterColumns_0(u32(0), _S43) + filterColumns_1(u32(16), _S43));
     return;
 }
 
