@@ -38,10 +38,8 @@ INFLUENCES = 4  # that every reader knows
 
 def character_glb(frames: ExportFrames, mesh: SkinnedMesh | None) -> bytes:
     """The content of a .glb with the skeleton, its motion, and the mesh if there is one."""
-    glb = Glb()
     skeleton = frames.avatar.rig.skeleton
-    joints = _joints(glb, skeleton)
-    _animate(glb, skeleton, joints, frames.poses)
+    glb, joints = _animated(skeleton, frames.poses)
     if mesh is not None:
         glb.document.meshes = [Mesh(name=frames.avatar.name, primitives=[_skinned(glb, mesh)])]
         back = skeleton.bind_inverse
@@ -51,6 +49,11 @@ def character_glb(frames: ExportFrames, mesh: SkinnedMesh | None) -> bytes:
         glb.document.skins = [skin]
         glb.node(Node(name=frames.avatar.name, mesh=0, skin=0))
     return glb.content()
+
+
+def motion_glb(skeleton: Skeleton, clip: Clip) -> bytes:
+    """The content of a .glb with a skeleton and its motion alone; read back, the poses are the same as float32."""
+    return _animated(skeleton, clip)[0].content()
 
 
 def geometry_glb(splats: Splats, mesh: DetailedMesh, *, name: str) -> bytes:
@@ -69,6 +72,14 @@ def geometry_glb(splats: Splats, mesh: DetailedMesh, *, name: str) -> bytes:
     glb.document.meshes = [Mesh(name=name, primitives=[primitive])]
     glb.node(Node(name=name, mesh=0))
     return glb.content()
+
+
+def _animated(skeleton: Skeleton, clip: Clip) -> tuple[Glb, list[int]]:
+    """A document with the skeleton and its motion, and the nodes of the joints."""
+    glb = Glb()
+    joints = _joints(glb, skeleton)
+    _animate(glb, skeleton, joints, clip)
+    return glb, joints
 
 
 def _joints(glb: Glb, skeleton: Skeleton) -> list[int]:

@@ -18,15 +18,11 @@ from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of
 from mua.pose.skeleton import Pose
 from mua.rig.character import Character
-from mua.rig.stretched import stretched
-from mua.teachers.bones import figure_scale, fit_bones
-from mua.teachers.folds import Folds
-from mua.teachers.looseness import estimate_looseness
+from mua.teachers.bones import figure_scale
 from mua.teachers.shading import shade, visibility
-from mua.teachers.simulation import Simulation
-from mua.teachers.skinning import transform
 from mua.teachers.smoothing import low_pass
 from mua.teachers.still import StillTeacher
+from mua.teachers.surface import SimulatedSurface
 from mua.teachers.teacher import Light, TeacherFrame
 from mua.texture.surfels import vertex_normals
 
@@ -40,30 +36,15 @@ class SimulatedTeacher(StillTeacher):
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
         super().__init__(character, texels=texels, template_vertices=template_vertices)
         mesh = character.mesh
-        looseness = estimate_looseness(character) if character.looseness is None else character.looseness
-        self._bones = fit_bones(character, looseness)
-        self._simulation = Simulation(mesh.vertices, mesh.faces, looseness=looseness, bones=self._bones)
-        rng = np.random.default_rng(seed)
-        self._folds = Folds(mesh.vertices, mesh.faces, looseness=looseness, rng=rng)
+        self._moving = SimulatedSurface(character, seed=seed)
         self._normals = vertex_normals(mesh.vertices, mesh.faces)
         self._longer = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
         """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses."""
-        character, bones = self._character, self._bones
-        skinning = character.skeleton.skinning(clip.rotations, clip.translations)
-        for frame, joints in enumerate(skinning):
-            dual = self._skinning(joints)
-            turn, ends = dual[:, :4], bones.posed(joints)
-            target = self._folds(self._skinning.linear(joints, character.mesh.vertices), turn)
-            if frame == 0:
-                self._simulation.settle(target, turn, ends)
-            moved = self._simulation.advance(target, turn, ends, seconds=1 / clip.rate)
-            if clip.stretches is not None:
-                canonical = transform(rotation.dual_inverse(dual), moved)
-                moved = transform(dual, stretched(character, clip.stretches, frame, canonical))
+        for frame, moved in enumerate(self._moving.frames(clip)):
             pose = Pose(clip.rotations[frame], clip.translations[frame])
-            yield self._whole(pose, joints, dual, moved) if frame in wanted else pose
+            yield self._whole(pose, moved) if frame in wanted else pose
 
     def _coarse(self, displacement: Array) -> Array:
         """What of a displacement [V, 3] is long enough for the canonical mesh, [T, 3]."""
@@ -71,8 +52,9 @@ class SimulatedTeacher(StillTeacher):
 
     def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:
         """Light on the surface at `moved` [V, 3], brought to canonical space."""
+        bones = self._moving.bones
         normals = rotation.rotate(rotation.multiply(dual[:, :4], turn), self._normals)
-        visible = visibility(moved, normals, self._bones.posed(joints), self._bones.radii)
+        visible = visibility(moved, normals, bones.posed(joints), bones.radii)
         heading = heading_of(joints[self._character.skeleton.root, :4])
         light = shade(normals, visible, heading=heading)
         return Light(gain=light.gain, sheen=rotation.rotate(rotation.conjugate(dual[:, :4]), light.sheen))

@@ -8,11 +8,11 @@ from mua.pose.clip import Stretches
 from mua.pose.skeleton import Pose
 from mua.rig.build import build_rig
 from mua.rig.character import Character
-from mua.rig.stretched import stretched
 from mua.teachers.bones import figure_scale
 from mua.teachers.chords import straighten
-from mua.teachers.skinning import Skinning, transform
+from mua.teachers.skinning import transform
 from mua.teachers.smoothing import TURN_WAVELENGTH, low_pass
+from mua.teachers.surface import MovedSurface, SkinnedSurface
 from mua.teachers.teacher import Light, TeacherFrame
 from mua.teachers.texels import SurfaceTexels
 from mua.texture.surfels import SurfaceFrames
@@ -26,7 +26,7 @@ class StillTeacher:
         mesh = character.mesh
         self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
         self._character = character
-        self._skinning = Skinning(character.skin_indices, character.skin_weights)
+        self._skinned = SkinnedSurface(character)
         self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
         self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
         self._texels = SurfaceTexels(character, self.rig)
@@ -37,14 +37,12 @@ class StillTeacher:
         stretches: Stretches | None = None,  # of this frame alone
     ) -> TeacherFrame:
         """One pose; its splats turn and stretch with the surface as the simulated ones do."""
-        character = self._character
-        joints = character.skeleton.skinning(pose.rotations, pose.translations)
-        bind = character.mesh.vertices
-        shape = bind if stretches is None else stretched(character, stretches, 0, bind)
-        return self._whole(pose, joints, self._skinning(joints), self._skinning.linear(joints, shape))
+        joints = self._character.skeleton.skinning(pose.rotations, pose.translations)
+        return self._whole(pose, self._skinned.posed(joints, stretches))
 
-    def _whole(self, pose: Pose, joints: Array, dual: Array, moved: Array) -> TeacherFrame:
-        """The frame whose dense surface, posed by `dual` [V, 8], lies at `moved` [V, 3]."""
+    def _whole(self, pose: Pose, surface: MovedSurface) -> TeacherFrame:
+        """The frame whose dense surface lies there."""
+        joints, dual, moved = surface.joints, surface.dual, surface.places
         bind = self._character.mesh.vertices
         canonical = transform(rotation.dual_inverse(dual), moved)
         coarse = self._coarse(canonical - bind)
