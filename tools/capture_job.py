@@ -1,4 +1,4 @@
-"""Everything of a virtual capture but its pictures: template, motion, true surfaces, cameras, and the renderer's job."""
+"""All of a virtual capture but its pictures: template, motion, true surfaces, cameras, and the renderer's job."""
 
 import json
 import shutil
@@ -22,7 +22,8 @@ from mua.files import replacing, write_bytes
 from mua.motion.load import unique_names
 from mua.pose.clip import Clip
 from mua.rig.character import Character
-from mua.teachers.surface import SimulatedSurface, SkinnedSurface
+from mua.teachers.simulated_surface import SimulatedSurface
+from mua.teachers.surface import SkinnedSurface
 
 ATLAS = 2048  # texels of the rendered picture of all materials along a side
 IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame:06d}.ply"

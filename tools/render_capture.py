@@ -63,8 +63,8 @@ def require_same(held: dict[str, object], order: Order, folder: Path) -> None:
     for field, value in json.loads(json.dumps(asdict(order))).items():
         if held.get(field) != value:
             raise InputError(
-                f"{folder}: holds a capture with {field.replace('_', ' ')} {held.get(field)}, but {value} is asked for; "
-                "name another folder or delete this one"
+                f"{folder}: holds a capture with {field.replace('_', ' ')} {held.get(field)}, "
+                f"but {value} is asked for; name another folder or delete this one"
             )
 
 

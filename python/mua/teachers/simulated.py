@@ -20,9 +20,9 @@ from mua.pose.skeleton import Pose
 from mua.rig.character import Character
 from mua.teachers.bones import figure_scale
 from mua.teachers.shading import shade, visibility
+from mua.teachers.simulated_surface import SimulatedSurface
 from mua.teachers.smoothing import low_pass
 from mua.teachers.still import StillTeacher
-from mua.teachers.surface import SimulatedSurface
 from mua.teachers.teacher import Light, TeacherFrame
 from mua.texture.surfels import vertex_normals
 

@@ -1,0 +1,169 @@
+"""Captures made by a renderer: what it is given, what it skips, what is refused. The renderer itself needs bpy."""
+
+import importlib
+import json
+import os
+import shutil
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from capture_fit import edge_distance, read_vertices
+from capture_job import Order, job_file, prepare
+from captures import make_capture
+from PIL import Image
+from render_capture import render_capture
+
+from mua import rotation
+from mua.baking.sources import load_clips
+from mua.capture import open_capture
+from mua.errors import InputError
+from mua.teachers.surface import SkinnedSurface
+
+RADIANS = 1e-4
+
+
+@pytest.fixture(scope="module")
+def order(tmp_path_factory: pytest.TempPathFactory) -> Order:
+    """A few pictures of the procedural character, without simulation."""
+    folder = tmp_path_factory.mktemp("given")
+    given = make_capture(folder)
+    motions = tuple(str(clip.motion) for clip in given.clips)
+    return Order(str(given.template), motions[:1], motions[1:], None, (), 3, 1, 32, 3, 2, 4, 0, still=True)
+
+
+@pytest.fixture(scope="module")
+def folder(order: Order, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("made")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("capture_job.ATLAS", 128)
+        prepare(order, place)
+    return place
+
+
+def test_the_folder_is_a_capture_of_the_same_poses(order: Order, folder: Path) -> None:
+    capture = open_capture(folder)
+    character = capture.character(uv="keep")
+    assert [(clip.frames, clip.held_out) for clip in capture.clips] == [(3, False), (2, True)]
+    given, _ = load_clips(character, [Path(name) for name in (*order.motion, *order.held_out_motion)], mapping=None)
+    for clip, whole in zip(capture.clips, given, strict=True):
+        poses = capture.motion(clip.name)
+        wanted = whole.rotations[clip.first : clip.first + clip.frames]
+        turns = rotation.multiply(rotation.conjugate(wanted), poses.rotations)
+        assert 2 * np.linalg.norm(turns[..., 1:], axis=-1).max() < RADIANS
+
+
+def test_true_surfaces_are_those_of_the_poses(folder: Path) -> None:
+    capture = open_capture(folder)
+    character = capture.character(uv="auto")
+    for clip in capture.clips:
+        for frame, moved in enumerate(SkinnedSurface(character).frames(capture.motion(clip.name))):
+            file = capture.place(str(capture.meshes), clip=clip.name, frame=frame)
+            np.testing.assert_allclose(read_vertices(file), moved.places, atol=1e-4)
+
+
+def test_the_job_has_every_picture_of_the_capture_once(folder: Path) -> None:
+    capture, job = open_capture(folder), json.loads(job_file(folder).read_text())
+    wanted = {
+        capture.place(capture.images, clip=clip.name, camera=camera.name, frame=frame)
+        for clip in capture.clips
+        for camera in capture.cameras
+        for frame in range(clip.frames)
+    }
+    made = [(job_file(folder).parent / one["image"]).resolve() for one in job["pictures"]]
+    assert len(made) == len(wanted) == (3 + 2) * (3 + 1)
+    assert set(made) == {place.resolve() for place in wanted}
+    assert len({one["seed"] for one in job["pictures"]}) == len(made)
+    assert all((job_file(folder).parent / one["mesh"]).exists() for one in job["pictures"])
+
+
+@pytest.fixture
+def renderer(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """tools/cycles_render.py without Blender: a picture is the name of its camera."""
+    mathutils = ModuleType("mathutils")
+    vars(mathutils).update(Matrix=None, Vector=None)
+    monkeypatch.setitem(sys.modules, "bpy", ModuleType("bpy"))
+    monkeypatch.setitem(sys.modules, "mathutils", mathutils)
+    monkeypatch.delitem(sys.modules, "cycles_render", raising=False)
+    module = importlib.import_module("cycles_render")
+
+    class Scene:
+        class cycles:
+            seed = 0
+
+        camera = ""
+
+    def picture(scene: Scene, file: Path) -> None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(scene.camera)
+
+    monkeypatch.setattr(module, "_scene", lambda job, threads: Scene())
+    monkeypatch.setattr(module, "_camera", lambda scene, camera, size: camera["name"])
+    monkeypatch.setattr(module, "_surface", lambda scene, folder, job: None)
+    monkeypatch.setattr(module, "_place", lambda surface, file: None)
+    monkeypatch.setattr(module, "_picture", picture)
+    return module
+
+
+def test_a_job_that_was_stopped_goes_on_where_it_was(
+    folder: Path, tmp_path: Path, renderer: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    capture, job = open_capture(tmp_path), job_file(tmp_path)
+    kept = capture.place(capture.images, clip=capture.clips[0].name, camera="cam01", frame=2)
+    kept.parent.mkdir(parents=True)
+    kept.write_text("finished before")
+    renderer.render(job, threads=1)
+    said = capsys.readouterr().out.splitlines()
+    assert (said[0], said[-1]) == ("rendered 1 of 20", "rendered 20 of 20")
+    assert kept.read_text() == "finished before"
+    for clip in capture.clips:
+        for camera in capture.cameras:
+            for frame in range(clip.frames):
+                place = capture.place(capture.images, clip=clip.name, camera=camera.name, frame=frame)
+                assert place == kept or place.read_text() == camera.name
+    renderer.render(job, threads=1)
+    assert capsys.readouterr().out == "rendered 20 of 20\n"
+
+
+def test_a_folder_holds_the_capture_of_one_order(order: Order, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("render_capture.require_bpy", lambda blender: None)
+    with pytest.raises(InputError, match="holds a capture with size 32, but 64 is asked for"):
+        render_capture(replace(order, size=64), folder, blender="python", threads=1)
+
+
+def test_a_python_without_blender_is_named_with_what_to_do(order: Order, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"is a Python without Blender's bpy; make one with .*bpy"):
+        render_capture(order, tmp_path, blender=sys.executable, threads=1)
+    with pytest.raises(InputError, match=r"--blender .*nowhere: cannot be started"):
+        render_capture(order, tmp_path, blender=str(tmp_path / "nowhere"), threads=1)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("shift", [0.25, 1.0, 3.0])
+def test_edges_are_as_far_apart_as_one_was_shifted(shift: float) -> None:
+    def half(edge: float) -> np.ndarray:
+        return np.tile(np.clip(edge - np.arange(40), 0, 1), (20, 1))
+
+    assert edge_distance(half(20.0), half(20.0 + shift)) == pytest.approx(shift)
+    assert edge_distance(np.zeros((4, 4)), half(20.0)[:4, :4]) == np.inf
+
+
+@pytest.mark.long
+def test_blender_draws_a_white_surface_white_where_the_camera_has_it(order: Order, tmp_path: Path) -> None:
+    blender = os.environ.get("BLENDER")
+    if not blender:
+        pytest.skip("no Blender: set BLENDER to a Python that has bpy")
+    prepare(replace(order, frames=1, held_out_frames=0), tmp_path)
+    job = json.loads(job_file(tmp_path).read_text()) | {"unlit": True}
+    job_file(tmp_path).write_text(json.dumps(job))
+    texture = job_file(tmp_path).with_name("texture.png")
+    Image.new("RGBA", (8, 8), (255, 255, 255, 255)).save(texture)
+    render_capture(Order(**(asdict(order) | job["order"])), tmp_path, blender=blender, threads=1)  # and checks the fit
+    capture = open_capture(tmp_path)
+    image = np.asarray(Image.open(next((tmp_path / "images").rglob("cam00/*.png"))))
+    assert image[image[..., 3] == 255][:, :3].min() == 255
+    assert capture.clips[0].frames == 1
