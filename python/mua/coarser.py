@@ -60,7 +60,7 @@ def _coarser(avatar: M) -> M:
     appearance = _means(avatar.appearance.static.astype(float), members)
     return replace(
         avatar,
-        rig=replace(avatar.rig, texels=_halved(texels, kept)),
+        rig=replace(avatar.rig, texels=_halved(texels, kept, members)),
         wavelet=replace(avatar.wavelet, coarser=avatar.wavelet.coarser + 1),
         geometry=_with_static(avatar.geometry, geometry),
         appearance=_with_static(avatar.appearance, appearance),
@@ -118,8 +118,12 @@ def _turned_alike(
     return np.where(np.linalg.norm(apart, axis=0) <= TURN, members, -1)
 
 
-def _halved(texels: TexelMap, kept: Array) -> TexelMap:
-    """The blocks as texels of half the size, each where the texel lies that is kept."""
+def _halved(
+    texels: TexelMap,
+    kept: Array,  # [B]
+    members: Array,  # [B, 4]
+) -> TexelMap:
+    """Blocks as texels of half the size, each where the texel lies that is kept, one-sided where all members are."""
     row, column = np.divmod(texels.texels[kept], texels.size)
     return replace(
         texels,
@@ -127,6 +131,7 @@ def _halved(texels: TexelMap, kept: Array) -> TexelMap:
         texels=(row // 2 * (texels.size // 2) + column // 2).astype(np.int32),
         triangles=texels.triangles[kept],
         barycentrics=texels.barycentrics[kept],
+        one_sided=None if texels.one_sided is None else np.all(texels.one_sided[members] | (members < 0), axis=1),
     )
 
 

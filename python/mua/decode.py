@@ -34,6 +34,7 @@ class Splats:
     sh: Array  # [N, 12] degree 1, canonical space
     texel_dq: Array  # [N, 8] bind pose to world; the real part is R_tex
     bounds: Array  # [2, 3] lowest and highest corner of the box over which depth is keyed
+    normals: Array | None = None  # [N, 3] of the triangles of one-sided texels, of any length, 0 of others; None: all 0
 
     def __len__(self) -> int:
         return len(self.centres)
@@ -138,7 +139,19 @@ def pose_splats(
         sh=texture[:, APPEARANCE],
         texel_dq=texel_dq,
         bounds=box_of(centres) if bounds is None else (bounds + root).astype(dtype),
+        normals=None if rig.texels.one_sided is None else texel_normals(rig, canonical, texel_dq),
     )
+
+
+def texel_normals(
+    rig: Rig,
+    canonical: Array,  # [V, 3] canonical vertices
+    texel_dq: Array,  # [N, 8] bind pose to world
+) -> Array:
+    """Normals [N, 3] of the texels' triangles in the world, of any length; 0 where it is known to be two-sided."""
+    a, b, c = np.swapaxes(canonical[rig.mesh.faces[rig.texels.triangles]], 0, 1)
+    normals = rotation.rotate(texel_dq[:, :4], np.cross(b - a, c - a))
+    return normals if rig.texels.one_sided is None else normals * rig.texels.one_sided[:, None]
 
 
 def box_of(points: Array) -> Array:

@@ -100,6 +100,7 @@ def projected(splats: Splats, camera: Camera) -> Projected:
         screen=camera.screen,
         near=camera.near,
         bounds=splats.bounds,
+        normals=splats.normals,
     )
     colors = splat_colors(splats.centres[seen], splats.texel_dq[seen], splats.sh[seen], camera.position)
     return Projected(ellipses[0], colors, splats.opacities[seen], splat_sort(keys))

@@ -272,6 +272,15 @@ def decode(avatar: Tree, frames: list[Pose], n: int) -> Splats:
     )
 
 
+def behind(avatar: Tree, splats: Splats, view: Array) -> Array:
+    """7.2: [N] whether an eye sees a one-sided texel from behind."""
+    corners = splats.canonical[avatar["template"]["faces"][avatar["texels"]["triangles"]]]
+    normal = rotate(splats.dual[:, :4], np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    away = splats.centres + view[:3, :3].T @ view[:3, 3]
+    sizes = np.linalg.norm(normal, axis=1) * np.linalg.norm(away, axis=1)
+    return np.asarray(one_sided(avatar["texels"]) & (np.sum(normal * away, axis=1) > 0.3 * sizes))
+
+
 def keys(avatar: Tree, splats: Splats, view: Array, near: float) -> Array:
     """7.3: the smaller, the earlier drawn; one avatar where its clip puts it, one eye."""
     low, high = avatar["bounds"] + splats.root

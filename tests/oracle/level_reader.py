@@ -25,7 +25,8 @@ def coarser(avatar: Tree) -> Tree:
     blocks: dict[tuple[int, int], list[int]] = {}
     for e, texel in enumerate(numbers):  # 9.3
         blocks.setdefault((texel // size // 2, texel % size // 2), []).append(e)
-    chiefs, geometry, appearance = [], [], []
+    chiefs, geometry, appearance, one_sided = [], [], [], []
+    bits = texels.get("one_sided", bytes(len(numbers)))
     for _, held in sorted(blocks.items()):  # 9.4
         near = {e: [g for g in held if math.dist(place[e], place[g]) <= reach] for e in held}
         chief = max(held, key=lambda e: len(near[e]))  # the first of equals
@@ -36,6 +37,7 @@ def coarser(avatar: Tree) -> Tree:
         own[3:7] = static[3:7, alike].mean(axis=1)
         own[7:10] += 0.5 * math.log2(len(members)) * math.log(GROWTH)
         chiefs.append(chief)
+        one_sided.append(all(bits[e // 8] >> e % 8 & 1 for e in members))
         geometry.append(own)
         appearance.append(avatar["appearance"]["static_offset"][:, members].mean(axis=1))
     shown = {
@@ -43,6 +45,7 @@ def coarser(avatar: Tree) -> Tree:
         "texels": np.array([row * (size // 2) + col for row, col in sorted(blocks)]),
         "triangles": texels["triangles"][chiefs],
         "barycentrics": texels["barycentrics"][chiefs],
+        "one_sided": np.packbits(one_sided, bitorder="little"),
     }
     return {
         **avatar,

@@ -12,7 +12,7 @@ import pytest
 import surface_reader
 from shared_data import SharedData
 from silent import Silent
-from synthetic_avatar import sparse_avatar, synthetic_avatar, synthetic_clip, with_texels
+from synthetic_avatar import sparse_avatar, synthetic_avatar, synthetic_clip, with_one_sided, with_texels
 
 from mua import rotation
 from mua.arrays import Array
@@ -22,9 +22,9 @@ from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
-from mua.camera import orbit
+from mua.camera import Camera, orbit
 from mua.coarser import coarsest
-from mua.decode import decode_clip_frame
+from mua.decode import Splats, decode_clip_frame
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import splat_project
@@ -89,17 +89,27 @@ def assert_decodes_alike(path: Path, *, frames: int, level: int = 0) -> None:
         np.testing.assert_allclose(theirs.scales, ours.scales, rtol=COLOUR, atol=0)
         np.testing.assert_allclose(theirs.opacities, ours.opacities, rtol=0, atol=COLOUR)
         np.testing.assert_allclose(theirs.colours(camera.position), colours, rtol=0, atol=COLOUR)
-        seen, keys, _ = splat_project(
-            ours.centres,
-            covariances(ours.rotations, ours.scales),
-            ours.opacities,
-            camera.view[None],
-            camera.projection[None],
-            screen=camera.screen,
-            near=camera.near,
-            bounds=ours.bounds,
-        )
+        hidden = decoder.behind(tree, theirs, camera.view)
+        (shown, _), (seen, keys) = (seen_by(camera, ours, normals) for normals in (None, ours.normals))
+        np.testing.assert_array_equal(seen, shown[~hidden[shown]])
+        assert hidden[shown].any() == (avatar.rig.texels.one_sided is not None)
         assert_same_keys(decoder.keys(tree, theirs, camera.view, camera.near)[seen], keys)
+
+
+def seen_by(camera: Camera, splats: Splats, normals: Array | None) -> tuple[Array, Array]:
+    """The splats that a camera sees, and their keys."""
+    seen, keys, _ = splat_project(
+        splats.centres,
+        covariances(splats.rotations, splats.scales),
+        splats.opacities,
+        camera.view[None],
+        camera.projection[None],
+        screen=camera.screen,
+        near=camera.near,
+        bounds=splats.bounds,
+        normals=normals,
+    )
+    return seen, keys
 
 
 def assert_same_keys(found: Array, expected: Array) -> None:
@@ -171,8 +181,12 @@ def test_the_same_texels_are_one_sided(tmp_path: Path, storage: Storage) -> None
 @pytest.mark.parametrize("wavelet", ["bior1.1", "bior4.4"])
 def test_coarser_levels_decode_alike(tmp_path: Path, wavelet: str, level: int) -> None:
     path = tmp_path / "a.muaavatar"
-    some = np.random.default_rng(level).random(len(synthetic_avatar().rig.texels.texels)) < 0.7
-    write(path, with_texels(turned_avatar(heading=True, wavelet=wavelet), some), storage="f16")
+    some, one_sided = np.random.default_rng(level).random((2, len(synthetic_avatar().rig.texels.texels))) < [
+        [0.7],
+        [0.9],
+    ]
+    avatar = with_one_sided(turned_avatar(heading=True, wavelet=wavelet), one_sided)
+    write(path, with_texels(avatar, some), storage="f16")
     assert level_reader.levels(decoder.read(path)) == coarsest(read(path)) == 2
     assert_decodes_alike(path, frames=2, level=level)
 

@@ -102,6 +102,7 @@ def reference_frame(frame: Splats, cameras: Sequence[Camera]) -> Array:
         screen=cameras[0].screen,
         near=NEAR,
         bounds=frame.bounds,
+        normals=frame.normals,
     )
     middle = np.mean([camera.position for camera in cameras], axis=0)
     colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], middle)

@@ -28,7 +28,7 @@ def _scene(eyes: int) -> Scene:
     """Splats whose visibility, key and axes float32 cannot turn, before cameras that float32 holds exactly."""
     exact = [(c.view.astype(np.float32).astype(float), c.projection.astype(np.float32).astype(float)) for c in stereo()]
     cameras = tuple(Camera(view, projection, stereo()[0].screen) for view, projection in exact[:eyes])
-    texels, box = random_texels(19_999), (1.6 * BOX).astype(np.float32).astype(float)
+    texels, box = random_texels(49_999), (1.6 * BOX).astype(np.float32).astype(float)
     splats = texels.splats
     keys, key_bound = exact_keys(splats.centres, np.stack([c.view for c in cameras]), box)
     clear = np.abs(keys - np.floor(keys) - 0.5) > key_bound
@@ -65,6 +65,7 @@ def _project(eyes: int) -> Case:
         screen=scene.cameras[0].screen,
         near=float(constants["near"]),
         bounds=scene.bounds,
+        normals=exact.normals,
     )
     np.testing.assert_array_equal(seen, np.arange(SEEN))
     camera = constants["camera"][:3].astype(float)

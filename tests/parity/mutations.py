@@ -197,6 +197,20 @@ FAULTS = {
         Fault("rotations in the wrong order", "quaternionMultiply(dq.real, own)", "quaternionMultiply(own, dq.real)"),
         Fault("opacity inverted", "logit < 0 ? small : 1", "logit < 0 ? 1 : small"),
         Fault("wrong entry of a rotation", "xz + turns.y", "xz - turns.y"),
+        Fault("two-sided texels not drawn from behind", "if (place.x >= ONE_SIDED)", "if (true)"),
+        Fault("one-sided texels drawn from behind", "if (place.x >= ONE_SIDED)", "if (false)"),
+        Fault("mark left in the triangle", "3 * (place.x & ~ONE_SIDED)", "3 * place.x"),
+        Fault("front taken for back", "cross(at[1] - at[0], at[2] - at[0])", "cross(at[2] - at[0], at[1] - at[0])"),
+        Fault(
+            "normal of the bind pose",
+            "quaternionRotate(dq.real, cross(at[1] - at[0], at[2] - at[0]))",
+            "cross(at[1] - at[0], at[2] - at[0])",
+        ),
+        Fault("not drawn where a triangle is seen edge-on", "> AWAY *", "> 0 *"),
+        Fault(
+            "distance left out where triangles are seen from behind", "length(normal) * length(place)", "length(normal)"
+        ),
+        Fault("second eye sees the back as the first does", "isBehind(gaussian, eyes - 1)", "isBehind(gaussian, 0)"),
         Fault("missing near-plane test", "-place.z > near ?", "true ?"),
         Fault("key inverted", "saturate((farthest - depth)", "saturate((depth - nearest)"),
         Fault("15-bit key", "LAST_KEY = 0xfffe", "LAST_KEY = 0x7fff"),

@@ -32,6 +32,7 @@ class Texels:
     triangles: Array  # [N]
     barycentrics: Array  # [N, 2] multiples of 1/65535
     texture: Array  # [N, 23] half floats
+    one_sided: Array  # [N] bool
 
     def __len__(self) -> int:
         return len(self.triangles)
@@ -41,7 +42,7 @@ class Texels:
         return {
             "mesh": self.mesh,
             "faces": self.faces.astype(np.uint32),
-            "texels": pack_texels(self.triangles, self.barycentrics),
+            "texels": pack_texels(self.triangles, self.barycentrics, self.one_sided),
             "texel_channels": pack_channels(self.texture),
             "vertex_dq": self.vertex_dq,
         }
@@ -54,15 +55,17 @@ class Texels:
         texture = self.texture.astype(float)
         texel_dq = blend_texels(self.vertex_dq.astype(float), *on_mesh)
         centres, rotations, scales, opacities = skin_splats(texel_dq, self.mesh.astype(float), *on_mesh, texture)
+        a, b, c = (self.mesh[self.faces[self.triangles, corner]].astype(float) for corner in range(3))
+        normals = rotation.rotate(texel_dq[:, :4], np.cross(b - a, c - a)) * self.one_sided[:, None]
         return Splats(
             **{"canonical": self.mesh, "mesh": self.mesh, "texture": texture, "centres": centres},
             **{"rotations": rotations, "scales": scales, "opacities": opacities},
-            **{"sh": texture[:, 11:], "texel_dq": texel_dq, "bounds": box_of(centres)},
+            **{"sh": texture[:, 11:], "texel_dq": texel_dq, "bounds": box_of(centres), "normals": normals},
         )
 
     def kept(self, chosen: Array) -> "Texels":
         """Only some of the texels."""
-        parts = self.triangles[chosen], self.barycentrics[chosen], self.texture[chosen]
+        parts = self.triangles[chosen], self.barycentrics[chosen], self.texture[chosen], self.one_sided[chosen]
         return Texels(self.vertex_dq, self.mesh, self.faces, *parts)
 
 
@@ -91,6 +94,7 @@ def texels_of(frame: Splats) -> Texels:
         np.arange(count),
         np.tile([1.0, 0], (count, 1)),
         held(np.concatenate(channels, axis=1)),
+        np.zeros(count, bool),
     )
 
 

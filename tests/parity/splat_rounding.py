@@ -12,11 +12,13 @@ from mua.camera import NEAR, Camera
 from mua.decode import Splats
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_project import (
+    AWAY,
     GUARD,
     LAST_KEY,
     LEAST_OPACITY,
     REACH,
     eye_ellipses,
+    facing,
     half_extents,
     wide_deviations,
 )
@@ -46,6 +48,10 @@ LOGIT_BOUND = (3 + 2 * 6 + 3) * ULP  # relative, of an opacity near LEAST_OPACIT
 # A covariance, relative to the largest variance: exp(-12..0), squared; the rotation's matrix (9 products and sums) is
 # quadratic in the product (4 ulp) of the blend and the texel's own quaternion (9 ulp), and counts twice.
 COVARIANCE_BOUND = 2 * (3 + 2 * 12 + 1) * ULP + 2 * 4 * (TEXEL_BOUND + 13 * ULP) + 2 * 9 * ULP
+# How far a triangle is turned away: normal and direction turn as a quaternion does, twice as far as that is off;
+# corners within 1 m are off by an ulp, and the cross product of their edges is 0.05 square metres or more; two turns of
+# 9 products and sums, two lengths of 8, and 4 more.
+FACING_BOUND = 2 * 2 * 2 * TEXEL_BOUND + 4 * ULP / 0.05 + (2 * 9 + 2 * 8 + 4) * ULP
 
 
 def eye_bounds(splats: Splats, camera: Camera) -> Bounds:
@@ -76,7 +82,12 @@ def eye_bounds(splats: Splats, camera: Camera) -> Bounds:
     beside /= middle + reach_error[:, None]
     before = (-place[:, 2] - NEAR) / (place_error[:, 2] + ULP * NEAR)
     solid = (opacities - LEAST_OPACITY) / (LOGIT_BOUND * LEAST_OPACITY)
-    return Bounds(middle, variance, np.minimum.reduce([*beside.T, before, solid]))
+    margins = [*beside.T, before, solid]
+    if splats.normals is not None:
+        distance = np.linalg.norm(place, axis=1)
+        error = FACING_BOUND + np.linalg.norm(place_error, axis=1) / np.maximum(distance, ULP)
+        margins.append((AWAY - facing(centres, splats.normals, camera.view)) / error)
+    return Bounds(middle, variance, np.minimum.reduce(margins))
 
 
 def _extent_error(ellipses: Array, variance: Array) -> Array:

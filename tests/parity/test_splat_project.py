@@ -200,6 +200,7 @@ def random_texels(count: int, *, scales: tuple[float, float] = (-5.2, -3.2), log
         rng.integers(0, len(FACES), count),
         on_steps(barycentrics),
         held(texture),
+        rng.random(count) < 0.7,
     )
 
 
@@ -303,7 +304,15 @@ def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device)
     barycentrics = on_steps(np.array([[0.5, 0.5, 0], [0, 0.5, 0.5], [0.25, 0.25, 0.5], [0.375, 0.25, 0.375]]))
     texture = np.zeros((4, 23))
     texture[:, :3], texture[:, 7:10], texture[:, 10] = [0.1, 0.2, 0.3], -4, 3
-    texels = Texels(vertex_dq, np.zeros((3, 3), np.float32), FACES[:1], np.zeros(4, int), barycentrics, held(texture))
+    texels = Texels(
+        vertex_dq,
+        np.zeros((3, 3), np.float32),
+        FACES[:1],
+        np.zeros(4, int),
+        barycentrics,
+        held(texture),
+        np.ones(4, bool),
+    )
     found = project_on(device, Scene(texels, (camera(),), BOX))
     np.testing.assert_allclose(
         found.splats["centre"], texels.splats.centres, rtol=0, atol=CENTRE_BOUND / 0.7
@@ -313,7 +322,8 @@ def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device)
 def test_hlsl_reaches_the_corners_of_triangles(device: Device) -> None:
     corners, turn = 64 * np.eye(3, dtype=np.float32), np.tile(np.float32([1, 0, 0, 0]), (3, 1))
     vertex_dq = np.concatenate([turn, np.zeros((3, 4), np.float32)], axis=1)
-    texels = Texels(vertex_dq, corners, FACES[:1], np.zeros(3, int), np.eye(3), held(np.zeros((3, 23))))
+    on_mesh = corners, FACES[:1], np.zeros(3, int), np.eye(3)
+    texels = Texels(vertex_dq, *on_mesh, held(np.zeros((3, 23))), np.zeros(3, bool))
     found = project_on(device, Scene(texels, (camera(),), BOX)).splats["centre"][:3]
     np.testing.assert_allclose(found, corners[FACES[0]], rtol=0, atol=64 * 8 * ULP)
 

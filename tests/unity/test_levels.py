@@ -17,6 +17,7 @@ from mua.coarser import coarsest, texel_length
 
 CASES = json.loads((ROOT / "tests" / "golden" / "level_choice.json").read_text())
 TYPES = {"texels": "<i4", "triangles": "<i4", "barycentrics": "<f4", "geometry": "<f4", "appearance": "<f4"}
+TYPES["one_sided"] = "?"
 ROUNDING = 4 * np.finfo(np.float32).eps  # of means, in double precision, of numbers up to ten
 
 
@@ -68,6 +69,7 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
             "barycentrics": texels.barycentrics[:, :2],
             "geometry": level.geometry.static,
             "appearance": level.appearance.static,
+            "one_sided": np.zeros(len(texels.texels), bool) if texels.one_sided is None else texels.one_sided,
         }
         assert next(said).split() == ["level", str(number), str(texels.size), str(len(texels.texels))]
         for name, values in expected.items():

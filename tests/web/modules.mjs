@@ -69,7 +69,7 @@ function levels(avatar) {
   return Array.from({ length: coarsest(avatar) }, () => {
     texture = coarserTexture(avatar, texture);
     const { size, texels, triangles, barycentrics, statics } = texture;
-    const lists = { texels, triangles, barycentrics, ...statics };
+    const lists = { texels, triangles, barycentrics, words: texelWords(texture), ...statics };
     return { size, ...Object.fromEntries(Object.entries(lists).map(([name, values]) => [name, list(values)])) };
   });
 }

@@ -148,7 +148,7 @@ def test_values_are_those_of_python(tmp_path: Path, change: Any, storage: Any) -
     np.testing.assert_allclose(found["descriptors"], descriptors(avatar, clip), rtol=ROUNDED, atol=ROUNDED)
     tiles, rows = texel_tiles(texels.texels, texels.size)
     exact = {"frames": len(clip), "tiles": tiles, "rows": rows.ravel()}
-    exact["texels"] = pack_texels(texels.triangles, texels.barycentrics).ravel()
+    exact["texels"] = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided).ravel()
     for name, expected in exact.items():
         np.testing.assert_array_equal(found[name], expected, err_msg=name)
     if avatar.surface:
@@ -177,9 +177,10 @@ def test_levels_without_details_become_the_same_filter(tmp_path: Path, wavelet: 
         np.testing.assert_allclose(filtered["taps"], taps.ravel(), rtol=EXACT, atol=EXACT)
 
 
-def test_coarser_levels_are_those_of_python(tmp_path: Path) -> None:
+@pytest.mark.parametrize("made", [synthetic_avatar, lambda: sparse_avatar(4)], ids=["full", "sparse"])
+def test_coarser_levels_are_those_of_python(tmp_path: Path, made: Any) -> None:
     path = tmp_path / "a.muaavatar"
-    write(path, synthetic_avatar())
+    write(path, made())
     avatar, [found] = read(path), node("levels", path)
     assert len(found) == coarsest(avatar) == 2
     for number, level in enumerate(found, 1):
@@ -189,6 +190,8 @@ def test_coarser_levels_are_those_of_python(tmp_path: Path) -> None:
         np.testing.assert_array_equal(level["texels"], texels.texels)
         np.testing.assert_array_equal(level["triangles"], texels.triangles)
         np.testing.assert_allclose(level["barycentrics"], texels.barycentrics[:, :2].ravel(), atol=ROUNDED)
+        words = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided)
+        np.testing.assert_array_equal(level["words"][::2], words[:, 0])
         np.testing.assert_allclose(level["geometry"], expected.geometry.static.ravel(), rtol=ROUNDED, atol=ROUNDED)
         np.testing.assert_allclose(level["appearance"], expected.appearance.static.ravel(), rtol=ROUNDED, atol=ROUNDED)
 

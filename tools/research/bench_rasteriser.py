@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def on_device(frame: Splats, device: str) -> TorchSplats:
-    of = {field.name: getattr(frame, field.name, None) for field in fields(TorchSplats)}
+    of = {field.name: getattr(frame, field.name, None) for field in fields(TorchSplats) if field.name != "normals"}
     of["turns"] = frame.texel_dq[:, :4]
     tensors = {name: torch.tensor(v, dtype=torch.float32, device=device).requires_grad_() for name, v in of.items()}
     return TorchSplats(**tensors)

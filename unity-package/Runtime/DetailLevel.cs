@@ -28,6 +28,7 @@ namespace Mua
             Texels = new int[count];
             Triangles = new int[count];
             Barycentrics = new float[2 * count];
+            OneSided = new bool[count];
             points = new Vector3D[count];
         }
 
@@ -48,6 +49,9 @@ namespace Mua
 
         /// <summary>[N, 2] the first two.</summary>
         public float[] Barycentrics { get; }
+
+        /// <summary>[N] whether a texel is not drawn from behind.</summary>
+        public bool[] OneSided { get; }
 
         /// <summary>[C, N] static offset of geometry.</summary>
         public float[] Geometry { get; private set; }
@@ -107,6 +111,7 @@ namespace Mua
             for (int i = 0; i < level.Count; i++)
             {
                 level.points[i] = level.Point(i);
+                level.OneSided[i] = texels.IsOneSided(i);
             }
             return level;
         }
@@ -200,16 +205,18 @@ namespace Mua
             return Math.Sqrt(SquaredLength(Place(one) - Place(other))) <= reach;
         }
 
-        /// <summary>Sets the static offset of a texel of this level to what members of the finer one have.</summary>
+        /// <summary>Sets a texel of this level, its place but for, to what members of the finer one have.</summary>
         private void Merge(DetailLevel finer, int texel, ReadOnlySpan<int> members, int chief)
         {
             var aside = new Vector3D();
             int count = 0;
+            OneSided[texel] = true;
             foreach (int member in members)
             {
                 if (member >= 0)
                 {
                     count++;
+                    OneSided[texel] &= finer.OneSided[member];
                     aside += finer.Place(member) - finer.points[chief];
                 }
             }

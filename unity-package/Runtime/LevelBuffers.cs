@@ -13,6 +13,8 @@ namespace Mua
     /// <summary>The texels of one level of detail on the device (python/mua/player/buffers.py).</summary>
     internal sealed class LevelBuffers
     {
+        private const int OneSided = 1 << 31; // beside the triangle
+
         private readonly Upload tiles, tileRows, texels;
 
         /// <param name="level">What it is made of.</param>
@@ -47,7 +49,7 @@ namespace Mua
 
         public GraphicsBuffer TileRows => tileRows.Buffer;
 
-        /// <summary>[N] triangle, and its first two barycentrics in 16 bits each.</summary>
+        /// <summary>[N] triangle and whether it is one-sided, and its first two barycentrics in 16 bits each.</summary>
         public GraphicsBuffer Texels => texels.Buffer;
 
         /// <summary>[N, 2] as pack_texels of python/mua/kernels/splat_project.py has them.</summary>
@@ -56,7 +58,7 @@ namespace Mua
             var places = new int[2 * level.Count];
             for (int i = 0; i < level.Count; i++)
             {
-                places[2 * i] = level.Triangles[i];
+                places[2 * i] = level.Triangles[i] | (level.OneSided[i] ? OneSided : 0);
                 places[2 * i + 1] = Steps(level.Barycentrics[2 * i]) | Steps(level.Barycentrics[2 * i + 1]) << 16;
             }
             return places;

@@ -13,11 +13,13 @@ LEAST_OPACITY = 1 / 255  # below it a splat changes no 8-bit image
 LEAST_VARIANCE = 1e-4  # px^2; float32 rounding of the covariance of a 30 px splat, so that a thin axis stays positive
 REACH = 2  # standard deviations from a splat's middle to its quad's edges
 PIXEL_VARIANCE = 5 / 12 / REACH**2  # px^2; of the window that splat_draw draws, it is a unit square's 1 / 12
+AWAY = 0.3  # sine of the angle by which a triangle is turned past edge-on where it is seen from behind
 GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
 LAST_KEY = 0xFFFE
 HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees
 SPLAT_WORDS = 8
 LARGEST_BARYCENTRIC = 0xFFFF  # stands for 1
+ONE_SIDED = 1 << 31  # beside the triangle of a texel that is not drawn from behind
 
 
 def splat_project(
@@ -30,6 +32,7 @@ def splat_project(
     screen: tuple[int, int],  # width, height of one eye, pixels
     near: float,  # metres
     bounds: Array,  # [2, 3] world box over which depth is keyed
+    normals: Array | None = None,  # [N, 3] world, of any length, of the triangles of one-sided texels; 0 of others
 ) -> tuple[Array, Array, Array]:
     """Keep the splats that at least one eye may see.
 
@@ -45,6 +48,8 @@ def splat_project(
     middle = ellipses[..., 0:2]
     on_screen = np.all((middle + extent > 0) & (middle - extent < np.array(screen, dtype)), axis=-1)
     seen = on_screen & (ellipses[..., 4] > 0) & (opacities >= LEAST_OPACITY)
+    if normals is not None:
+        seen &= np.stack([facing(centres, normals, v) <= AWAY for v in view])
     splats = np.flatnonzero(seen.any(axis=0)).astype(np.int32)
     ellipses = ellipses[:, splats]
     ellipses[~seen[:, splats], 4:6] = 0
@@ -96,16 +101,32 @@ def eye_ellipses(
     return np.stack([column, row, np.cos(angle), np.sin(angle), *deviations], axis=1).astype(centres.dtype)
 
 
+def facing(
+    centres: Array,  # [N, 3]
+    normals: Array,  # [N, 3] of any length
+    view: Array,  # [4, 4]
+) -> Array:
+    """How far normals are turned away from an eye, [N]: -1 towards it, 1 away; 0 where there is no normal."""
+    eye = centres @ view[:3, :3].T + view[:3, 3]
+    lengths = np.linalg.norm(normals, axis=1) * np.linalg.norm(eye, axis=1)
+    away = np.einsum("ni,ni->n", normals @ view[:3, :3].T, eye)
+    return np.asarray(away / np.maximum(lengths, np.finfo(centres.dtype).tiny))
+
+
 def pack_texels(
     triangles: Array,  # [N]
     barycentrics: Array,  # [N, 2] or more: the first two
+    one_sided: Array | None = None,  # [N] bool; None: no texel is
 ) -> Array:
     """Where texels lie on the mesh, as a GPU holds them, [N, 2] uint32: the triangle, two barycentrics of 16 bits each.
+
+    The highest bit of the triangle says whether the texel is one-sided.
 
     Half a step of a barycentric is less than a thousandth of a millimetre of an edge of 10 cm.
     """
     steps = np.rint(barycentrics[:, :2].astype(float) * LARGEST_BARYCENTRIC).astype(np.uint32)
-    return np.stack([triangles.astype(np.uint32), steps[:, 0] | steps[:, 1] << 16], axis=1)
+    marks = np.where(False if one_sided is None else one_sided, np.uint32(ONE_SIDED), np.uint32(0))
+    return np.stack([triangles.astype(np.uint32) | marks, steps[:, 0] | steps[:, 1] << 16], axis=1)
 
 
 def pack_splats(

@@ -119,7 +119,9 @@ def upload_rig(device: Device, rig: Rig) -> RigBuffers:
     """Errors: InputError where a buffer is more than the device can bind or hold."""
     return RigBuffers(
         faces=device.buffer(rig.mesh.faces.astype(np.uint32), name="template.faces"),
-        texels=device.buffer(pack_texels(rig.texels.triangles, rig.texels.barycentrics), name="texels"),
+        texels=device.buffer(
+            pack_texels(rig.texels.triangles, rig.texels.barycentrics, rig.texels.one_sided), name="texels"
+        ),
         skin_indices=device.buffer(rig.skin_indices.astype(np.uint32), name="template.skin_indices"),
         skin_weights=device.buffer(rig.skin_weights.astype(np.float32), name="template.skin_weights"),
     )
@@ -161,7 +163,7 @@ class AvatarBuffers:
         while len(self._levels) <= number:
             self._coarser = at_level(self._coarser, 1)
             texels = self._coarser.rig.texels
-            words = pack_texels(texels.triangles, texels.barycentrics)
+            words = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided)
             places = RigPlaces(self.rig.faces, self._upload(words, "texels"))
             statics = {name: self._packed(getattr(self._coarser, name).static, name) for name in BRANCHES}
             self._levels.append(self._level(self._coarser, places, statics))

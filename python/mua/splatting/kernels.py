@@ -1,11 +1,12 @@
-"""The two passes of the rasteriser over the pixels of tiles, for the CPU and for CUDA from one source.
+"""The passes of the rasteriser over the pixels of tiles, for the CPU and for CUDA from one source.
 
     alpha = peak (1 - u^2) (1 - v^2),   u = uu dx + uv dy,   v = uv dx + vv dy
     image = sum_i T_i alpha_i (color_i, 1),   T_i = product of (1 - alpha_j) over the quads j before i
 
 (dx, dy) from the quad's middle to the pixel's centre. `shapes` are those of mua.splatting.projection.Quads. A pixel is
 done when its transmittance T falls to LEAST_TRANSMITTANCE. The second pass walks back from there and divides T by
-1 - alpha again, so that a pixel keeps two numbers, however many quads lie over it.
+1 - alpha again, so that a pixel keeps two numbers, however many quads lie over it. A third pass finds the
+largest T_i alpha_i of each quad instead of a picture.
 """
 
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, valid-type, no-untyped-call"
@@ -28,10 +29,11 @@ start()
 
 @dataclass(frozen=True, eq=False)
 class Passes:
-    """Both kernels in one precision."""
+    """The kernels in one precision."""
 
     forward: wp.Kernel
     backward: wp.Kernel
+    weigh: wp.Kernel
 
 
 @cache
@@ -169,4 +171,26 @@ def passes(real: Any) -> Passes:
                 wp.atomic_add(shapes_gradient, quad, 4, place.y * by_v)
                 wp.atomic_add(shapes_gradient, quad, 5, by_alpha * shown)
 
-    return Passes(forward, backward)
+    @wp.kernel(enable_backward=False, module="unique")
+    def weigh(
+        columns: int,
+        width: int,
+        height: int,
+        starts: wp.array[wp.int32],
+        quads: wp.array[wp.int32],
+        shapes: wp.array2d[real],
+        largest: wp.array[real],  # [M] weight in any pixel
+    ):
+        pixel = pixel_of(wp.tid(), columns, width, height, starts)
+        if pixel.at < 0:
+            return
+        transmittance = one
+        pair = pixel.first
+        while pair < pixel.end and transmittance > least:
+            quad = quads[pair]
+            weight = transmittance * shapes[quad, 5] * window(place_in(pixel, shapes, quad))
+            wp.atomic_max(largest, quad, weight)
+            transmittance -= weight
+            pair += 1
+
+    return Passes(forward, backward, weigh)

@@ -10,7 +10,7 @@ import torch
 from mua.camera import Camera
 from mua.channels import SH_C0, SH_C1
 from mua.kernels.splat_draw import WEIGHT
-from mua.kernels.splat_project import GUARD, LAST_KEY, LEAST_OPACITY, LEAST_VARIANCE, PIXEL_VARIANCE, REACH
+from mua.kernels.splat_project import AWAY, GUARD, LAST_KEY, LEAST_OPACITY, LEAST_VARIANCE, PIXEL_VARIANCE, REACH
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +23,7 @@ class TorchSplats:
     opacities: torch.Tensor  # [N] in 0..1
     sh: torch.Tensor  # [N, 12] degree 1, coefficient-major
     turns: torch.Tensor  # [N, 4] from the space of the SH to the world, unit
+    normals: torch.Tensor | None = None  # [N, 3] of the triangles of one-sided texels, 0 of others; None: draw all
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,10 @@ def project(
     near = eye.projection.detach()[2, 3] / -2
     shapes, before = _shapes(splats, eye, near)
     with torch.no_grad():
-        seen = torch.nonzero(before & _on_screen(shapes, eye.screen) & (splats.opacities >= LEAST_OPACITY))[:, 0]
+        shown = before & _on_screen(shapes, eye.screen) & (splats.opacities >= LEAST_OPACITY)
+        if splats.normals is not None:
+            shown &= facing(splats.centres, splats.normals, eye.view) <= AWAY
+        seen = torch.nonzero(shown)[:, 0]
         keys = _keys(splats.centres[seen], eye.view, near, bounds)
         chosen = seen[torch.sort(keys, stable=True).indices].flip(0)
     return Quads(chosen, shapes[chosen], _colors(splats, chosen, eye))
@@ -71,6 +75,17 @@ def half_extents(
     uu, uv, vv = shapes[:, 2:5].unbind(1)
     size = torch.stack([vv.abs() + uv.abs(), uu.abs() + uv.abs()], dim=1)
     return size / (uu * vv - uv * uv)[:, None]
+
+
+def facing(
+    centres: torch.Tensor,  # [N, 3]
+    normals: torch.Tensor,  # [N, 3] of any length
+    view: torch.Tensor,  # [4, 4]
+) -> torch.Tensor:
+    """How far normals are turned away from an eye, [N]: -1 towards it, 1 away; 0 where there is no normal."""
+    eye = centres @ view[:3, :3].T + view[:3, 3]
+    lengths = (normals.norm(dim=1) * eye.norm(dim=1)).clamp(min=torch.finfo(centres.dtype).tiny)
+    return ((normals @ view[:3, :3].T) * eye).sum(dim=1) / lengths
 
 
 def _shapes(splats: TorchSplats, eye: Eye, near: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:

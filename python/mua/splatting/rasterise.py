@@ -43,6 +43,20 @@ def draw_quads(
     return image.reshape(height, width, 4)
 
 
+def largest_shares(
+    splats: TorchSplats,
+    eye: Eye,
+    bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
+) -> torch.Tensor:
+    """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 of those out of the picture."""
+    quads = project(splats, eye, bounds)
+    shapes = quads.shapes.detach().contiguous()
+    tiles = assign(shapes[:, :2], half_extents(shapes), eye.screen)
+    largest = shapes.new_zeros(len(shapes))
+    _launch(passes(REALS[shapes.dtype]).weigh, tiles, eye.screen, [shapes, largest])
+    return torch.zeros_like(splats.opacities).index_copy(0, quads.splats, largest)
+
+
 class _Draw(torch.autograd.Function):
     @staticmethod
     def forward(

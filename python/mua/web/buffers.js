@@ -7,7 +7,7 @@ import { texelTiles, texelWords, upsamplingTaps } from "./prepare.js";
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./format/model.js").Branch} Branch */
 /** @typedef {import("./format/tensors.js").Stored} Stored */
-/** @typedef {{size: number, texels: Int32Array, triangles: Int32Array, barycentrics: Float32Array}} Texels */
+/** @typedef {{size: number, texels: Int32Array, triangles: Int32Array, barycentrics: Float32Array, oneSided: Uint8Array}} Texels */
 /** @typedef {{taps: GPUBuffer, factor: number, reach: number, delay: number}} Upsampling */
 /** @typedef {{upsampling: Upsampling, staticOffset: StoredBuffer}} BranchLevel what is geometry's or appearance's alone of a level */
 /**

@@ -2,10 +2,11 @@
 // shown. References: python/mua/coarser.py, python/mua/level_choice.py, section 9 of schemas/README.md.
 
 import { expanded } from "./format/tensors.js";
+import { isOneSided } from "./prepare.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {{geometry: Float32Array, appearance: Float32Array}} Statics [11, N] and [12, N] */
-/** @typedef {{size: number, texels: Int32Array, triangles: Int32Array, barycentrics: Float32Array, statics: Statics}} Texture */
+/** @typedef {{size: number, texels: Int32Array, triangles: Int32Array, barycentrics: Float32Array, oneSided: Uint8Array, statics: Statics}} Texture */
 /** @typedef {{kept: Int32Array, members: Int32Array}} Blocks the texel [B] that gives each block its place, and its members [B, 4] */
 
 const STATIC_LEVELS = 2; // at most
@@ -70,11 +71,22 @@ export function coarserTexture(/** @type {Avatar} */ avatar, /** @type {Texture}
     texels: kept.map((texel) => blockOf(texture.texels[texel], texture.size)),
     triangles: Int32Array.from(taken(1, texture.triangles)),
     barycentrics: Float32Array.from(taken(2, texture.barycentrics)),
+    oneSided: oneSidedBlocks(texture, blocks),
     statics: {
       geometry: geometryOf(texture.statics.geometry, points, blocks, count),
       appearance: means(texture.statics.appearance, blocks.members, count),
     },
   };
+}
+
+/** A bit for each block: whether all its members are one-sided. @param {Texture} texture @param {Blocks} blocks */
+function oneSidedBlocks(texture, { kept, members }) {
+  const bits = new Uint8Array(Math.ceil(kept.length / 8));
+  for (let block = 0; block < kept.length; block++) {
+    const held = members.subarray(4 * block, 4 * block + 4).filter((member) => member >= 0);
+    if (held.every((member) => isOneSided(texture, member))) bits[block >> 3] |= 1 << (block & 7);
+  }
+  return bits;
 }
 
 /** Static offsets of geometry: means, of rotations that are nearly alike, about the kept texel's place, and larger. @param {Float32Array} statics @param {Float64Array} points @param {Blocks} blocks @param {number} count */

@@ -3,19 +3,25 @@
 
 const TILE = 16; // texels along a side
 const LARGEST_BARYCENTRIC = 65535;
+const ONE_SIDED = 2 ** 31; // beside the triangle of a texel that is not drawn from behind
 
-/** Where texels lie on the mesh, [N, 2] words: the triangle, two barycentrics of 16 bits each. */
+/** Where texels lie on the mesh, [N, 2] words: the triangle, whether one-sided, two barycentrics of 16 bits each. */
 export function texelWords(
-  /** @type {{triangles: Int32Array, barycentrics: Float32Array}} */ { triangles, barycentrics },
+  /** @type {{triangles: Int32Array, barycentrics: Float32Array, oneSided: Uint8Array}} */ texels,
 ) {
+  const { triangles, barycentrics } = texels;
   const words = new Uint32Array(2 * triangles.length);
   for (let i = 0; i < triangles.length; i++) {
     const [first, second] = [0, 1].map((k) => toEven(barycentrics[2 * i + k] * LARGEST_BARYCENTRIC));
-    words[2 * i] = triangles[i];
+    words[2 * i] = triangles[i] + (isOneSided(texels, i) ? ONE_SIDED : 0);
     words[2 * i + 1] = (first | (second << 16)) >>> 0;
   }
   return words;
 }
+
+/** Whether a texel is not drawn from behind. */
+export const isOneSided = (/** @type {{oneSided: Uint8Array}} */ { oneSided }, /** @type {number} */ texel) =>
+  (oneSided[texel >> 3] >> (texel & 7)) & 1;
 
 /** The nearest whole number, the even one of two. */
 function toEven(/** @type {number} */ value) {

@@ -30,6 +30,7 @@ internal static class LevelProgram
             Print("barycentrics", level.Barycentrics);
             Print("geometry", level.Geometry);
             Print("appearance", level.Appearance);
+            Print("one_sided", level.OneSided);
         }
     }
 

@@ -39,5 +39,10 @@ namespace Mua.Format
 
         /// <summary>N.</summary>
         public int Count => Indices.Count;
+
+        public bool IsOneSided(int texel)
+        {
+            return OneSided != null && (OneSided[texel / 8] >> texel % 8 & 1) != 0;
+        }
     }
 }

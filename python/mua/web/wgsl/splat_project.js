@@ -214,57 +214,67 @@ struct Gaussian_0
      rows_1 : array<vec3<f32>, i32(3)>,
      opacity_0 : f32,
      rotation_0 : vec4<f32>,
+     normal_0 : vec3<f32>,
 };
 
 fn poseTexel_0( texel_1 : u32) -> Gaussian_0
 {
     var place_0 : vec2<u32> = texels_0[texel_1];
-    var face_0 : u32 = u32(3) * place_0.x;
-    var _S28 : u32 = faces_0[face_0];
-    var _S29 : u32 = faces_0[face_0 + u32(1)];
-    var _S30 : u32 = faces_0[face_0 + u32(2)];
-    var _S31 : u32 = place_0.y;
-    var first_0 : vec2<f32> = vec2<f32>(f32((_S31 & (u32(65535)))), f32((_S31 >> (u32(16))))) / vec2<f32>(65535.0f);
+    var _S28 : u32 = place_0.x;
+    var face_0 : u32 = u32(3) * ((_S28 & (u32(2147483647))));
+    var _S29 : u32 = faces_0[face_0];
+    var _S30 : u32 = faces_0[face_0 + u32(1)];
+    var _S31 : u32 = faces_0[face_0 + u32(2)];
+    var _S32 : u32 = place_0.y;
+    var first_0 : vec2<f32> = vec2<f32>(f32((_S32 & (u32(65535)))), f32((_S32 >> (u32(16))))) / vec2<f32>(65535.0f);
     var barycentric_1 : vec3<f32> = vec3<f32>(first_0, max(1.0f - first_0.x - first_0.y, 0.0f));
-    var dq_0 : DualQuaternion_0 = blendTexel_0(vec3<u32>(_S28, _S29, _S30), barycentric_1);
+    var dq_0 : DualQuaternion_0 = blendTexel_0(vec3<u32>(_S29, _S30, _S31), barycentric_1);
     var offset_0 : vec4<f32> = channels_0(texel_1, u32(0));
     var turn_0 : vec4<f32> = channels_0(texel_1, u32(1));
     var scale_1 : vec4<f32> = channels_0(texel_1, u32(2));
+    var _S33 : vec3<f32> = vertexPosition_0(_S29);
+    var _S34 : vec3<f32> = vertexPosition_0(_S30);
+    var _S35 : vec3<f32> = vertexPosition_0(_S31);
     var own_0 : vec4<f32> = vec4<f32>(offset_0.w, turn_0.xyz);
     var own_1 : vec4<f32> = own_0 / vec4<f32>(max(length(own_0), 1.17549435082228751e-38f));
     var gaussian_0 : Gaussian_0;
-    gaussian_0.centre_0 = dualTransform_0(dq_0.real_0, dq_0.dual_0, offset_0.xyz + vec3<f32>(barycentric_1.x) * vertexPosition_0(_S28) + vec3<f32>(barycentric_1.y) * vertexPosition_0(_S29) + vec3<f32>(barycentric_1.z) * vertexPosition_0(_S30));
+    gaussian_0.centre_0 = dualTransform_0(dq_0.real_0, dq_0.dual_0, offset_0.xyz + vec3<f32>(barycentric_1.x) * _S33 + vec3<f32>(barycentric_1.y) * _S34 + vec3<f32>(barycentric_1.z) * _S35);
     var deviations_0 : vec3<f32> = exp(min(vec3<f32>(turn_0.w, scale_1.xy), vec3<f32>(10.0f)));
-    var _S32 : vec4<f32> = quaternionMultiply_0(dq_0.real_0, own_1);
-    var _S33 : array<vec3<f32>, i32(3)> = gaussian_0.rows_1;
-    scaledAxes_0(_S32, deviations_0, &(_S33));
-    gaussian_0.rows_1 = _S33;
+    var _S36 : vec4<f32> = quaternionMultiply_0(dq_0.real_0, own_1);
+    var _S37 : array<vec3<f32>, i32(3)> = gaussian_0.rows_1;
+    scaledAxes_0(_S36, deviations_0, &(_S37));
+    gaussian_0.rows_1 = _S37;
     gaussian_0.opacity_0 = activatedOpacity_0(scale_1.z);
     gaussian_0.rotation_0 = dq_0.real_0;
+    gaussian_0.normal_0 = vec3<f32>(vec3<i32>(i32(0)));
+    if(_S28 >= u32(2147483648))
+    {
+        gaussian_0.normal_0 = quaternionRotate_0(dq_0.real_0, cross(_S34 - _S33, _S35 - _S33));
+    }
     return gaussian_0;
 }
 
 fn majorAxis_0( difference_0 : f32,  b_1 : f32,  spread_0 : f32) -> vec2<f32>
 {
-    var _S34 : vec2<f32> = vec2<f32>(spread_0 + difference_0, b_1);
+    var _S38 : vec2<f32> = vec2<f32>(spread_0 + difference_0, b_1);
     var axis_0 : vec2<f32>;
     if(difference_0 < 0.0f)
     {
-        var _S35 : f32 = abs(b_1);
-        var _S36 : f32;
+        var _S39 : f32 = abs(b_1);
+        var _S40 : f32;
         if(b_1 < 0.0f)
         {
-            _S36 = difference_0 - spread_0;
+            _S40 = difference_0 - spread_0;
         }
         else
         {
-            _S36 = spread_0 - difference_0;
+            _S40 = spread_0 - difference_0;
         }
-        axis_0 = vec2<f32>(_S35, _S36);
+        axis_0 = vec2<f32>(_S39, _S40);
     }
     else
     {
-        axis_0 = _S34;
+        axis_0 = _S38;
     }
     if(spread_0 < 9.999999960041972e-13f)
     {
@@ -283,15 +293,15 @@ struct Ellipse_0
 fn project_0( gaussian_1 : Gaussian_0,  eye_0 : u32) -> Ellipse_0
 {
     var place_1 : vec3<f32> = (((vec4<f32>(gaussian_1.centre_0, 1.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(3)])))).xyz;
-    var _S37 : f32 = - place_1.z;
-    var _S38 : vec2<f32> = vec2<f32>(0.5f);
-    const _S39 : vec2<f32> = vec2<f32>(1.0f, -1.0f);
+    var _S41 : f32 = - place_1.z;
+    var _S42 : vec2<f32> = vec2<f32>(0.5f);
+    const _S43 : vec2<f32> = vec2<f32>(1.0f, -1.0f);
     var focal_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.projection_0.data_1[eye_0].data_0[i32(1)][i32(1)]);
     var skew_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_0].data_0[i32(2)][i32(0)], Constants_0.projection_0.data_1[eye_0].data_0[i32(2)][i32(1)]);
-    var _S40 : vec2<f32> = vec2<f32>(max(_S37, Constants_0.near_0));
-    var ndc_0 : vec2<f32> = place_1.xy / _S40 * focal_0 - skew_0;
+    var _S44 : vec2<f32> = vec2<f32>(max(_S41, Constants_0.near_0));
+    var ndc_0 : vec2<f32> = place_1.xy / _S44 * focal_0 - skew_0;
     var slope_0 : vec2<f32> = (clamp(ndc_0, vec2<f32>(-1.29999995231628418f), vec2<f32>(1.29999995231628418f)) + skew_0) / focal_0;
-    var magnification_0 : vec2<f32> = _S38 * Constants_0.screen_0 * _S39 * focal_0 / _S40;
+    var magnification_0 : vec2<f32> = _S42 * Constants_0.screen_0 * _S43 * focal_0 / _S44;
     var column_0 : vec3<f32> = vec3<f32>(magnification_0.x) * (vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(0)]) + vec3<f32>(slope_0.x) * vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)]));
     var row_1 : vec3<f32> = vec3<f32>(magnification_0.y) * (vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(1)]) + vec3<f32>(slope_0.y) * vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)]));
     var across_0 : vec3<f32> = vec3<f32>(column_0.x) * gaussian_1.rows_1[i32(0)] + vec3<f32>(column_0.y) * gaussian_1.rows_1[i32(1)] + vec3<f32>(column_0.z) * gaussian_1.rows_1[i32(2)];
@@ -303,19 +313,26 @@ fn project_0( gaussian_1 : Gaussian_0,  eye_0 : u32) -> Ellipse_0
     var difference_1 : f32 = 0.5f * (a_1 - c_0);
     var spread_1 : f32 = sqrt(difference_1 * difference_1 + b_2 * b_2);
     var ellipse_0 : Ellipse_0;
-    ellipse_0.middle_0 = (ndc_0 * _S39 + vec2<f32>(1.0f)) * _S38 * Constants_0.screen_0;
+    ellipse_0.middle_0 = (ndc_0 * _S43 + vec2<f32>(1.0f)) * _S42 * Constants_0.screen_0;
     ellipse_0.axis_1 = majorAxis_0(difference_1, b_2, spread_1);
-    var _S41 : vec2<f32>;
-    if(_S37 > (Constants_0.near_0))
+    var _S45 : vec2<f32>;
+    if(_S41 > (Constants_0.near_0))
     {
-        _S41 = sqrt(max(vec2<f32>(mean_0 + spread_1, mean_0 - spread_1), vec2<f32>(0.00009999999747379f)));
+        _S45 = sqrt(max(vec2<f32>(mean_0 + spread_1, mean_0 - spread_1), vec2<f32>(0.00009999999747379f)));
     }
     else
     {
-        _S41 = vec2<f32>(vec2<i32>(i32(0)));
+        _S45 = vec2<f32>(vec2<i32>(i32(0)));
     }
-    ellipse_0.deviations_1 = _S41;
+    ellipse_0.deviations_1 = _S45;
     return ellipse_0;
+}
+
+fn isBehind_0( gaussian_2 : Gaussian_0,  eye_1 : u32) -> bool
+{
+    var place_2 : vec3<f32> = (((vec4<f32>(gaussian_2.centre_0, 1.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(3)])))).xyz;
+    var normal_1 : vec3<f32> = (((vec4<f32>(gaussian_2.normal_0, 0.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(3)])))).xyz;
+    return (dot(normal_1, place_2)) > (0.30000001192092896f * length(normal_1) * length(place_2));
 }
 
 fn splatWide_0( deviations_2 : vec2<f32>) -> vec2<f32>
@@ -326,8 +343,8 @@ fn splatWide_0( deviations_2 : vec2<f32>) -> vec2<f32>
 fn splatExtent_0( axis_2 : vec2<f32>,  wide_0 : vec2<f32>) -> vec2<f32>
 {
     var size_0 : vec2<f32> = abs(axis_2);
-    var _S42 : f32 = wide_0.y;
-    return vec2<f32>(2.0f) * (vec2<f32>(_S42) + vec2<f32>(((wide_0.x - _S42) * (size_0.x + size_0.y))) * size_0);
+    var _S46 : f32 = wide_0.y;
+    return vec2<f32>(2.0f) * (vec2<f32>(_S46) + vec2<f32>(((wide_0.x - _S46) * (size_0.x + size_0.y))) * size_0);
 }
 
 fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
@@ -368,13 +385,13 @@ fn splatColor_0( centre_1 : vec3<f32>,  rotation_1 : vec4<f32>,  sh_0 : array<ve
     return max(vec3<f32>(0.5f) + vec3<f32>(0.282094806432724f) * sh_0[i32(0)] + vec3<f32>(0.48860251903533936f) * (vec3<f32>(direction_1.z) * sh_0[i32(2)] - vec3<f32>(direction_1.y) * sh_0[i32(1)] - vec3<f32>(direction_1.x) * sh_0[i32(3)]), vec3<f32>(vec3<i32>(i32(0))));
 }
 
-fn colorOf_0( gaussian_2 : Gaussian_0,  texel_2 : u32) -> vec3<f32>
+fn colorOf_0( gaussian_3 : Gaussian_0,  texel_2 : u32) -> vec3<f32>
 {
     var first_1 : vec4<f32> = channels_0(texel_2, u32(3));
     var second_0 : vec4<f32> = channels_0(texel_2, u32(4));
     var third_0 : vec4<f32> = channels_0(texel_2, u32(5));
     var sh_1 : array<vec3<f32>, i32(4)> = array<vec3<f32>, i32(4)>( first_1.xyz, vec3<f32>(first_1.w, second_0.xy), vec3<f32>(second_0.zw, third_0.x), third_0.yzw );
-    return splatColor_0(gaussian_2.centre_0, gaussian_2.rotation_0, sh_1, Constants_0.camera_0.xyz);
+    return splatColor_0(gaussian_3.centre_0, gaussian_3.rotation_0, sh_1, Constants_0.camera_0.xyz);
 }
 
 fn packHalves_0( values_0 : vec2<f32>) -> u32
@@ -404,60 +421,76 @@ fn depthKey_0( centre_2 : vec3<f32>) -> u32
     {
         depthOf_1 = depthOf_0;
     }
-    var _S43 : vec3<f32> = depthOf_1.xyz;
-    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S43;
-    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S43;
+    var _S47 : vec3<f32> = depthOf_1.xyz;
+    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S47;
+    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S47;
     var spare_0 : f32 = 0.5f * distance(Constants_0.bounds_low_0.xyz, Constants_0.bounds_high_0.xyz);
-    var _S44 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
-    var _S45 : f32 = depthOf_1.w;
-    var farthest_0 : f32 = dot(max(low_0, high_0), _S44) + _S45 + spare_0;
-    return u32(saturate((farthest_0 - (dot(centre_2, _S43) + _S45)) / max(farthest_0 - max(dot(min(low_0, high_0), _S44) + _S45 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
+    var _S48 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
+    var _S49 : f32 = depthOf_1.w;
+    var farthest_0 : f32 = dot(max(low_0, high_0), _S48) + _S49 + spare_0;
+    return u32(saturate((farthest_0 - (dot(centre_2, _S47) + _S49)) / max(farthest_0 - max(dot(min(low_0, high_0), _S48) + _S49 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
 }
 
 fn projectTexel_0( texel_3 : u32) -> u32
 {
-    var gaussian_3 : Gaussian_0 = poseTexel_0(texel_3);
-    var _S46 : Ellipse_0 = project_0(gaussian_3, u32(0));
-    var first_2 : Ellipse_0 = _S46;
-    var second_1 : Ellipse_0 = _S46;
+    var gaussian_4 : Gaussian_0 = poseTexel_0(texel_3);
+    var _S50 : Ellipse_0 = project_0(gaussian_4, u32(0));
+    var first_2 : Ellipse_0 = _S50;
+    var second_1 : Ellipse_0 = _S50;
     if((Constants_0.eyes_0) == u32(2))
     {
-        second_1 = project_0(gaussian_3, u32(1));
+        second_1 = project_0(gaussian_4, u32(1));
     }
-    if(!isSeen_0(first_2, gaussian_3.opacity_0))
+    var _S51 : bool;
+    if(isBehind_0(gaussian_4, u32(0)))
+    {
+        _S51 = true;
+    }
+    else
+    {
+        _S51 = !isSeen_0(first_2, gaussian_4.opacity_0);
+    }
+    if(_S51)
     {
         first_2.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
-    if(!isSeen_0(second_1, gaussian_3.opacity_0))
+    if(isBehind_0(gaussian_4, Constants_0.eyes_0 - u32(1)))
+    {
+        _S51 = true;
+    }
+    else
+    {
+        _S51 = !isSeen_0(second_1, gaussian_4.opacity_0);
+    }
+    if(_S51)
     {
         second_1.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
     var splat_0 : u32 = u32(2) * (Constants_0.first_splat_0 + texel_3);
-    var _S47 : bool;
     if((first_2.deviations_1.x) > 0.0f)
     {
-        _S47 = true;
+        _S51 = true;
     }
     else
     {
-        _S47 = (second_1.deviations_1.x) > 0.0f;
+        _S51 = (second_1.deviations_1.x) > 0.0f;
     }
     var redGreen_0 : u32;
     var key_0 : u32;
-    if(_S47)
+    if(_S51)
     {
-        var color_0 : vec3<f32> = colorOf_0(gaussian_3, texel_3);
-        splats_0[splat_0 + u32(1)] = vec4<u32>(packBounded_0(vec2<f32>(color_0.z, gaussian_3.opacity_0)), packedAxis_0(first_2), packedAxis_0(second_1), packBounded_0(vec2<f32>(first_2.deviations_1.y, second_1.deviations_1.y)));
-        var _S48 : u32 = depthKey_0(gaussian_3.centre_0);
+        var color_0 : vec3<f32> = colorOf_0(gaussian_4, texel_3);
+        splats_0[splat_0 + u32(1)] = vec4<u32>(packBounded_0(vec2<f32>(color_0.z, gaussian_4.opacity_0)), packedAxis_0(first_2), packedAxis_0(second_1), packBounded_0(vec2<f32>(first_2.deviations_1.y, second_1.deviations_1.y)));
+        var _S52 : u32 = depthKey_0(gaussian_4.centre_0);
         redGreen_0 = packBounded_0(color_0.xy);
-        key_0 = _S48;
+        key_0 = _S52;
     }
     else
     {
         redGreen_0 = u32(0);
         key_0 = u32(65535);
     }
-    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_3.centre_0))), redGreen_0);
+    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_4.centre_0))), redGreen_0);
     return key_0;
 }
 
@@ -465,34 +498,34 @@ var<workgroup> groupKeys_0 : array<u32, i32(256)>;
 
 @compute
 @workgroup_size(256, 1, 1)
-fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_index) place_2 : u32)
+fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_index) place_3 : u32)
 {
-    var _S49 : u32 = thread_0.x;
+    var _S53 : u32 = thread_0.x;
     var key_1 : u32;
-    if(_S49 < (Constants_0.texel_count_0))
+    if(_S53 < (Constants_0.texel_count_0))
     {
-        var _S50 : u32 = projectTexel_0(_S49);
-        key_1 = _S50;
+        var _S54 : u32 = projectTexel_0(_S53);
+        key_1 = _S54;
     }
     else
     {
         key_1 = u32(65535);
     }
-    groupKeys_0[place_2] = key_1;
+    groupKeys_0[place_3] = key_1;
     workgroupBarrier();
-    var pair_0 : u32 = u32(2) * place_2;
-    var _S51 : bool;
+    var pair_0 : u32 = u32(2) * place_3;
+    var _S55 : bool;
     if(pair_0 < u32(256))
     {
-        _S51 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
+        _S55 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
     }
     else
     {
-        _S51 = false;
+        _S55 = false;
     }
-    if(_S51)
+    if(_S55)
     {
-        keys_0[(Constants_0.first_splat_0 + u32(256) * group_0.x) / u32(2) + place_2] = ((groupKeys_0[pair_0]) | ((((groupKeys_0[pair_0 + u32(1)]) << (u32(16))))));
+        keys_0[(Constants_0.first_splat_0 + u32(256) * group_0.x) / u32(2) + place_3] = ((groupKeys_0[pair_0]) | ((((groupKeys_0[pair_0 + u32(1)]) << (u32(16))))));
     }
     return;
 }
