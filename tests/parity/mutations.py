@@ -199,7 +199,7 @@ FAULTS = {
         Fault("wrong entry of a rotation", "xz + turns.y", "xz - turns.y"),
         Fault("two-sided texels not drawn from behind", "if (place.x >= ONE_SIDED)", "if (true)"),
         Fault("one-sided texels drawn from behind", "if (place.x >= ONE_SIDED)", "if (false)"),
-        Fault("mark left in the triangle", "3 * (place.x & ~ONE_SIDED)", "3 * place.x"),
+        Fault("mark in place of the triangle", "place.x & ~ONE_SIDED", "place.x & ONE_SIDED"),
         Fault("front taken for back", "cross(at[1] - at[0], at[2] - at[0])", "cross(at[2] - at[0], at[1] - at[0])"),
         Fault(
             "normal of the bind pose",
@@ -224,7 +224,9 @@ FAULTS = {
         Fault("linearisation not held at the screen's edge", "clamp(ndc, -GUARD, GUARD)", "ndc"),
         Fault("wrong row of the Jacobian", "row.z * gaussian.rows[2]", "row.z * gaussian.rows[1]"),
         Fault("transparent splats kept", " && opacity >= LEAST_OPACITY", ""),
-        Fault("ellipse of the unseeing eye", "if (!isSeen(second, gaussian.opacity))", "if (false)"),
+        Fault(
+            "ellipse of the unseeing eye", "isBehind(gaussian, eyes - 1) || !isSeen(second, gaussian.opacity)", "false"
+        ),
         Fault("axis as long as one", "min(ellipse.deviations.x, LARGEST_HALF) * ellipse.axis", "ellipse.axis"),
         Fault(
             "eyes swapped in packing", "packedAxis(first), packedAxis(second)", "packedAxis(second), packedAxis(first)"

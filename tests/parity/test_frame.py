@@ -17,6 +17,7 @@ from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.gpu import Device
+from mua.kernels.splat_project import AWAY, facing
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.frame import AvatarFrame
@@ -136,7 +137,10 @@ def test_coarser_levels_agree_and_the_finest_comes_back(device: Device, tmp_path
         assert errors.color < COLOR_BOUND
         assert errors.opacity < OPACITY_BOUND
         assert errors.key <= errors.key_bound < MOST_KEYS
-        assert len(posed.order) == posed.visible == len(posed.exact.centres)
+        away = facing(posed.exact.centres, posed.exact.normals, posed.cameras[0].view)
+        np.testing.assert_array_equal(np.sort(posed.order), np.flatnonzero(away <= AWAY))
+        assert posed.visible == len(posed.order)
+        assert np.any(away > AWAY)
         counts.append(posed.visible)
     assert counts[1] < counts[0] < counts[2]
 

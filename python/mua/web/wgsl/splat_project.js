@@ -254,6 +254,11 @@ fn poseTexel_0( texel_1 : u32) -> Gaussian_0
     return gaussian_0;
 }
 
+fn placeBefore_0( eye_0 : u32,  gaussian_1 : Gaussian_0) -> vec3<f32>
+{
+    return (((vec4<f32>(gaussian_1.centre_0, 1.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(3)])))).xyz;
+}
+
 fn majorAxis_0( difference_0 : f32,  b_1 : f32,  spread_0 : f32) -> vec2<f32>
 {
     var _S38 : vec2<f32> = vec2<f32>(spread_0 + difference_0, b_1);
@@ -290,22 +295,22 @@ struct Ellipse_0
      deviations_1 : vec2<f32>,
 };
 
-fn project_0( gaussian_1 : Gaussian_0,  eye_0 : u32) -> Ellipse_0
+fn project_0( gaussian_2 : Gaussian_0,  eye_1 : u32) -> Ellipse_0
 {
-    var place_1 : vec3<f32> = (((vec4<f32>(gaussian_1.centre_0, 1.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_0].data_0[i32(3)][i32(3)])))).xyz;
+    var place_1 : vec3<f32> = placeBefore_0(eye_1, gaussian_2);
     var _S41 : f32 = - place_1.z;
     var _S42 : vec2<f32> = vec2<f32>(0.5f);
     const _S43 : vec2<f32> = vec2<f32>(1.0f, -1.0f);
-    var focal_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.projection_0.data_1[eye_0].data_0[i32(1)][i32(1)]);
-    var skew_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_0].data_0[i32(2)][i32(0)], Constants_0.projection_0.data_1[eye_0].data_0[i32(2)][i32(1)]);
+    var focal_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.projection_0.data_1[eye_1].data_0[i32(1)][i32(1)]);
+    var skew_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_1].data_0[i32(2)][i32(0)], Constants_0.projection_0.data_1[eye_1].data_0[i32(2)][i32(1)]);
     var _S44 : vec2<f32> = vec2<f32>(max(_S41, Constants_0.near_0));
     var ndc_0 : vec2<f32> = place_1.xy / _S44 * focal_0 - skew_0;
     var slope_0 : vec2<f32> = (clamp(ndc_0, vec2<f32>(-1.29999995231628418f), vec2<f32>(1.29999995231628418f)) + skew_0) / focal_0;
     var magnification_0 : vec2<f32> = _S42 * Constants_0.screen_0 * _S43 * focal_0 / _S44;
-    var column_0 : vec3<f32> = vec3<f32>(magnification_0.x) * (vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(0)]) + vec3<f32>(slope_0.x) * vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)]));
-    var row_1 : vec3<f32> = vec3<f32>(magnification_0.y) * (vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(1)]) + vec3<f32>(slope_0.y) * vec3<f32>(Constants_0.view_0.data_1[eye_0].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_0].data_0[i32(2)][i32(2)]));
-    var across_0 : vec3<f32> = vec3<f32>(column_0.x) * gaussian_1.rows_1[i32(0)] + vec3<f32>(column_0.y) * gaussian_1.rows_1[i32(1)] + vec3<f32>(column_0.z) * gaussian_1.rows_1[i32(2)];
-    var down_0 : vec3<f32> = vec3<f32>(row_1.x) * gaussian_1.rows_1[i32(0)] + vec3<f32>(row_1.y) * gaussian_1.rows_1[i32(1)] + vec3<f32>(row_1.z) * gaussian_1.rows_1[i32(2)];
+    var column_0 : vec3<f32> = vec3<f32>(magnification_0.x) * (vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(0)]) + vec3<f32>(slope_0.x) * vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)]));
+    var row_1 : vec3<f32> = vec3<f32>(magnification_0.y) * (vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(1)]) + vec3<f32>(slope_0.y) * vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)]));
+    var across_0 : vec3<f32> = vec3<f32>(column_0.x) * gaussian_2.rows_1[i32(0)] + vec3<f32>(column_0.y) * gaussian_2.rows_1[i32(1)] + vec3<f32>(column_0.z) * gaussian_2.rows_1[i32(2)];
+    var down_0 : vec3<f32> = vec3<f32>(row_1.x) * gaussian_2.rows_1[i32(0)] + vec3<f32>(row_1.y) * gaussian_2.rows_1[i32(1)] + vec3<f32>(row_1.z) * gaussian_2.rows_1[i32(2)];
     var a_1 : f32 = dot(across_0, across_0);
     var b_2 : f32 = dot(across_0, down_0);
     var c_0 : f32 = dot(down_0, down_0);
@@ -328,10 +333,10 @@ fn project_0( gaussian_1 : Gaussian_0,  eye_0 : u32) -> Ellipse_0
     return ellipse_0;
 }
 
-fn isBehind_0( gaussian_2 : Gaussian_0,  eye_1 : u32) -> bool
+fn isBehind_0( gaussian_3 : Gaussian_0,  eye_2 : u32) -> bool
 {
-    var place_2 : vec3<f32> = (((vec4<f32>(gaussian_2.centre_0, 1.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(3)])))).xyz;
-    var normal_1 : vec3<f32> = (((vec4<f32>(gaussian_2.normal_0, 0.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_1].data_0[i32(3)][i32(3)])))).xyz;
+    var place_2 : vec3<f32> = placeBefore_0(eye_2, gaussian_3);
+    var normal_1 : vec3<f32> = (((vec4<f32>(gaussian_3.normal_0, 0.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(3)])))).xyz;
     return (dot(normal_1, place_2)) > (0.30000001192092896f * length(normal_1) * length(place_2));
 }
 
@@ -385,13 +390,13 @@ fn splatColor_0( centre_1 : vec3<f32>,  rotation_1 : vec4<f32>,  sh_0 : array<ve
     return max(vec3<f32>(0.5f) + vec3<f32>(0.282094806432724f) * sh_0[i32(0)] + vec3<f32>(0.48860251903533936f) * (vec3<f32>(direction_1.z) * sh_0[i32(2)] - vec3<f32>(direction_1.y) * sh_0[i32(1)] - vec3<f32>(direction_1.x) * sh_0[i32(3)]), vec3<f32>(vec3<i32>(i32(0))));
 }
 
-fn colorOf_0( gaussian_3 : Gaussian_0,  texel_2 : u32) -> vec3<f32>
+fn colorOf_0( gaussian_4 : Gaussian_0,  texel_2 : u32) -> vec3<f32>
 {
     var first_1 : vec4<f32> = channels_0(texel_2, u32(3));
     var second_0 : vec4<f32> = channels_0(texel_2, u32(4));
     var third_0 : vec4<f32> = channels_0(texel_2, u32(5));
     var sh_1 : array<vec3<f32>, i32(4)> = array<vec3<f32>, i32(4)>( first_1.xyz, vec3<f32>(first_1.w, second_0.xy), vec3<f32>(second_0.zw, third_0.x), third_0.yzw );
-    return splatColor_0(gaussian_3.centre_0, gaussian_3.rotation_0, sh_1, Constants_0.camera_0.xyz);
+    return splatColor_0(gaussian_4.centre_0, gaussian_4.rotation_0, sh_1, Constants_0.camera_0.xyz);
 }
 
 fn packHalves_0( values_0 : vec2<f32>) -> u32
@@ -433,34 +438,34 @@ fn depthKey_0( centre_2 : vec3<f32>) -> u32
 
 fn projectTexel_0( texel_3 : u32) -> u32
 {
-    var gaussian_4 : Gaussian_0 = poseTexel_0(texel_3);
-    var _S50 : Ellipse_0 = project_0(gaussian_4, u32(0));
+    var gaussian_5 : Gaussian_0 = poseTexel_0(texel_3);
+    var _S50 : Ellipse_0 = project_0(gaussian_5, u32(0));
     var first_2 : Ellipse_0 = _S50;
     var second_1 : Ellipse_0 = _S50;
     if((Constants_0.eyes_0) == u32(2))
     {
-        second_1 = project_0(gaussian_4, u32(1));
+        second_1 = project_0(gaussian_5, u32(1));
     }
     var _S51 : bool;
-    if(isBehind_0(gaussian_4, u32(0)))
+    if(isBehind_0(gaussian_5, u32(0)))
     {
         _S51 = true;
     }
     else
     {
-        _S51 = !isSeen_0(first_2, gaussian_4.opacity_0);
+        _S51 = !isSeen_0(first_2, gaussian_5.opacity_0);
     }
     if(_S51)
     {
         first_2.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
-    if(isBehind_0(gaussian_4, Constants_0.eyes_0 - u32(1)))
+    if(isBehind_0(gaussian_5, Constants_0.eyes_0 - u32(1)))
     {
         _S51 = true;
     }
     else
     {
-        _S51 = !isSeen_0(second_1, gaussian_4.opacity_0);
+        _S51 = !isSeen_0(second_1, gaussian_5.opacity_0);
     }
     if(_S51)
     {
@@ -479,9 +484,9 @@ fn projectTexel_0( texel_3 : u32) -> u32
     var key_0 : u32;
     if(_S51)
     {
-        var color_0 : vec3<f32> = colorOf_0(gaussian_4, texel_3);
-        splats_0[splat_0 + u32(1)] = vec4<u32>(packBounded_0(vec2<f32>(color_0.z, gaussian_4.opacity_0)), packedAxis_0(first_2), packedAxis_0(second_1), packBounded_0(vec2<f32>(first_2.deviations_1.y, second_1.deviations_1.y)));
-        var _S52 : u32 = depthKey_0(gaussian_4.centre_0);
+        var color_0 : vec3<f32> = colorOf_0(gaussian_5, texel_3);
+        splats_0[splat_0 + u32(1)] = vec4<u32>(packBounded_0(vec2<f32>(color_0.z, gaussian_5.opacity_0)), packedAxis_0(first_2), packedAxis_0(second_1), packBounded_0(vec2<f32>(first_2.deviations_1.y, second_1.deviations_1.y)));
+        var _S52 : u32 = depthKey_0(gaussian_5.centre_0);
         redGreen_0 = packBounded_0(color_0.xy);
         key_0 = _S52;
     }
@@ -490,7 +495,7 @@ fn projectTexel_0( texel_3 : u32) -> u32
         redGreen_0 = u32(0);
         key_0 = u32(65535);
     }
-    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_4.centre_0))), redGreen_0);
+    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_5.centre_0))), redGreen_0);
     return key_0;
 }
 
