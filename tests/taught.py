@@ -32,6 +32,13 @@ SETTINGS = replace(
     texture=Schedule(steps=14, batch=4, lr=5e-3),
 )
 FRAMES, CAMERAS = 3, 2
+FEW = replace(  # of the preset `tiny`, for commands
+    PRESETS["tiny"],
+    channels=4,
+    mean=Schedule(steps=4, batch=2, lr=2e-2),
+    texture=Schedule(steps=2, batch=2, lr=1e-3),
+    rows=48,
+)
 SCREEN = (40, 36)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from captures import make_capture
 from commands import Commands
+from taught import FEW
 
 import mua
 from mua.student.settings import PRESETS as STUDENTS
@@ -21,9 +22,8 @@ def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Presets of few steps."""
-    tiny, few = teaching.PRESETS["tiny"], Schedule(steps=2, batch=2, lr=1e-3)
-    monkeypatch.setitem(teaching.PRESETS, "tiny", replace(tiny, channels=4, mean=few, texture=few, rows=48))
-    ranks = Ranks(2, 2, 2)
+    monkeypatch.setitem(teaching.PRESETS, "tiny", FEW)
+    ranks, few = Ranks(2, 2, 2), Schedule(steps=2, batch=2, lr=1e-3)
     student = replace(STUDENTS["tiny"], texels=64, frames=4, geometry=ranks, appearance=ranks, components=2, hidden=8)
     monkeypatch.setitem(STUDENTS, "tiny", replace(student, regression=few, finetune=few, sweeps=1))
 
@@ -54,7 +54,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
         (("{capture}", "--detail", "head=2"), "--detail: the capture's own capture.json says it"),
         (("{capture}", "--check"), "mua-capture check"),
         (("--teacher", "{teacher}"), "give the motion to record with --motion"),
-        (("{capture}", "--teacher", "{teacher}"), "has its own character; leave"),
+        (("hero.glb", "--teacher", "{teacher}"), "has its own character; leave hero.glb out"),
         (("--teacher", "{teacher}", "--texels", "64"), "--texels 64: the texture is as large as the teacher's"),
     ],
 )

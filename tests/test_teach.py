@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 import torch
 from captures import FRAMES, make_capture
 from commands import Commands, Ended
+from taught import FEW
 
 import mua
 from mua.capture import open_capture
@@ -30,41 +30,36 @@ def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def taught(capture: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(capture: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A teacher of a few steps; tests leave it as it is."""
     folder = tmp_path_factory.mktemp("taught") / "teacher"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(settings.PRESETS, "tiny", small())
+        patch.setitem(settings.PRESETS, "tiny", FEW)
         return mua.teach(capture, output=folder, steps=3, texels=TEXELS)
-
-
-def small() -> settings.TeacherSettings:
-    tiny = settings.PRESETS["tiny"]
-    return replace(tiny, channels=4, mean=replace(tiny.mean, steps=4), rows=48)
 
 
 @pytest.fixture
 def teach(command: Commands, monkeypatch: pytest.MonkeyPatch) -> Teach:
-    monkeypatch.setitem(settings.PRESETS, "tiny", small())
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     return lambda *arguments: command("teach", *arguments)
 
 
-def test_it_leaves_a_teacher_and_pictures_of_its_progress(taught: Path) -> None:
-    assert {path.name for path in taught.iterdir()} >= {"teacher.json", "rig.npz", "weights.pt", "progress", "work"}
-    pictures = sorted(path.name for path in (taught / "progress").iterdir())
+def test_it_leaves_a_teacher_and_pictures_of_its_progress(made: Path) -> None:
+    assert {path.name for path in made.iterdir()} >= {"teacher.json", "rig.npz", "weights.pt", "progress", "work"}
+    pictures = sorted(path.name for path in (made / "progress").iterdir())
     assert pictures == ["mean_texture_0000004.png", "texels_0000003.png"]
 
 
-def test_the_same_command_trains_nothing_again(capture: Path, taught: Path, teach: Teach) -> None:
-    before = (taught / "weights.pt").read_bytes()
-    ended = teach(capture, "-o", taught, *OPTIONS)
+def test_the_same_command_trains_nothing_again(capture: Path, made: Path, teach: Teach) -> None:
+    before = (made / "weights.pt").read_bytes()
+    ended = teach(capture, "-o", made, *OPTIONS)
     assert ended.status == 0
     assert "texels" not in ended.out.split("capture", 1)[1].splitlines()[1:2]
-    assert (taught / "weights.pt").read_bytes() == before
+    assert (made / "weights.pt").read_bytes() == before
 
 
-def test_a_teacher_has_frames_of_any_motion(capture: Path, taught: Path) -> None:
-    teacher = TrainedTeacher(taught)
+def test_a_teacher_has_frames_of_any_motion(capture: Path, made: Path) -> None:
+    teacher = TrainedTeacher(made)
     clip = open_capture(capture).motion("reach")
     frames = list(teacher.frames(clip, {1}))
     assert len(frames) == FRAMES["reach"]
@@ -73,7 +68,7 @@ def test_a_teacher_has_frames_of_any_motion(capture: Path, taught: Path) -> None
     assert frames[1].texture.shape == (len(teacher.rig.texels.texels), CHANNELS)
     assert frames[1].mesh.shape == teacher.rig.mesh.vertices.shape
     assert frames[1].texture.dtype == frames[1].mesh.dtype == np.float32
-    still = next(iter(TrainedTeacher(taught, moving=False).frames(clip, {0})))
+    still = next(iter(TrainedTeacher(made, moving=False).frames(clip, {0})))
     assert isinstance(still, TeacherFrame)
     assert not np.array_equal(still.texture, frames[1].texture)
 
@@ -113,10 +108,10 @@ def test_a_wrong_option_is_a_sentence(capture: Path, teach: Teach, options: tupl
     ],
 )
 def test_a_damaged_teacher_is_a_sentence(
-    taught: Path, tmp_path: Path, file: str, content: bytes | None, sentence: str
+    made: Path, tmp_path: Path, file: str, content: bytes | None, sentence: str
 ) -> None:
     for name in ("teacher.json", "rig.npz", "weights.pt"):
-        (tmp_path / name).write_bytes((taught / name).read_bytes())
+        (tmp_path / name).write_bytes((made / name).read_bytes())
     if content is None:
         (tmp_path / file).unlink()
     else:
@@ -125,6 +120,6 @@ def test_a_damaged_teacher_is_a_sentence(
         TrainedTeacher(tmp_path)
 
 
-def test_weights_hold_nothing_but_tensors(taught: Path) -> None:
-    state = torch.load(taught / "weights.pt", weights_only=True)
+def test_weights_hold_nothing_but_tensors(made: Path) -> None:
+    state = torch.load(made / "weights.pt", weights_only=True)
     assert all(isinstance(value, torch.Tensor) for value in state.values())

@@ -13,7 +13,7 @@ EXTRAS = {  # the smaller ones first: of several that bring a package the first 
     "train": frozenset(TRAINING),
     "bake": frozenset((*READING, *TRAINING, "pxr", "warp")),
     "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "pxr", "torchmetrics", "warp")),
-    "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
+    "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics", "warp")),
     "deploy": frozenset(("adbutils",)),
 }
 OF_COMMAND = {  # where the extra is not called as the command or the function

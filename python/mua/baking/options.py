@@ -75,14 +75,15 @@ def _taught(order: Order, options: Mapping[str, Any]) -> Order:
             teacher_preset(LESSONS[options["preset"]]), texels=order.settings.texels, seed=order.settings.seed
         )
         return replace(order, lessons=lessons)
-    if order.character is not None:
+    filmed = order.character is not None and is_capture(order.character)
+    if order.character is not None and not filmed:
         raise InputError(f"--teacher {order.teacher}: has its own character; leave {order.character} out")
     if options["texels"] is not None:
         raise InputError(
             f"--texels {options['texels']}: the texture is as large as the teacher's; leave the option out"
         )
     require_teacher(order.teacher)
-    if not order.motions:
+    if not order.motions and not filmed:
         raise InputError(f"--teacher {order.teacher}: give the motion to record with --motion")
     return order
 

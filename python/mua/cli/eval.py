@@ -9,13 +9,18 @@ from mua.cli.choice import choice
 from mua.cli.failure import run_command
 from mua.cli.options import lent_by
 from mua.compare.order import ALL, SYSTEM_NAMES, EvaluationOrder
-from mua.inputs import require_file, require_recording
+from mua.errors import InputError
+from mua.inputs import is_capture, require_file, require_recording, require_teacher
 from mua.student.settings import PRESETS, preset
 
 # Of each field of an order what a terminal takes, and its help.
 OPTIONS = {
-    "recording": Annotated[Path, typer.Argument(metavar="RECORDING", help="Directory of the recording.")],
+    "recording": Annotated[Path, typer.Argument(metavar="RECORDING", help="Directory of a recording or a capture.")],
     "avatars": Annotated[list[Path], typer.Argument(help="Avatar files trained on it.")],
+    "teacher": Annotated[
+        Path | None,
+        typer.Option(help="Folder that mua-teach wrote, where RECORDING is a capture.", show_default="none"),
+    ],
     "system": Annotated[
         list[str],
         choice((ALL, *SYSTEM_NAMES), "--system", help="System to train and compare; may be repeated", several=True),
@@ -50,17 +55,41 @@ OPTIONS = {
 def evaluate(**options: Any) -> None:
     """Compare avatar files and other systems with the teacher of RECORDING, in tables, plots and contact sheets.
 
+    Where RECORDING is the folder of a capture, a --teacher and avatar files are compared with its pictures instead, by
+    the cameras and in the clips that are held out.
+
     Trained systems are kept in the directory 'work' of the output; the same command does not train them again.
     """
     order = EvaluationOrder(**options)
-    require_recording(order.recording)
+    filmed = is_capture(order.recording)
+    if filmed:
+        _check_filmed(order)
+    else:
+        require_recording(order.recording)
+        if order.teacher is not None:
+            raise InputError(f"--teacher {order.teacher}: is compared with the pictures of a capture, not a recording")
     for file in (*order.avatars, *(() if order.lpips_weights is None else (order.lpips_weights,))):
         require_file(file)
+    if filmed:
+        from mua.cli.filmed_evaluation import compare as compare_filmed
+
+        compare_filmed(order)
+        return
     preset(order.preset)
 
     from mua.cli.evaluation import compare  # after the options are checked, because it takes seconds to load
 
     compare(order)
+
+
+def _check_filmed(order: EvaluationOrder) -> None:
+    """Raises InputError for what cannot be compared with pictures."""
+    if order.system:
+        raise InputError(f"--system {order.system[0]}: is trained on a recording; leave the option out for a capture")
+    if order.teacher is None and not order.avatars:
+        raise InputError("give a --teacher or avatar files to compare with the pictures of the capture")
+    if order.teacher is not None:
+        require_teacher(order.teacher)
 
 
 def run() -> None:

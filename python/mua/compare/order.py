@@ -23,6 +23,7 @@ class EvaluationOrder:
 
     recording: Path
     avatars: Sequence[Path] = ()
+    teacher: Path | None = None  # folder that mua-teach wrote, where the recording is a capture
     system: Sequence[str] = ()  # those of the paper's tables, or all
     seconds: float = 60.0  # of training of each system, unless there are steps
     steps: int | None = None

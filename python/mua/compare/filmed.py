@@ -1,0 +1,166 @@
+"""How near a teacher and avatar files are to the pictures of a capture, by cameras that nobody learnt from.
+
+Over white and inside the box around the mask; PSNR over all pixels and colours, SSIM with the usual window.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import flip_evaluator
+import numpy as np
+import torch
+from torch import Tensor
+
+from mua.arrays import Array
+from mua.asset.read import read
+from mua.camera import Camera
+from mua.capture import Capture
+from mua.compare.metrics import LPIPS_UNIT
+from mua.decode import Splats, decode_clip_frame, pose_splats
+from mua.errors import InputError
+from mua.pose.clip import Clip
+from mua.splatting.likeness import structural_similarity
+from mua.splatting.perceptual import Lpips
+from mua.splatting.projection import Eye, TorchSplats
+from mua.splatting.rasterise import rasterise
+from mua.teachers.teacher import TeacherFrame
+from mua.teaching.trained import TrainedTeacher
+
+EVERY = 10  # frames: the paper's protocol
+TRAINED, UNSEEN = "training poses", "clips held out"
+SPLITS = (TRAINED, UNSEEN)
+IMAGE, BASELINE, TEACHER = "image", "mean texture", "teacher"
+
+Show = Callable[[Clip, int], Splats]  # of a frame of a clip
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A view to compare with."""
+
+    split: str
+    clip: str
+    frame: int
+    camera: str
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """What a picture is worth beside the capture's."""
+
+    psnr: float  # dB
+    ssim: float
+    flip: float
+    lpips: float  # times 1000; nan where no weights were given
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """One view: the capture's picture, then every entry's by name, and what these are worth."""
+
+    shot: Shot
+    pictures: dict[str, Array]  # [H, W, 3] in 0..1
+    scores: dict[str, Likeness]
+
+
+def shots(capture: Capture, most: int | None) -> list[Shot]:
+    """Every tenth frame of each clip, or `most` of each split, evenly; by the cameras held out, or all if none is."""
+    cameras = [camera.name for camera in capture.cameras if camera.held_out] or [one.name for one in capture.cameras]
+    chosen = []
+    for split in SPLITS:
+        clips = [clip for clip in capture.clips if clip.held_out == (split == UNSEEN)]
+        frames = [(clip.name, frame) for clip in clips for frame in range(clip.frames)]
+        if most is None:
+            frames = [(name, frame) for name, frame in frames if frame % EVERY == 0]
+        else:
+            count = min(most, len(frames))
+            frames = [frames[i] for i in ((np.arange(count) + 0.5) * len(frames) / max(count, 1)).astype(int)]
+        chosen += [Shot(split, name, frame, camera) for name, frame in frames for camera in cameras]
+    return chosen
+
+
+def teacher_entries(folder: Path) -> dict[str, Show]:
+    """The teacher of a folder, and its mean texture on the skinned template: what it must beat."""
+    return {BASELINE: _shown(TrainedTeacher(folder, moving=False)), TEACHER: _shown(TrainedTeacher(folder))}
+
+
+def avatar_entry(path: Path, joints: Sequence[str]) -> Show:
+    """An avatar file; raises InputError where its skeleton is not that of the capture's template."""
+    avatar = read(path)
+    if list(avatar.rig.skeleton.names) != list(joints):
+        raise InputError(f"{path}: its joints are not those of the capture's template")
+    return lambda clip, frame: decode_clip_frame(avatar, clip, frame=frame)
+
+
+def judge(
+    capture: Capture,
+    chosen: Sequence[Shot],
+    entries: dict[str, Show],
+    *,
+    rows: int | None = None,  # of a whole picture; None: as filmed
+    lpips: Lpips | None = None,
+) -> Iterator[Judged]:
+    """Each view in turn; views of one frame follow each other, so that every entry decodes a frame once."""
+    motions = {clip.name: capture.motion(clip.name) for clip in capture.clips}
+    decoded: dict[str, Splats] = {}
+    last = None
+    for shot in chosen:
+        if (shot.clip, shot.frame) != last:
+            last = shot.clip, shot.frame
+            decoded = {name: show(motions[shot.clip], shot.frame) for name, show in entries.items()}
+        view = capture.view(shot.clip, shot.frame, shot.camera, crop=True, rows=rows)
+        truth = view.mask[..., None] * view.image + (1 - view.mask[..., None])
+        pictures = {name: drawn(splats, view.camera) for name, splats in decoded.items()}
+        scores = {name: likeness(picture, truth, lpips=lpips) for name, picture in pictures.items()}
+        yield Judged(shot, {IMAGE: truth, **pictures}, scores)
+
+
+@torch.no_grad()
+def drawn(splats: Splats, camera: Camera) -> Array:
+    """Splats over white [H, W, 3], in 0..1."""
+    named = {field.name: getattr(splats, field.name, None) for field in fields(TorchSplats)}
+    named["turns"] = splats.texel_dq[:, :4]
+    posed = TorchSplats(**{name: torch.from_numpy(np.asarray(values, np.float32)) for name, values in named.items()})
+    box = torch.from_numpy(np.asarray(splats.bounds, np.float32))
+    return np.asarray(rasterise(posed, Eye.of(camera, box), box, background=torch.ones(3)).clamp(0, 1))
+
+
+def likeness(
+    image: Array,  # [H, W, 3] in 0..1
+    truth: Array,
+    *,
+    lpips: Lpips | None = None,
+) -> Likeness:
+    """The scores of a picture."""
+    image, truth = (np.ascontiguousarray(picture, np.float32) for picture in (image, truth))
+    pair = [torch.from_numpy(picture) for picture in (image, truth)]
+    differs = flip_evaluator.evaluate(truth, image, "LDR", applyMagma=False, computeMeanError=True)[1]
+    square = float(np.mean(np.square(image - truth, dtype=np.float64)))
+    return Likeness(
+        psnr=-10 * math.log10(square) if square else math.inf,
+        ssim=float(structural_similarity(*pair)),
+        flip=float(differs),
+        lpips=math.nan if lpips is None else LPIPS_UNIT * lpips(*(_planes(picture) for picture in pair)),
+    )
+
+
+def mean(judged: Sequence[Judged], name: str, split: str) -> Likeness | None:
+    """The mean of an entry over the views of a split; None over none."""
+    found = [one.scores[name] for one in judged if one.shot.split == split]
+    if not found:
+        return None
+    return Likeness(*(float(np.mean([getattr(one, field.name) for one in found])) for field in fields(Likeness)))
+
+
+def _planes(picture: Tensor) -> Tensor:
+    return picture.permute(2, 0, 1)[None]
+
+
+def _shown(teacher: TrainedTeacher) -> Show:
+    def show(clip: Clip, frame: int) -> Splats:
+        (made,) = (one for one in teacher.frames(clip.cut(slice(frame + 1)), {frame}) if isinstance(one, TeacherFrame))
+        return pose_splats(teacher.rig, made.mesh, texture=made.texture, pose=made.pose)
+
+    return show
