@@ -128,9 +128,12 @@ def drawn(splats: Splats, camera: CaptureCamera) -> Array:
 
 @cache
 def _character_file() -> bytes:
-    """The procedural character as a .glb: mesh, skin and texture, no animation."""
-    character, glb = _character(), Glb()
-    skeleton, mesh = character.skeleton, character.mesh
+    return character_file(_character())
+
+
+def character_file(character: Character) -> bytes:
+    """A character whose joints are not turned in the bind pose as a .glb: mesh, skin and texture, no animation."""
+    skeleton, mesh, glb = character.skeleton, character.mesh, Glb()
     assert (skeleton.bind_rotations == [1, 0, 0, 0]).all()
     glb.json["nodes"] = [
         {"name": name, "translation": at.tolist(), "children": np.flatnonzero(skeleton.parents == j).tolist()}

@@ -136,7 +136,10 @@ FAULTS: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
         lambda s: s.update(images="{clip}/{frame}.png"),
         r"images is .* expected {camera} in it",
     ),
-    "images of one clip": (lambda s: s.update(images="{camera}/{frame}.png"), r"images is .* expected {clip} in it"),
+    "images of one clip": (
+        lambda s: s.update(images="{camera}/{frame}.png", clips=[{**clip, "first_image": 0} for clip in s["clips"]]),
+        r"images is .* expected {clip} in it",
+    ),
     "braces of another name": (lambda s: s.update(images="{clip}/{view}.png"), "and no other braces"),
     "braces that do not close": (lambda s: s.update(images="{clip}/{camera.png"), "and no other braces"),
     "one mesh for all frames": (lambda s: s.update(meshes="{clip}.ply"), "expected a file for each {frame}"),
@@ -172,6 +175,18 @@ def test_names_what_cannot_be(capture: Capture, fault: str) -> None:
     changed(capture, change)
     with pytest.raises(InputError, match=sentence):
         open_capture(capture.folder)
+
+
+def test_clips_may_be_parts_of_one_film(capture: Capture) -> None:
+    """Frames 3 to 6 are walk's; run's begin after them, or with the last of them."""
+    for first, apart in ((7, True), (6, False)):
+        changed(capture, lambda s, first=first: s["clips"][1].update(first_image=first))  # type: ignore[misc]
+        changed(capture, lambda s: s.update(images="{camera}.mp4", masks="{camera}.mp4"))
+        if apart:
+            assert open_capture(capture.folder).clips[1].first_image == first
+        else:
+            with pytest.raises(InputError, match=r"expected {clip} in it"):
+                open_capture(capture.folder)
 
 
 def test_four_coefficients_leave_the_last_at_none(capture: Capture) -> None:

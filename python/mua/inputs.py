@@ -43,10 +43,15 @@ def require_recording(path: Path) -> None:
         raise InputError(f"{path}: not a recording, it holds no {HEADER}")
 
 
-def require_capture(path: Path) -> None:
-    """Raises InputError where there is no directory of that name, or one that is no capture."""
+def require_folder(path: Path) -> None:
+    """Raises InputError where there is no directory of that name."""
     if not path.is_dir():
         problem = "is a file, expected the folder of a capture" if path.is_file() else "there is no such directory"
         raise InputError(f"{path}: {problem}")
+
+
+def require_capture(path: Path) -> None:
+    """Raises InputError where there is no directory of that name, or one that is no capture."""
+    require_folder(path)
     if not (path / CAPTURE).is_file():
         raise InputError(f"{path}: not a capture, it holds no {CAPTURE}")

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from string import Formatter
 from typing import Any
@@ -72,7 +73,11 @@ def _check_whole(capture: Capture) -> None:
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise InputError(f"{capture.file}: {field}: two are called {twice!r}, expected a name for each")
-    counts = {"clip": len(capture.clips), "camera": len(capture.cameras), "frame": 1}
+    counts = {
+        "clip": len(capture.clips) if _share_numbers(capture.clips) else 1,
+        "camera": len(capture.cameras),
+        "frame": 1,
+    }
     for field, places in PLACES.items():
         if getattr(capture, field) is not None:
             _check_pattern(getattr(capture, field), f"{capture.file}: {field}", places, counts)
@@ -81,6 +86,12 @@ def _check_whole(capture: Capture) -> None:
     require_file(capture.template)
     for clip in capture.clips:
         require_file(clip.motion)
+
+
+def _share_numbers(clips: Sequence[CaptureClip]) -> bool:
+    """Whether a number of a frame belongs to several clips, so that their files need names of their own."""
+    ordered = sorted(clips, key=lambda clip: clip.first_image)
+    return any(b.first_image < a.first_image + a.frames for a, b in pairwise(ordered))
 
 
 def _check_pattern(pattern: str, where: str, places: Sequence[str], counts: dict[str, int]) -> None:

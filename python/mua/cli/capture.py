@@ -12,7 +12,7 @@ from mua.cli.console import printer, say
 from mua.cli.failure import run_commands
 from mua.errors import InputError
 from mua.files import replacing, require_writable
-from mua.inputs import require_capture
+from mua.inputs import CAPTURE, require_capture, require_file, require_folder
 
 if TYPE_CHECKING:  # takes long to load
     from mua.capture.check import CameraFit, Checked
@@ -57,9 +57,43 @@ def check(
         raise typer.Exit(1)
 
 
+def describe(
+    source: Annotated[Path, typer.Argument(help="Folder with pictures in another layout: AvatarReX or THuman4.")],
+    template: Annotated[
+        Path, typer.Option(help="Character on the joints of SMPL-X, in that model's own pose (.glb, .vrm, USD).")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write capture.json and the poses to.")],
+    rate: Annotated[float, typer.Option(min=1, max=1000, help="Frames per second of the pictures.")] = 30.0,
+    height: Annotated[
+        float | None, typer.Option(help="Height of the template in metres.", show_default="as its file says")
+    ] = None,
+    leave_out: Annotated[
+        list[str] | None, typer.Option(help="Mesh, node or material of the template that nobody filmed; repeatable.")
+    ] = None,
+) -> None:
+    """Write the capture.json of pictures that lie in another layout; the pictures stay where they are."""
+    require_folder(source)
+    require_file(template)
+    require_writable(output / CAPTURE)
+
+    from mua.capture import write_capture
+    from mua.capture.avatarrex import is_avatarrex, read_avatarrex
+
+    if not is_avatarrex(source):
+        raise InputError(
+            f"{source}: its layout is not known; expected smpl_params.npz and calibration_full.json or calibration.json"
+        )
+    capture = read_avatarrex(
+        source, output, template=template, rate=rate, height=height, leave_out=tuple(leave_out or ())
+    )
+    written = write_capture(capture)
+    frames = sum(clip.frames for clip in capture.clips)
+    say(printer(), f"{written}: {len(capture.cameras)} cameras, {frames} frames in {len(capture.clips)} clips")
+
+
 def run() -> None:
     """Entry point of the command."""
-    run_commands("Captures: pictures of a person by calibrated cameras.", check)
+    run_commands("Captures: pictures of a person by calibrated cameras.", check, describe)
 
 
 def _require_picture(output: Path) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from mua.errors import InputError
 from mua.motion.amass import read_amass
 from mua.motion.bvh import read_bvh
+from mua.motion.poses_file import holds_poses, read_poses
 from mua.motion.source import SourceMotion
 from mua.signature import refuse_foreign, require_kind
 
@@ -13,7 +14,7 @@ SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
 
 
 def read_motion(path: Path) -> list[SourceMotion]:
-    """Read every motion of `path`: a .bvh, AMASS .npz, glTF or USD file, or a directory of such files, by name.
+    """Read every motion of `path`: a .bvh, AMASS or pose .npz, glTF or USD file, or a directory of such files, by name.
 
     Errors: InputError for a path that does not exist, a suffix that is not known, a file or directory without motion.
     """
@@ -30,7 +31,7 @@ def read_motion(path: Path) -> list[SourceMotion]:
         return [read_bvh(path)]
     if suffix == ".npz":
         require_kind(path, "an AMASS archive", kinds=("a ZIP archive",))
-        return [read_amass(path)]
+        return [read_poses(path) if holds_poses(path) else read_amass(path)]
     if suffix in RIG_SUFFIXES:
         return _read_rig_clips(path)
     refuse_foreign(path)

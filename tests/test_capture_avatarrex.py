@@ -1,0 +1,223 @@
+"""AvatarReX and THuman4: SMPL-X poses land on the template where the set's own cameras see them."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from captures import character_file, looking
+from commands import Commands
+from PIL import Image
+from scipy.spatial.transform import Rotation
+from tube import tube
+
+from mua.arrays import Array
+from mua.capture import open_capture
+from mua.capture.outline import pixels
+from mua.errors import InputError
+from mua.motion.amass import NOMINAL, nominal_skeleton
+from mua.motion.poses_file import read_poses, write_poses
+from mua.motion.read import read_motion
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Skeleton
+
+FRAMES, SIDE = 5, 24
+JOINTS = [name for name, _, _ in NOMINAL[55]]
+PIXEL_BOUND = 1e-3  # float32 positions of a template some metres away, at a focal length of 1200
+WORLDS = {"y": [0.0, 0, 0], "-y": [np.pi, 0, 0], "z": [np.pi / 2, 0, 0]}  # turn from Y up to a set's world
+
+
+def template() -> Skeleton:
+    """The model's joints, the pelvis where the model has it."""
+    skeleton = nominal_skeleton(55)
+    return replace(skeleton, bind_translations=skeleton.bind_translations - [0, 0.1, 0] * (np.arange(55) == 0)[:, None])
+
+
+def skinned_file() -> bytes:
+    """A tube on those joints, from the feet to above the head."""
+    base, skeleton = tube(), template()
+    mesh = replace(base.mesh, vertices=base.mesh.vertices - [0, 1.3, 0])
+    _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    body = np.array([JOINTS.index(name) for name in ("left_ankle", "left_knee", "pelvis", "spine3", "head")])
+    nearest = body[np.abs(mesh.vertices[:, 1:2] - at[body, 1]).argmin(axis=1)]
+    indices = np.zeros((len(mesh.vertices), 8), np.int32)
+    indices[:, 0] = nearest
+    weights = np.eye(1, 8, dtype=np.float32).repeat(len(indices), axis=0)
+    return character_file(replace(base, skeleton=skeleton, mesh=mesh, skin_indices=indices, skin_weights=weights))
+
+
+@pytest.fixture(params=WORLDS)
+def source(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """A set in a world of another up, with all that its makers publish but the people."""
+    return write_source(tmp_path / "set", WORLDS[request.param])
+
+
+def write_source(folder: Path, world: Any) -> Path:
+    rng, turn = np.random.default_rng(3), Rotation.from_rotvec(world)
+    folder.mkdir()
+    yaw = rng.uniform(-1, 1, (FRAMES, 1)) * [0, 1, 0]
+    upright = Rotation.from_rotvec(yaw) * Rotation.from_rotvec(0.2 * rng.normal(size=(FRAMES, 3)))
+    np.savez(
+        folder / "smpl_params.npz",
+        betas=np.zeros((1, 10)),
+        global_orient=(turn * upright).as_rotvec(),
+        transl=turn.apply(rng.normal(0, 0.3, (FRAMES, 3))),
+        body_pose=0.4 * rng.normal(size=(FRAMES, 63)),
+        left_hand_pose=0.2 * rng.normal(size=(FRAMES, 45)),
+        right_hand_pose=0.2 * rng.normal(size=(FRAMES, 45)),
+        expression=np.zeros((FRAMES, 10)),
+    )
+    cameras = {}
+    for name, x in (("22010708", 2.5), ("22053925", -2.0)):
+        matrix = looking(np.array([x, 0.3, 3.0]), np.zeros(3))
+        matrix[:3, :3] = matrix[:3, :3] @ turn.as_matrix().T
+        k = [[1200.0, 0, 350], [0, 1180, 512.5], [0, 0, 1]]
+        camera = {"K": np.ravel(k).tolist(), "R": matrix[:3, :3].ravel().tolist(), "T": matrix[:3, 3].tolist()}
+        cameras[name] = camera | {"imgSize": [SIDE, SIDE], "distCoeff": [0.01, 0, 0, 0, 0]}
+        for frame in range(FRAMES):
+            for place in (f"{name}/{frame:08d}.jpg", f"{name}/mask/pha/{frame:08d}.jpg"):
+                (folder / place).parent.mkdir(parents=True, exist_ok=True)
+                Image.new("RGB", (SIDE, SIDE), (9 * frame, 200, 100)).save(folder / place)
+    (folder / "calibration_full.json").write_text(json.dumps(cameras))
+    (folder.parent / "template.glb").write_bytes(skinned_file())
+    return folder
+
+
+def joints_seen(source: Path, camera: str) -> Array:
+    """Columns and rows [F, 55, 2] of the joints, by the model's own recursion and the set's own calibration."""
+    said = json.loads((source / "calibration_full.json").read_text())[camera]
+    skeleton = template()
+    with np.load(source / "smpl_params.npz") as file:
+        pose = [file["global_orient"], file["body_pose"], np.zeros((FRAMES, 9)), file["left_hand_pose"]]
+        vectors = np.concatenate([*pose, file["right_hand_pose"]], axis=1).reshape(FRAMES, 55, 3)
+        moved = file["transl"]
+    found = np.empty((FRAMES, 55, 2))
+    for frame in range(FRAMES):
+        turned, at = [], []
+        for joint, vector in enumerate(vectors[frame]):
+            above, offset = int(skeleton.parents[joint]), skeleton.bind_translations[joint]
+            local = Rotation.from_rotvec(vector).as_matrix()
+            turned.append(local if above < 0 else turned[above] @ local)
+            at.append(offset + moved[frame] if above < 0 else at[above] + turned[above] @ offset)
+        seen = (np.array(said["R"]).reshape(3, 3) @ np.array(at).T).T + said["T"]
+        image = (np.array(said["K"]).reshape(3, 3) @ seen.T).T
+        found[frame] = image[:, :2] / image[:, 2:] + 0.5
+    return found
+
+
+def described(source: Path, command: Commands, *more: object) -> Path:
+    folder = source.parent / "capture"
+    ended = command("capture", "describe", source, "--template", source.parent / "template.glb", "-o", folder, *more)
+    assert ended.status == 0, ended
+    return folder
+
+
+def test_joints_are_where_the_sets_own_cameras_see_them(source: Path, command: Commands) -> None:
+    capture = open_capture(described(source, command, "--rate", 25))
+    assert capture.rate == 25
+    clip, skeleton = capture.motion("frames_000000"), capture.surfaces.skeleton
+    _, at = skeleton.world(clip.rotations, clip.translations)
+    order = [skeleton.names.index(name) for name in JOINTS]
+    for camera in capture.cameras:
+        found, depth = pixels(camera, at[:, order])
+        assert (depth > 1).all()
+        np.testing.assert_allclose(found, joints_seen(source, camera.name), atol=PIXEL_BOUND)
+        assert camera.distortion == (0.01, 0, 0, 0, 0)
+    assert (at[:, skeleton.names.index("head"), 1] > at[:, skeleton.names.index("pelvis"), 1]).all()
+
+
+def test_frames_that_a_camera_lacks_are_left_out(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    (source / "22053925" / "00000002.jpg").unlink()
+    capture = open_capture(described(source, command))
+    assert [(clip.name, clip.first, clip.first_image, clip.frames) for clip in capture.clips] == [
+        ("frames_000000", 0, 0, 2),
+        ("frames_000003", 3, 3, 2),
+    ]
+    view = capture.view("frames_000003", 1, "22010708")
+    assert 255 * view.image[12, 12, 0] == pytest.approx(36, abs=4)  # frame 4, in JPEG
+
+
+def test_thumans_names_are_known_too(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    (source / "calibration_full.json").rename(source / "calibration.json")
+    for camera in ("22010708", "22053925"):
+        (source / "masks").mkdir(exist_ok=True)
+        (source / "images").mkdir(exist_ok=True)
+        (source / camera / "mask" / "pha").rename(source / "masks" / camera)
+        (source / camera / "mask").rmdir()
+        (source / camera).rename(source / "images" / camera)
+    capture = open_capture(described(source, command))
+    assert capture.view("frames_000000", 1, "22010708").image.shape == (SIDE, SIDE, 3)
+
+
+FAULTS: dict[str, tuple[dict[str, Any], str]] = {
+    "no hips": ({"global_orient": None}, r"smpl_params\.npz: holds no global_orient; found"),
+    "another model": ({"body_pose": np.zeros((FRAMES, 69))}, r"body_pose: the shape is \[5, 69\], expected \[5, 63\]"),
+    "no number": ({"transl": np.full((FRAMES, 3), np.nan)}, r"transl: pose 0 is not finite"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_poses_that_cannot_be_are_named(tmp_path: Path, command: Commands, fault: str) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    change, sentence = FAULTS[fault]
+    with np.load(source / "smpl_params.npz") as file:
+        arrays = {**file} | change
+    np.savez(source / "smpl_params.npz", **{key: value for key, value in arrays.items() if value is not None})
+    ended = command("capture", "describe", source, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
+    with pytest.raises(InputError, match=sentence):
+        raise InputError(ended.sentence)
+    assert not (tmp_path / "out" / "capture.json").exists()
+
+
+def test_a_template_on_other_joints_is_refused(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    (tmp_path / "template.glb").write_bytes(character_file(tube()))
+    ended = command("capture", "describe", source, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
+    assert "template.glb: 0 of its joints are called as SMPL-X's" in ended.sentence
+
+
+def test_an_unknown_layout_is_refused(tmp_path: Path, command: Commands) -> None:
+    (tmp_path / "template.glb").write_bytes(b"glTF")
+    ended = command("capture", "describe", tmp_path, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
+    assert "its layout is not known" in ended.sentence
+
+
+def test_poses_are_read_as_they_were_written(tmp_path: Path) -> None:
+    skeleton, rng = template(), np.random.default_rng(1)
+    turns = rng.normal(size=(4, 55, 4))
+    clip = Clip("dance", 24.0, turns / np.linalg.norm(turns, axis=-1, keepdims=True), rng.normal(size=(4, 55, 3)))
+    write_poses(tmp_path / "dance.npz", skeleton, clip)
+    (found,) = read_motion(tmp_path / "dance.npz")
+    assert (found.clip.name, found.clip.rate, found.skeleton.names, found.skeleton.root) == (
+        *("dance", 24.0, skeleton.names, skeleton.root),
+    )
+    np.testing.assert_array_equal(found.clip.rotations, clip.rotations)
+    np.testing.assert_array_equal(found.clip.translations, clip.translations)
+    np.testing.assert_array_equal(found.skeleton.bind_translations, skeleton.bind_translations)
+    np.testing.assert_array_equal(found.skeleton.parents, skeleton.parents)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"parents": np.arange(55)[::-1]}, "parents: a joint comes before its parent"),
+        ({"parents": np.full(55, 99)}, "parents: expected whole numbers of -1 to 54"),
+        ({"root": 60}, "root: expected whole numbers of 0 to 54"),
+        ({"rotations": np.zeros((1, 55, 4))}, "rotations: a quaternion of length 0"),
+        ({"translations": np.zeros((3, 55, 3))}, r"translations: the shape is \[3, 55, 3\]"),
+        ({"rate": 0}, "has 1 poses at 0 frames per second"),
+    ],
+)
+def test_poses_that_are_none_are_named(tmp_path: Path, change: dict[str, Any], sentence: str) -> None:
+    skeleton = template()
+    bind = skeleton.bind_pose
+    write_poses(tmp_path / "a.npz", skeleton, Clip("a", 30.0, bind.rotations[None], bind.translations[None]))
+    with np.load(tmp_path / "a.npz") as file:
+        arrays = {**file} | change
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(InputError, match=rf"a\.npz: {sentence}"):
+        read_poses(tmp_path / "a.npz")
