@@ -122,7 +122,8 @@ def drawn(splats: Splats, camera: Camera) -> Array:
     """Splats over white [H, W, 3], in 0..1."""
     named = {field.name: getattr(splats, field.name, None) for field in fields(TorchSplats)}
     named["turns"] = splats.texel_dq[:, :4]
-    posed = TorchSplats(**{name: torch.from_numpy(np.asarray(values, np.float32)) for name, values in named.items()})
+    tensors = {name: torch.from_numpy(np.asarray(of, np.float32)) for name, of in named.items() if of is not None}
+    posed = TorchSplats(**tensors)
     box = torch.from_numpy(np.asarray(splats.bounds, np.float32))
     return np.asarray(rasterise(posed, Eye.of(camera, box), box, background=torch.ones(3)).clamp(0, 1))
 
