@@ -73,11 +73,16 @@ def read_avatarrex(
         clips=tuple(
             CaptureClip(f"frames_{first:06d}", motion, first, frames, first_image=first) for first, frames in runs
         ),
-        images=_below(source, images),
-        masks=_below(source, masks),
+        images=below(source, images),
+        masks=below(source, masks),
         template_height=height,
         leave_out=tuple(leave_out),
     )
+
+
+def below(source: Path, pattern: str) -> str:
+    """A pattern of files below another folder; braces in the folder's name are no fields."""
+    return f"{source.absolute().as_posix().replace('{', '{{').replace('}', '}}')}/{pattern}"
 
 
 def _cameras(path: Path) -> dict[str, Any]:
@@ -134,8 +139,3 @@ def _complete(source: Path, images: str, cameras: Sequence[CaptureCamera], frame
     ]
     edges = np.flatnonzero(np.diff([False, *there, False]))
     return [(int(a), int(b - a)) for a, b in edges.reshape(-1, 2) if b - a >= LEAST_FRAMES]
-
-
-def _below(source: Path, pattern: str) -> str:
-    """A pattern of files below another folder; braces in the folder's name are no fields."""
-    return f"{source.absolute().as_posix().replace('{', '{{').replace('}', '}}')}/{pattern}"

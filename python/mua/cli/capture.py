@@ -1,5 +1,6 @@
 """mua-capture: whether a capture is what it should be, before a teacher is trained on it."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,7 @@ from mua.files import replacing, require_writable
 from mua.inputs import CAPTURE, require_capture, require_file, require_folder
 
 if TYPE_CHECKING:  # takes long to load
+    from mua.capture import Capture
     from mua.capture.check import CameraFit, Checked
 
 PICTURES = (".png", ".jpg", ".jpeg")
@@ -58,12 +60,17 @@ def check(
 
 
 def describe(
-    source: Annotated[Path, typer.Argument(help="Folder with pictures in another layout: AvatarReX or THuman4.")],
+    source: Annotated[Path, typer.Argument(help="Folder with pictures in the layout of AvatarReX, THuman4 or UMA.")],
     template: Annotated[
-        Path, typer.Option(help="Character on the joints of SMPL-X, in that model's own pose (.glb, .vrm, USD).")
+        Path, typer.Option(help="The person as a rigged character (.glb, .vrm, USD); AvatarReX, THuman4: on SMPL-X.")
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write capture.json and the poses to.")],
-    rate: Annotated[float, typer.Option(min=1, max=1000, help="Frames per second of the pictures.")] = 30.0,
+    motion: Annotated[
+        Path | None, typer.Option(help="Poses for videos in UMA's layout, one for each frame; others bring their own.")
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option(min=1, max=1000, help="Frames per second.", show_default="the videos', or 30")
+    ] = None,
     height: Annotated[
         float | None, typer.Option(help="Height of the template in metres.", show_default="as its file says")
     ] = None,
@@ -76,17 +83,11 @@ def describe(
     require_file(template)
     require_writable(output / CAPTURE)
 
-    from mua.capture import write_capture
-    from mua.capture.avatarrex import is_avatarrex, read_avatarrex
+    from mua.capture import open_capture, write_capture
 
-    if not is_avatarrex(source):
-        raise InputError(
-            f"{source}: its layout is not known; expected smpl_params.npz and calibration_full.json or calibration.json"
-        )
-    capture = read_avatarrex(
-        source, output, template=template, rate=rate, height=height, leave_out=tuple(leave_out or ())
-    )
+    capture = _described(source, template, output, motion, rate, height, tuple(leave_out or ()))
     written = write_capture(capture)
+    open_capture(output)  # which refuses what cannot be
     frames = sum(clip.frames for clip in capture.clips)
     say(printer(), f"{written}: {len(capture.cameras)} cameras, {frames} frames in {len(capture.clips)} clips")
 
@@ -94,6 +95,35 @@ def describe(
 def run() -> None:
     """Entry point of the command."""
     run_commands("Captures: pictures of a person by calibrated cameras.", check, describe)
+
+
+def _described(
+    source: Path,
+    template: Path,
+    folder: Path,
+    motion: Path | None,
+    rate: float | None,
+    height: float | None,
+    leave_out: tuple[str, ...],
+) -> "Capture":
+    """The capture that a folder of another layout is."""
+    from mua.capture.avatarrex import RATE, is_avatarrex, read_avatarrex
+    from mua.capture.streams import is_streams, read_streams
+
+    if is_avatarrex(source):
+        if motion is not None:
+            raise InputError(f"--motion {motion}: {source} has poses of its own; leave the option out")
+        return read_avatarrex(source, folder, template=template, rate=rate or RATE, height=height, leave_out=leave_out)
+    if not is_streams(source):
+        raise InputError(
+            f"{source}: its layout is not known; expected calibration_full.json or calibration.json with "
+            "smpl_params.npz, or videos stream*.mp4 with cameras.calib or a .calibration file"
+        )
+    if motion is None:
+        raise InputError(f"{source}: the poses of this layout (.motion) are not read; give the same with --motion")
+    require_file(motion)
+    found = read_streams(source, folder, template=template, motion=motion, height=height, leave_out=leave_out)
+    return replace(found, rate=rate or found.rate)
 
 
 def _require_picture(output: Path) -> None:
