@@ -1,6 +1,7 @@
 """At which level of detail avatars are shown: by the size of their texels on the screen, and by what all may cost.
 
-unity-package/Runtime/LevelChoice.cs chooses alike; tests/golden/level_choice.json holds both to it.
+unity-package/Runtime/LevelChoice.cs and web/level_choice.js choose alike; tests/golden/level_choice.json holds all to
+it.
 """
 
 from collections.abc import Sequence

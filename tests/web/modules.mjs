@@ -8,12 +8,13 @@ import { readFileSync } from "node:fs";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
-import { chooseLevel, coarserTexture, coarsest, texelLength, texelPixels, textureOf } from "../../python/mua/web/coarser.js";
+import { coarserTexture, coarsest, levelCounts, texelLength, textureOf } from "../../python/mua/web/coarser.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read, readStage } from "../../python/mua/web/format/read.js";
 import { Stages } from "../../python/mua/web/format/stages.js";
 import { expanded, half } from "../../python/mua/web/format/tensors.js";
+import { chooseLevels, texelPixels } from "../../python/mua/web/level_choice.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
@@ -57,6 +58,7 @@ function values(avatar, frames) {
     upsampling: [0, 1, 2, 3].map((levels) => upsamplingTaps(wavelet.recLo, levels)),
     halved: [1, 2].map((coarser) => upsamplingTaps(wavelet.recLo, 2, coarser)),
     coarsest: coarsest(avatar),
+    counts: levelCounts(avatar),
     length: texelLength(avatar, texels.texels.length),
     staticOffset: list(expanded(geometry.staticOffset)),
     surface: surface && Object.values(surfaceMesh(texels, surface)).map(list),
@@ -85,7 +87,7 @@ function views(box) {
   const state = { azimuth: 0.4, elevation: 0.2, fov: 0.6 };
   const { target, distance } = framing(box, state, [96, 128]);
   const camera = cameraOf({ ...state, target, distance }, [96, 128]);
-  return { target, distance, ...camera, texel: texelPixels(0.01, box, camera), seen: seen(camera) };
+  return { target, distance, ...camera, texel: texelPixels(0.01, box, camera).texel, seen: seen(camera) };
 }
 
 /** What a file that arrives in steps shows before all of it is there. */
@@ -118,7 +120,7 @@ if (what === "truncated") {
 }
 if (what === "values") say(values(await read(bytes(given[0])), given.slice(1).map(Number)));
 if (what === "levels") say(levels(await read(bytes(given[0]))));
-if (what === "choices") say(JSON.parse(given[0]).map(([texel, most, shown]) => chooseLevel(texel, most, shown)));
+if (what === "choices") say(JSON.parse(readFileSync(given[0])).map(({ avatars, budget }) => chooseLevels(avatars, budget)));
 if (what === "views") say(views(given.map(Number)));
 if (what === "halves") say(Array.from({ length: 0x7c00 }, (_, bits) => half(bits)));
 if (what === "numbers") say(given.map(Number).map((n) => [...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]), shortest(n)]));

@@ -190,6 +190,37 @@ def test_far_away_an_avatar_is_coarser_unless_its_surface_is_shown(opened: Open,
     assert page.evaluate(shown) == 32
 
 
+def test_a_budget_is_for_the_nearest(opened: Open, small: Path) -> None:
+    page, splats = opened(a=small.read_bytes(), b=small.read_bytes()), len(read(small).rig.texels.texels)
+    assert load(page) == load(page, '"b.muaavatar"') == ""
+    page.evaluate(
+        "Object.assign(player.avatars[0].place, [0, 0, -3]), player.level = 'auto', player.camera.distance = 2"
+    )
+
+    def shown(budget: object) -> object:
+        page.evaluate(f"(player.budget = {budget}, player.draw())")
+        return page.evaluate("player.entries.map((one) => one.slot.frame.shown.level.size)")
+
+    assert shown("null") == [32, 32]
+    assert shown(round(1.5 * splats)) == [16, 32]
+    assert shown(0) == [8, 8]
+
+
+def test_a_camera_that_follows_goes_along_the_ground_with_the_figure(opened: Open, small: Path) -> None:
+    page, avatar = opened(a=small.read_bytes()), read(small)
+    assert load(page) == ""
+    clip, skeleton = resample(avatar.clips[0], avatar.encoding.rate), avatar.rig.skeleton
+    roots = skeleton.world(clip.rotations[[0, 3]], clip.translations[[0, 3]])[1][:, skeleton.root]
+    moved = (roots[1] - roots[0]) * (1, 0, 1)
+    show(page, SPLATS, 3, avatar.encoding.rate)
+    before = np.array(page.evaluate("player.look.camera.target"))
+    page.evaluate("player.follow = true")
+    np.testing.assert_allclose(page.evaluate("player.look.camera.target"), before + moved, atol=1e-6)
+    assert np.linalg.norm(moved) > 1e-4
+    page.evaluate("player.frameAll()")  # on where the figure is now
+    np.testing.assert_allclose(page.evaluate("player.look.camera.target"), before + moved, atol=1e-6)
+
+
 def test_a_decode_that_is_spread_shows_what_one_at_once_shows(opened: Open, small: Path) -> None:
     page, rate = opened(a=small.read_bytes()), read(small).encoding.rate
     assert load(page) == ""

@@ -23,7 +23,7 @@ from mua.camera import orbit, perspective, sees
 from mua.coarser import at_level, coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
-from mua.level_choice import Seen, choose_level, texel_pixels
+from mua.level_choice import texel_pixels
 from mua.player.draw import view_projection
 from mua.player.overlays import ground_height, shadow_area
 from mua.player.surface import surface_mesh
@@ -183,6 +183,8 @@ def test_coarser_levels_are_those_of_python(tmp_path: Path, made: Any) -> None:
     write(path, made())
     avatar, [found] = read(path), node("levels", path)
     assert len(found) == coarsest(avatar) == 2
+    counts = [len(at_level(avatar, number).rig.texels.texels) for number in range(3)]
+    assert node("values", path, 0)[0]["counts"] == counts
     for number, level in enumerate(found, 1):
         expected = at_level(avatar, number)
         texels = expected.rig.texels
@@ -196,11 +198,9 @@ def test_coarser_levels_are_those_of_python(tmp_path: Path, made: Any) -> None:
         np.testing.assert_allclose(level["appearance"], expected.appearance.static.ravel(), rtol=ROUNDED, atol=ROUNDED)
 
 
-@pytest.mark.parametrize("texel", [2.0, 1.0, 0.51, 0.5, 0.55, 0.25, 0.27, 0.01])
-def test_the_level_is_chosen_as_in_python(texel: float) -> None:
-    asked = [(texel, most, shown) for most in range(3) for shown in range(most + 1)]
-    expected = [choose_level(Seen(1.0, texel, (16, 4, 1)[: most + 1], shown)) for texel, most, shown in asked]
-    assert node("choices", json.dumps(asked))[0] == expected
+def test_levels_are_chosen_as_everywhere() -> None:
+    table = GOLDEN / "level_choice.json"
+    assert node("choices", table)[0] == [case["levels"] for case in json.loads(table.read_text())]
 
 
 def test_cameras_are_those_of_python() -> None:

@@ -82,6 +82,25 @@ def test_attributes_say_what_is_shown_and_from_where(opened: Open) -> None:
     assert page.evaluate("[fake.camera.azimuth, fake.camera.elevation]") == pytest.approx([1.5708, -0.5236], abs=1e-4)
 
 
+def test_attributes_say_how_finely_avatars_are_shown_and_whether_the_camera_follows(opened: Open) -> None:
+    page = opened({"src": "hero.muaavatar", "level": "384", "budget": "200000", "follow": ""})
+    assert page.evaluate("[fake.level, fake.budget, fake.follow]") == [384, 200000, True]
+    page.evaluate(f"{ELEMENT}.setAttribute('level', 'full'), {ELEMENT}.removeAttribute('budget')")
+    assert page.evaluate("[fake.level, fake.budget]") == ["full", None]
+    page.evaluate(f"{ELEMENT}.setAttribute('level', 'none')")
+    assert page.evaluate("fake.level") == "auto"
+
+
+def test_the_panel_sets_the_level_of_detail_and_following(opened: Open) -> None:
+    page = opened()
+    level = part(".level")
+    assert page.evaluate(f"[...{level}.options].map((one) => one.value)") == ["auto", "full", "384", "192"]
+    page.evaluate(f"{level}.value = '192', {level}.dispatchEvent(new Event('change')), {part('.follow')}.click()")
+    assert page.evaluate("[fake.level, fake.follow]") == [192, False]
+    page.press("l", "f")
+    assert page.evaluate(f"[{level}.value, {part('.follow')}.checked]") == ["auto", True]
+
+
 def test_keys_do_what_they_do_on_the_desktop(opened: Open) -> None:
     page = opened()
     page.press(" ")
@@ -95,6 +114,8 @@ def test_keys_do_what_they_do_on_the_desktop(opened: Open) -> None:
     assert page.evaluate("[fake.clip, fake.time]") == ["wave", 0]
     page.press("4", "5")
     assert page.evaluate("[fake.show.skeleton, fake.show.shadow]") == [True, False]
+    page.press("f", "l", "l", "l")
+    assert page.evaluate("[fake.follow, fake.level]") == [False, 192]
 
 
 def test_every_key_of_the_desktop_is_here_or_known_not_to_be() -> None:
@@ -103,7 +124,7 @@ def test_every_key_of_the_desktop_is_here_or_known_not_to_be() -> None:
     text = (Path(__file__).parents[2] / "python" / "mua" / "web" / "keys.js").read_text()
     here = {key for key in KEYS if f"\n  {key}: [" in text or f'\n  "{key}": [' in text}
     numbers = {str(i) for i in range(1, 6)}
-    assert set(KEYS) - here - numbers == {"s", "f", "l"}  # stereo, following and the level of detail by hand
+    assert set(KEYS) - here - numbers == {"s"}  # stereo
 
 
 def test_a_control_that_has_the_focus_keeps_its_keys(opened: Open) -> None:

@@ -1,5 +1,5 @@
-// Coarser levels of an avatar's texture: every 2 x 2 texels become one, again and again; and at which of them an avatar is
-// shown. References: python/mua/coarser.py, python/mua/level_choice.py, section 9 of schemas/README.md.
+// Coarser levels of an avatar's texture: every 2 x 2 texels become one, again and again. References: python/mua/coarser.py,
+// section 9 of schemas/README.md.
 
 import { expanded } from "./format/tensors.js";
 import { isOneSided } from "./prepare.js";
@@ -14,8 +14,6 @@ const MOST_TAPS = 32; // of a wavelet that has coarser levels
 const REACH = 6; // texels: what lies farther apart in space belongs to other surfaces
 const GROWTH = 1.85; // of the standard deviations where one splat stands for four
 const TURN = 1; // between quaternions: what is turned farther has no part in a mean rotation
-const LARGEST_TEXEL = 0.7; // pixels along a side, up to which a texel is hardly told from a smaller one
-const HYSTERESIS = 1.15; // times: texels must look so much larger before a finer level comes back
 
 /** The coarsest level that an avatar has, 0 where it has but one. */
 export function coarsest(/** @type {Avatar} */ { wavelet, geometry, appearance }) {
@@ -23,18 +21,20 @@ export function coarsest(/** @type {Avatar} */ { wavelet, geometry, appearance }
   return wavelet.recLo.length > MOST_TAPS ? 0 : Math.min(STATIC_LEVELS, wavelet.levels - details);
 }
 
-/** The coarsest level with texels up to LARGEST_TEXEL pixels; one that is shown stays until they are a little larger. */
-export function chooseLevel(/** @type {number} */ texel, /** @type {number} */ most, /** @type {number} */ shown) {
-  let level = 0;
-  for (let coarser = 1; coarser <= most; coarser++)
-    if (texel * 2 ** coarser <= LARGEST_TEXEL * (coarser <= shown ? HYSTERESIS : 1)) level = coarser;
-  return level;
-}
-
-/** Pixels along a side of a texel of so many metres at the point of a box that is nearest to the camera. @param {number} length @param {number[]} box @param {import("./camera.js").Camera} camera */
-export function texelPixels(length, box, { position, projection, screen, near }) {
-  const apart = position.map((at, axis) => Math.max(box[axis] - at, at - box[3 + axis], 0));
-  return (length * projection[5] * screen[1]) / 2 / Math.max(Math.hypot(...apart), near);
+/** Splats of each level, the finest first. @returns {number[]} */
+export function levelCounts(/** @type {Avatar} */ avatar) {
+  let { size, texels } = avatar.texels;
+  const counts = [texels.length];
+  for (let level = 0; level < coarsest(avatar); level++, size /= 2) {
+    const blocks = new Uint8Array((size / 2) ** 2);
+    for (const texel of texels) blocks[blockOf(texel, size)] = 1;
+    texels = new Int32Array(texels.length);
+    let count = 0;
+    blocks.forEach((there, block) => there && (texels[count++] = block));
+    texels = texels.subarray(0, count);
+    counts.push(count);
+  }
+  return counts;
 }
 
 /** The side of one of `count` texels on the surface, metres: of all of the template in equal parts. */

@@ -26,6 +26,8 @@ export class Controls {
     this.speed = /** @type {HTMLSelectElement} */ (find(".speed"));
     this.settings = find(".settings");
     this.whole = find(".whole");
+    this.follow = /** @type {HTMLInputElement} */ (find(".follow"));
+    this.level = /** @type {HTMLSelectElement} */ (find(".level"));
     this.avatars = find(".avatars");
     this.times = /** @type {HTMLDetailsElement} */ (find(".times"));
     this.rate = find(".rate");
@@ -37,7 +39,7 @@ export class Controls {
     this.again = find(".again");
     this.close = find(".close");
     this.file = /** @type {HTMLInputElement} */ (find(".file"));
-    this.toggles = /** @type {HTMLInputElement[]} */ ([...root.querySelectorAll("[type=checkbox]")]);
+    this.toggles = /** @type {HTMLInputElement[]} */ ([...root.querySelectorAll("[type=checkbox][name]")]);
     this.pictures = 0; // since the times were last shown
     this.looked = performance.now();
     this.listen(find);
@@ -51,6 +53,8 @@ export class Controls {
     on(this.scrub, "input", () => avatar.seek(Number(this.scrub.value)));
     on(this.clips, "change", () => (avatar.clip = this.clips.value));
     on(this.speed, "change", () => (avatar.speed = Number(this.speed.value)));
+    on(this.follow, "change", () => avatar.toggleFollow());
+    on(this.level, "change", () => (avatar.level = levelNamed(this.level.value)));
     on(this.settings, "click", () => this.openPanel(Boolean(this.panel.hidden)));
     on(find(".picture"), "click", () => void avatar.savePicture());
     on(this.whole, "click", () => void avatar.toggleFullscreen());
@@ -118,6 +122,8 @@ export class Controls {
     this.speed.value = String(player.speed);
     for (const box of this.toggles) box.checked = player.show[/** @type {keyof typeof SHOWN} */ (box.name)];
     this.list(this.clips, player.clips.map(({ name }) => name), player.clip);
+    this.follow.checked = player.follow;
+    this.list(this.level, avatar.levels.map(String), String(player.level));
     this.listAvatars();
     this.tick();
   }
@@ -174,6 +180,11 @@ export class Controls {
     this.stages.hidden = !times.length;
     this.adapter.textContent = (times.length ? "" : "This device keeps no time. ") + player.adapter;
   }
+}
+
+/** What a player is asked for by a name in the panel or an attribute: by the distance, the finest, or texels along a side. @returns {import("./player.js").Level} */
+export function levelNamed(/** @type {string | null} */ name) {
+  return name === "full" ? "full" : Number(name) || "auto";
 }
 
 function line(/** @type {string[]} */ ...cells) {

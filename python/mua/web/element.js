@@ -7,13 +7,16 @@
 //   poster      picture until the avatar is drawn
 //   speed       playback speed; 1 plays at the recorded speed
 //   show        what is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow
+//   level       of detail: auto (by the distance, if left out), full, or texels along a side of the texture
+//   budget      most splats of all avatars together where level is auto
+//   follow      lets the camera go with the figure
 //   azimuth     degrees that the camera stands round the figure, towards its left; 0 is its front
 //   elevation   degrees above the horizon
 //   orbit       degrees per second by which the camera goes round while it plays, unless less motion is wanted
 //
 // Events: `load` when an avatar is shown, `error` with the error in `detail`, `picture` when the first one is drawn.
 
-import { Controls } from "./controls.js";
+import { Controls, levelNamed } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
 import { pressed, SHOWN } from "./keys.js";
@@ -34,7 +37,7 @@ const FIRST = { splats: true, geometry: false, mesh: false, skeleton: false, sha
 const HTMLElementOrNone = /** @type {typeof HTMLElement} */ (globalThis.HTMLElement ?? class {});
 
 export class MuaAvatar extends HTMLElementOrNone {
-  static observedAttributes = ["src", "clip", "controls", "poster", "speed", "show", "azimuth", "elevation"];
+  static observedAttributes = ["src", "clip", "controls", "poster", "speed", "show", "level", "budget", "follow", "azimuth", "elevation"];
 
   /** @type {Player | null} what draws; null until an avatar is asked for */
   player = null;
@@ -119,6 +122,33 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   set speed(speed) {
     if (this.player) this.player.speed = speed;
+    this.#redraw();
+  }
+
+  /** The level of detail that is asked for. @returns {import("./player.js").Level} */
+  get level() {
+    return this.player?.level ?? levelNamed(this.getAttribute("level"));
+  }
+
+  set level(level) {
+    if (this.player) this.player.level = level;
+    this.#redraw();
+  }
+
+  /** All that may be asked for: by the distance, the finest, and the sizes of the first avatar, texels along a side. */
+  get levels() {
+    return /** @type {import("./player.js").Level[]} */ (["auto", "full", ...(this.avatars[0]?.levels.slice(1) ?? [])]);
+  }
+
+  /** The next coarser level of detail; after the coarsest, by the distance again. */
+  nextLevel() {
+    const at = this.levels.indexOf(this.level);
+    this.level = this.levels[(at + 1) % this.levels.length];
+  }
+
+  /** Let the camera go with the figure, or stay. */
+  toggleFollow() {
+    if (this.player) this.player.follow = !this.player.follow;
     this.#redraw();
   }
 
@@ -294,7 +324,7 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */
   async #show(/** @type {boolean} */ first) {
-    for (const name of first ? ["clip", "speed", "show"] : ["clip"]) this.#adopt(name);
+    for (const name of first ? ["clip", "speed", "show", "level", "budget", "follow"] : ["clip"]) this.#adopt(name);
     if (first) this.#arrange();
     this.#fit(); // the bar has taken its place
     await this.#loop.draw();
@@ -353,6 +383,9 @@ export class MuaAvatar extends HTMLElementOrNone {
     const value = this.getAttribute(name);
     if (name === "clip" && value && player.clips.some((clip) => clip.name === value)) player.clip = value;
     if (name === "speed") player.speed = this.#number("speed", 1);
+    if (name === "level") player.level = levelNamed(value);
+    if (name === "budget") player.budget = value === null ? null : this.#number("budget", Infinity);
+    if (name === "follow") player.follow = value !== null;
     if (name === "show" && value !== null) {
       const shown = value.split(",").map((word) => word.trim());
       for (const each of /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN))) player.show[each] = shown.includes(each);

@@ -4,6 +4,7 @@ import { Arrival } from "./arrival.js";
 import { framing, FOV } from "./camera.js";
 import { framesAt, sample } from "./clip.js";
 import { AvatarError } from "./error.js";
+import { sizesOf } from "./levels.js";
 import { load } from "./load.js";
 import { groundHeight } from "./overlays.js";
 import { Renderer } from "./renderer.js";
@@ -41,6 +42,9 @@ export class Engine {
     this.show = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true };
     /** @type {import("./player.js").Level} */
     this.level = "auto";
+    /** @type {number | null} */
+    this.budget = null;
+    this.follow = false;
     this.playing = true;
     this.speed = 1;
     this.frameStep = 0; // seconds of the clip from one picture to the next, as it plays
@@ -187,6 +191,27 @@ export class Engine {
     if (!boxes.length) return;
     const box = [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
     Object.assign(this.camera, framing(box, this.camera, this.screen));
+    const followed = this.followed();
+    this.camera.target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at - followed[i]));
+  }
+
+  /** How far the camera has gone with the first avatar since its clip began, metres; along the ground. */
+  followed() {
+    const [first] = this.entries;
+    const clip = first && this.clipOf(first.avatar);
+    if (!this.follow || !clip) return [0, 0, 0];
+    const { skeleton, encoding } = first.avatar;
+    const [now, start] = [this.frameOf(first.avatar, clip), 0].map((frame) =>
+      world(skeleton, sample(skeleton, clip, frame, encoding.rate)).places.subarray(3 * skeleton.root),
+    );
+    return [now[0] - start[0], 0, now[2] - start[2]];
+  }
+
+  /** @returns {import("./renderer.js").Look} */
+  get look() {
+    const followed = this.followed();
+    const target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at + followed[i]));
+    return { camera: { ...this.camera, target }, show: this.show, level: this.level, budget: this.budget };
   }
 
   /** @returns {[number, number]} */
@@ -240,12 +265,12 @@ export class Engine {
   }
 
   drawNow() {
-    if (this.renderer && this.canvas.width && this.canvas.height) this.renderer.draw(this.posed(), this);
+    if (this.renderer && this.canvas.width && this.canvas.height) this.renderer.draw(this.posed(), this.look);
   }
 
   async screenshot() {
     if (!this.renderer) throw new AvatarError(AWAY);
-    return this.renderer.picture(this.posed(), this);
+    return this.renderer.picture(this.posed(), this.look);
   }
 
   start() {
@@ -271,7 +296,7 @@ export class Engine {
       const clip = this.clipOf(avatar);
       return [handle.name, clip?.name, clip && this.frameOf(avatar, clip), handle.place];
     });
-    const wanted = JSON.stringify([this.camera, this.show, this.level, this.screen, frames]);
+    const wanted = JSON.stringify([this.look, this.screen, frames]);
     if (!this.renderer) return;
     try {
       if (wanted !== this.drawn) this.drawNow();
@@ -298,7 +323,7 @@ function described(/** @type {Avatar} */ avatar) {
   const [low, high] = [avatar.bounds.slice(0, 3), avatar.bounds.slice(3)].map((corner) => Array.from(corner));
   const bounds = /** @type {import("./player.js").Box} */ ([low, high]);
   const { name, notes, texels } = avatar;
-  return { name, notes, clips: clipsOf(avatar), bounds, splats: texels.texels.length };
+  return { name, notes, clips: clipsOf(avatar), bounds, splats: texels.texels.length, levels: sizesOf(avatar) };
 }
 
 /** @returns {ClipInfo[]} */

@@ -25,6 +25,8 @@ export const KEYS = {
     ]),
   ),
   a: ["a", "look at the next avatar", (avatar) => avatar.lookAtNext()],
+  f: ["f", "follow", (avatar) => avatar.toggleFollow()],
+  l: ["l", "next level of detail", (avatar) => avatar.nextLevel()],
   c: ["c", "next clip", (avatar) => avatar.nextClip()],
   r: ["r", "reset the view", (avatar) => avatar.resetView()],
   t: ["t", "show the times", (avatar) => avatar.toggleTimes()],

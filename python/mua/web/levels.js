@@ -1,32 +1,45 @@
-// The level of detail at which a player shows an avatar: the one that was asked for, or that its distance asks for.
+// The levels of detail at which a player shows avatars: the one that was asked for, or those that their distances ask for.
 // Reference: python/mua/player/levels.py.
 
-import { chooseLevel, coarsest, texelLength, texelPixels } from "./coarser.js";
+import { coarsest, levelCounts, texelLength } from "./coarser.js";
+import { chooseLevels, texelPixels } from "./level_choice.js";
 import { world } from "./skeleton.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
+/** @typedef {{levels: Levels, pose: import("./skeleton.js").Pose, place: number[]}} Standing an avatar where it is to be drawn */
+
+/** The sizes of an avatar's levels, texels along a side, the finest first. */
+export const sizesOf = (/** @type {Avatar} */ avatar) =>
+  Array.from({ length: coarsest(avatar) + 1 }, (_, level) => avatar.texels.size / 2 ** level);
 
 /** Of one avatar, from picture to picture. */
 export class Levels {
   constructor(/** @type {Avatar} */ avatar) {
     this.avatar = avatar;
-    this.sizes = Array.from({ length: coarsest(avatar) + 1 }, (_, level) => avatar.texels.size / 2 ** level);
+    this.sizes = sizesOf(avatar);
+    this.counts = levelCounts(avatar);
     this.length = texelLength(avatar, avatar.texels.texels.length);
     this.shown = 0;
   }
 
-  /**
-   * The level for the next picture, 0 being the finest.
-   * @param {import("./player.js").Level} wanted @param {import("./skeleton.js").Pose} pose @param {number[]} place
-   * @param {import("./camera.js").Camera} camera
-   */
-  choose(wanted, pose, place, camera) {
-    if (wanted === "auto") {
-      const { skeleton, bounds } = this.avatar;
-      const root = world(skeleton, pose).places.subarray(3 * skeleton.root);
-      const box = Array.from(bounds, (value, i) => value + root[i % 3] + place[i % 3]);
-      this.shown = chooseLevel(texelPixels(this.length, box, camera), this.sizes.length - 1, this.shown);
-    } else this.shown = typeof wanted === "number" ? Math.max(this.sizes.indexOf(wanted), 0) : 0;
-    return this.shown;
+  /** What a camera sees of it. @param {import("./skeleton.js").Pose} pose @param {number[]} place @param {import("./camera.js").Camera} camera */
+  seen(pose, place, camera) {
+    const { skeleton, bounds } = this.avatar;
+    const root = world(skeleton, pose).places.subarray(3 * skeleton.root);
+    const box = Array.from(bounds, (value, i) => value + root[i % 3] + place[i % 3]);
+    return { ...texelPixels(this.length, box, camera), counts: this.counts, shown: this.shown };
   }
+}
+
+/**
+ * The level of each for the next picture, 0 being the finest. @param {Standing[]} standing
+ * @param {{level: import("./player.js").Level, budget: number | null}} wanted @param {import("./camera.js").Camera} camera
+ */
+export function levelsOf(standing, { level, budget }, camera) {
+  const chosen =
+    level === "auto"
+      ? chooseLevels(standing.map(({ levels, pose, place }) => levels.seen(pose, place, camera)), budget)
+      : standing.map(({ levels }) => (typeof level === "number" ? Math.max(levels.sizes.indexOf(level), 0) : 0));
+  standing.forEach(({ levels }, i) => (levels.shown = chosen[i]));
+  return chosen;
 }

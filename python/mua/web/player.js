@@ -40,6 +40,7 @@ export { AvatarError };
  * @property {ClipInfo[]} clips
  * @property {Box} bounds about its root joint over all its clips
  * @property {number} splats none while only its mesh is there
+ * @property {number[]} levels of detail: texels along a side of the texture, the finest first
  * @property {boolean} whole false while only a part of its file is there, whose checksum nobody knows yet
  * @property {[number, number, number]} place where it stands, world, metres; may be set
  * @property {() => void} remove gives its memory back; may be called twice
@@ -71,6 +72,8 @@ export { AvatarError };
  * @property {() => void} frameAll puts the camera where all avatars are in the picture
  * @property {Show} show may be changed in place
  * @property {Level} level of detail; "auto" by default
+ * @property {number | null} budget splats of all avatars together where the level is "auto", for the nearest first; null: no limit
+ * @property {boolean} follow whether the camera goes with the first avatar along the ground; not by default
  * @property {() => Promise<void>} draw one picture now, at the canvas' size; resolves when it is drawn
  * @property {() => void} start draws a picture for every frame of the display
  * @property {() => void} stop

@@ -9,7 +9,7 @@ import { Device, Memory } from "./device.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
 import { kernelsOf } from "./kernel.js";
-import { Levels } from "./levels.js";
+import { Levels, levelsOf } from "./levels.js";
 import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
@@ -22,7 +22,7 @@ import { BlendVertices } from "./wgsl/dq_skinning.js";
 /** @typedef {import("./format/read.js").Clip} Clip */
 /** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, place: string}} Slot an avatar on the device */
 /** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, place: number[], ground: number}} Posed what a picture shows of one */
-/** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show, level: import("./player.js").Level}} Look */
+/** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null}} Look */
 
 export class Renderer {
   /** @returns {Promise<Renderer>} */
@@ -163,12 +163,14 @@ export class Renderer {
   /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUCommandEncoder} encoder @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera} camera */
   pose(encoder, posed, look, camera) {
     const pass = encoder.beginComputePass({ label: "decode", timestampWrites: this.timing.of("decode") });
-    for (const one of posed) {
-      const { schedule, levels, frame, overlays, place } = one.slot;
-      const window = windowOf(one);
-      const [pose] = window({ clip: one.clip.name, frame: one.frame });
-      const level = look.show.geometry ? 0 : levels.choose(look.level, pose, one.place, camera);
-      const changed = schedule.record(pass, asked(one, level), window);
+    const windows = posed.map(windowOf);
+    const poses = posed.map((one, i) => windows[i]({ clip: one.clip.name, frame: one.frame })[0]);
+    const standing = posed.map(({ slot, place }, i) => ({ levels: slot.levels, pose: poses[i], place }));
+    const levels = look.show.geometry ? posed.map(() => 0) : levelsOf(standing, look, camera);
+    for (const [i, one] of posed.entries()) {
+      const { schedule, frame, overlays, place } = one.slot;
+      const pose = poses[i];
+      const changed = schedule.record(pass, asked(one, levels[i]), windows[i]);
       one.slot.place = one.place.join();
       if (!changed && one.slot.place === place) continue;
       frame.repose(pass, pose, one.place);

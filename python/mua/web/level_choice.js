@@ -1,0 +1,52 @@
+// At which level of detail avatars are shown: by the size of their texels on the screen, and by what all may cost. Reference:
+// python/mua/level_choice.py; tests/golden/level_choice.json holds both to it.
+
+/**
+ * @typedef {object} Seen an avatar before the eyes
+ * @property {number} distance metres
+ * @property {number} texel pixels along a side of a texel of its finest level
+ * @property {number[]} counts splats by level, the finest first
+ * @property {number} shown level at present
+ */
+
+const LARGEST_TEXEL = 0.7; // pixels along a side, up to which a texel is hardly told from a smaller one
+const HYSTERESIS = 1.15; // times: texels must look so much larger before a finer level comes back
+
+/** Metres of a box from the camera, and pixels along a side of a texel of so many metres at its nearest point. @param {number} length @param {number[]} box @param {import("./camera.js").Camera} camera */
+export function texelPixels(length, box, { position, projection, screen, near }) {
+  const apart = position.map((at, axis) => Math.max(box[axis] - at, at - box[3 + axis], 0));
+  const distance = Math.hypot(...apart);
+  return { distance, texel: (length * projection[5] * screen[1]) / 2 / Math.max(distance, near) };
+}
+
+/** The coarsest level with texels up to LARGEST_TEXEL pixels; one that is shown stays until they are a little larger. @param {Seen} seen */
+export function chooseLevel({ texel, counts, shown }) {
+  let level = 0;
+  for (let coarser = 1; coarser < counts.length; coarser++)
+    if (texel * 2 ** coarser <= LARGEST_TEXEL * (coarser <= shown ? HYSTERESIS : 1)) level = coarser;
+  return level;
+}
+
+/**
+ * A level for each, no finer than it is worth: the nearest first has what it is worth, as far as the budget goes. Every other
+ * one is kept the splats of its coarsest level; where not even these fit, all are at their coarsest. Of two that are about as
+ * near, the one that is shown finer now counts as nearer, so that they do not swap to and fro.
+ * @param {Seen[]} avatars @param {number | null} budget splats of all together @returns {number[]}
+ */
+export function chooseLevels(avatars, budget) {
+  const worth = avatars.map(chooseLevel);
+  if (budget === null) return worth;
+  const levels = avatars.map(({ counts }) => counts.length - 1);
+  const least = (/** @type {number} */ i) => avatars[i].counts[levels[i]];
+  let spare = budget - avatars.reduce((sum, _, i) => sum + least(i), 0);
+  const rank = avatars.map(({ distance, shown }) => distance * HYSTERESIS ** shown);
+  for (const i of avatars.map((_, i) => i).toSorted((a, b) => rank[a] - rank[b])) {
+    const { counts } = avatars[i];
+    const more = counts.map((count) => count - least(i));
+    const level = counts.findIndex((_, level) => level >= worth[i] && more[level] <= spare);
+    if (level < 0) continue;
+    levels[i] = level;
+    spare -= more[level];
+  }
+  return levels;
+}
