@@ -1,36 +1,50 @@
-// Exclusive prefix sum over the 256 threads of a group (Hillis and Steele 1986, https://doi.org/10.1145/7902.7903).
-// A file that scans another type than uint defines SCAN_TYPE before it includes this one.
+// Exclusive prefix sum over the threads of a group: rows of 16 first, then the rows' sums. Three barriers, since they
+// cost more than the sums of the few threads between them.
 
 #ifndef MUA_SCAN_HLSL
 #define MUA_SCAN_HLSL
 
-#ifndef SCAN_TYPE
-#define SCAN_TYPE uint
-#endif
-
 #define SCAN_THREADS 256
+#define SCAN_ROW 16
+#define SCAN_ROWS (SCAN_THREADS / SCAN_ROW)
 
-groupshared SCAN_TYPE scanned[SCAN_THREADS];
+groupshared uint scanned[SCAN_THREADS + SCAN_ROWS]; // a word between rows, so that they lie in different banks
+groupshared uint rowStarts[SCAN_ROWS + 1]; // and the sum of all
 
 // The sum of the values of the threads below this one, and of all; every thread of the group must call it.
-SCAN_TYPE exclusiveScan(uint thread, SCAN_TYPE value, out SCAN_TYPE total)
+uint exclusiveScan(uint thread, uint value, out uint total)
 {
-    scanned[thread] = value;
+    uint row = thread / SCAN_ROW;
+    scanned[thread + row] = value;
     GroupMemoryBarrierWithGroupSync();
-    [unroll]
-    for (uint reach = 1; reach < SCAN_THREADS; reach *= 2)
+    uint steps = thread < SCAN_ROWS ? SCAN_ROW : 0; // known at run time alone, so that the others' loop is skipped
+    uint sum = 0;
+    uint i;
+    [loop]
+    for (i = 0; i < steps; i++)
     {
-        SCAN_TYPE sum = scanned[thread];
-        if (thread >= reach)
-            sum += scanned[thread - reach];
-        GroupMemoryBarrierWithGroupSync();
-        scanned[thread] = sum;
-        GroupMemoryBarrierWithGroupSync();
+        uint place = (SCAN_ROW + 1) * thread + i;
+        uint next = scanned[place];
+        scanned[place] = sum;
+        sum += next;
     }
-    total = scanned[SCAN_THREADS - 1];
-    SCAN_TYPE before = scanned[thread] - value;
-    GroupMemoryBarrierWithGroupSync(); // a second scan may overwrite
-    return before;
+    if (thread < SCAN_ROWS)
+        rowStarts[thread] = sum;
+    GroupMemoryBarrierWithGroupSync();
+    steps = thread == 0 ? SCAN_ROWS : 0;
+    sum = 0;
+    [loop]
+    for (i = 0; i < steps; i++)
+    {
+        uint next = rowStarts[i];
+        rowStarts[i] = sum;
+        sum += next;
+    }
+    if (thread == 0)
+        rowStarts[SCAN_ROWS] = sum;
+    GroupMemoryBarrierWithGroupSync(); // a next scan writes only what its own thread reads from here on, up to its first
+    total = rowStarts[SCAN_ROWS];
+    return scanned[thread + row] + rowStarts[row];
 }
 
 #endif

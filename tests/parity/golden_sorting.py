@@ -154,7 +154,7 @@ def _sort_pass(
             (Expected("digit_counts", "uint", counts),),
         ),
         Case(
-            *(name, "ScanDigits", (256, 1, 1), constants),
+            *(name, "ScanDigits", (16, 1, 1), constants),
             {"arguments": given, "digit_counts": counts, "digit_totals": np.full(256, UNWRITTEN)},
             (
                 Expected("digit_counts", "uint", before),

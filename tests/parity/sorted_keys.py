@@ -9,6 +9,7 @@ from mua.kernels.splat_sort import DIGIT_BITS
 
 BLOCK = 2048  # keys that one group takes
 DIGITS = 1 << DIGIT_BITS
+SCANNED = 16  # digits of a group of ScanDigits
 INSTANCES = 3
 UNWRITTEN = 0xFFFFFFFF
 
@@ -33,7 +34,7 @@ def sort_keys(
         count_digits = device.kernel("splat_sort.compute", "CountDigits")
         commands.dispatch(count_digits, (groups, 1, 1), {"keys": source, **table}, **constants)
         scan = device.kernel("splat_sort.compute", "ScanDigits")
-        commands.dispatch(scan, (DIGITS, 1, 1), {"digit_totals": totals, **table}, **constants)
+        commands.dispatch(scan, (DIGITS // SCANNED, 1, 1), {"digit_totals": totals, **table}, **constants)
         scatter = device.kernel("splat_sort.compute", "ScatterDigits")
         moved = {"keys": source, "digit_totals": totals, **table, "sorted": target}
         commands.dispatch(scatter, (groups, 1, 1), moved, **constants, instances=INSTANCES)

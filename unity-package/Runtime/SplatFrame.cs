@@ -14,7 +14,7 @@ namespace Mua
     {
         private const int ArgumentWords = 5;
         private const int SplatWords = 8;
-        private const long MostSplats = 1 << 24; // that the elements of the sort can tell apart
+        private const long MostSplats = (1 << 24) - 1; // that the elements of the sort can tell apart, and from none
 
         private readonly SplatProject splatProject;
         private readonly SplatSort splatSort;

@@ -19,10 +19,11 @@ from mua.player.draw import SortedSplats
 from mua.rig.bounds import union
 
 EYES = 2  # at most
-MOST_SPLATS = 1 << 24  # that the elements of the sort can tell apart
+MOST_SPLATS = (1 << 24) - 1  # that the elements of the sort can tell apart, and from none
 PROJECTED = 256  # texels of a group of SplatProject
 SORTED = 2048  # keys of a group of the sort
 DIGITS = 256  # values of 8 bits
+SCANNED = 16  # digits of a group of ScanDigits
 ARGUMENTS = 5  # words: of the draw, and how many splats some eye sees
 
 
@@ -158,7 +159,7 @@ class SplatFrame(Generic[P]):
         totals = {**counts, "digit_totals": self.digit_totals}
         constants = {"second_pass": second_pass, "key_count": self.sorted_count}
         commands.dispatch(self._count_digits, blocks, {"keys": keys, **counts}, **constants)
-        commands.dispatch(self._scan_digits, (DIGITS, 1, 1), totals, **constants)
+        commands.dispatch(self._scan_digits, (DIGITS // SCANNED, 1, 1), totals, **constants)
         moved = {"keys": keys, **totals, "sorted": sorted}
         commands.dispatch(self._scatter_digits, blocks, moved, **constants, instances=1)
 

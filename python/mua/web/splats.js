@@ -11,11 +11,12 @@ import { CountDigits, ScanDigits, ScatterDigits } from "./wgsl/splat_sort.js";
 /** @typedef {import("./frame.js").AvatarFrame} AvatarFrame */
 /** @typedef {import("./camera.js").Camera} Camera */
 
-const MOST_SPLATS = 1 << 24; // that the elements of the sort can tell apart
+const MOST_SPLATS = (1 << 24) - 1; // that the elements of the sort can tell apart, and from none
 const SPLAT_WORDS = 8;
 const PROJECTED = 256; // texels of a group of SplatProject
 const SORTED = 2048; // keys of a group of the sort
 const DIGITS = 256; // values of 8 bits
+const SCANNED = 16; // digits of a group of ScanDigits
 const ARGUMENTS = 5; // words: of the draw, and how many splats are seen
 export const KERNELS = { ScatterDigits, SplatProject, CountDigits, ScanDigits };
 
@@ -121,7 +122,7 @@ export class SplatFrame {
     const totals = { ...counts, digit_totals: this.digitTotals };
     const constants = { second_pass, key_count: count, instances: 1 };
     this.kernels.CountDigits.dispatch(pass, blocks, { keys, ...counts }, constants);
-    this.kernels.ScanDigits.dispatch(pass, [DIGITS, 1, 1], totals, constants);
+    this.kernels.ScanDigits.dispatch(pass, [DIGITS / SCANNED, 1, 1], totals, constants);
     this.kernels.ScatterDigits.dispatch(pass, blocks, { keys, ...totals, sorted }, constants);
   }
 }

@@ -12,6 +12,9 @@ namespace Mua
         /// <summary>Values of a digit of 8 bits.</summary>
         public const int Digits = 256;
 
+        /// <summary>Digits of a group of ScanDigits.</summary>
+        private const int Scanned = 16;
+
         private const string File = "splat_sort.compute";
 
         private static readonly int Keys = Shader.PropertyToID("keys");
@@ -51,7 +54,7 @@ namespace Mua
             scanDigits.Set(commands, DigitTotals, frame.DigitTotals);
             scanDigits.Set(commands, SecondPass, secondPass);
             scanDigits.Set(commands, KeyCount, frame.SplatCount);
-            scanDigits.Dispatch(commands, Digits, 1, 1);
+            scanDigits.Dispatch(commands, Digits / Scanned, 1, 1);
         }
 
         /// <summary>The first pass also writes the arguments of a draw of `instances`.</summary>

@@ -31,28 +31,91 @@ fn elementCount_0() -> u32
     return _S1;
 }
 
-var<workgroup> histogram_0 : array<atomic<u32>, i32(256)>;
-
-fn keyOf_0( element_0 : u32,  count_0 : u32) -> u32
+fn wordOf_0( key_0 : u32,  place_0 : u32) -> u32
 {
-    var key_0 : u32;
-    if(element_0 < count_0)
+    var _S2 : u32;
+    if(key_0 == u32(65535))
     {
-        if((Constants_0.second_pass_0) != u32(0))
+        _S2 = u32(4294967295);
+    }
+    else
+    {
+        _S2 = (((((((key_0 & (u32(255)))) << (u32(24)))) | (((((key_0 >> (u32(8)))) << (u32(11))))))) | (place_0));
+    }
+    return _S2;
+}
+
+fn loadWords_0( thread_0 : u32,  block_0 : u32,  mine_0 : ptr<function, array<u32, i32(8)>>)
+{
+    var _S3 : u32 = elementCount_0();
+    var _S4 : u32 = u32(8) * thread_0;
+    var i_0 : u32;
+    var pair_0 : u32;
+    if((Constants_0.second_pass_0) != u32(0))
+    {
+        i_0 = u32(0);
+        for(;;)
         {
-            key_0 = (keys_0[element_0] >> (u32(24)));
-        }
-        else
-        {
-            key_0 = (((keys_0[element_0 / u32(2)] >> ((u32(16) * ((element_0 & (u32(1)))))))) & (u32(65535)));
+            if(i_0 < u32(8))
+            {
+            }
+            else
+            {
+                break;
+            }
+            var _S5 : u32 = block_0 + _S4 + i_0;
+            if(_S5 < _S3)
+            {
+                pair_0 = keys_0[_S5];
+            }
+            else
+            {
+                pair_0 = u32(4294967295);
+            }
+            (*mine_0)[i_0] = pair_0;
+            i_0 = i_0 + u32(1);
         }
     }
     else
     {
-        key_0 = u32(65535);
+        i_0 = u32(0);
+        for(;;)
+        {
+            if(i_0 < u32(8))
+            {
+            }
+            else
+            {
+                break;
+            }
+            var element_0 : u32 = block_0 + _S4 + i_0;
+            if(element_0 < _S3)
+            {
+                pair_0 = keys_0[element_0 / u32(2)];
+            }
+            else
+            {
+                pair_0 = u32(4294967295);
+            }
+            var _S6 : u32 = _S4 + i_0;
+            (*mine_0)[i_0] = wordOf_0((pair_0 & (u32(65535))), _S6);
+            var _S7 : u32;
+            if((element_0 + u32(1)) < _S3)
+            {
+                _S7 = (pair_0 >> (u32(16)));
+            }
+            else
+            {
+                _S7 = u32(65535);
+            }
+            (*mine_0)[i_0 + u32(1)] = wordOf_0(_S7, _S6 + u32(1));
+            i_0 = i_0 + u32(2);
+        }
     }
-    return key_0;
+    return;
 }
+
+var<workgroup> histogram_0 : array<atomic<u32>, i32(256)>;
 
 fn groupCount_0() -> u32
 {
@@ -61,34 +124,34 @@ fn groupCount_0() -> u32
 
 @compute
 @workgroup_size(256, 1, 1)
-fn CountDigits(@builtin(local_invocation_index) thread_0 : u32, @builtin(workgroup_id) group_0 : vec3<u32>)
+fn CountDigits(@builtin(local_invocation_index) thread_1 : u32, @builtin(workgroup_id) group_0 : vec3<u32>)
 {
-    var _S2 : u32 = elementCount_0();
-    atomicStore(&(histogram_0[thread_0]), u32(0));
+    var _S8 : u32 = group_0.x;
+    var mine_1 : array<u32, i32(8)>;
+    loadWords_0(thread_1, _S8 * u32(2048), &(mine_1));
+    atomicStore(&(histogram_0[thread_1]), u32(0));
     workgroupBarrier();
-    var i_0 : u32 = u32(0);
+    var i_1 : u32 = u32(0);
     for(;;)
     {
-        if(i_0 < u32(8))
+        if(i_1 < u32(8))
         {
         }
         else
         {
             break;
         }
-        var key_1 : u32 = keyOf_0(group_0.x * u32(2048) + u32(8) * thread_0 + i_0, _S2);
-        if(key_1 != u32(65535))
+        if((mine_1[i_1]) != u32(4294967295))
         {
-            var _S3 : u32 = atomicAdd(&(histogram_0[(key_1 & (u32(255)))]), u32(1));
+            var _S9 : u32 = atomicAdd(&(histogram_0[((mine_1[i_1]) >> (u32(24)))]), u32(1));
         }
-        i_0 = i_0 + u32(1);
+        i_1 = i_1 + u32(1);
     }
     workgroupBarrier();
-    var _S4 : u32 = group_0.x;
-    if(_S4 < (groupCount_0()))
+    if(_S8 < (groupCount_0()))
     {
-        var _S5 : u32 = atomicLoad(&(histogram_0[thread_0]));
-        digit_counts_0[thread_0 * groupCount_0() + _S4] = _S5;
+        var _S10 : u32 = atomicLoad(&(histogram_0[thread_1]));
+        digit_counts_0[thread_1 * groupCount_0() + _S8] = _S10;
     }
     return;
 }
@@ -132,55 +195,21 @@ fn groupCount_0() -> u32
     return (elementCount_0() + u32(2048) - u32(1)) / u32(2048);
 }
 
-var<workgroup> scanned_0 : array<vec2<u32>, i32(256)>;
-
-fn exclusiveScan_0( thread_0 : u32,  value_0 : vec2<u32>,  total_0 : ptr<function, vec2<u32>>) -> vec2<u32>
-{
-    scanned_0[thread_0] = value_0;
-    workgroupBarrier();
-    var reach_0 : u32 = u32(1);
-    for(;;)
-    {
-        if(reach_0 < u32(256))
-        {
-        }
-        else
-        {
-            break;
-        }
-        var sum_0 : vec2<u32> = scanned_0[thread_0];
-        var sum_1 : vec2<u32>;
-        if(thread_0 >= reach_0)
-        {
-            sum_1 = sum_0 + scanned_0[thread_0 - reach_0];
-        }
-        else
-        {
-            sum_1 = sum_0;
-        }
-        workgroupBarrier();
-        scanned_0[thread_0] = sum_1;
-        workgroupBarrier();
-        reach_0 = reach_0 * u32(2);
-    }
-    (*total_0) = scanned_0[i32(255)];
-    var before_0 : vec2<u32> = scanned_0[thread_0] - value_0;
-    workgroupBarrier();
-    return before_0;
-}
+var<workgroup> sums_0 : array<u32, i32(256)>;
 
 @compute
 @workgroup_size(256, 1, 1)
-fn ScanDigits(@builtin(local_invocation_index) thread_1 : u32, @builtin(workgroup_id) group_0 : vec3<u32>)
+fn ScanDigits(@builtin(local_invocation_index) thread_0 : u32, @builtin(workgroup_id) group_0 : vec3<u32>)
 {
     var groups_0 : u32 = groupCount_0();
-    var run_0 : u32 = (groups_0 + u32(256) - u32(1)) / u32(256);
-    var _S2 : u32 = group_0.x;
-    var _S3 : u32 = _S2 * groups_0;
-    var _S4 : u32 = min(thread_1 * run_0, groups_0);
+    var run_0 : u32 = (groups_0 + u32(16) - u32(1)) / u32(16);
+    var digit_0 : u32 = u32(16) * group_0.x + thread_0 / u32(16);
+    var _S2 : u32 = digit_0 * groups_0;
+    var _S3 : u32 = thread_0 % u32(16);
+    var _S4 : u32 = min(_S3 * run_0, groups_0);
     var _S5 : u32 = min(_S4 + run_0, groups_0);
     var i_0 : u32 = _S4;
-    var sum_2 : u32 = u32(0);
+    var sum_0 : u32 = u32(0);
     for(;;)
     {
         if(i_0 < _S5)
@@ -190,15 +219,32 @@ fn ScanDigits(@builtin(local_invocation_index) thread_1 : u32, @builtin(workgrou
         {
             break;
         }
-        var sum_3 : u32 = sum_2 + digit_counts_0[_S3 + i_0];
+        var sum_1 : u32 = sum_0 + digit_counts_0[_S2 + i_0];
         i_0 = i_0 + u32(1);
-        sum_2 = sum_3;
+        sum_0 = sum_1;
     }
-    var total_1 : vec2<u32>;
-    var _S6 : vec2<u32> = exclusiveScan_0(thread_1, vec2<u32>(sum_2, u32(0)), &(total_1));
-    var _S7 : u32 = _S6.x;
+    sums_0[thread_0] = sum_0;
+    workgroupBarrier();
+    i_0 = thread_0 - _S3;
+    var before_0 : u32 = u32(0);
+    for(;;)
+    {
+        if(i_0 < thread_0)
+        {
+        }
+        else
+        {
+            break;
+        }
+        var before_1 : u32 = before_0 + sums_0[i_0];
+        i_0 = i_0 + u32(1);
+        before_0 = before_1;
+    }
+    if(_S3 == u32(15))
+    {
+        digit_totals_0[digit_0] = before_0 + sum_0;
+    }
     i_0 = _S4;
-    var before_1 : u32 = _S7;
     for(;;)
     {
         if(i_0 < _S5)
@@ -208,16 +254,12 @@ fn ScanDigits(@builtin(local_invocation_index) thread_1 : u32, @builtin(workgrou
         {
             break;
         }
-        var _S8 : u32 = _S3 + i_0;
-        var count_0 : u32 = digit_counts_0[_S8];
-        digit_counts_0[_S8] = before_1;
-        var before_2 : u32 = before_1 + count_0;
+        var _S6 : u32 = _S2 + i_0;
+        var count_0 : u32 = digit_counts_0[_S6];
+        digit_counts_0[_S6] = before_0;
+        var before_2 : u32 = before_0 + count_0;
         i_0 = i_0 + u32(1);
-        before_1 = before_2;
-    }
-    if(thread_1 == u32(0))
-    {
-        digit_totals_0[_S2] = total_1.x;
+        before_0 = before_2;
     }
     return;
 }
@@ -260,378 +302,535 @@ fn elementCount_0() -> u32
     return _S1;
 }
 
-fn keyOf_0( element_0 : u32,  count_0 : u32) -> u32
+fn wordOf_0( key_0 : u32,  place_0 : u32) -> u32
 {
-    var key_0 : u32;
-    if(element_0 < count_0)
+    var _S2 : u32;
+    if(key_0 == u32(65535))
     {
-        if((Constants_0.second_pass_0) != u32(0))
+        _S2 = u32(4294967295);
+    }
+    else
+    {
+        _S2 = (((((((key_0 & (u32(255)))) << (u32(24)))) | (((((key_0 >> (u32(8)))) << (u32(11))))))) | (place_0));
+    }
+    return _S2;
+}
+
+fn loadWords_0( thread_0 : u32,  block_0 : u32,  mine_0 : ptr<function, array<u32, i32(8)>>)
+{
+    var _S3 : u32 = elementCount_0();
+    var _S4 : u32 = u32(8) * thread_0;
+    var i_0 : u32;
+    var pair_0 : u32;
+    if((Constants_0.second_pass_0) != u32(0))
+    {
+        i_0 = u32(0);
+        for(;;)
         {
-            key_0 = (keys_0[element_0] >> (u32(24)));
-        }
-        else
-        {
-            key_0 = (((keys_0[element_0 / u32(2)] >> ((u32(16) * ((element_0 & (u32(1)))))))) & (u32(65535)));
+            if(i_0 < u32(8))
+            {
+            }
+            else
+            {
+                break;
+            }
+            var _S5 : u32 = block_0 + _S4 + i_0;
+            if(_S5 < _S3)
+            {
+                pair_0 = keys_0[_S5];
+            }
+            else
+            {
+                pair_0 = u32(4294967295);
+            }
+            (*mine_0)[i_0] = pair_0;
+            i_0 = i_0 + u32(1);
         }
     }
     else
     {
-        key_0 = u32(65535);
+        i_0 = u32(0);
+        for(;;)
+        {
+            if(i_0 < u32(8))
+            {
+            }
+            else
+            {
+                break;
+            }
+            var element_0 : u32 = block_0 + _S4 + i_0;
+            if(element_0 < _S3)
+            {
+                pair_0 = keys_0[element_0 / u32(2)];
+            }
+            else
+            {
+                pair_0 = u32(4294967295);
+            }
+            var _S6 : u32 = _S4 + i_0;
+            (*mine_0)[i_0] = wordOf_0((pair_0 & (u32(65535))), _S6);
+            var _S7 : u32;
+            if((element_0 + u32(1)) < _S3)
+            {
+                _S7 = (pair_0 >> (u32(16)));
+            }
+            else
+            {
+                _S7 = u32(65535);
+            }
+            (*mine_0)[i_0 + u32(1)] = wordOf_0(_S7, _S6 + u32(1));
+            i_0 = i_0 + u32(2);
+        }
     }
-    return key_0;
+    return;
 }
 
-var<workgroup> scanned_0 : array<vec2<u32>, i32(256)>;
-
-fn exclusiveScan_0( thread_0 : u32,  value_0 : vec2<u32>,  total_0 : ptr<function, vec2<u32>>) -> vec2<u32>
+fn counterBytes_0( counts_0 : vec2<u32>) -> vec4<u32>
 {
-    scanned_0[thread_0] = value_0;
+    var _S8 : u32 = counts_0.x;
+    var _S9 : u32 = counts_0.y;
+    return (vec4<u32>(_S8, (_S8 >> (u32(4))), _S9, (_S9 >> (u32(4)))) & (vec4<u32>(u32(252645135))));
+}
+
+var<workgroup> counters_0 : array<vec4<u32>, i32(272)>;
+
+var<workgroup> rowTotals_0 : array<vec4<u32>, i32(16)>;
+
+fn scanRows_0( thread_1 : u32,  bytes_0 : vec4<u32>)
+{
+    counters_0[thread_1 + thread_1 / u32(16)] = bytes_0;
     workgroupBarrier();
-    var reach_0 : u32 = u32(1);
+    var _S10 : bool = thread_1 < u32(16);
+    var _S11 : u32;
+    if(_S10)
+    {
+        _S11 = u32(16);
+    }
+    else
+    {
+        _S11 = u32(0);
+    }
+    var _S12 : vec4<u32> = vec4<u32>(vec4<i32>(i32(0)));
+    var i_1 : u32 = u32(0);
+    var sum_0 : vec4<u32> = _S12;
     for(;;)
     {
-        if(reach_0 < u32(256))
+        if(i_1 < _S11)
         {
         }
         else
         {
             break;
         }
-        var sum_0 : vec2<u32> = scanned_0[thread_0];
-        var sum_1 : vec2<u32>;
-        if(thread_0 >= reach_0)
-        {
-            sum_1 = sum_0 + scanned_0[thread_0 - reach_0];
-        }
-        else
-        {
-            sum_1 = sum_0;
-        }
-        workgroupBarrier();
-        scanned_0[thread_0] = sum_1;
-        workgroupBarrier();
-        reach_0 = reach_0 * u32(2);
+        var next_0 : vec4<u32> = counters_0[u32(17) * thread_1 + i_1];
+        counters_0[u32(17) * thread_1 + i_1] = sum_0;
+        var sum_1 : vec4<u32> = sum_0 + next_0;
+        i_1 = i_1 + u32(1);
+        sum_0 = sum_1;
     }
-    (*total_0) = scanned_0[i32(255)];
-    var before_0 : vec2<u32> = scanned_0[thread_0] - value_0;
+    if(_S10)
+    {
+        rowTotals_0[thread_1] = sum_0;
+    }
     workgroupBarrier();
-    return before_0;
+    return;
 }
 
-fn exclusiveScan_1( thread_1 : u32,  value_1 : vec2<u32>,  total_1 : ptr<function, vec2<u32>>) -> vec2<u32>
+var<workgroup> starts_0 : array<u32, i32(256)>;
+
+fn binByte_0( bytes_1 : vec4<u32>,  bin_0 : u32) -> u32
 {
-    scanned_0[thread_1] = value_1;
+    var pair_1 : vec2<u32>;
+    if(bin_0 < u32(8))
+    {
+        pair_1 = bytes_1.xy;
+    }
+    else
+    {
+        pair_1 = bytes_1.zw;
+    }
+    var _S13 : u32;
+    if(((bin_0 & (u32(1)))) != u32(0))
+    {
+        _S13 = pair_1.y;
+    }
+    else
+    {
+        _S13 = pair_1.x;
+    }
+    return (((_S13 >> ((u32(4) * ((bin_0 & (u32(6)))))))) & (u32(255)));
+}
+
+var<workgroup> scanned_0 : array<u32, i32(272)>;
+
+var<workgroup> rowStarts_0 : array<u32, i32(17)>;
+
+fn exclusiveScan_0( thread_2 : u32,  value_0 : u32,  total_0 : ptr<function, u32>) -> u32
+{
+    var row_0 : u32 = thread_2 / u32(16);
+    scanned_0[thread_2 + row_0] = value_0;
     workgroupBarrier();
-    var reach_1 : u32 = u32(1);
+    var _S14 : bool = thread_2 < u32(16);
+    var _S15 : i32;
+    if(_S14)
+    {
+        _S15 = i32(16);
+    }
+    else
+    {
+        _S15 = i32(0);
+    }
+    var _S16 : u32 = u32(_S15);
+    var i_2 : u32 = u32(0);
+    var sum_2 : u32 = u32(0);
     for(;;)
     {
-        if(reach_1 < u32(256))
+        if(i_2 < _S16)
         {
         }
         else
         {
             break;
         }
-        var sum_2 : vec2<u32> = scanned_0[thread_1];
-        var sum_3 : vec2<u32>;
-        if(thread_1 >= reach_1)
+        var next_1 : u32 = scanned_0[u32(17) * thread_2 + i_2];
+        scanned_0[u32(17) * thread_2 + i_2] = sum_2;
+        var sum_3 : u32 = sum_2 + next_1;
+        i_2 = i_2 + u32(1);
+        sum_2 = sum_3;
+    }
+    if(_S14)
+    {
+        rowStarts_0[thread_2] = sum_2;
+    }
+    workgroupBarrier();
+    var _S17 : bool = thread_2 == u32(0);
+    if(_S17)
+    {
+        _S15 = i32(16);
+    }
+    else
+    {
+        _S15 = i32(0);
+    }
+    var _S18 : u32 = u32(_S15);
+    i_2 = u32(0);
+    sum_2 = u32(0);
+    for(;;)
+    {
+        if(i_2 < _S18)
         {
-            sum_3 = sum_2 + scanned_0[thread_1 - reach_1];
         }
         else
         {
-            sum_3 = sum_2;
+            break;
         }
-        workgroupBarrier();
-        scanned_0[thread_1] = sum_3;
-        workgroupBarrier();
-        reach_1 = reach_1 * u32(2);
+        var next_2 : u32 = rowStarts_0[i_2];
+        rowStarts_0[i_2] = sum_2;
+        var sum_4 : u32 = sum_2 + next_2;
+        i_2 = i_2 + u32(1);
+        sum_2 = sum_4;
     }
-    (*total_1) = scanned_0[i32(255)];
-    var before_1 : vec2<u32> = scanned_0[thread_1] - value_1;
+    if(_S17)
+    {
+        rowStarts_0[i32(16)] = sum_2;
+    }
     workgroupBarrier();
-    return before_1;
+    (*total_0) = rowStarts_0[i32(16)];
+    return scanned_0[thread_2 + row_0] + rowStarts_0[row_0];
+}
+
+fn exclusiveScan_1( thread_3 : u32,  value_1 : u32,  total_1 : ptr<function, u32>) -> u32
+{
+    var row_1 : u32 = thread_3 / u32(16);
+    scanned_0[thread_3 + row_1] = value_1;
+    workgroupBarrier();
+    var _S19 : bool = thread_3 < u32(16);
+    var _S20 : i32;
+    if(_S19)
+    {
+        _S20 = i32(16);
+    }
+    else
+    {
+        _S20 = i32(0);
+    }
+    var _S21 : u32 = u32(_S20);
+    var i_3 : u32 = u32(0);
+    var sum_5 : u32 = u32(0);
+    for(;;)
+    {
+        if(i_3 < _S21)
+        {
+        }
+        else
+        {
+            break;
+        }
+        var next_3 : u32 = scanned_0[u32(17) * thread_3 + i_3];
+        scanned_0[u32(17) * thread_3 + i_3] = sum_5;
+        var sum_6 : u32 = sum_5 + next_3;
+        i_3 = i_3 + u32(1);
+        sum_5 = sum_6;
+    }
+    if(_S19)
+    {
+        rowStarts_0[thread_3] = sum_5;
+    }
+    workgroupBarrier();
+    var _S22 : bool = thread_3 == u32(0);
+    if(_S22)
+    {
+        _S20 = i32(16);
+    }
+    else
+    {
+        _S20 = i32(0);
+    }
+    var _S23 : u32 = u32(_S20);
+    i_3 = u32(0);
+    sum_5 = u32(0);
+    for(;;)
+    {
+        if(i_3 < _S23)
+        {
+        }
+        else
+        {
+            break;
+        }
+        var next_4 : u32 = rowStarts_0[i_3];
+        rowStarts_0[i_3] = sum_5;
+        var sum_7 : u32 = sum_5 + next_4;
+        i_3 = i_3 + u32(1);
+        sum_5 = sum_7;
+    }
+    if(_S22)
+    {
+        rowStarts_0[i32(16)] = sum_5;
+    }
+    workgroupBarrier();
+    (*total_1) = rowStarts_0[i32(16)];
+    return scanned_0[thread_3 + row_1] + rowStarts_0[row_1];
 }
 
 var<workgroup> words_0 : array<u32, i32(2048)>;
 
-fn loadWords_0( thread_2 : u32,  block_0 : u32,  count_1 : u32) -> u32
+fn splitWords_0( thread_4 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> u32
 {
-    var mine_0 : array<u32, i32(8)>;
-    var i_0 : u32 = u32(0);
-    var shown_0 : u32 = u32(0);
+    var _S24 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
+    var ranks_0 : array<u32, i32(8)>;
+    var i_4 : u32 = u32(0);
+    var counts_1 : vec2<u32> = _S24;
     for(;;)
     {
-        if(i_0 < u32(8))
+        if(i_4 < u32(8))
         {
         }
         else
         {
             break;
         }
-        var _S2 : u32 = keyOf_0(block_0 + u32(8) * thread_2 + i_0, count_1);
-        mine_0[i_0] = _S2;
-        var _S3 : i32;
-        if(_S2 != u32(65535))
+        var bin_1 : u32 = ((((mine_1[i_4]) >> (bit_0))) & (u32(15)));
+        var shift_0 : u32 = u32(4) * ((bin_1 & (u32(7))));
+        var one_0 : u32;
+        if((mine_1[i_4]) != u32(4294967295))
         {
-            _S3 = i32(1);
+            one_0 = (u32(1) << (shift_0));
         }
         else
         {
-            _S3 = i32(0);
+            one_0 = u32(0);
         }
-        var shown_1 : u32 = shown_0 + u32(_S3);
-        i_0 = i_0 + u32(1);
-        shown_0 = shown_1;
+        var _S25 : bool = bin_1 < u32(8);
+        var _S26 : u32;
+        if(_S25)
+        {
+            _S26 = counts_1.x;
+        }
+        else
+        {
+            _S26 = counts_1.y;
+        }
+        ranks_0[i_4] = (((_S26 >> (shift_0))) & (u32(15)));
+        var _S27 : vec2<u32>;
+        if(_S25)
+        {
+            _S27 = vec2<u32>(one_0, u32(0));
+        }
+        else
+        {
+            _S27 = vec2<u32>(u32(0), one_0);
+        }
+        var counts_2 : vec2<u32> = counts_1 + _S27;
+        i_4 = i_4 + u32(1);
+        counts_1 = counts_2;
     }
-    var total_2 : vec2<u32>;
-    var _S4 : vec2<u32> = exclusiveScan_0(thread_2, vec2<u32>(shown_0, u32(0)), &(total_2));
-    var _S5 : u32 = _S4.x;
-    i_0 = u32(0);
-    var next_0 : u32 = _S5;
+    scanRows_0(thread_4, counterBytes_0(counts_1));
+    var total_2 : u32;
+    var _S28 : u32 = exclusiveScan_0(thread_4, binByte_0(rowTotals_0[thread_4 % u32(16)], thread_4 / u32(16)), &(total_2));
+    starts_0[thread_4] = _S28;
+    workgroupBarrier();
+    var _S29 : vec4<u32> = counters_0[thread_4 + thread_4 / u32(16)];
+    i_4 = u32(0);
     for(;;)
     {
-        if(i_0 < u32(8))
+        if(i_4 < u32(8))
         {
         }
         else
         {
             break;
         }
-        if((mine_0[i_0]) != u32(65535))
+        var _S30 : u32 = i_4;
+        var bin_2 : u32 = ((((mine_1[i_4]) >> (bit_0))) & (u32(15)));
+        if((mine_1[i_4]) != u32(4294967295))
         {
-            words_0[next_0] = ((((mine_0[i_0]) << (u32(11)))) | ((u32(8) * thread_2 + i_0)));
-            next_0 = next_0 + u32(1);
+            words_0[starts_0[u32(16) * bin_2 + thread_4 / u32(16)] + binByte_0(_S29, bin_2) + ranks_0[i_4]] = mine_1[_S30];
         }
-        i_0 = i_0 + u32(1);
+        i_4 = i_4 + u32(1);
     }
-    i_0 = total_2.x + thread_2;
-    for(;;)
-    {
-        if(i_0 < u32(2048))
-        {
-        }
-        else
-        {
-            break;
-        }
-        words_0[i_0] = u32(134215680);
-        i_0 = i_0 + u32(256);
-    }
-    return total_2.x;
+    workgroupBarrier();
+    return total_2;
 }
 
-var<workgroup> places_0 : array<u32, i32(256)>;
+fn orderBlock_0( thread_5 : u32,  block_1 : u32) -> u32
+{
+    var mine_2 : array<u32, i32(8)>;
+    loadWords_0(thread_5, block_1, &(mine_2));
+    var _S31 : u32 = splitWords_0(thread_5, mine_2, u32(24));
+    var i_5 : u32 = u32(0);
+    for(;;)
+    {
+        if(i_5 < u32(8))
+        {
+        }
+        else
+        {
+            break;
+        }
+        var _S32 : u32 = u32(8) * thread_5 + i_5;
+        var _S33 : u32;
+        if(_S32 < _S31)
+        {
+            _S33 = words_0[_S32];
+        }
+        else
+        {
+            _S33 = u32(4294967295);
+        }
+        mine_2[i_5] = _S33;
+        i_5 = i_5 + u32(1);
+    }
+    var _S34 : u32 = splitWords_0(thread_5, mine_2, u32(28));
+    return _S34;
+}
 
 fn groupCount_0() -> u32
 {
     return (elementCount_0() + u32(2048) - u32(1)) / u32(2048);
 }
 
-fn writeArguments_0( total_3 : u32)
+var<workgroup> places_0 : array<u32, i32(256)>;
+
+fn placeDigits_0( thread_6 : u32,  group_0 : u32,  groups_0 : u32) -> u32
 {
-    arguments_0[i32(0)] = u32(6) * total_3;
+    var digits_0 : u32 = digit_totals_0[thread_6];
+    var mine_3 : u32;
+    var earlier_0 : u32;
+    if(group_0 < groups_0)
+    {
+        var place_1 : u32 = thread_6 * groups_0 + group_0;
+        var earlier_1 : u32 = digit_counts_0[place_1];
+        if((group_0 + u32(1)) < groups_0)
+        {
+            mine_3 = digit_counts_0[place_1 + u32(1)];
+        }
+        else
+        {
+            mine_3 = digits_0;
+        }
+        mine_3 = mine_3 - earlier_1;
+        earlier_0 = earlier_1;
+    }
+    else
+    {
+        mine_3 = u32(0);
+        earlier_0 = u32(0);
+    }
+    var total_3 : u32;
+    var _S35 : u32 = exclusiveScan_1(thread_6, digits_0 - mine_3, &(total_3));
+    places_0[thread_6] = _S35 + earlier_0;
+    workgroupBarrier();
+    return total_3;
+}
+
+fn writeArguments_0( total_4 : u32)
+{
+    arguments_0[i32(0)] = u32(6) * total_4;
     arguments_0[i32(1)] = Constants_0.instances_0;
     arguments_0[i32(2)] = u32(0);
     arguments_0[i32(3)] = u32(0);
-    arguments_0[u32(4)] = total_3;
+    arguments_0[u32(4)] = total_4;
     return;
 }
 
-fn counterShift_0( bin_0 : u32) -> u32
+fn sortedElement_0( word_0 : u32,  block_2 : u32) -> u32
 {
-    return u32(16) * ((bin_0 & (u32(1))));
-}
-
-fn counterOne_0( bin_1 : u32) -> vec2<u32>
-{
-    var one_0 : u32 = (u32(1) << ((counterShift_0(bin_1))));
-    var _S6 : vec2<u32>;
-    if(bin_1 < u32(2))
-    {
-        _S6 = vec2<u32>(one_0, u32(0));
-    }
-    else
-    {
-        _S6 = vec2<u32>(u32(0), one_0);
-    }
-    return _S6;
-}
-
-fn counterStarts_0( totals_0 : vec2<u32>) -> vec2<u32>
-{
-    var _S7 : u32 = totals_0.x;
-    var first_0 : u32 = (_S7 & (u32(65535)));
-    var second_0 : u32 = first_0 + ((_S7 >> (u32(16))));
-    return vec2<u32>((first_0 << (u32(16))), (second_0 | ((((second_0 + (((totals_0.y) & (u32(65535))))) << (u32(16)))))));
-}
-
-fn counterOf_0( counters_0 : vec2<u32>,  bin_2 : u32) -> u32
-{
-    var _S8 : u32;
-    if(bin_2 < u32(2))
-    {
-        _S8 = counters_0.x;
-    }
-    else
-    {
-        _S8 = counters_0.y;
-    }
-    return (((_S8 >> ((counterShift_0(bin_2))))) & (u32(65535)));
-}
-
-fn splitWords_0( thread_3 : u32,  bit_0 : u32)
-{
-    var mine_1 : array<u32, i32(8)>;
-    var _S9 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
-    var i_1 : u32 = u32(0);
-    var counts_0 : vec2<u32> = _S9;
-    for(;;)
-    {
-        if(i_1 < u32(8))
-        {
-        }
-        else
-        {
-            break;
-        }
-        mine_1[i_1] = words_0[u32(8) * thread_3 + i_1];
-        var counts_1 : vec2<u32> = counts_0 + counterOne_0(((((words_0[u32(8) * thread_3 + i_1]) >> (bit_0))) & (u32(3))));
-        i_1 = i_1 + u32(1);
-        counts_0 = counts_1;
-    }
-    var totals_1 : vec2<u32>;
-    var _S10 : vec2<u32> = exclusiveScan_0(thread_3, counts_0, &(totals_1));
-    var _S11 : vec2<u32> = _S10 + counterStarts_0(totals_1);
-    i_1 = u32(0);
-    var next_1 : vec2<u32> = _S11;
-    for(;;)
-    {
-        if(i_1 < u32(8))
-        {
-        }
-        else
-        {
-            break;
-        }
-        var bin_3 : u32 = ((((mine_1[i_1]) >> (bit_0))) & (u32(3)));
-        words_0[counterOf_0(next_1, bin_3)] = mine_1[i_1];
-        var next_2 : vec2<u32> = next_1 + counterOne_0(bin_3);
-        i_1 = i_1 + u32(1);
-        next_1 = next_2;
-    }
-    workgroupBarrier();
-    return;
-}
-
-fn digitAt_0( place_0 : u32) -> u32
-{
-    return ((((words_0[place_0]) >> (u32(11)))) & (u32(255)));
-}
-
-fn sortedElement_0( word_0 : u32,  block_1 : u32) -> u32
-{
-    var element_1 : u32 = block_1 + ((word_0 & (u32(2047))));
-    var upper_0 : u32 = (word_0 >> (u32(19)));
-    var _S12 : u32;
+    var first_0 : u32 = (((((((word_0 >> (u32(11)))) & (u32(255)))) << (u32(24)))) | ((block_2 + ((word_0 & (u32(2047)))))));
+    var _S36 : u32;
     if((Constants_0.second_pass_0) != u32(0))
     {
-        _S12 = (keys_0[element_1] & (u32(16777215)));
+        _S36 = (word_0 & (u32(16777215)));
     }
     else
     {
-        _S12 = (((upper_0 << (u32(24)))) | (element_1));
+        _S36 = first_0;
     }
-    return _S12;
+    return _S36;
 }
 
 @compute
 @workgroup_size(256, 1, 1)
-fn ScatterDigits(@builtin(local_invocation_index) thread_4 : u32, @builtin(workgroup_id) group_0 : vec3<u32>)
+fn ScatterDigits(@builtin(local_invocation_index) thread_7 : u32, @builtin(workgroup_id) group_1 : vec3<u32>)
 {
-    var _S13 : u32 = group_0.x;
-    var block_2 : u32 = _S13 * u32(2048);
-    var _S14 : u32 = loadWords_0(thread_4, block_2, elementCount_0());
-    var total_4 : vec2<u32>;
-    var _S15 : vec2<u32> = exclusiveScan_1(thread_4, vec2<u32>(digit_totals_0[thread_4], u32(0)), &(total_4));
-    places_0[thread_4] = _S15.x;
-    if(_S13 < (groupCount_0()))
-    {
-        places_0[thread_4] = places_0[thread_4] + digit_counts_0[thread_4 * groupCount_0() + _S13];
-    }
-    var _S16 : bool;
+    var _S37 : u32 = group_1.x;
+    var block_3 : u32 = _S37 * u32(2048);
+    var live_0 : u32 = orderBlock_0(thread_7, block_3);
+    var others_0 : u32 = placeDigits_0(thread_7, _S37, groupCount_0());
+    var _S38 : bool;
     if((Constants_0.second_pass_0) == u32(0))
     {
-        _S16 = _S13 == u32(0);
+        _S38 = _S37 == u32(0);
     }
     else
     {
-        _S16 = false;
+        _S38 = false;
     }
-    if(_S16)
+    if(_S38)
     {
-        _S16 = thread_4 == u32(0);
+        _S38 = thread_7 == u32(0);
     }
     else
     {
-        _S16 = false;
+        _S38 = false;
     }
-    if(_S16)
+    if(_S38)
     {
-        writeArguments_0(total_4.x);
+        writeArguments_0(others_0 + live_0);
     }
-    workgroupBarrier();
-    var bit_1 : u32 = u32(0);
+    var i_6 : u32 = thread_7;
     for(;;)
     {
-        if(bit_1 < u32(8))
+        if(i_6 < live_0)
         {
         }
         else
         {
             break;
         }
-        splitWords_0(thread_4, u32(11) + bit_1);
-        bit_1 = bit_1 + u32(2);
-    }
-    var i_2 : u32 = thread_4;
-    for(;;)
-    {
-        if(i_2 < _S14)
-        {
-        }
-        else
-        {
-            break;
-        }
-        var digit_0 : u32 = digitAt_0(i_2);
-        if(i_2 == u32(0))
-        {
-            _S16 = true;
-        }
-        else
-        {
-            _S16 = digit_0 != (digitAt_0(i_2 - u32(1)));
-        }
-        if(_S16)
-        {
-            places_0[digit_0] = places_0[digit_0] - i_2;
-        }
-        i_2 = i_2 + u32(256);
-    }
-    workgroupBarrier();
-    i_2 = thread_4;
-    for(;;)
-    {
-        if(i_2 < _S14)
-        {
-        }
-        else
-        {
-            break;
-        }
-        sorted_0[places_0[digitAt_0(i_2)] + i_2] = sortedElement_0(words_0[i_2], block_2);
-        i_2 = i_2 + u32(256);
+        sorted_0[places_0[((words_0[i_6]) >> (u32(24)))] + i_6] = sortedElement_0(words_0[i_6], block_3);
+        i_6 = i_6 + u32(256);
     }
     return;
 }
