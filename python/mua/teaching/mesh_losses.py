@@ -13,11 +13,12 @@ from torch import Tensor
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
+from mua.rig.charts import areas
 from mua.rig.surface_points import face_normals, interpolate, spread_points
 
 REACH = 0.1  # metres on a person: what is farther is no counterpart, as what hands hold or masks cut off
-FACING = 0.05  # metres on a person for normals that are 1 apart: the inside of a sleeve is no match for its outside
-SIDEWAYS = 0.1  # of an error along the surface: the nearest point of a cloud lies beside the nearest of the surface
+FACING = 0.02  # metres on a person for normals that are 1 apart: the inside of a sleeve is no match for its outside
+SIDEWAYS = 0.05  # of an error along the surface: the nearest point of a cloud lies beside the nearest of the surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +52,14 @@ class Samples:
 
     corners: Tensor  # [B, 3] int64 vertices about each
     barycentrics: Tensor  # [B, 3]
+    spacing: float  # metres, the side of the square that is each one's share of the area
 
     @classmethod
     def of(cls, mesh: Mesh, count: int) -> "Samples":
         """`count` points at equal shares of the bind pose's area."""
         triangles, barycentrics = spread_points(mesh, count)
-        return cls(torch.as_tensor(mesh.faces[triangles]).long(), torch.as_tensor(barycentrics))
+        spacing = float(np.sqrt(areas(mesh.vertices[mesh.faces]).sum() / max(len(triangles), 1)))
+        return cls(torch.as_tensor(mesh.faces[triangles]).long(), torch.as_tensor(barycentrics), spacing)
 
     def on(
         self,

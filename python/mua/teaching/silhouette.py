@@ -1,65 +1,32 @@
-"""What a camera sees of the template's outline: the opacity of a surfel on each triangle, against a mask."""
+"""What a camera sees of the template's outline: the opacity of discs spread over it, against a mask."""
 
-from dataclasses import dataclass
-
-import numpy as np
 import torch
 from torch import Tensor
 
-from mua import rotation
-from mua.arrays import Array
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
-from mua.teaching.mesh_losses import gather
+from mua.teaching.mesh_losses import Samples
 
-SPREAD = 1.5  # standard deviation of a surfel over that of its triangle: together they leave no hole
+SPREAD = 0.8  # standard deviation of a disc over the side of the square that is its share of the surface
+FLATNESS = 0.1  # thickness over that
 OPACITY = 0.95
-LEAST = 1e-5  # metres; triangles may have no area
-
-
-@dataclass(frozen=True, eq=False)
-class Surfels:
-    """How the surfels of triangles lie and how wide they are; only their places have gradients."""
-
-    rotations: Tensor  # [F, 4] unit
-    scales: Tensor  # [F, 3] metres
-
-
-def outline_surfels(
-    posed: Tensor,  # [V, 3] world, metres
-    faces: Tensor,  # [F, 3] int64
-) -> Surfels:
-    """A surfel in each triangle: x along its longest edge, as wide as the triangle is."""
-    corners = np.asarray(posed.detach().double().cpu())[faces.cpu().numpy()]
-    edges = np.roll(corners, -1, axis=1) - corners
-    longest = np.argmax(np.linalg.norm(edges, axis=2), axis=1)
-    x = _unit(edges[np.arange(len(edges)), longest], np.array([1.0, 0, 0]))
-    z = np.cross(x, edges[np.arange(len(edges)), (longest + 1) % 3])
-    z = _unit(z, np.cross(x, np.eye(3)[np.argmin(np.abs(x), axis=1)]))
-    frames = np.stack([x, np.cross(z, x), z], axis=2)
-    about = corners - corners.mean(axis=1, keepdims=True)
-    extents = np.sqrt(np.square(about @ frames).sum(axis=1) / 12)  # of a triangle that is evenly covered
-    extents[:, 2] = 0
-    scales = np.maximum(SPREAD * extents, LEAST)
-    return Surfels(torch.as_tensor(rotation.from_matrix(frames)).to(posed), torch.as_tensor(scales).to(posed))
 
 
 def outline(
     posed: Tensor,  # [V, 3] world, metres
-    faces: Tensor,  # [F, 3] int64
-    surfels: Surfels,
+    samples: Samples,  # at equal shares of the area, each the middle of a disc
     eye: Eye,
 ) -> Tensor:
-    """How much of each pixel the template covers, [H, W] in 0..1."""
-    centres = gather(posed, faces).mean(dim=1)
-    count = len(centres)
+    """How much of each pixel the template covers, [H, W] in 0..1; gradients move the discs, and do not turn them."""
+    centres, normals = samples.on(posed)
+    count, wide, turns = len(centres), SPREAD * samples.spacing, facing(normals.detach())
     splats = TorchSplats(
         centres=centres,
-        rotations=surfels.rotations,
-        scales=surfels.scales,
+        rotations=turns,
+        scales=centres.new_tensor([wide, wide, FLATNESS * wide]).expand(count, 3),
         opacities=centres.new_full((count,), OPACITY),
         sh=centres.new_zeros(count, 12),
-        turns=surfels.rotations,
+        turns=turns,
     )
     bounds = torch.stack([centres.amin(dim=0), centres.amax(dim=0)]).detach()
     return rasterise(splats, eye, bounds)[..., 3]
@@ -67,17 +34,19 @@ def outline(
 
 def silhouette_error(
     posed: Tensor,  # [V, 3] world, metres
-    faces: Tensor,  # [F, 3] int64
+    samples: Samples,
     eye: Eye,
     mask: Tensor,  # [H, W] in 0..1
 ) -> Tensor:
-    """Mean squared difference of the outline from a mask of the same size."""
-    return (outline(posed, faces, outline_surfels(posed, faces), eye) - mask).square().mean()
+    """Squared difference of the outline from a mask of the same size, over what the mask covers."""
+    return (outline(posed, samples, eye) - mask).square().sum() / mask.sum().clamp(min=1)
 
 
-def _unit(vectors: Array, other: Array) -> Array:
-    """Vectors [N, 3] of length 1; the other where they have none."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    solid = length > 1e-12
-    chosen = np.where(solid, vectors, other)
-    return np.asarray(chosen / np.linalg.norm(chosen, axis=1, keepdims=True))
+def facing(
+    normals: Tensor,  # [N, 3] unit
+) -> Tensor:
+    """Unit quaternions [N, 4] that turn z to the normals: half way round the axis between them."""
+    halfway = normals + normals.new_tensor([0.0, 0, 1])
+    halfway = torch.where(halfway.norm(dim=1, keepdim=True) < 1e-6, normals.new_tensor([1.0, 0, 0]), halfway)
+    halfway = torch.nn.functional.normalize(halfway, dim=1)
+    return torch.cat([torch.zeros_like(halfway[:, :1]), halfway], dim=1)

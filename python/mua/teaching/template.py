@@ -57,6 +57,14 @@ class DrivableTemplate(nn.Module):
         descriptors: Tensor,  # [B, k D] of mua.pose.descriptor
         joints: Tensor,  # [B, J, 8] of Skeleton.skinning: bind pose to world
     ) -> PosedTemplate:
-        canonical = self.deformation(descriptors)
+        """The template in B frames."""
+        return self.pose(self.deformation(descriptors), joints)
+
+    def pose(
+        self,
+        canonical: Tensor,  # [B, V, 3] bind pose, metres
+        joints: Tensor,  # [B, J, 8]
+    ) -> PosedTemplate:
+        """Canonical vertices posed by dual quaternions."""
         duals = blend_vertices(self.skin_indices, self.skin_weights.to(joints), joints)
         return PosedTemplate(canonical, dual_transform(duals, canonical), duals)
