@@ -8,16 +8,20 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 from synthetic_avatar import synthetic_avatar
 from web.browser import Browser, Page, Serve
 from web.pages import ELEMENT, SENTENCE
 from web.test_engine import LOSABLE
 
+from mua.arrays import Array
 from mua.asset.write import encode
 from mua.share.single import single_page
 from mua.share.site import Content, Shown, player_files, player_site
 
+THREE = Path(__file__).parent / "node_modules" / "three"
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples" / "web"
 LARGEST_PLAYER = 150_000  # bytes, compressed as a web server would
 PLAIN = b'<!doctype html><script type="module" src="element.js"></script><mua-avatar controls></mua-avatar>'
@@ -76,6 +80,28 @@ def test_the_example_of_plain_html_plays(opened: Open, avatar_file: Path) -> Non
     player = {f"player/{path}": file for path, file in player_files().items()}
     page = opened({**player, "index.html": EXAMPLES / "plain.html", "hero.muaavatar": avatar_file})
     assert page.evaluate("document.querySelector('#says').textContent").endswith(": 1 clips")
+
+
+def test_the_example_of_three_draws_the_avatar_over_its_scene(opened: Open, avatar_file: Path, tmp_path: Path) -> None:
+    player = {f"player/{path}": file for path, file in player_files().items()}
+    used = ["build/three.module.js", "build/three.core.js", "examples/jsm/controls/OrbitControls.js"]
+    three = {f"three/{path}": THREE / path for path in used}
+    files = {**player, **three, "index.html": EXAMPLES / "three.html", "hero.muaavatar": avatar_file}
+    count = """globalThis.drawn = 0; const draw = GPUCanvasContext.prototype.getCurrentTexture;
+    GPUCanvasContext.prototype.getCurrentTexture = function () { globalThis.drawn += 1; return draw.call(this); };"""
+    page = opened(files, until="globalThis.drawn > 2", before=count)
+
+    def seen(hidden: str = "") -> Array:
+        code = (
+            "for (const one of document.querySelectorAll('canvas')) one.style.opacity = Number('#' + one.id !== '%s')"
+        )
+        page.evaluate(code % hidden)
+        return np.asarray(Image.open(page.screenshot(tmp_path / "seen.png")).convert("RGB")).astype(float)
+
+    both, scene, avatar = seen(), seen("#avatar"), seen("#scene")
+    changed = [np.abs(both - one).max(axis=-1) > 8 for one in (scene, avatar)]
+    assert 0.02 < changed[0].mean() < 0.6, "the figure, over a part of the scene"
+    assert changed[1].mean() > 0.3, "the scene around it"
 
 
 def test_the_picture_shows_the_figure_and_the_page_behind_it(opened: Open, folder: dict[str, Content]) -> None:
