@@ -8,6 +8,8 @@ import pytest
 import torch
 from synthetic_avatar import synthetic_avatar
 from taught import CAMERAS, FRAMES, SETTINGS, errors, material, run_in, subject, taught, teacher
+from together import errors as errors_of
+from together import start
 
 from mua.processes import Processes
 from mua.student.optimise import Progress
@@ -16,6 +18,8 @@ from mua.teaching.lesson import Lesson
 from mua.teaching.pose_refinement import PoseRefinement
 from mua.teaching.train import MEAN, TEXTURE, _loss, train_teacher
 from mua.teaching.views import Seen, Views
+
+ROUNDING = 1e-3  # of losses: sums in another order, which steps of Adam let grow
 
 
 class Killed(BaseException):
@@ -74,6 +78,15 @@ def test_parts_of_a_batch_add_up_to_its_loss(tmp_path: Path, count: int) -> None
         return float(_loss(lesson, material=shown, batch=4, run=run, moving=True))
 
     assert np.mean([part(rank, count) for rank in range(count)]) == pytest.approx(part(0, 1), rel=1e-5)
+
+
+def test_two_processes_teach_as_one_does(tmp_path: Path) -> None:
+    alone: dict[tuple[str, int], float | None] = {}
+    taught(tmp_path / "alone", lambda one: alone.update({(one.stage, one.step): one.loss}))
+    assert errors_of(start("teach", tmp_path), "teach", tmp_path) == ["", ""]
+    (one, losses), (other, _) = (torch.load(tmp_path / f"teach.{rank}.pt") for rank in range(2))
+    assert same(one, other)
+    assert losses == pytest.approx(alone, rel=ROUNDING)
 
 
 def test_a_camera_with_colours_of_its_own_does_not_stain_the_teacher(tmp_path: Path) -> None:

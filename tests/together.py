@@ -18,6 +18,7 @@ import torch._dynamo  # which the first optimiser of a process would import
 from recordings import RATE, FormulaTeacher, plan
 from synthetic_avatar import synthetic_rig
 from synthetic_student import SETTINGS, quick, train_in
+from taught import taught
 
 from mua.errors import InputError
 from mua.processes import ALONE, Processes, joined
@@ -113,6 +114,12 @@ def main(program: str, directory: Path) -> None:
         elif program in ("killed", "silent"):
             _end_in(processes, program)
             _train(directory, processes, "quick")
+        elif program == "teach":
+            losses: dict[tuple[str, int], float | None] = {}
+            lesson = taught(
+                directory / "teacher", lambda one: losses.update({(one.stage, one.step): one.loss}), processes=processes
+            )
+            torch.save((lesson.state_dict(), losses), directory / f"teach.{processes.rank}.pt")
         elif program == "record":
             teacher = FormulaTeacher(synthetic_rig())
             record_together(teacher, plan(teacher.rig), directory / "recording", processes=processes, rate=RATE)

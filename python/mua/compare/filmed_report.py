@@ -17,7 +17,7 @@ from mua.rendering import to_bytes
 
 DIGITS = {"psnr": 2, "ssim": 4, "flip": 4, "lpips": 2}
 HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "flip": "FLIP", "lpips": "LPIPS"}
-LEAST_WIDTH = 130  # pixels of a picture under its caption
+LEAST_WIDTH = 190  # pixels of a picture under its caption
 SHEET_ROWS = 6
 
 
