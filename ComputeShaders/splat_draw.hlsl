@@ -26,6 +26,9 @@ static const float LEAST_OPACITY = 1.0 / 255.0; // below it a splat changes no 8
 static const float REACH = 2.0; // deviations from a splat's middle to its quad's edges
 static const float WEIGHT = 1.125 * 3.14159265358979 / (REACH * REACH); // the Gaussian's integral, 2 pi, over the window's
 static const float PIXEL_VARIANCE = 5.0 / 12.0 / (REACH * REACH); // px^2; the window's is REACH^2 / 5 of its deviation's
+static const uint COLOR_STEPS = 1023; // 10 bits
+static const uint TINT_STEPS = 63; // either way, 7 bits
+static const uint OPACITY_STEPS = 2047; // 11 bits
 static const float SH_C0 = 0.28209479177387814;
 static const float SH_C1 = 0.4886025119029199;
 static const float SMALLEST_DISTANCE = 1e-30; // metres; keeps the direction finite where the camera sits on a splat
@@ -45,6 +48,22 @@ float3 splatColor(float3 centre, float4 rotation, float3 sh[4], float3 camera)
     direction = quaternionRotate(quaternionConjugate(rotation), direction);
     float3 color = 0.5 + SH_C0 * sh[0] + SH_C1 * (direction.z * sh[2] - direction.y * sh[1] - direction.x * sh[3]);
     return max(color, 0);
+}
+
+// What COLOR_STEPS stand for: 1, 2, 4 or 8.
+float colorScale(uint exponent)
+{
+    return float(1u << exponent);
+}
+
+// Colour towards an eye, and opacity: as pack_colors of python/mua/kernels/splat_project.py lays them out.
+float4 unpackColor(uint2 words, uint eye)
+{
+    uint3 steps = uint3(words.x, words.x >> 10, words.x >> 20) & COLOR_STEPS;
+    uint3 tints = uint3(words.y >> 11, words.y >> 18, words.y >> 25) & 127;
+    float3 tint = float3(tints) - (TINT_STEPS + 1.0);
+    float3 color = max(float3(steps) + (eye == 0 ? tint : -tint), 0);
+    return float4(color * (colorScale(words.x >> 30) / COLOR_STEPS), float(words.y & OPACITY_STEPS) / OPACITY_STEPS);
 }
 
 // Standard deviations of what is drawn of a Gaussian.
@@ -89,7 +108,7 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     uint splat = 2 * order[vertex / 6];
     uint4 head = splats[splat];
     uint4 tail = splats[splat + 1];
-    float4 color = float4(unpackHalves(head.w), unpackHalves(tail.x));
+    float4 color = unpackColor(uint2(head.w, tail.x), eye);
     float2 major = unpackHalves(eye == 0 ? tail.y : tail.z);
     float2 deviations = float2(length(major), halfAt(tail.w, eye));
     float2 axis = major / max(deviations.x, LEAST_NORM);

@@ -91,7 +91,7 @@ def draw_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> Arra
 
 
 def reference_frame(frame: Splats, cameras: Sequence[Camera]) -> Array:
-    """The reference's picture [E, H, W, 4], premultiplied: one order and one colour for both eyes."""
+    """The reference's picture [E, H, W, 4], premultiplied: one order for both eyes."""
     frame = as_drawn(frame)
     splats, keys, ellipses = splat_project(
         frame.centres,
@@ -104,7 +104,8 @@ def reference_frame(frame: Splats, cameras: Sequence[Camera]) -> Array:
         bounds=frame.bounds,
         normals=frame.normals,
     )
-    middle = np.mean([camera.position for camera in cameras], axis=0)
-    colors = splat_colors(frame.centres[splats], frame.texel_dq[splats], frame.sh[splats], middle)
+    on_screen = frame.centres[splats], frame.texel_dq[splats], frame.sh[splats]
+    colors = [splat_colors(*on_screen, camera.position) for camera in cameras]
     order, opacities = splat_sort(keys), frame.opacities[splats]
-    return np.stack([splat_draw(e, colors, opacities, order, screen=cameras[0].screen) for e in ellipses])
+    drawn = zip(ellipses, colors, strict=True)
+    return np.stack([splat_draw(e, c, opacities, order, screen=cameras[0].screen) for e, c in drawn])

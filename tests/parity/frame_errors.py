@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from packed_splats import unpacked
+from packed_splats import colors_of, opacities_of, unpacked
 from splat_rounding import exact_keys
 
 from mua.arrays import Array
@@ -71,7 +71,7 @@ class PosedFrame:
 
     def errors(self) -> FrameErrors:
         splats = unpacked(self.frame.splats.read())[: len(self.exact.centres)]
-        colors, opacities = (splats[name][self.order].astype(float) for name in ("color", "opacity"))
+        colors, opacities = colors_of(splats)[:, self.order], opacities_of(splats)[self.order]
         position = np.abs(splats["centre"] - self.exact.centres)
         exact, rounding = exact_keys(
             self.exact.centres[self.order], np.stack([camera.view for camera in self.cameras]), self.bounds
@@ -80,7 +80,7 @@ class PosedFrame:
         moved = LAST_KEY * np.linalg.norm(position, axis=1).max(initial=0) / span
         return FrameErrors(
             position=float(position.max(initial=0)),
-            color=float(np.abs(colors - exact_colors(self.exact, self.cameras)[self.order]).max(initial=0)),
+            color=float(np.abs(colors - exact_colors(self.exact, self.cameras)[:, self.order]).max(initial=0)),
             opacity=float(np.abs(opacities - self.exact.opacities[self.order]).max(initial=0)),
             key=float(np.abs(self.keys - exact).max(initial=0)) - 0.5,
             key_bound=float(rounding + moved),
@@ -94,9 +94,9 @@ def cameras_of(rig: Rig, clip: Clip, *, eyes: int, screen: int) -> Sequence[Came
 
 
 def exact_colors(frame: Splats, cameras: Sequence[Camera]) -> Array:
-    """Colours [N, 3] towards the mean of the eyes."""
-    middle = np.mean([camera.position for camera in cameras], axis=0)
-    return splat_colors(frame.centres, frame.texel_dq, frame.sh, middle)
+    """Colours [2, N, 3] towards either eye."""
+    eyes = cameras[0], cameras[-1]
+    return np.stack([splat_colors(frame.centres, frame.texel_dq, frame.sh, eye.position) for eye in eyes])
 
 
 def exact_depths(bounds: Array, cameras: Sequence[Camera]) -> Array:

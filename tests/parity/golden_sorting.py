@@ -1,9 +1,14 @@
 """Golden cases of the kernels from texels to their order, with inputs and bounds of the kernels' own tests."""
 
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from golden_case import UNWRITTEN, Case, Expected, halves
-from projected import Scene
-from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, TEXEL_BOUND, ULP, exact_keys, eye_bounds
+from projected import Scene, held
+from projection_errors import color_bound
+from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, ULP, exact_keys, eye_bounds
 from stored import groups
 from test_splat_project import BOX, random_texels, stereo
 
@@ -12,7 +17,7 @@ from mua.camera import NEAR, Camera
 from mua.decode import Splats
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
-from mua.kernels.splat_project import HIDDEN, eye_ellipses, pack_keys, splat_project
+from mua.kernels.splat_project import HIDDEN, eye_ellipses, pack_colors, pack_keys, splat_project
 from mua.kernels.splat_sort import splat_sort
 
 FIRST = 2  # splat of another avatar's, before those of a case
@@ -25,13 +30,16 @@ def splat_project_cases() -> list[Case]:
 
 
 def _scene(eyes: int) -> Scene:
-    """Splats whose visibility, key and axes float32 cannot turn, before cameras that float32 holds exactly."""
+    """Splats of which float32 turns no visibility, key, axis or step of a colour; the cameras are float32."""
     exact = [(c.view.astype(np.float32).astype(float), c.projection.astype(np.float32).astype(float)) for c in stereo()]
     cameras = tuple(Camera(view, projection, stereo()[0].screen) for view, projection in exact[:eyes])
-    texels, box = random_texels(49_999), (1.6 * BOX).astype(np.float32).astype(float)
+    texels, box = random_texels(99_999), (1.6 * BOX).astype(np.float32).astype(float)
+    texels.texture[:, 14:] *= 0.3  # less that depends on where the eye is
+    texels = replace(texels, texture=held(texels.texture))
     splats = texels.splats
+    clear = _clear_colors(splats, cameras)
     keys, key_bound = exact_keys(splats.centres, np.stack([c.view for c in cameras]), box)
-    clear = np.abs(keys - np.floor(keys) - 0.5) > key_bound
+    clear &= np.abs(keys - np.floor(keys) - 0.5) > key_bound
     for camera in cameras:
         bound, ellipses = eye_bounds(splats, camera), _ellipses(texels.splats, camera)
         clear &= (np.abs(bound.margin) > 2) & (_axis_bound(ellipses, bound.variance) < 1e-3) & (ellipses[:, 4] < 40)
@@ -39,6 +47,26 @@ def _scene(eyes: int) -> Scene:
     seen = np.any([eye_bounds(splats, camera).margin > 0 for camera in cameras], axis=0)
     chosen = [*np.flatnonzero(clear & seen)[:SEEN], *np.flatnonzero(clear & ~seen)[:UNSEEN]]
     return Scene(texels.kept(np.array(chosen)), cameras, box)
+
+
+def _colors(splats: Splats, cameras: Sequence[Camera]) -> Array:
+    """Towards each eye, [E, N, 3]."""
+    seen_from = splats.centres, splats.texel_dq, splats.sh
+    return np.stack([splat_colors(*seen_from, camera.position) for camera in cameras])
+
+
+def _clear_colors(splats: Splats, cameras: Sequence[Camera]) -> Array:
+    """Splats [N] whose packed colours and opacity stay the same within what float32 may take from them."""
+    colors, opacities = _colors(splats, cameras), splats.opacities
+    distance = np.min([np.linalg.norm(splats.centres - c.position, axis=1) for c in cameras], axis=0)
+    farthest = float(np.max([np.abs(c.position) for c in cameras]))
+    bound = color_bound(splats.centres, splats.sh, distance, farthest)[:, None]
+    packed = pack_colors(colors, opacities)
+    clear = np.ones(len(opacities), bool)
+    for either in itertools.product((-1, 1), repeat=len(cameras) + 1):
+        moved = np.stack([np.maximum(c + sign * bound, 0) for c, sign in zip(colors, either, strict=False)])
+        clear &= np.all(pack_colors(moved, opacities + either[-1] * OPACITY_BOUND) == packed, axis=1)
+    return clear
 
 
 def _ellipses(splats: Splats, camera: Camera) -> Array:
@@ -68,12 +96,7 @@ def _project(eyes: int) -> Case:
         normals=exact.normals,
     )
     np.testing.assert_array_equal(seen, np.arange(SEEN))
-    camera = constants["camera"][:3].astype(float)
-    colors = splat_colors(exact.centres[:SEEN], exact.texel_dq[:SEEN], exact.sh[:SEEN], camera)
-    distance = np.linalg.norm(exact.centres - camera, axis=1).min()
-    color_bound = float(np.abs(exact.sh).sum(axis=1).max()) * (
-        ULP * (3 / distance + 28) + 4 * TEXEL_BOUND + 2 * CENTRE_BOUND / distance
-    )
+    colors = pack_colors(_colors(exact, scene.cameras), exact.opacities)[:SEEN]
     pair = ellipses[0], ellipses[-1]
     axes = np.concatenate([e[:, 4:5] * e[:, 2:4] for e in pair], axis=1)
     minors = np.stack([e[:, 5] for e in pair], axis=1)
@@ -95,14 +118,7 @@ def _project(eyes: int) -> Case:
         (
             Expected("splats", "uint", np.full(before, UNWRITTEN)),
             Expected("splats", "float", exact.centres, CENTRE_BOUND, first=before, length=3, period=8),
-            halves(
-                "splats",
-                np.concatenate([colors, exact.opacities[:SEEN, None]], axis=1),
-                color_bound + OPACITY_BOUND,
-                first=before + 3,
-                length=2,
-                period=8,
-            ),
+            Expected("splats", "uint", colors, first=before + 3, length=2, period=8),
             halves("splats", axes, deviation + turned, first=before + 5, length=2, period=8),
             halves("splats", minors, deviation, first=before + 7, period=8),
             Expected("splats", "uint", np.zeros(UNSEEN), first=hidden + 3, period=8),

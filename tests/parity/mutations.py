@@ -253,6 +253,14 @@ FAULTS = {
             "direction.z * sh[1] - direction.y * sh[2]",
             "splat_draw.hlsl",
         ),
+        Fault("second eye's colour that of the first", "eyePosition(1))", "eyePosition(0))"),
+        Fault("position of an eye not turned", "-toEye[0].w * toEye[0].xyz", "-toEye[0].w * toEye[1].xyz"),
+        Fault("tints of the wrong sign", "0.5 * (first - second)", "0.5 * (second - first)"),
+        Fault("scale that does not hold the tint", "max(mean, abs(tint) *", "max(mean, 0 * abs(tint) *"),
+        Fault("scale of the next colours", "largest > 1 ? 1 : 0", "largest > 2 ? 1 : 0"),
+        Fault("colours cut off", "min(mean * steps, COLOR_STEPS) + 0.5", "min(mean * steps, COLOR_STEPS)"),
+        Fault("opacity cut off", "uint(opacity * OPACITY_STEPS + 0.5)", "uint(opacity * OPACITY_STEPS)"),
+        Fault("green and blue swapped", "(tints.y << 18) | (tints.z << 25)", "(tints.z << 18) | (tints.y << 25)"),
         drawn("box of the lesser half width", "(size.x + size.y) * size", "0 * size"),
     ],
     "splat_sort": [
@@ -320,6 +328,9 @@ FAULTS = {
     ],
     "splat_draw": [
         drawn("eye index ignored", "eye == 0 ? tail.y : tail.z", "tail.y"),
+        drawn("tints of the other eye", "eye == 0 ? tint : -tint", "eye == 0 ? -tint : tint"),
+        drawn("one scale for all colours", "float(1u << exponent)", "1.0"),
+        drawn("opacity of ten bits", "OPACITY_STEPS = 2047", "OPACITY_STEPS = 1023"),
         drawn("vertex of the neighbouring splat", "order[vertex / 6]", "order[(vertex + 1) / 6]"),
         drawn(
             "ellipse turned the wrong way",

@@ -1,4 +1,4 @@
-"""The 32-byte splat of pack_splats, unpacked; how far a half float of a GPU may lie from the exact value."""
+"""The 32-byte splat of pack_splats, unpacked; how far what a GPU rounds may lie from the exact value."""
 
 import numpy as np
 
@@ -7,8 +7,7 @@ from mua.arrays import Array
 PACKED = np.dtype(
     [
         ("centre", "<f4", 3),
-        ("color", "<f2", 3),
-        ("opacity", "<f2"),
+        ("colors", "<u4", 2),  # of both eyes, with the opacity
         ("axes", "<f2", (2, 2)),  # of either eye, column and row, pixels
         ("minors", "<f2", 2),
     ]
@@ -24,6 +23,28 @@ def unpacked(
 ) -> Array:
     """The fields [N] of PACKED."""
     return np.ascontiguousarray(words, "<u4").reshape(-1).view(PACKED)
+
+
+def color_scales(
+    splats: Array,  # [N] of PACKED
+) -> Array:
+    """What 1023 steps of a splat's colours stand for, [N]."""
+    return np.asarray(2.0 ** (splats["colors"][:, 0] >> 30))
+
+
+def colors_of(
+    splats: Array,  # [N] of PACKED
+) -> Array:
+    """sRGB towards both eyes, [2, N, 3]."""
+    mean = (splats["colors"][:, :1] >> np.array([0, 10, 20], np.uint32)) % 1024
+    tint = (splats["colors"][:, 1:] >> np.array([11, 18, 25], np.uint32)) % 128 - 64.0
+    return np.asarray(np.maximum([mean + tint, mean - tint], 0) * (color_scales(splats) / 1023)[:, None])
+
+
+def opacities_of(
+    splats: Array,  # [N] of PACKED
+) -> Array:
+    return np.asarray(splats["colors"][:, 1] % 2048 / 2047)
 
 
 def screen_covariance(

@@ -109,11 +109,9 @@ class Scene:
     @property
     def constants(self) -> dict[str, int | float | Array]:
         eyes = [self.cameras[0], self.cameras[-1]]
-        middle = np.mean([c.position for c in self.cameras], axis=0)
         return {
             "view": np.stack([c.view for c in eyes]),
             "projection": np.stack([c.projection for c in eyes]),
-            "camera": np.append(middle, 0),
             "bounds_low": np.append(self.bounds[0], 0),
             "bounds_high": np.append(self.bounds[1], 0),
             "screen": np.array(self.cameras[0].screen),

@@ -1,7 +1,7 @@
 """What SplatProject leaves against the reference, each part within what float32 and half floats may take from it."""
 
 import numpy as np
-from packed_splats import assert_halves, screen_covariance
+from packed_splats import color_scales, colors_of, opacities_of, screen_covariance
 from projected import Projected, Scene
 from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, TEXEL_BOUND, ULP, Bounds, exact_keys, eye_bounds
 
@@ -9,7 +9,7 @@ from mua.arrays import Array
 from mua.camera import NEAR, Camera
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
-from mua.kernels.splat_project import HIDDEN, eye_ellipses
+from mua.kernels.splat_project import COLOR_SCALES, HIDDEN, eye_ellipses
 
 
 def covariance_of(ellipses: Array) -> Array:
@@ -56,13 +56,28 @@ def assert_ellipses(scene: Scene, camera: Camera, bound: Bounds, seen: Array, sp
 def assert_colors(scene: Scene, splats: Array, seen: Array) -> None:
     frame = scene.texels.splats
     centres, sh = frame.centres[seen], frame.sh[seen]
-    camera = np.mean([c.position for c in scene.cameras], axis=0)
-    exact = splat_colors(centres, frame.texel_dq[seen], sh, camera)
-    distance = np.linalg.norm(centres - camera, axis=1)
+    eyes = [c.position for c in (scene.cameras[0], scene.cameras[-1])]
+    exact = np.stack([splat_colors(centres, frame.texel_dq[seen], sh, eye) for eye in eyes])
+    nearest = np.min([np.linalg.norm(centres - eye, axis=1) for eye in eyes], axis=0)
+    bound = color_bound(centres, sh, nearest, np.abs(eyes).max())
+    step = color_scales(splats) / 1023
+    # The mean and half the difference are each rounded to a step.
+    held = np.minimum(exact, COLOR_SCALES[-1])
+    tints = np.abs(exact[0] - exact[1]).max(axis=1) / 2
+    near = tints < 63 / 1023 * COLOR_SCALES[-1]
+    error = np.abs(colors_of(splats) - held)
+    assert np.all((error <= (bound + step)[:, None])[:, near])
+    needed = np.maximum(exact.mean(axis=0).max(axis=1), 1023 / 63 * tints)
+    assert np.all(step * 1023 <= COLOR_SCALES[np.searchsorted(COLOR_SCALES[:-1], needed + 17 * bound)])
+    assert np.all(np.abs(opacities_of(splats) - frame.opacities[seen]) <= OPACITY_BOUND + 0.5 / 2047)
+
+
+def color_bound(centres: Array, sh: Array, distance: Array, eye: float) -> Array:
+    """What float32 may take from colours [N] towards an eye at a distance."""
     # A direction: its difference, 8 ulp of a division by a norm; 12 products and sums of the turn, 8 of the colour;
     # what the centre is off; what the turn is off, which counts twice in each of two vectors.
-    direction = ULP * ((np.abs(centres).max(axis=1, initial=0) + np.abs(camera).max()) / distance + 8)
+    # The eye's position comes from its view: three products and sums.
+    distance = np.maximum(distance, CENTRE_BOUND)
+    direction = ULP * ((np.abs(centres).max(axis=1, initial=0) + 4 * eye) / distance + 8)
     direction += np.sqrt(3) * CENTRE_BOUND / distance + 4 * TEXEL_BOUND
-    bound = np.abs(sh).sum(axis=1) * (direction + 20 * ULP) + ULP
-    assert_halves(splats["color"], exact, bound[:, None])
-    assert_halves(splats["opacity"], frame.opacities[seen], OPACITY_BOUND)
+    return np.asarray(np.abs(sh).sum(axis=1) * (direction + 20 * ULP) + ULP)

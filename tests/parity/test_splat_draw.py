@@ -22,7 +22,7 @@ from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels import splat_draw as kernel
 from mua.kernels.splat_draw import WEIGHT, pixel_share, splat_draw
-from mua.kernels.splat_project import PIXEL_VARIANCE, REACH, pack_splats
+from mua.kernels.splat_project import COLOR_STEPS, OPACITY_STEPS, PIXEL_VARIANCE, REACH, pack_splats
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image, read_image
 from mua.rendering import frame_bounds, render_premultiplied
 
@@ -97,6 +97,8 @@ def test_float32_scene_draws_as_float64() -> None:
     np.testing.assert_allclose(splat_draw(*scene, order, screen=(13, 5)), exact, rtol=0, atol=bound)
 
 
+HELD_COLOR = np.array([[64, 192, 384]]) * 4 / COLOR_STEPS  # packed splats hold both exactly
+HELD_OPACITY = np.array([1791]) / OPACITY_STEPS
 LEAST_PSNR = 50.0  # dB, of the drawn image against the reference, for each eye
 PICTURE = (512, 512)
 RASTER_GRID = 1 / 256  # pixels; what Direct3D 11 demands, and desktop devices have
@@ -185,7 +187,7 @@ def on_device(
 ) -> SortedSplats:
     """Splats as the shaders would leave them for eyes at one place that look along -Z."""
     packed = ellipses if ellipses.ndim == 3 else ellipses[None]
-    ellipses = packed[0]
+    ellipses, both = packed[0], colors if colors.ndim == 3 else colors[None]
     (camera,) = facing(screen)
     ndc = (2 * ellipses[:, :2] / screen - 1) * [1, -1]
     focal, skew = np.diagonal(camera.projection)[:2], camera.projection[:2, 2]
@@ -193,7 +195,7 @@ def on_device(
     centres = np.concatenate([(ndc + skew) / focal * away, -away], axis=1)
     arguments = np.array([6 * len(order), 1, 0, 0, len(order)], np.uint32)
     return SortedSplats(
-        splats=device.buffer(pack_splats(centres, colors, opacities, packed), name="splats"),
+        splats=device.buffer(pack_splats(centres, both, opacities, packed), name="splats"),
         order=device.buffer(order.astype(np.uint32), name="order"),
         arguments=device.buffer(arguments, name="arguments", indirect=True),
     )
@@ -202,7 +204,7 @@ def on_device(
 def in_halves(ellipses: Array) -> Array:
     """Ellipses [N, 6] whose axes half floats hold."""
     blank = np.zeros((len(ellipses), 3))
-    fields = unpacked(pack_splats(blank, blank, blank[:, 0], ellipses[None]))
+    fields = unpacked(pack_splats(blank, blank[None], blank[:, 0], ellipses[None]))
     axes, minors = (fields[name][:, 0].astype(float) for name in ("axes", "minors"))
     major = np.linalg.norm(axes, axis=1, keepdims=True)
     return np.concatenate([ellipses[:, :2], axes / np.maximum(major, 1e-30), major, minors[:, None]], axis=1)
@@ -237,7 +239,7 @@ def test_shader_integrates_a_splat_as_the_reference(
     rng = np.random.default_rng(screen[0])
     angle, middle = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.8, 2) * screen
     ellipses = in_halves(np.array([[*middle, np.cos(angle), np.sin(angle), *deviations]]))
-    colors, opacities = np.array([[0.25, 0.75, 1.5]]), np.array([0.875])  # half floats hold them exactly
+    colors, opacities = HELD_COLOR, HELD_OPACITY
     splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, facing(screen))
     exact = splat_draw(ellipses, colors, opacities, np.zeros(1, int), screen=screen)
@@ -248,14 +250,16 @@ def test_shader_integrates_a_splat_as_the_reference(
     assert np.all((np.abs(found - exact) <= integration_bound(exact, 0.875, *deviations))[certain])
 
 
-def test_each_eye_draws_its_own_ellipse(device: Device) -> None:
+def test_each_eye_draws_its_own_ellipse_and_colour(device: Device) -> None:
     screen = (16, 16)
     level, upright = ([8.0, 8, 1, 0, 4, 1], [8.0, 8, 0, 1, 3, 2])
-    ellipses, colors, opacities = np.array([[level], [upright]]), np.array([[0.25, 0.75, 1.5]]), np.array([0.875])
+    ellipses, opacities = np.array([[level], [upright]]), HELD_OPACITY
+    tint = np.array([[20, -63, 0]]) * 4 / COLOR_STEPS
+    colors = np.stack([HELD_COLOR + tint, HELD_COLOR - tint])
     splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, 2 * facing(screen))
     for eye, picture in enumerate(np.split(found, 2, axis=1)):
-        exact = splat_draw(ellipses[eye], colors, opacities, np.zeros(1, int), screen=screen)
+        exact = splat_draw(ellipses[eye], colors[eye], opacities, np.zeros(1, int), screen=screen)
         np.testing.assert_allclose(picture, exact, rtol=0, atol=integration_bound(exact, 0.875, 3, 1).max())
 
 
@@ -300,7 +304,7 @@ def test_a_splat_whose_middle_lies_before_the_near_plane_is_drawn(device: Device
     """Half of it may lie behind: quads are flat, so that the device would cut all of it."""
     screen = (16, 16)
     seen_by = facing(screen)
-    ellipses, colors, opacities = np.array([[8.0, 8, 1, 0, 4, 4]]), np.array([[0.25, 0.75, 1.5]]), np.array([0.875])
+    ellipses, colors, opacities = np.array([[8.0, 8, 1, 0, 4, 4]]), HELD_COLOR, HELD_OPACITY
     near = seen_by[0].near * np.array([0.5])
     splats = on_device(device, ellipses, colors, opacities, np.zeros(1), screen=screen, depth=near)
     found = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, seen_by)

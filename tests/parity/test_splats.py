@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from packed_splats import unpacked
+from frame_errors import exact_colors
+from packed_splats import colors_of, opacities_of, unpacked
 from splat_rounding import exact_keys
 from synthetic_avatar import synthetic_avatar
 from test_frame import COLOR_BOUND, LEAST_PSNR, OPACITY_BOUND, POSITION_BOUND, part, psnr
@@ -19,7 +20,6 @@ from mua.asset.avatar import Avatar
 from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
 from mua.decode import Splats, box_of, decode_clip_frame
 from mua.gpu import Device
-from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
@@ -104,12 +104,10 @@ def crowd(request: pytest.FixtureRequest, device: Device, tmp_path_factory: pyte
 
 def test_every_avatars_splats_agree_with_the_reference(crowd: Crowd) -> None:
     splats = unpacked(crowd.frame.splats.read())[crowd.slots]
-    middle = np.mean([camera.position for camera in crowd.cameras], axis=0)
-    colors = splat_colors(crowd.exact.centres, crowd.exact.texel_dq, crowd.exact.sh, middle)
     assert len(splats) == len(crowd.exact.centres) == sum(avatar.splat_count for avatar in crowd.frame.avatars)
     assert np.abs(splats["centre"] - crowd.exact.centres).max() < POSITION_BOUND
-    assert np.abs(splats["opacity"] - crowd.exact.opacities).max() < OPACITY_BOUND
-    assert np.abs(splats["color"] - colors).max() < COLOR_BOUND
+    assert np.abs(opacities_of(splats) - crowd.exact.opacities).max() < OPACITY_BOUND
+    assert np.abs(colors_of(splats) - exact_colors(crowd.exact, crowd.cameras)).max() < COLOR_BOUND
 
 
 def test_one_order_goes_through_all_avatars(crowd: Crowd) -> None:

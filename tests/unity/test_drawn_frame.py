@@ -16,7 +16,7 @@ from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
-from test_recorded_frame import MIRROR, STAND_INS, unpacked
+from test_recorded_frame import MIRROR, STAND_INS, colors_of, opacities_of, unpacked
 
 from mua.arrays import Array
 from mua.asset import write
@@ -24,6 +24,7 @@ from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.gpu.reflect import Constant
+from mua.kernels.splat_project import pack_colors
 from mua.player.draw import SortedSplats, SplatRenderer, image_format
 
 SCREEN = (160, 200)
@@ -257,17 +258,24 @@ def test_what_is_drawn_before_hides_the_splats_behind_it(painter: Painter, both:
         assert np.any(expected[:, :middle]) == (place != "before")
 
 
+def painted(words: Array, colors: Array) -> Array:
+    """The same splats in other colours [N, 3]."""
+    splats = unpacked(words).copy()
+    splats["colors"] = pack_colors(colors[None], opacities_of(splats))
+    return np.asarray(splats.view(np.uint32))
+
+
 @pytest.mark.parametrize("brightness", [1.0, 0.12, 0.07])
 def test_a_linear_project_is_given_light(painter: Painter, mono: Scene, brightness: float) -> None:
     """sRGB of each splat turned to light before it is blended, of dark ones too, which it is proportional to."""
     drawn = mono.drawn["indirect"]
-    splats = unpacked(drawn.buffers["splats"]).copy()
-    splats["color"] = brightness * splats["color"].astype(float)
-    srgb = splats["color"].astype(float)
-    drawn = replace(drawn, buffers={**drawn.buffers, "splats": splats.copy().view(np.uint32)})
+    srgb = brightness * colors_of(unpacked(drawn.buffers["splats"]))[0]
+    dark = painted(drawn.buffers["splats"], srgb)
+    drawn = replace(drawn, buffers={**drawn.buffers, "splats": dark})
+    srgb = colors_of(unpacked(dark))[0]
     light = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    splats["color"] = light
-    (expected,) = painter.player(mono, splats=splats.view(np.uint32))
+    (expected,) = painter.player(mono, splats=painted(dark, light / light.max()))
+    expected[..., :3] *= light.max()
     found = painter.unity(drawn, space=())
     covered, channels = expected[..., 3] > 0, slice(3) if brightness < 1 else slice(4)
     bound = 2.0**-9 * expected[covered][..., channels].max()  # of the expected colours' half floats

@@ -18,7 +18,6 @@ from mua.asset.tensors import Storage
 from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
 from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
-from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import HIDDEN, LAST_KEY
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
 from mua.rendering import render_premultiplied
@@ -26,9 +25,9 @@ from mua.rig.bounds import root_positions
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from frame_errors import exact_depths
+from frame_errors import exact_colors, exact_depths
 from golden_sorting import BLOCK
-from packed_splats import unpacked
+from packed_splats import colors_of, opacities_of, unpacked
 from splat_rounding import exact_keys
 from test_frame import (
     COLOR_BOUND,
@@ -175,10 +174,9 @@ def recorded(
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)
 def test_splats_are_those_of_the_reference(recorded: Recorded, shot: Shot) -> None:
     exact, splats = recorded.exact[shot.label], unpacked(recorded.kept(shot, "splats"))[recorded.slots(shot)]
-    middle = np.mean([camera.position for camera in recorded.cameras[shot.label]], axis=0)
     assert np.abs(splats["centre"] - exact.centres).max() < POSITION_BOUND
-    assert np.abs(splats["opacity"] - exact.opacities).max() < OPACITY_BOUND
-    assert np.abs(splats["color"] - splat_colors(exact.centres, exact.texel_dq, exact.sh, middle)).max() < COLOR_BOUND
+    assert np.abs(opacities_of(splats) - exact.opacities).max() < OPACITY_BOUND
+    assert np.abs(colors_of(splats) - exact_colors(exact, recorded.cameras[shot.label])).max() < COLOR_BOUND
 
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)

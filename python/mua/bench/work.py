@@ -32,9 +32,9 @@ ACTIVATIONS = 3 + 4  # three exponentials, the logistic function
 SKIN = 3 * BLEND_TERM + NORMALIZE_DUAL + 18 + DUAL_TRANSFORM + QUATERNION_PRODUCT + UNIT_QUATERNION + AXES
 SKIN += ACTIVATIONS  # 18: the barycentric point and the offset
 PROJECT_EYE = (
-    24 + 15 + 24 + 30 + 15 + 18 + 6 + 25
-)  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box
-PROJECT_SHARED = 12 + 30 + 27 + 11  # direction, turned back, SH; key
+    24 + 15 + 24 + 30 + 15 + 18 + 6 + 25 + 12 + 30 + 27
+)  # eye space, slopes, Jacobian J, A = J x axes, A A^T, axes, pixel, box; direction, turned back, SH
+PROJECT_SHARED = 27 + 11  # packed colours; key
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,8 @@ HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees
 SPLAT_WORDS = 8
 LARGEST_BARYCENTRIC = 0xFFFF  # stands for 1
 ONE_SIDED = 1 << 31  # beside the triangle of a texel that is not drawn from behind
+COLOR_STEPS, TINT_STEPS, OPACITY_STEPS = 1023, 63, 2047  # 10 bits, 7 bits for either sign, 11 bits
+COLOR_SCALES = np.array([1.0, 2.0, 4.0, 8.0])  # what COLOR_STEPS may stand for
 
 
 def splat_project(
@@ -131,24 +133,48 @@ def pack_texels(
 
 def pack_splats(
     centres: Array,  # [N, 3] metres
-    colors: Array,  # [N, 3] sRGB
+    colors: Array,  # [E, N, 3] sRGB towards one eye or two
     opacities: Array,  # [N]
     ellipses: Array,  # [E, N, 6] of one eye or two; deviations 0 where an eye does not see the splat
 ) -> Array:
     """Splats as they are drawn, 32 bytes each, [N, 8] uint32.
 
-    Words 0-2: centre, f32. The others are pairs of half floats, low half first: 3-4 colour and opacity, 5 and 6 the
+    Words 0-2: centre, f32; 3 and 4: pack_colors. The others are pairs of half floats, low half first: 5 and 6 the
     major axis of either eye, as long as its standard deviation, 7 the standard deviations across it in either eye.
     """
     largest = float(np.finfo(np.float16).max)
     first, last = ellipses[0], ellipses[-1]
     axes = [np.minimum(ellipse[:, 4:5], largest) * ellipse[:, 2:4] for ellipse in (first, last)]
     minors = np.stack([first[:, 5], last[:, 5]], axis=1)
-    halves = np.clip(np.concatenate([colors, opacities[:, None], *axes, minors], axis=1), -largest, largest)
+    halves = np.clip(np.concatenate([*axes, minors], axis=1), -largest, largest)
     packed = np.zeros((len(centres), SPLAT_WORDS), dtype=np.uint32)
     packed[:, 0:3] = centres.astype("<f4").view("<u4")
-    packed[:, 3:8] = np.ascontiguousarray(halves.astype("<f2")).view("<u4")
+    packed[:, 3:5] = pack_colors(colors, opacities)
+    packed[:, 5:8] = np.ascontiguousarray(halves.astype("<f2")).view("<u4")
     return packed
+
+
+def pack_colors(
+    colors: Array,  # [E, N, 3] sRGB towards one eye or two, not below 0
+    opacities: Array,  # [N] 0 to 1
+) -> Array:
+    """Colours and opacity of a splat, [N, 2] uint32.
+
+    Word 0: red, green and blue of the eyes' mean, 10 bits each from the lowest on, then the number of the scale, the
+    least of COLOR_SCALES that holds mean and tint. Word 1: opacity, 11 bits, then half the difference of the first
+    eye's colour from the second's, 7 bits each, of which 64 is none, in steps as large as the mean's. Where colours are
+    at most 1, either is off by 1/2046 at most; beyond 8 they are held there.
+    """
+    first, second = colors[0], colors[-1]
+    mean, tint = (first + second) / 2, (first - second) / 2
+    needed = np.maximum(mean, np.abs(tint) * (COLOR_STEPS / TINT_STEPS)).max(axis=1)
+    number = np.searchsorted(COLOR_SCALES[:-1], needed)
+    steps = (COLOR_STEPS / COLOR_SCALES[number])[:, None]
+    color = np.floor(np.minimum(mean * steps, COLOR_STEPS) + 0.5).astype(np.uint32)
+    turned = np.floor(np.clip(tint * steps, -TINT_STEPS, TINT_STEPS) + TINT_STEPS + 1.5).astype(np.uint32)
+    word = color[:, 0] | color[:, 1] << 10 | color[:, 2] << 20 | number.astype(np.uint32) << 30
+    opacity = np.floor(opacities * OPACITY_STEPS + 0.5).astype(np.uint32)
+    return np.stack([word, opacity | turned[:, 0] << 11 | turned[:, 1] << 18 | turned[:, 2] << 25], axis=1)
 
 
 def pack_keys(

@@ -53,9 +53,6 @@ class SplatFrame(Generic[P]):
     """One sort for all avatars in view, so that those that stand among each other blend rightly.
 
     Those outside every eye's view are neither projected nor sorted; their splats' places lie behind the others'.
-
-    A splat's colour is computed once for both eyes, towards the mean of their positions: degree-1 harmonics turn with
-    the direction, and two eyes 63 mm apart see an avatar a metre away in directions 4 degrees apart.
     """
 
     def __init__(self, device: Device, avatars: Sequence[P]) -> None:
@@ -142,7 +139,6 @@ class SplatFrame(Generic[P]):
             },
             view=np.stack([camera.view for camera in pair]),
             projection=np.stack([camera.projection for camera in pair]),
-            camera=np.append(np.mean([camera.position for camera in cameras], axis=0), 1),
             bounds_low=np.append(low, 1),
             bounds_high=np.append(high, 1),
             screen=np.array(cameras[0].screen),

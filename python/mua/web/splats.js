@@ -102,7 +102,6 @@ export class SplatFrame {
       {
         view: [...camera.view, ...camera.view],
         projection: [...camera.projection, ...camera.projection],
-        camera: [...camera.position, 1],
         bounds_low: [...box.slice(0, 3), 1],
         bounds_high: [...box.slice(3), 1],
         screen: camera.screen,

@@ -18,7 +18,6 @@ namespace Mua
         private static readonly int Keys = Shader.PropertyToID("keys");
         private static readonly int View = Shader.PropertyToID("view");
         private static readonly int Projection = Shader.PropertyToID("projection");
-        private static readonly int Camera = Shader.PropertyToID("camera");
         private static readonly int BoundsLow = Shader.PropertyToID("bounds_low");
         private static readonly int BoundsHigh = Shader.PropertyToID("bounds_high");
         private static readonly int Screen = Shader.PropertyToID("screen");
@@ -47,7 +46,6 @@ namespace Mua
             project.Set(commands, Keys, frame.Keys);
             project.Set(commands, View, eyes.View);
             project.Set(commands, Projection, eyes.Projection);
-            project.Set(commands, Camera, eyes.Middle);
             project.Set(commands, BoundsLow, new Vector4(low.x, low.y, low.z, 1));
             project.Set(commands, BoundsHigh, new Vector4(high.x, high.y, high.z, 1));
             project.Set(commands, Screen, eyes.Screen);

@@ -20,6 +20,29 @@ struct SLANG_ParameterGroup_Constants_std140_0
 
 @binding(1) @group(0) var<storage, read> splats_0 : array<vec4<u32>>;
 
+fn colorScale_0( exponent_0 : u32) -> f32
+{
+    return f32((u32(1) << (exponent_0)));
+}
+
+fn unpackColor_0( words_0 : vec2<u32>,  eye_1 : u32) -> vec4<f32>
+{
+    var _S1 : u32 = words_0.x;
+    var _S2 : u32 = words_0.y;
+    var tint_0 : vec3<f32> = vec3<f32>((vec3<u32>((_S2 >> (u32(11))), (_S2 >> (u32(18))), (_S2 >> (u32(25)))) & (vec3<u32>(u32(127))))) - vec3<f32>(64.0f);
+    var _S3 : vec3<f32> = vec3<f32>((vec3<u32>(_S1, (_S1 >> (u32(10))), (_S1 >> (u32(20)))) & (vec3<u32>(u32(1023)))));
+    var _S4 : vec3<f32>;
+    if(eye_1 == u32(0))
+    {
+        _S4 = tint_0;
+    }
+    else
+    {
+        _S4 = (vec3<f32>(0) - tint_0);
+    }
+    return vec4<f32>(max(_S3 + _S4, vec3<f32>(vec3<i32>(i32(0)))) * vec3<f32>((colorScale_0((_S1 >> (u32(30)))) / 1023.0f)), f32((_S2 & (u32(2047)))) / 2047.0f);
+}
+
 fn halfAt_0( word_0 : u32,  lane_0 : u32) -> f32
 {
     return (unpack2x16float(((((word_0 >> ((u32(16) * lane_0)))) & (u32(65535))))).x);
@@ -71,31 +94,31 @@ fn splatCorner_0( corner_0 : u32) -> vec2<f32>
     {
         below_0 = corner_0 == u32(5);
     }
-    var _S1 : i32;
+    var _S5 : i32;
     if(right_0)
     {
-        _S1 = i32(1);
+        _S5 = i32(1);
     }
     else
     {
-        _S1 = i32(-1);
+        _S5 = i32(-1);
     }
-    var _S2 : f32 = f32(_S1);
+    var _S6 : f32 = f32(_S5);
     if(below_0)
     {
-        _S1 = i32(1);
+        _S5 = i32(1);
     }
     else
     {
-        _S1 = i32(-1);
+        _S5 = i32(-1);
     }
-    return vec2<f32>(_S2, f32(_S1));
+    return vec2<f32>(_S6, f32(_S5));
 }
 
 fn splatOffset_0( axis_0 : vec2<f32>,  wide_0 : vec2<f32>,  corner_1 : vec2<f32>) -> vec2<f32>
 {
-    var _S3 : f32 = wide_0.y;
-    return vec2<f32>(2.0f) * (vec2<f32>(_S3) * corner_1 + vec2<f32>(((wide_0.x - _S3) * dot(axis_0, corner_1))) * axis_0);
+    var _S7 : f32 = wide_0.y;
+    return vec2<f32>(2.0f) * (vec2<f32>(_S7) * corner_1 + vec2<f32>(((wide_0.x - _S7) * dot(axis_0, corner_1))) * axis_0);
 }
 
 fn splatShare_0( deviations_1 : vec2<f32>,  wide_1 : vec2<f32>) -> f32
@@ -110,32 +133,32 @@ struct SplatVaryings_0
     @interpolate(flat) @location(1) color_0 : vec4<f32>,
 };
 
-fn splatVertex_0( _S4 : u32,  _S5 : u32,  _S6 : vec2<f32>,  _S7 : mat4x4<f32>) -> SplatVaryings_0
+fn splatVertex_0( _S8 : u32,  _S9 : u32,  _S10 : vec2<f32>,  _S11 : mat4x4<f32>) -> SplatVaryings_0
 {
-    var splat_0 : u32 = u32(2) * order_0[_S4 / u32(6)];
+    var splat_0 : u32 = u32(2) * order_0[_S8 / u32(6)];
     var head_0 : vec4<u32> = splats_0[splat_0];
     var tail_0 : vec4<u32> = splats_0[splat_0 + u32(1)];
-    var color_1 : vec4<f32> = vec4<f32>(unpackHalves_0(head_0.w), unpackHalves_0(tail_0.x));
-    var _S8 : u32;
-    if(_S5 == u32(0))
+    var color_1 : vec4<f32> = unpackColor_0(vec2<u32>(head_0.w, tail_0.x), _S9);
+    var _S12 : u32;
+    if(_S9 == u32(0))
     {
-        _S8 = tail_0.y;
+        _S12 = tail_0.y;
     }
     else
     {
-        _S8 = tail_0.z;
+        _S12 = tail_0.z;
     }
-    var major_0 : vec2<f32> = unpackHalves_0(_S8);
-    var _S9 : f32 = length(major_0);
-    var _S10 : f32 = halfAt_0(tail_0.w, _S5);
-    var deviations_2 : vec2<f32> = vec2<f32>(_S9, _S10);
+    var major_0 : vec2<f32> = unpackHalves_0(_S12);
+    var _S13 : f32 = length(major_0);
+    var _S14 : f32 = halfAt_0(tail_0.w, _S9);
+    var deviations_2 : vec2<f32> = vec2<f32>(_S13, _S14);
     var wide_2 : vec2<f32> = splatWide_0(deviations_2);
-    var corner_2 : vec2<f32> = splatCorner_0(_S4 % u32(6));
-    var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S7)));
-    var _S11 : f32 = clip_0.w;
-    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S11) + splatOffset_0(major_0 / vec2<f32>(max(_S9, 1.17549435082228751e-38f)), wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S6;
-    var depth_0 : f32 = clamp(clip_0.z / _S11, 0.0f, 1.0f);
-    var seen_0 : bool = _S10 > 0.0f;
+    var corner_2 : vec2<f32> = splatCorner_0(_S8 % u32(6));
+    var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S11)));
+    var _S15 : f32 = clip_0.w;
+    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S15) + splatOffset_0(major_0 / vec2<f32>(max(_S13, 1.17549435082228751e-38f)), wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S10;
+    var depth_0 : f32 = clamp(clip_0.z / _S15, 0.0f, 1.0f);
+    var seen_0 : bool = _S14 > 0.0f;
     var varyings_0 : SplatVaryings_0;
     varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
     if(seen_0)

@@ -2,7 +2,7 @@
 
 /** @type {import("../shader.js").Shader} */
 export const SplatProject = {
-  ...{"stage": "comp", "entry": "SplatProject", "buffers": [{"name": "mesh", "binding": 0, "read_only": true, "scalar": "float", "stride": 4}, {"name": "faces", "binding": 1, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texels", "binding": 2, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "texel_channels", "binding": 3, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "vertex_dq", "binding": 4, "read_only": true, "scalar": "float", "stride": 16}, {"name": "splats", "binding": 5, "read_only": false, "scalar": "uint", "stride": 16}, {"name": "keys", "binding": 6, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "view", "offset": 0, "scalar": "float", "shape": [2, 4, 4], "strides": [64, 4, 16], "used": true}, {"name": "projection", "offset": 128, "scalar": "float", "shape": [2, 4, 4], "strides": [64, 4, 16], "used": true}, {"name": "camera", "offset": 256, "scalar": "float", "shape": [4], "strides": [4], "used": true}, {"name": "bounds_low", "offset": 272, "scalar": "float", "shape": [4], "strides": [4], "used": true}, {"name": "bounds_high", "offset": 288, "scalar": "float", "shape": [4], "strides": [4], "used": true}, {"name": "screen", "offset": 304, "scalar": "float", "shape": [2], "strides": [4], "used": true}, {"name": "near", "offset": 312, "scalar": "float", "shape": [], "strides": [], "used": true}, {"name": "eyes", "offset": 316, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 320, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "first_splat", "offset": 324, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 7, "threads": [256, 1, 1]},
+  ...{"stage": "comp", "entry": "SplatProject", "buffers": [{"name": "mesh", "binding": 0, "read_only": true, "scalar": "float", "stride": 4}, {"name": "faces", "binding": 1, "read_only": true, "scalar": "uint", "stride": 4}, {"name": "texels", "binding": 2, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "texel_channels", "binding": 3, "read_only": true, "scalar": "uint", "stride": 8}, {"name": "vertex_dq", "binding": 4, "read_only": true, "scalar": "float", "stride": 16}, {"name": "splats", "binding": 5, "read_only": false, "scalar": "uint", "stride": 16}, {"name": "keys", "binding": 6, "read_only": false, "scalar": "uint", "stride": 4}], "constants": [{"name": "view", "offset": 0, "scalar": "float", "shape": [2, 4, 4], "strides": [64, 4, 16], "used": true}, {"name": "projection", "offset": 128, "scalar": "float", "shape": [2, 4, 4], "strides": [64, 4, 16], "used": true}, {"name": "bounds_low", "offset": 256, "scalar": "float", "shape": [4], "strides": [4], "used": true}, {"name": "bounds_high", "offset": 272, "scalar": "float", "shape": [4], "strides": [4], "used": true}, {"name": "screen", "offset": 288, "scalar": "float", "shape": [2], "strides": [4], "used": true}, {"name": "near", "offset": 296, "scalar": "float", "shape": [], "strides": [], "used": true}, {"name": "eyes", "offset": 300, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "texel_count", "offset": 304, "scalar": "uint", "shape": [], "strides": [], "used": true}, {"name": "first_splat", "offset": 308, "scalar": "uint", "shape": [], "strides": [], "used": true}], "constants_binding": 7, "threads": [256, 1, 1]},
   code: `struct _MatrixStorage_float4x4_ColMajorstd140_0
 {
     @align(16) data_0 : array<vec4<f32>, i32(4)>,
@@ -17,7 +17,6 @@ struct SLANG_ParameterGroup_Constants_std140_0
 {
     @align(16) view_0 : _Array_std140_matrixx3Cfloatx2C4x2C4x3E2_0,
     @align(16) projection_0 : _Array_std140_matrixx3Cfloatx2C4x2C4x3E2_0,
-    @align(16) camera_0 : vec4<f32>,
     @align(16) bounds_low_0 : vec4<f32>,
     @align(16) bounds_high_0 : vec4<f32>,
     @align(16) screen_0 : vec2<f32>,
@@ -383,20 +382,82 @@ fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
     return onScreen_0;
 }
 
-fn splatColor_0( centre_1 : vec3<f32>,  rotation_1 : vec4<f32>,  sh_0 : array<vec3<f32>, i32(4)>,  camera_1 : vec3<f32>) -> vec3<f32>
+fn eyePosition_0( eye_3 : u32) -> vec3<f32>
 {
-    var direction_0 : vec3<f32> = centre_1 - camera_1;
+    var _S47 : mat4x4<f32> = mat4x4<f32>(Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(3)]);
+    return vec3<f32>(- _S47[i32(0)].w) * _S47[i32(0)].xyz - vec3<f32>(_S47[i32(1)].w) * _S47[i32(1)].xyz - vec3<f32>(_S47[i32(2)].w) * _S47[i32(2)].xyz;
+}
+
+fn splatColor_0( centre_1 : vec3<f32>,  rotation_1 : vec4<f32>,  sh_0 : array<vec3<f32>, i32(4)>,  camera_0 : vec3<f32>) -> vec3<f32>
+{
+    var direction_0 : vec3<f32> = centre_1 - camera_0;
     var direction_1 : vec3<f32> = quaternionRotate_0(quaternionConjugate_0(rotation_1), direction_0 / vec3<f32>(max(length(direction_0), 1.00000000317107685e-30f)));
     return max(vec3<f32>(0.5f) + vec3<f32>(0.282094806432724f) * sh_0[i32(0)] + vec3<f32>(0.48860251903533936f) * (vec3<f32>(direction_1.z) * sh_0[i32(2)] - vec3<f32>(direction_1.y) * sh_0[i32(1)] - vec3<f32>(direction_1.x) * sh_0[i32(3)]), vec3<f32>(vec3<i32>(i32(0))));
 }
 
-fn colorOf_0( gaussian_4 : Gaussian_0,  texel_2 : u32) -> vec3<f32>
+fn colorScale_0( exponent_0 : u32) -> f32
 {
-    var first_1 : vec4<f32> = channels_0(texel_2, u32(3));
-    var second_0 : vec4<f32> = channels_0(texel_2, u32(4));
+    return f32((u32(1) << (exponent_0)));
+}
+
+fn packColors_0( first_1 : vec3<f32>,  second_0 : vec3<f32>,  opacity_2 : f32) -> vec2<u32>
+{
+    var _S48 : vec3<f32> = vec3<f32>(0.5f);
+    var mean_1 : vec3<f32> = _S48 * (first_1 + second_0);
+    var tint_0 : vec3<f32> = _S48 * (first_1 - second_0);
+    var needed_0 : vec3<f32> = max(mean_1, abs(tint_0) * vec3<f32>(16.23809432983398438f));
+    var _S49 : f32 = max(max(needed_0.x, needed_0.y), needed_0.z);
+    var _S50 : i32;
+    if(_S49 > 1.0f)
+    {
+        _S50 = i32(1);
+    }
+    else
+    {
+        _S50 = i32(0);
+    }
+    var _S51 : i32;
+    if(_S49 > 2.0f)
+    {
+        _S51 = i32(1);
+    }
+    else
+    {
+        _S51 = i32(0);
+    }
+    var _S52 : i32 = _S50 + _S51;
+    if(_S49 > 4.0f)
+    {
+        _S50 = i32(1);
+    }
+    else
+    {
+        _S50 = i32(0);
+    }
+    var exponent_1 : u32 = u32(_S52 + _S50);
+    var _S53 : vec3<f32> = vec3<f32>((1023.0f / colorScale_0(exponent_1)));
+    var _S54 : vec3<u32> = vec3<u32>(min(mean_1 * _S53, vec3<f32>(vec3<u32>(u32(1023)))) + _S48);
+    var _S55 : vec3<u32> = vec3<u32>(clamp(tint_0 * _S53, vec3<f32>(-63.0f), vec3<f32>(63.0f)) + vec3<f32>(64.5f));
+    return vec2<u32>(((((((_S54.x) | ((((_S54.y) << (u32(10))))))) | ((((_S54.z) << (u32(20))))))) | (((exponent_1 << (u32(30)))))), (((((u32(opacity_2 * 2047.0f + 0.5f) | ((((_S55.x) << (u32(11))))))) | ((((_S55.y) << (u32(18))))))) | ((((_S55.z) << (u32(25)))))));
+}
+
+fn packedColors_0( gaussian_4 : Gaussian_0,  texel_2 : u32) -> vec2<u32>
+{
+    var first_2 : vec4<f32> = channels_0(texel_2, u32(3));
+    var second_1 : vec4<f32> = channels_0(texel_2, u32(4));
     var third_0 : vec4<f32> = channels_0(texel_2, u32(5));
-    var sh_1 : array<vec3<f32>, i32(4)> = array<vec3<f32>, i32(4)>( first_1.xyz, vec3<f32>(first_1.w, second_0.xy), vec3<f32>(second_0.zw, third_0.x), third_0.yzw );
-    return splatColor_0(gaussian_4.centre_0, gaussian_4.rotation_0, sh_1, Constants_0.camera_0.xyz);
+    var sh_1 : array<vec3<f32>, i32(4)> = array<vec3<f32>, i32(4)>( first_2.xyz, vec3<f32>(first_2.w, second_1.xy), vec3<f32>(second_1.zw, third_0.x), third_0.yzw );
+    var color_0 : vec3<f32> = splatColor_0(gaussian_4.centre_0, gaussian_4.rotation_0, sh_1, eyePosition_0(u32(0)));
+    var other_0 : vec3<f32>;
+    if((Constants_0.eyes_0) == u32(2))
+    {
+        other_0 = splatColor_0(gaussian_4.centre_0, gaussian_4.rotation_0, sh_1, eyePosition_0(u32(1)));
+    }
+    else
+    {
+        other_0 = color_0;
+    }
+    return packColors_0(color_0, other_0, gaussian_4.opacity_0);
 }
 
 fn packHalves_0( values_0 : vec2<f32>) -> u32
@@ -404,14 +465,14 @@ fn packHalves_0( values_0 : vec2<f32>) -> u32
     return ((pack2x16float(vec2f((values_0.x),0.0))) | ((((pack2x16float(vec2f((values_0.y),0.0))) << (u32(16))))));
 }
 
-fn packBounded_0( values_1 : vec2<f32>) -> u32
-{
-    return packHalves_0(clamp(values_1, vec2<f32>(-65504.0f), vec2<f32>(65504.0f)));
-}
-
 fn packedAxis_0( ellipse_2 : Ellipse_0) -> u32
 {
     return packHalves_0(vec2<f32>(min(ellipse_2.deviations_1.x, 65504.0f)) * ellipse_2.axis_1);
+}
+
+fn packBounded_0( values_1 : vec2<f32>) -> u32
+{
+    return packHalves_0(clamp(values_1, vec2<f32>(-65504.0f), vec2<f32>(65504.0f)));
 }
 
 fn depthKey_0( centre_2 : vec3<f32>) -> u32
@@ -426,76 +487,77 @@ fn depthKey_0( centre_2 : vec3<f32>) -> u32
     {
         depthOf_1 = depthOf_0;
     }
-    var _S47 : vec3<f32> = depthOf_1.xyz;
-    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S47;
-    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S47;
+    var _S56 : vec3<f32> = depthOf_1.xyz;
+    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S56;
+    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S56;
     var spare_0 : f32 = 0.5f * distance(Constants_0.bounds_low_0.xyz, Constants_0.bounds_high_0.xyz);
-    var _S48 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
-    var _S49 : f32 = depthOf_1.w;
-    var farthest_0 : f32 = dot(max(low_0, high_0), _S48) + _S49 + spare_0;
-    return u32(saturate((farthest_0 - (dot(centre_2, _S47) + _S49)) / max(farthest_0 - max(dot(min(low_0, high_0), _S48) + _S49 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
+    var _S57 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
+    var _S58 : f32 = depthOf_1.w;
+    var farthest_0 : f32 = dot(max(low_0, high_0), _S57) + _S58 + spare_0;
+    return u32(saturate((farthest_0 - (dot(centre_2, _S56) + _S58)) / max(farthest_0 - max(dot(min(low_0, high_0), _S57) + _S58 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
 }
 
 fn projectTexel_0( texel_3 : u32) -> u32
 {
     var gaussian_5 : Gaussian_0 = poseTexel_0(texel_3);
-    var _S50 : Ellipse_0 = project_0(gaussian_5, u32(0));
-    var first_2 : Ellipse_0 = _S50;
-    var second_1 : Ellipse_0 = _S50;
+    var _S59 : Ellipse_0 = project_0(gaussian_5, u32(0));
+    var first_3 : Ellipse_0 = _S59;
+    var second_2 : Ellipse_0 = _S59;
     if((Constants_0.eyes_0) == u32(2))
     {
-        second_1 = project_0(gaussian_5, u32(1));
+        second_2 = project_0(gaussian_5, u32(1));
     }
-    var _S51 : bool;
+    var _S60 : bool;
     if(isBehind_0(gaussian_5, u32(0)))
     {
-        _S51 = true;
+        _S60 = true;
     }
     else
     {
-        _S51 = !isSeen_0(first_2, gaussian_5.opacity_0);
+        _S60 = !isSeen_0(first_3, gaussian_5.opacity_0);
     }
-    if(_S51)
+    if(_S60)
     {
-        first_2.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
+        first_3.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
     if(isBehind_0(gaussian_5, Constants_0.eyes_0 - u32(1)))
     {
-        _S51 = true;
+        _S60 = true;
     }
     else
     {
-        _S51 = !isSeen_0(second_1, gaussian_5.opacity_0);
+        _S60 = !isSeen_0(second_2, gaussian_5.opacity_0);
     }
-    if(_S51)
+    if(_S60)
     {
-        second_1.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
+        second_2.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
     var splat_0 : u32 = u32(2) * (Constants_0.first_splat_0 + texel_3);
-    if((first_2.deviations_1.x) > 0.0f)
+    var _S61 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
+    if((first_3.deviations_1.x) > 0.0f)
     {
-        _S51 = true;
+        _S60 = true;
     }
     else
     {
-        _S51 = (second_1.deviations_1.x) > 0.0f;
+        _S60 = (second_2.deviations_1.x) > 0.0f;
     }
-    var redGreen_0 : u32;
+    var color_1 : vec2<u32>;
     var key_0 : u32;
-    if(_S51)
+    if(_S60)
     {
-        var color_0 : vec3<f32> = colorOf_0(gaussian_5, texel_3);
-        splats_0[splat_0 + u32(1)] = vec4<u32>(packBounded_0(vec2<f32>(color_0.z, gaussian_5.opacity_0)), packedAxis_0(first_2), packedAxis_0(second_1), packBounded_0(vec2<f32>(first_2.deviations_1.y, second_1.deviations_1.y)));
-        var _S52 : u32 = depthKey_0(gaussian_5.centre_0);
-        redGreen_0 = packBounded_0(color_0.xy);
-        key_0 = _S52;
+        var color_2 : vec2<u32> = packedColors_0(gaussian_5, texel_3);
+        splats_0[splat_0 + u32(1)] = vec4<u32>(color_2.y, packedAxis_0(first_3), packedAxis_0(second_2), packBounded_0(vec2<f32>(first_3.deviations_1.y, second_2.deviations_1.y)));
+        var _S62 : u32 = depthKey_0(gaussian_5.centre_0);
+        color_1 = color_2;
+        key_0 = _S62;
     }
     else
     {
-        redGreen_0 = u32(0);
+        color_1 = _S61;
         key_0 = u32(65535);
     }
-    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_5.centre_0))), redGreen_0);
+    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_5.centre_0))), color_1.x);
     return key_0;
 }
 
@@ -505,12 +567,12 @@ var<workgroup> groupKeys_0 : array<u32, i32(256)>;
 @workgroup_size(256, 1, 1)
 fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_index) place_3 : u32)
 {
-    var _S53 : u32 = thread_0.x;
+    var _S63 : u32 = thread_0.x;
     var key_1 : u32;
-    if(_S53 < (Constants_0.texel_count_0))
+    if(_S63 < (Constants_0.texel_count_0))
     {
-        var _S54 : u32 = projectTexel_0(_S53);
-        key_1 = _S54;
+        var _S64 : u32 = projectTexel_0(_S63);
+        key_1 = _S64;
     }
     else
     {
@@ -519,16 +581,16 @@ fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(wo
     groupKeys_0[place_3] = key_1;
     workgroupBarrier();
     var pair_0 : u32 = u32(2) * place_3;
-    var _S55 : bool;
+    var _S65 : bool;
     if(pair_0 < u32(256))
     {
-        _S55 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
+        _S65 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
     }
     else
     {
-        _S55 = false;
+        _S65 = false;
     }
-    if(_S55)
+    if(_S65)
     {
         keys_0[(Constants_0.first_splat_0 + u32(256) * group_0.x) / u32(2) + place_3] = ((groupKeys_0[pair_0]) | ((((groupKeys_0[pair_0 + u32(1)]) << (u32(16))))));
     }
