@@ -15,7 +15,7 @@ from capture_fit import edge_distance, read_vertices
 from capture_job import Order, job_file, prepare
 from captures import make_capture
 from PIL import Image
-from render_capture import render_capture
+from render_capture import parser, render_capture
 
 from mua import rotation
 from mua.baking.sources import load_clips
@@ -141,6 +141,14 @@ def test_a_python_without_blender_is_named_with_what_to_do(order: Order, tmp_pat
     with pytest.raises(InputError, match=r"--blender .*nowhere: cannot be started"):
         render_capture(order, tmp_path, blender=str(tmp_path / "nowhere"), threads=1)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("given", [["--cameras", "0"], ["--size", "8"], ["--frames", "x"], ["--seed", "-1"]])
+def test_a_number_that_cannot_be_is_refused_by_name(given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        parser().parse_args(["hero.glb", "-o", "made", *given])
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert f"argument {given[0]}: is {given[1]!r}, expected a whole number of at least" in said
 
 
 @pytest.mark.parametrize("shift", [0.25, 1.0, 3.0])

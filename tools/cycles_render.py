@@ -57,7 +57,7 @@ def _scene(job: dict[str, Any], threads: int) -> Any:
     scene.cycles.device = "CPU"
     scene.cycles.samples = job["samples"]
     scene.cycles.use_adaptive_sampling = False
-    scene.cycles.use_denoising = True
+    scene.cycles.use_denoising = not job["unlit"]  # which has no noise
     scene.cycles.pixel_filter_type = "BOX"  # a pixel is the mean of what falls on it, as on a sensor
     scene.cycles.filter_width = 1.0
     scene.render.use_persistent_data = True

@@ -15,7 +15,7 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -93,6 +93,17 @@ def check_fit(folder: Path) -> None:
         raise InputError(f"{fit.where}: the true surface is {fit.worst:.2f} pixels beside it, expected {WORST_FIT:g}")
 
 
+def at_least(least: int) -> Callable[[str], int]:
+    """A reader of whole numbers for the command line."""
+
+    def number(text: str) -> int:
+        if not text.strip().isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of at least {least}")
+        return int(text)
+
+    return number
+
+
 def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = made.add_argument
@@ -100,17 +111,17 @@ def parser() -> argparse.ArgumentParser:
     add("--motion", nargs="+", default=(), metavar="PATH", help="files or folders of motion; else the character's own")
     add("--held-out-motion", nargs="+", default=(), metavar="PATH", help="motion to test with; else the last clip")
     add("-o", "--output", type=Path, required=True, metavar="FOLDER", help="where the capture goes")
-    add("--cameras", type=int, default=8, help="cameras to train on; default %(default)s")
-    add("--held-out-cameras", type=int, default=2, help="cameras to test with; default %(default)s")
-    add("--size", type=int, default=256, help="pixels of a picture along a side; default %(default)s")
-    add("--frames", type=int, default=100, help="frames to train on; default %(default)s")
-    add("--held-out-frames", type=int, default=30, help="frames to test with; default %(default)s")
-    add("--samples", type=int, default=16, help="light paths for each pixel; default %(default)s")
-    add("--seed", type=int, default=0, help="chooses cloth folds, cameras and noise; default %(default)s")
+    add("--cameras", type=at_least(1), default=8, help="cameras to train on; default %(default)s")
+    add("--held-out-cameras", type=at_least(0), default=2, help="cameras to test with; default %(default)s")
+    add("--size", type=at_least(16), default=256, help="pixels of a picture along a side; default %(default)s")
+    add("--frames", type=at_least(1), default=100, help="frames to train on; default %(default)s")
+    add("--held-out-frames", type=at_least(0), default=30, help="frames to test with; default %(default)s")
+    add("--samples", type=at_least(1), default=16, help="light paths for each pixel; default %(default)s")
+    add("--seed", type=at_least(0), default=0, help="chooses cloth folds, cameras and noise; default %(default)s")
     add("--height", type=float, help="metres from sole to crown, where the file's unit is wrong")
     add("--leave-out", nargs="+", default=(), metavar="NAME", help="meshes, nodes or materials not to be filmed")
     add("--still", action="store_true", help="joints alone move the surface: nothing is simulated")
-    add("--threads", type=int, default=2, help="processor cores to render on; default %(default)s")
+    add("--threads", type=at_least(1), default=2, help="processor cores to render on; default %(default)s")
     add("--blender", default=sys.executable, metavar="PYTHON", help="a Python that has bpy; default this one")
     return made
 
