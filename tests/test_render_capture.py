@@ -15,7 +15,7 @@ from capture_fit import edge_distance, read_vertices
 from capture_job import Order, job_file, prepare
 from captures import make_capture
 from PIL import Image
-from render_capture import parser, render_capture
+from render_capture import parser, render_capture, run_renderer
 
 from mua import rotation
 from mua.baking.sources import load_clips
@@ -141,6 +141,15 @@ def test_a_python_without_blender_is_named_with_what_to_do(order: Order, tmp_pat
     with pytest.raises(InputError, match=r"--blender .*nowhere: cannot be started"):
         render_capture(order, tmp_path, blender=str(tmp_path / "nowhere"), threads=1)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_renderer_that_fails_is_told_with_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = tmp_path / "blender.log"
+    said = "import sys; print('rendered 1 of 2'); print('Fra:1 Mem'); sys.exit(int(sys.argv[1]))"
+    run_renderer([sys.executable, "-c", said, "0"], log=log)
+    assert (capsys.readouterr().out, log.read_text()) == ("rendered 1 of 2\n", "Fra:1 Mem\n")
+    with pytest.raises(InputError, match=r"rendering ended with status 3; .*blender.log says why"):
+        run_renderer([sys.executable, "-c", said, "3"], log=log)
 
 
 @pytest.mark.parametrize("given", [["--cameras", "0"], ["--size", "8"], ["--frames", "x"], ["--seed", "-1"]])
