@@ -1,8 +1,8 @@
 """Print how far pictures of a virtual capture are from the same pictures with other noise, and with almost none.
 
 python tools/research/measure_noise.py CAPTURE --blender PYTHON [--pictures 4] [--samples 256]: CAPTURE is a folder that
-tools/render_capture.py made. Nothing can be shown to be nearer to its pictures than they are to themselves. PSNR is
-taken inside the box of the mask, on black, as mua-eval does.
+tools/render_capture.py made. The second figure is what an avatar without any fault would reach. PSNR is taken inside
+the box of the mask, on black.
 """
 
 import argparse
