@@ -101,6 +101,18 @@ def test_a_camera_with_colours_of_its_own_does_not_stain_the_teacher(tmp_path: P
     assert change[1, 0].sum() > 3 * change[1, 1:].sum(dim=1).abs().max()
 
 
+@torch.no_grad()
+def test_a_view_that_is_not_trusted_counts_as_little_as_it_weighs() -> None:
+    def loss(weight: float) -> float:
+        shown = material(lambda seen, camera: replace(seen, weight=weight))
+        torch.manual_seed(0)
+        return float(Lesson(teacher(), shown, SETTINGS)(torch.tensor([0]), torch.ones(1, 3)))
+
+    whole, half, none = (loss(weight) for weight in (1.0, 0.5, 0.0))
+    assert whole > none + 0.01
+    assert half == pytest.approx((whole + none) / 2, rel=1e-5)
+
+
 def test_the_teacher_keeps_the_mean_look(tmp_path: Path) -> None:
     lesson = taught(tmp_path)
     assert lesson.looks.any()

@@ -32,7 +32,7 @@ def carry_out(
     """Train the teacher of a capture and write it to `output`; the first of several processes writes and reports."""
     listener.stage("capture")
     capture = open_capture(folder)
-    filmed = read_filmed(capture, settings, device)
+    filmed = read_filmed(capture, settings, device, views=output / "work" / "views")
     if weights is None:
         listener.note("without --lpips-weights no perceptual term is trained on")
     material = material_of(filmed, _perceptual(weights, device))

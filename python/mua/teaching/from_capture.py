@@ -9,6 +9,8 @@ import torch
 from torch import Tensor
 
 from mua.capture import Capture, CaptureCamera
+from mua.capture.store import ViewStore
+from mua.capture.trust import MaskTrust
 from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.descriptor import choose_joints, choose_translated
@@ -30,11 +32,12 @@ class Filmed:
     """A capture as it is trained on and looked at; what is held out is only looked at."""
 
     capture: Capture
+    views: ViewStore
+    trust: MaskTrust
     subject: Subject
     roles: Mapping[str, str]  # joint to body part, where the template's file says it
     clips: tuple[Clip, ...]  # of the training
     held: tuple[Clip, ...]
-    rows: int  # of a whole picture, at most
     device: torch.device
 
     @property
@@ -47,16 +50,22 @@ class Filmed:
 
     def see(self, clip: str, frame: int, camera: CaptureCamera) -> Seen:
         """A view, cut to the person."""
-        view = self.capture.view(clip, frame, camera.name, crop=True, rows=min(self.rows, camera.size[1]))
+        view = self.views.view(clip, frame, camera.name)
         image, mask = self._tensor(view.image), self._tensor(view.mask)
         background = None if view.background is None else self._tensor(view.background)
-        return Seen(image, mask, Eye.of(view.camera, image), background)
+        return Seen(image, mask, Eye.of(view.camera, image), background, self.trust.weight(clip, frame, view))
 
     def _tensor(self, values: np.ndarray) -> Tensor:
         return torch.from_numpy(np.ascontiguousarray(values)).float().to(self.device)
 
 
-def read_filmed(capture: Capture, settings: TeacherSettings, device: torch.device) -> Filmed:
+def read_filmed(
+    capture: Capture,
+    settings: TeacherSettings,
+    device: torch.device,
+    *,
+    views: Path,  # folder in which views are kept as they are trained on
+) -> Filmed:
     """Read template and motion; raises InputError where either cannot be used or nothing is left to learn from."""
     if all(clip.held_out for clip in capture.clips) or all(camera.held_out for camera in capture.cameras):
         raise InputError(f"{capture.file}: every clip or every camera is held out, so nothing is left to learn from")
@@ -73,7 +82,8 @@ def read_filmed(capture: Capture, settings: TeacherSettings, device: torch.devic
         window=settings.window,
         translated=choose_translated(character.skeleton, clips, used),
     )
-    return Filmed(capture, Subject(still.rig, surfels, encoding), character.roles, clips, held, settings.rows, device)
+    store, subject = ViewStore(capture, views, rows=settings.rows), Subject(still.rig, surfels, encoding)
+    return Filmed(capture, store, MaskTrust(capture), subject, character.roles, clips, held, device)
 
 
 def material_of(filmed: Filmed, perceptual: Perceptual | None = None) -> Material:

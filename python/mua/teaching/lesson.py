@@ -81,7 +81,7 @@ class Lesson(nn.Module):
         image = self.correction(draw(self.teacher.splats(frame, window.joints[0]), seen.eye), camera)
         background = colour if seen.background is None else seen.background
         shown = image[..., :3] + (1 - image[..., 3:]) * background
-        return self._difference(shown, image[..., 3], seen, background) + self._restraint(frame, index)
+        return seen.weight * self._difference(shown, image[..., 3], seen, background) + self._restraint(frame, index)
 
     def _difference(self, shown: Tensor, alpha: Tensor, seen: Seen, background: Tensor) -> Tensor:
         weights, truth = self._weights, seen.over(background)

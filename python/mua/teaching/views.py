@@ -19,6 +19,7 @@ class Seen:
     mask: Tensor  # [H, W] in 0..1
     eye: Eye
     background: Tensor | None = None  # [H, W, 3] of the empty set
+    weight: float = 1.0  # how much it counts; masks that do not fit the pose cannot be trusted
 
     def over(self, background: Tensor) -> Tensor:
         """The person [H, W, 3] over [3] or [H, W, 3]."""
