@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +13,14 @@ from commands import Commands, Ended
 from taught import FEW
 
 import mua
+from mua.baking import lessons
 from mua.capture import open_capture
 from mua.channels import CHANNELS
 from mua.errors import InputError
+from mua.student.settings import Schedule
 from mua.teachers.teacher import TeacherFrame
 from mua.teaching import settings
+from mua.teaching.template_training import TemplateSettings
 from mua.teaching.trained import TrainedTeacher
 
 TEXELS = 64
@@ -48,6 +52,18 @@ def test_it_leaves_a_teacher_and_pictures_of_its_progress(made: Path) -> None:
     assert {path.name for path in made.iterdir()} >= {"teacher.json", "rig.npz", "weights.pt", "progress", "work"}
     pictures = sorted(path.name for path in (made / "progress").iterdir())
     assert pictures == ["mean_texture_0000004.png", "texels_0000003.png"]
+
+
+def test_a_drivable_template_follows_the_motion(capture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    few = Schedule(steps=2, batch=1, lr=1e-2)
+    monkeypatch.setattr(lessons, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few))
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
+    teacher = TrainedTeacher(mua.teach(capture, output=tmp_path / "teacher", steps=1, texels=TEXELS, drivable=True))
+    clip = open_capture(capture).motion("walk")
+    one, other = (frame for frame in teacher.frames(clip, {0, 3}) if isinstance(frame, TeacherFrame))
+    assert np.abs(one.mesh - teacher.rig.mesh.vertices).max() > 1e-4
+    assert np.abs(one.mesh - other.mesh).max() > 1e-4
+    assert np.abs(one.mesh - other.mesh).max() < 0.1
 
 
 def test_the_same_command_trains_nothing_again(capture: Path, made: Path, teach: Teach) -> None:

@@ -1,5 +1,6 @@
 """The stages of a teacher's training; each leaves its result in the teacher's folder and goes on from there."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -11,12 +12,16 @@ from mua.checkpoint import Checkpoints, run_key
 from mua.processes import Processes
 from mua.student.optimise import Progress, Run
 from mua.teaching.folder import Description, save_teacher
-from mua.teaching.from_capture import Filmed, material_of, preview_of, read_filmed, refinement_of
+from mua.teaching.from_capture import Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
 from mua.teaching.lesson import Lesson, Perceptual
 from mua.teaching.model import TeacherModel
 from mua.teaching.preview import Preview
 from mua.teaching.settings import TeacherSettings
-from mua.teaching.train import MEAN, STAGES, train_teacher
+from mua.teaching.template_training import STAGES as TEMPLATE_STAGES
+from mua.teaching.template_training import TemplateSettings, fit_template
+from mua.teaching.train import STAGES, TEXTURE, train_teacher
+
+TEMPLATE = TemplateSettings()
 
 
 def carry_out(
@@ -41,10 +46,13 @@ def carry_out(
     lesson = Lesson(teacher, material, settings, refinement=refinement_of(filmed, settings)).to(device)
     checkpoints = Checkpoints(output / "work", _key(filmed, settings, weights), processes)
     if processes.first:
-        checkpoints.remove_leftovers(STAGES)
+        checkpoints.remove_leftovers((*TEMPLATE_STAGES, *STAGES))
     preview = preview_of(filmed, output / "progress") if processes.first else None
     report = _Reporter(lesson, preview, listener)
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
+    if settings.drivable:
+        own = replace(TEMPLATE, seed=settings.seed)
+        fit_template(teacher.template, Outlines(material), filmed.subject.rig, own, run=run)
     train_teacher(lesson, material, settings, run=run)
     if processes.first:
         save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding, filmed.roles))
@@ -82,6 +90,6 @@ class _Reporter:
             self._listener.stage(progress.stage)
         if self._preview.due(progress.step, progress.steps):
             name = f"{progress.stage.replace(' ', '_')}_{progress.step:07d}"
-            self._score = f", {self._preview(self._lesson, name, moving=progress.stage != MEAN):.1f} dB"
+            self._score = f", {self._preview(self._lesson, name, moving=progress.stage == TEXTURE):.1f} dB"
         loss = f"loss {progress.loss:.4f}{self._score}"
         self._listener.step(progress.step, progress.steps, detail=f"{loss}, {progress.rate:.1f} steps/s")

@@ -29,6 +29,7 @@ def teach(
     preset: str = "tiny",
     steps: int | None = None,
     texels: int | None = None,
+    drivable: bool = False,
     refine: float = 0.0,
     lpips_weights: PathLike | None = None,
     seed: int = 0,
@@ -51,6 +52,7 @@ def teach(
         mua.teach("captures/anna", output="teachers/anna", preset="small")
     """
     settings = _settings(preset, steps=steps, texels=texels, refine=refine, seed=seed)
+    settings = replace(settings, drivable=drivable)
     output, weights = as_path(output, "output"), None
     if lpips_weights is not None:
         weights = as_path(lpips_weights, "lpips_weights")

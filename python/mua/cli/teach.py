@@ -27,6 +27,9 @@ OPTIONS = {
         int | None,
         typer.Option(help="Width and height of the texture, in texels.", show_default="set by the preset"),
     ],
+    "drivable": Annotated[
+        bool, typer.Option("--drivable", help="Learn first how motion deforms the template, from the masks.")
+    ],
     "refine": Annotated[
         float,
         typer.Option(help="Degrees by which each joint may be turned to fit the pictures better; 0 trusts the poses."),

@@ -23,8 +23,11 @@ from mua.teaching.model import Subject
 from mua.teaching.pose_refinement import PoseRefinement
 from mua.teaching.preview import Preview
 from mua.teaching.settings import TeacherSettings
+from mua.teaching.template_training import Observed, Outline
 from mua.teaching.views import Seen, Views
 from mua.teaching.windows import Window, windows
+
+OUTLINES = 2  # masks of a frame that the template is compared with in one step
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +101,28 @@ def material_of(filmed: Filmed, perceptual: Perceptual | None = None) -> Materia
     cameras = filmed.cameras
     views = Views(len(frames), len(cameras), lambda frame, camera: filmed.see(*frames[frame], cameras[camera]))
     return Material(views, [window for clip in filmed.clips for window in filmed.windows(clip)], poses, perceptual)
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """What the masks of the training frames show of the template (mua.teaching.template_training.Observations)."""
+
+    material: Material
+
+    @property
+    def descriptors(self) -> Tensor:
+        return torch.stack([window.descriptors[0] for window in self.material.windows])
+
+    @property
+    def joints(self) -> Tensor:
+        return torch.stack([window.joints[0] for window in self.material.windows])
+
+    def observe(self, frame: int, generator: torch.Generator) -> Observed:
+        """The masks of some cameras."""
+        views = self.material.views
+        cameras = torch.randperm(views.cameras, generator=generator)[:OUTLINES]
+        seen = [views.see(frame, camera) for camera in cameras.tolist()]
+        return Observed(outlines=[Outline(one.eye, one.mask) for one in seen])
 
 
 def refinement_of(filmed: Filmed, settings: TeacherSettings) -> PoseRefinement | None:

@@ -15,6 +15,7 @@ from mua.splatting.rasterise import rasterise
 from mua.teachers.bones import figure_scale
 from mua.teaching.settings import TeacherSettings
 from mua.teaching.template import DrivableTemplate
+from mua.teaching.template_training import TemplateSettings, template_of
 from mua.teaching.texels import TexelNets
 from mua.teaching.windows import Window
 
@@ -51,7 +52,8 @@ class TeacherModel(nn.Module):
         self.rig = rig
         self.register_buffer("surfels", subject.surfels.float())
         self.register_buffer("look", torch.zeros(settings.code))
-        self.template = DrivableTemplate(rig)
+        drivable = settings.drivable
+        self.template = template_of(rig, subject.encoding, TemplateSettings()) if drivable else DrivableTemplate(rig)
         self.mean = nn.Parameter(torch.zeros(len(rig.texels.texels), 3))  # of the colour, in display values
         self.still = nn.Parameter(torch.zeros_like(self.surfels))  # what the networks' mean adds, in units
         self.nets = TexelNets(

@@ -31,6 +31,7 @@ class TeacherSettings:
     window: int = 3  # k, poses that a frame is told from
     code: int = 8  # numbers of a frame's look; 0: looks differ by pose alone
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the pictures
+    drivable: bool = False  # whether motion deforms the template, or its skin alone
     weights: LossWeights = field(default_factory=LossWeights)
     seed: int = 0
 
