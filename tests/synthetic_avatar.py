@@ -69,7 +69,7 @@ def sparse_avatar(seed: int) -> Avatar:
 
 def with_one_sided(
     avatar: Avatar,
-    one_sided: Array,  # [N] bool
+    one_sided: Array | None,  # [N] bool
 ) -> Avatar:
     """The same avatar, some of whose texels are not seen from behind."""
     return replace(avatar, rig=replace(avatar.rig, texels=replace(avatar.rig.texels, one_sided=one_sided)))

@@ -15,7 +15,7 @@ from mua.decode import Splats, decode_clip_frame
 from mua.kernels.splat_project import REACH
 from mua.rendering import render_premultiplied
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
-from mua.splatting.rasterise import draw_quads, rasterise
+from mua.splatting.rasterise import draw_quads, largest_shares, rasterise
 from mua.splatting.tiles import TILE, assign
 
 SCREEN = (53, 37)  # not whole tiles
@@ -76,6 +76,19 @@ def test_one_sided_splats_are_left_out_where_the_reference_leaves_them_out() -> 
     expected = render_premultiplied(one_sided, camera())
     np.testing.assert_allclose(drawn(one_sided, camera()), expected, rtol=0, atol=2e-5)
     assert np.abs(expected - render_premultiplied(splats, camera())).max() > 0.2
+
+
+@pytest.mark.parametrize("screen", [(1, 1), (9, 5)])
+def test_the_shares_of_a_pixel_add_up_to_what_is_covered(screen: tuple[int, int]) -> None:
+    """In more than one pixel, the largest shares are at least the mean's."""
+    splats = in_torch(random_splats(60))
+    eye, bounds = Eye.of(camera(screen), splats.centres), torch.tensor(random_splats(60).bounds)
+    shares, covered = largest_shares(splats, eye, bounds), rasterise(splats, eye, bounds)[..., 3]
+    if screen == (1, 1):
+        assert float(shares.sum()) == pytest.approx(float(covered), rel=1e-6)
+    assert float(shares.sum()) >= float(covered.mean()) * (1 - 1e-6)
+    assert float(shares.max()) < 1
+    assert float(covered.max()) > 0.5
 
 
 def test_an_avatar_is_drawn_as_by_the_reference_renderer_in_single_precision() -> None:

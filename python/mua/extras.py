@@ -5,15 +5,15 @@ from contextlib import contextmanager
 
 # The extras of python/pyproject.toml, by the names under which their packages are imported.
 READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
-TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "xatlas")
+TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "warp", "xatlas")
 VIEWING = (*READING, "glfw", "imageio_ffmpeg", "imgui_bundle", "rendercanvas", "wgpu")
 EXTRAS = {  # the smaller ones first: of several that bring a package the first is proposed
     "view": frozenset(VIEWING),
     "export": frozenset((*READING, "pxr")),
     "train": frozenset(TRAINING),
-    "bake": frozenset((*READING, *TRAINING, "pxr", "warp")),
-    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "pxr", "torchmetrics", "warp")),
-    "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics", "warp")),
+    "bake": frozenset((*READING, *TRAINING, "pxr")),
+    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "pxr", "torchmetrics")),
+    "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
     "deploy": frozenset(("adbutils",)),
 }
 OF_COMMAND = {  # where the extra is not called as the command or the function

@@ -23,6 +23,7 @@ from mua.errors import InputError
 from mua.fidelity.compare import Fidelity
 from mua.files import remove_leftovers, replacing, require_writable, write_bytes
 from mua.memory import release_memory
+from mua.one_sided import with_one_sided
 from mua.pose.clip import Clip
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -114,6 +115,7 @@ def finish(order: Distillation, student: Student, recording: Recording, listener
         stored=playback.choose(clips, order.playback),
         notes=f"{order.teacher}; {playback.held_out_sentence(starts)}",
     )
+    avatar = with_one_sided(avatar, clips, progress=listener.step)
     write(order.output, avatar, storage=order.storage)
     tree = load(order.output)
     avatar = decode_tree(tree)  # what a user gets, not what was trained

@@ -1,10 +1,12 @@
 """An avatar of random numbers in the shapes of a preset, so that a device can be measured without an asset.
 
-Its body is a tube of a person's size, about as many of its texels are valid as of the paper's avatars, and its splats
-are as large as their distance, so that visibility, sort and overdraw are those of a real avatar seen from its front.
+Its body is a tube of a person's size with round ends, about as many of its texels are valid as of the paper's avatars,
+and its splats are as large as their distance, so that visibility, sort and overdraw are those of a real avatar seen
+from its front. It is closed, so that its texels are one-sided, as a bake would find.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -25,6 +27,7 @@ from mua.rig.triangulate import triangulate
 from mua.student.settings import Ranks, Settings
 
 HEIGHT, RADIUS = 1.7, 0.18  # metres
+HOLE = 0.02  # of the radius, at both ends, so that no triangle is without area
 RINGS, SPOKES = 102, 54  # 5,508 vertices; the template of the paper's family has 5,514
 JOINTS = 54  # all of them encoded, as in the family's released character
 VALID = 300_000 / 768**2  # of the texels (paper, Animatable Coarse Geometry)
@@ -66,7 +69,7 @@ def random_avatar(settings: Settings) -> Avatar:
 
 
 def _rig(texels: int) -> Rig:
-    """A chain of joints up a tube that is open at both ends; its one UV chart fills VALID of the texture."""
+    """A chain of joints up a tube; its one UV chart fills VALID of the texture."""
     heights = np.linspace(0, HEIGHT, JOINTS)
     skeleton = Skeleton(
         names=tuple(f"joint {j}" for j in range(JOINTS)),
@@ -80,12 +83,24 @@ def _rig(texels: int) -> Rig:
     indices = np.argsort(-closeness, axis=1, kind="stable")[:, :MAX_INFLUENCES].astype(np.int32)
     weights = np.take_along_axis(closeness, indices, axis=1)
     weights = (weights / weights.sum(axis=1, keepdims=True)).astype(np.float32)
-    return Rig(skeleton, mesh, indices, weights, build_texel_map(mesh, texels))
+    texel_map = build_texel_map(mesh, texels)
+    one_sided = np.ones(len(texel_map.texels), bool)
+    return Rig(skeleton, mesh, indices, weights, replace(texel_map, one_sided=one_sided))
 
 
 def _tube() -> Mesh:
-    height, angle = np.meshgrid(np.linspace(0, HEIGHT, RINGS), 2 * np.pi * np.arange(SPOKES) / SPOKES, indexing="ij")
-    vertices = np.stack([RADIUS * np.sin(angle), height, RADIUS * np.cos(angle)], axis=-1).reshape(-1, 3)
+    """Rings at equal distances along a profile of half a circle, a straight line and half a circle."""
+    quarter = np.pi / 2 * RADIUS
+    length = HEIGHT - 2 * RADIUS + 2 * quarter
+    along = np.linspace(HOLE * RADIUS, length - HOLE * RADIUS, RINGS)
+    inwards = np.minimum(along, length - along)  # from the nearer end
+    turn = np.minimum(inwards / RADIUS, np.pi / 2)
+    rise = RADIUS * (1 - np.cos(turn)) + np.maximum(inwards - quarter, 0)
+    height, angle = np.meshgrid(
+        np.where(along < length / 2, rise, HEIGHT - rise), 2 * np.pi * np.arange(SPOKES) / SPOKES, indexing="ij"
+    )
+    radius = RADIUS * np.sin(turn)[:, None]
+    vertices = np.stack([radius * np.sin(angle), height, radius * np.cos(angle)], axis=-1).reshape(-1, 3)
     margin = (1 - np.sqrt(VALID)) / 2
     columns, rows = np.meshgrid(np.linspace(margin, 1 - margin, SPOKES + 1), np.linspace(1 - margin, margin, RINGS))
     ring, spoke = (i.ravel() for i in np.indices((RINGS - 1, SPOKES)))

@@ -1,0 +1,112 @@
+"""Which texels are one-sided: hidden by others wherever a camera sees their triangles from behind.
+
+That is measured on pictures of an avatar's most different poses, from all around: a texel is one-sided that nowhere
+gives a pixel LARGEST_SHARE or more of its colour while splat_project would leave it out.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+import torch
+
+from mua.arrays import Array
+from mua.camera import Camera, orbit
+from mua.coarser import texel_length
+from mua.decode import Splats, box_of, decode_clip_frame, texel_normals
+from mua.kernels.splat_project import AWAY, facing
+from mua.model import Model
+from mua.pose.clip import Clip
+from mua.pose.resample import frames_at
+from mua.splatting.projection import Eye, TorchSplats
+from mua.splatting.rasterise import largest_shares
+
+LARGEST_SHARE = 1 / 16  # of a pixel's colour
+POSES, VIEWS = 8, 24  # views of each pose
+PIXEL = 1.0  # texels, in the middle of a picture
+FOV = np.radians(60)  # of the pictures; near enough for openings to be looked into
+LARGEST_SIDE = 4096  # pixels
+SAME = 1e-9  # squared sines, summed over joints, of poses that are one
+LOOKED_AT = 512  # frames, evenly over all clips, among which poses are chosen
+GOLDEN = np.pi * (3 - np.sqrt(5))  # radians
+
+M = TypeVar("M", bound=Model)
+
+
+def with_one_sided(
+    avatar: M,
+    clips: Sequence[Clip],
+    *,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> M:
+    """The avatar with what `one_sided` measures; as it was where there are no clips."""
+    if not clips:
+        return avatar
+    texels = replace(avatar.rig.texels, one_sided=one_sided(avatar, clips, progress=progress))
+    return replace(avatar, rig=replace(avatar.rig, texels=texels))
+
+
+def one_sided(
+    avatar: Model,
+    clips: Sequence[Clip],
+    *,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Array:
+    """Whether each texel is one-sided [N] in the poses of clips."""
+    texels = replace(avatar.rig.texels, one_sided=None)
+    whole = replace(avatar, rig=replace(avatar.rig, texels=texels))
+    behind = np.zeros(len(texels.texels))
+    poses = distinct_poses(clips, avatar.encoding.rate, root=avatar.rig.skeleton.root)
+    for number, (clip, frame) in enumerate(poses):
+        splats = decode_clip_frame(whole, clip, frame=frame)
+        normals = texel_normals(whole.rig, splats.canonical, splats.texel_dq)
+        for camera in around(splats, texel_length(whole), first=number * VIEWS):
+            np.maximum(behind, _shares_behind(splats, normals, camera), out=behind)
+        progress(number + 1, len(poses))
+    return behind < LARGEST_SHARE
+
+
+def distinct_poses(
+    clips: Sequence[Clip],
+    rate: float,  # frames per second of the frames that are returned
+    *,
+    root: int,  # joint whose rotation does not count
+) -> list[tuple[Clip, int]]:
+    """Up to POSES frames of clips: the first, then always that which is farthest from all chosen ones."""
+    owners = [(clip, frame) for clip in clips for frame in range(frames_at(clip, rate))]
+    owners = owners[:: -(-len(owners) // LOOKED_AT) or 1]
+    turns = [clip.rotations[min(round(frame * clip.rate / rate), len(clip) - 1)] for clip, frame in owners]
+    apart = np.full(len(owners), np.inf)
+    chosen: list[int] = []
+    while len(chosen) < POSES and apart.max(initial=0) > SAME:
+        chosen.append(int(np.argmax(apart)))
+        cosines = np.einsum("fji,ji->fj", turns, turns[chosen[-1]])
+        cosines[:, root] = 1
+        apart = np.minimum(apart, np.maximum(1 - cosines**2, 0).sum(axis=1))
+        apart[chosen] = 0
+    return [owners[index] for index in chosen]
+
+
+def around(splats: Splats, texel: float, *, first: int) -> list[Camera]:
+    """VIEWS cameras evenly over a sphere, which all see all splats; those of another `first` look from elsewhere."""
+    box = box_of(splats.centres)
+    cameras = []
+    for number in range(VIEWS):
+        elevation = float(np.arcsin(1 - (2 * number + 1) / VIEWS))
+        azimuth = GOLDEN * (first + number)
+        place = orbit(box, screen=(1, 1), azimuth=azimuth, elevation=elevation, fov=FOV).position
+        width = 2 * np.tan(FOV / 2) * np.linalg.norm(place - box.mean(axis=0))
+        side = int(np.clip(np.ceil(width / (PIXEL * max(texel, 1e-30))), 1, LARGEST_SIDE))
+        cameras.append(orbit(box, screen=(side, side), azimuth=azimuth, elevation=elevation, fov=FOV))
+    return cameras
+
+
+def _shares_behind(splats: Splats, normals: Array, camera: Camera) -> Array:
+    """The largest share of a pixel that each splat gives, [N]; 0 where its triangle is not seen from behind."""
+    given = {"centres": splats.centres, "rotations": splats.rotations, "scales": splats.scales, "sh": splats.sh}
+    given |= {"opacities": splats.opacities, "turns": splats.texel_dq[:, :4]}
+    drawn = TorchSplats(**{name: torch.as_tensor(np.ascontiguousarray(values)) for name, values in given.items()})
+    bounds = torch.as_tensor(splats.bounds)
+    shares = largest_shares(drawn, Eye.of(camera, drawn.centres), bounds).numpy()
+    return np.where(facing(splats.centres, normals, camera.view) > AWAY, shares, 0)

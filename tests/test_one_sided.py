@@ -1,0 +1,91 @@
+"""Which texels are one-sided: those that others hide from behind, in every pose and from everywhere."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar, with_one_sided
+
+from mua import one_sided
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.bench.random_avatar import random_avatar
+from mua.decode import decode_clip_frame
+from mua.rendering import projected, render_over
+from mua.student.settings import preset
+
+
+@pytest.fixture(autouse=True)
+def few_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(one_sided, "POSES", 2)
+    monkeypatch.setattr(one_sided, "VIEWS", 10)
+
+
+def closed() -> Avatar:
+    """A body of random splats without openings, of 96 texels along a side."""
+    avatar = random_avatar(replace(preset("tiny"), texels=96))
+    return with_one_sided(avatar, None)
+
+
+def opened(avatar: Avatar) -> Avatar:
+    """The same without its upper half."""
+    below = avatar.rig.mesh.vertices[avatar.rig.mesh.faces[avatar.rig.texels.triangles, 0], 1] < 0.85
+    logit = np.where(below, avatar.geometry.static[10], -20)
+    static = np.concatenate([avatar.geometry.static[:10], logit[None]]).astype(np.float32)
+    return replace(avatar, geometry=replace(avatar.geometry, static=static))
+
+
+def measured(avatar: Avatar) -> Array:
+    found = one_sided.with_one_sided(avatar, avatar.clips).rig.texels.one_sided
+    assert found is not None
+    return found
+
+
+def test_the_bodies_that_benches_draw_are_one_sided_as_a_bake_would_find() -> None:
+    avatar = random_avatar(replace(preset("tiny"), texels=96))
+    assert avatar.rig.texels.one_sided is not None
+    assert avatar.rig.texels.one_sided.all()
+    assert measured(closed()).mean() > 0.97  # but for some about the ends, where triangles are narrow
+
+
+def test_what_is_seen_through_an_opening_is_not_one_sided() -> None:
+    avatar = opened(closed())
+    height = avatar.rig.mesh.vertices[avatar.rig.mesh.faces[avatar.rig.texels.triangles, 0], 1]
+    found = measured(avatar)
+    assert found[height < 0.2].mean() > 0.4  # where the depth of the body hides them
+    assert found[(height > 0.7) & (height < 0.84)].mean() < 0.1
+
+
+def test_one_sided_texels_are_missed_in_no_picture_that_was_measured() -> None:
+    avatar = opened(closed())
+    clip, frame = one_sided.distinct_poses(avatar.clips, avatar.encoding.rate, root=0)[0]
+    culled = with_one_sided(avatar, measured(avatar))
+    whole, kept = (decode_clip_frame(each, clip, frame=frame) for each in (avatar, culled))
+    shown = []
+    for camera in one_sided.around(whole, 0.03, first=0)[::3]:
+        assert np.abs(render_over(whole, camera) - render_over(kept, camera)).max() < 0.25
+        shown.append(len(projected(kept, camera).order) / len(projected(whole, camera).order))
+    assert min(shown) < 0.8
+
+
+def test_distinct_poses_are_those_that_lie_farthest_apart() -> None:
+    avatar = synthetic_avatar()
+    clip = avatar.clips[0]
+    still = replace(clip, rotations=np.repeat(clip.rotations[:1], len(clip), axis=0))
+    chosen = one_sided.distinct_poses([still, clip], clip.rate, root=0)
+    assert chosen[0] == (still, 0)
+    assert chosen[1][0] is clip
+    assert one_sided.distinct_poses([still], clip.rate, root=0) == [(still, 0)]
+    assert one_sided.distinct_poses([], clip.rate, root=0) == []
+
+
+def test_poses_of_a_clip_at_another_rate_are_within_the_decoded_frames() -> None:
+    avatar = synthetic_avatar()
+    clip = replace(avatar.clips[0], rate=2 * avatar.encoding.rate)
+    for own, frame in one_sided.distinct_poses([clip], avatar.encoding.rate, root=0):
+        decode_clip_frame(avatar, own, frame=frame)
+
+
+def test_without_clips_nothing_is_measured() -> None:
+    avatar = synthetic_avatar()
+    assert one_sided.with_one_sided(avatar, []) is avatar
