@@ -65,7 +65,7 @@ def test_one_sided_texels_are_missed_in_no_picture_that_was_measured() -> None:
     for camera in one_sided.around(whole, 0.03, first=0)[::3]:
         assert np.abs(render_over(whole, camera) - render_over(kept, camera)).max() < 0.25
         shown.append(len(projected(kept, camera).order) / len(projected(whole, camera).order))
-    assert min(shown) < 0.8
+    assert min(shown) < 0.9
 
 
 def test_distinct_poses_are_those_that_lie_farthest_apart() -> None:
