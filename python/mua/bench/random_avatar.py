@@ -2,7 +2,7 @@
 
 Its body is a tube of a person's size with round ends, about as many of its texels are valid as of the paper's avatars,
 and its splats are as large as their distance, so that visibility, sort and overdraw are those of a real avatar seen
-from its front. It is closed, so that its texels are one-sided, as a bake would find.
+from its front. It is closed, and all its texels are marked as one-sided; few give 1/16 of a pixel or more from behind.
 """
 
 from collections.abc import Sequence
