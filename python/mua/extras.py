@@ -11,8 +11,8 @@ EXTRAS = {  # the smaller ones first: of several that bring a package the first 
     "view": frozenset(VIEWING),
     "export": frozenset((*READING, "pxr")),
     "train": frozenset(TRAINING),
-    "bake": frozenset((*READING, *TRAINING, "pxr")),
-    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "pxr", "torchmetrics")),
+    "bake": frozenset((*READING, *TRAINING, "plyfile", "pxr")),
+    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "plyfile", "pxr", "torchmetrics")),
     "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
     "deploy": frozenset(("adbutils",)),
 }

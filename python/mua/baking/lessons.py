@@ -14,6 +14,7 @@ from mua.student.optimise import Progress, Run
 from mua.teaching.folder import Description, save_teacher
 from mua.teaching.from_capture import Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
 from mua.teaching.lesson import Lesson, Perceptual
+from mua.teaching.measured import measured_surfaces
 from mua.teaching.model import TeacherModel
 from mua.teaching.preview import Preview
 from mua.teaching.settings import TeacherSettings
@@ -52,7 +53,8 @@ def carry_out(
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
     if settings.drivable:
         own = replace(TEMPLATE, seed=settings.seed)
-        fit_template(teacher.template, Outlines(material), filmed.subject.rig, own, run=run)
+        seen = measured_surfaces(filmed) or Outlines(material)
+        fit_template(teacher.template, seen, filmed.subject.rig, own, run=run)
     train_teacher(lesson, material, settings, run=run)
     if processes.first:
         save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding, filmed.roles))

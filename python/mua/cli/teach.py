@@ -28,7 +28,7 @@ OPTIONS = {
         typer.Option(help="Width and height of the texture, in texels.", show_default="set by the preset"),
     ],
     "drivable": Annotated[
-        bool, typer.Option("--drivable", help="Learn first how motion deforms the template, from the masks.")
+        bool, typer.Option("--drivable", help="Learn first how motion deforms the template, from meshes or masks.")
     ],
     "refine": Annotated[
         float,

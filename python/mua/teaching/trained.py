@@ -10,6 +10,7 @@ from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.teachers.teacher import TeacherFrame
 from mua.teaching.folder import load_teacher
+from mua.teaching.template import Undeformed
 from mua.teaching.windows import windows
 
 
@@ -21,6 +22,8 @@ class TrainedTeacher:
         self.model, self.description = load_teacher(as_path(folder, "teacher"))
         self.rig = self.model.rig
         self._moving = moving
+        if not moving:
+            self.model.template.deformation = Undeformed(self.rig)
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
         """Whole frames where wanted, else poses."""

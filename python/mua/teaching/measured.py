@@ -1,0 +1,68 @@
+"""The surfaces that a capture has of its frames, as what the drivable template is trained on."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from plyfile import PlyData, PlyParseError
+from torch import Tensor
+
+from mua.errors import InputError
+from mua.pose.descriptor import describe
+from mua.rig.character import Mesh
+from mua.teachers.bones import figure_scale
+from mua.teaching.from_capture import Filmed
+from mua.teaching.mesh_losses import Cloud
+from mua.teaching.template_training import Observed
+
+POINTS = 20_000  # of a surface
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSurfaces:
+    """The training frames of a capture with meshes."""
+
+    descriptors: Tensor  # [F, k D]
+    joints: Tensor  # [F, J, 8]
+    files: tuple[Path, ...]  # [F]
+    size: float  # of the figure over that of a person
+
+    def observe(self, frame: int, generator: torch.Generator) -> Observed:
+        return Observed(cloud=Cloud.of(read_surface(self.files[frame]), POINTS, size=self.size))
+
+
+def measured_surfaces(filmed: Filmed) -> MeasuredSurfaces | None:
+    """The surfaces of all training frames; None where the capture has none. Raises InputError where one is missing."""
+    pattern, rig = filmed.capture.meshes, filmed.subject.rig
+    if pattern is None:
+        return None
+    frames = [(clip.name, frame) for clip in filmed.clips for frame in range(len(clip))]
+    files = tuple(filmed.capture.place(pattern, clip=clip, frame=frame) for clip, frame in frames)
+    missing = next((file for file in files if not file.is_file()), None)
+    if missing is not None:
+        raise InputError(f"{missing}: there is no such file; capture.json names a mesh for every frame")
+    skeleton, encoding = rig.skeleton, filmed.subject.encoding
+    described = [describe(skeleton, encoding, clip.rotations, clip.translations) for clip in filmed.clips]
+    joints = [skeleton.skinning(clip.rotations, clip.translations) for clip in filmed.clips]
+    return MeasuredSurfaces(
+        torch.from_numpy(np.concatenate(described)).float(),
+        torch.from_numpy(np.concatenate(joints)).float(),
+        files,
+        figure_scale(rig.mesh.vertices),
+    )
+
+
+def read_surface(file: Path) -> Mesh:
+    """The triangles of a .ply file, in the world and in metres; raises InputError where it holds none."""
+    try:
+        held = PlyData.read(str(file))
+        vertices = np.stack([held["vertex"][axis] for axis in "xyz"], axis=1).astype(float)
+        faces = np.stack(held["face"].data[held["face"].properties[0].name]).astype(np.int64)
+    except (OSError, PlyParseError, KeyError, IndexError, ValueError) as error:
+        raise InputError(f"{file}: is no .ply file with vertices and triangles ({error})") from error
+    if faces.ndim != 2 or faces.shape[1] != 3 or not np.isfinite(vertices).all():
+        raise InputError(f"{file}: expected triangles between finite vertices")
+    if faces.min(initial=0) < 0 or faces.max(initial=-1) >= len(vertices):
+        raise InputError(f"{file}: a face names vertex {faces.max()}; there are {len(vertices)}")
+    return Mesh(vertices, faces, np.zeros((1, 2)), np.zeros_like(faces))

@@ -1,0 +1,93 @@
+"""Meshes of a capture: read, refused, and what mua-teach makes of them."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from captures import make_capture
+from plyfile import PlyData, PlyElement
+from taught import FEW
+
+import mua
+from mua.arrays import Array
+from mua.baking import lessons
+from mua.capture import open_capture
+from mua.errors import InputError
+from mua.student.settings import Schedule
+from mua.teaching import settings
+from mua.teaching.folder import load_teacher
+from mua.teaching.measured import read_surface
+from mua.teaching.motion_deformation import MotionDeformation
+from mua.teaching.template_training import TemplateSettings
+from mua.teaching.trained import TrainedTeacher
+
+CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+TRIANGLES = [(0, 2, 1), (0, 1, 3), (1, 2, 3)]
+
+
+def write_ply(path: Path, vertices: Array, faces: object = TRIANGLES, *, text: bool = False) -> Path:
+    rows = np.array([tuple(row) for row in vertices], dtype=[(axis, "f4") for axis in "xyz"])
+    corners = np.array([(list(face),) for face in faces], dtype=[("vertex_indices", "O")])  # type: ignore[attr-defined]
+    elements = [PlyElement.describe(rows, "vertex"), PlyElement.describe(corners, "face")]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    PlyData(elements, text=text).write(str(path))
+    return path
+
+
+@pytest.mark.parametrize("text", [False, True])
+def test_a_surface_is_what_the_file_holds(tmp_path: Path, text: bool) -> None:
+    mesh = read_surface(write_ply(tmp_path / "a.ply", CORNERS, text=text))
+    np.testing.assert_array_equal(mesh.vertices, CORNERS)
+    np.testing.assert_array_equal(mesh.faces, TRIANGLES)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "sentence"),
+    [
+        (CORNERS, [(0, 1, 9)], "names vertex 9; there are 4"),
+        (CORNERS, [(0, 1, 2, 3)], "expected triangles"),
+        (np.full((4, 3), np.nan), TRIANGLES, "expected triangles between finite vertices"),
+    ],
+    ids=["no such vertex", "squares", "nan"],
+)
+def test_a_wrong_surface_is_a_sentence(tmp_path: Path, vertices: Array, faces: object, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        read_surface(write_ply(tmp_path / "a.ply", vertices, faces))
+
+
+@pytest.mark.parametrize("content", [b"", b"solid", b"ply\nformat ascii 1.0\nend_header\n"])
+def test_another_file_is_a_sentence(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "a.ply"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"a\.ply: is no \.ply file"):
+        read_surface(path)
+
+
+def test_a_capture_with_meshes_teaches_how_the_template_deforms(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
+    few = Schedule(steps=2, batch=1, lr=1e-2)
+    monkeypatch.setattr(lessons, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
+    folder = make_capture(tmp_path / "capture").folder
+    said = json.loads((folder / "capture.json").read_text())
+    said["meshes"] = "meshes/{clip}/{frame:06d}.ply"
+    (folder / "capture.json").write_text(json.dumps(said))
+    capture = open_capture(folder)
+    for clip in capture.clips:
+        for frame in range(clip.frames):
+            write_ply(capture.place(said["meshes"], clip=clip.name, frame=frame), CORNERS)
+    model, described = load_teacher(mua.teach(folder, output=tmp_path / "teacher", steps=1, texels=64, drivable=True))
+    deformation = model.template.deformation
+    assert isinstance(deformation, MotionDeformation)
+    rest = torch.as_tensor(model.rig.mesh.vertices).float()
+    assert (deformation(torch.zeros(1, described.encoding.width)) - rest).abs().max() > 1e-6
+    still = TrainedTeacher(tmp_path / "teacher", moving=False).model.template.deformation
+    torch.testing.assert_close(still(torch.zeros(1, 1))[0], rest)
+    training = next(clip for clip in capture.clips if not clip.held_out)
+    missing = capture.place(said["meshes"], clip=training.name, frame=1)
+    missing.unlink()
+    with pytest.raises(InputError, match=f"{missing.name}: there is no such file"):
+        mua.teach(folder, output=tmp_path / "other", steps=1, texels=64, drivable=True)
