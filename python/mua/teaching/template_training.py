@@ -4,8 +4,7 @@ What was seen of each frame decides: a surface, outlines, tracked points, or sev
 from its last checkpoint and ends in the same bytes.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -22,6 +21,7 @@ from mua.splatting.projection import Eye
 from mua.student.optimise import Report, Run, optimise
 from mua.student.settings import Schedule
 from mua.teachers.bones import figure_scale
+from mua.teaching.learning import learning, same_bytes
 from mua.teaching.mesh_losses import Cloud, Samples, Tracks, chamfer, edges_of, roughness, track_error
 from mua.teaching.motion_deformation import Deformed, GraphSizes, MotionDeformation
 from mua.teaching.silhouette import silhouette_error
@@ -152,7 +152,7 @@ def fit_template(
     with same_bytes():
         for stage, schedule, learnt in zip(STAGES, schedules, (nodes, [*nodes, *offsets]), strict=True):
             own = run.alone(stage)
-            with _learning(template, learnt):
+            with learning(template, learnt):
                 groups: list[dict[str, object]] = [{"params": learnt, "weight_decay": settings.weight_decay}]
                 loss = partial(_mean_loss, frames=len(observations.descriptors), schedule=schedule, run=own)
                 lesson.offsets = stage == STAGES[-1]
@@ -224,24 +224,3 @@ def _mean_loss(model: Callable[..., Tensor], *, frames: int, schedule: Schedule,
     if not len(own):  # fewer frames than processes: one that counts nothing
         return 0 * model(drawn[:1], run.generator)
     return model(own, run.generator) * (len(own) * run.processes.count / len(drawn))
-
-
-@contextmanager
-def _learning(module: nn.Module, parameters: Sequence[nn.Parameter]) -> Iterator[None]:
-    """Gradients for these parameters alone; processes exchange no others."""
-    chosen = {id(parameter) for parameter in parameters}
-    for parameter in module.parameters():
-        parameter.requires_grad_(id(parameter) in chosen)
-    yield
-    module.requires_grad_(True)
-
-
-@contextmanager
-def same_bytes() -> Iterator[None]:
-    """Sums in one order, where torch has one: a run that goes on adds up the same numbers."""
-    before = torch.are_deterministic_algorithms_enabled()
-    torch.use_deterministic_algorithms(True, warn_only=True)
-    try:
-        yield
-    finally:
-        torch.use_deterministic_algorithms(before)

@@ -1,13 +1,13 @@
 """The training of a teacher: the mean texture first, then what motion changes; a killed run ends in the same bytes."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 
 import torch
 from torch import Tensor, nn
 
 from mua.student.optimise import Run, optimise
+from mua.teaching.learning import learning, same_bytes
 from mua.teaching.lesson import Lesson, Material
 from mua.teaching.settings import TeacherSettings
 
@@ -20,9 +20,9 @@ STILL_RATE, BESIDE_RATE = 10.0, 1.0
 
 def train_teacher(lesson: Lesson, material: Material, settings: TeacherSettings, *, run: Run) -> None:
     """Train the teacher of `lesson` in place; what is kept in the checkpoints of `run` is not trained again."""
-    with _same_bytes():
+    with same_bytes():
         own = run.alone(MEAN)
-        with _learning(lesson, [lesson.teacher.mean]):
+        with learning(lesson, [lesson.teacher.mean]):
             loss = partial(_loss, material=material, batch=settings.mean.batch, run=own, moving=False)
             groups: list[dict[str, object]] = [{"params": [lesson.teacher.mean], "weight_decay": 0.0}]
             optimise(
@@ -31,7 +31,7 @@ def train_teacher(lesson: Lesson, material: Material, settings: TeacherSettings,
         own = run.alone(TEXTURE)
         rates = _rates(lesson)
         groups = [{"params": learnt, "weight_decay": 0.0, "lr": rate} for learnt, rate in rates]
-        with _learning(lesson, [parameter for learnt, _ in rates for parameter in learnt]):
+        with learning(lesson, [parameter for learnt, _ in rates for parameter in learnt]):
             loss = partial(_loss, material=material, batch=settings.texture.batch, run=own, moving=True)
             optimise(
                 lesson,
@@ -63,24 +63,3 @@ def _loss(model: Callable[..., Tensor], *, material: Material, batch: int, run: 
     if not count:  # fewer views than processes: one that counts nothing
         return 0 * model(rows[:1], backgrounds[:1], moving)
     return model(rows[own], backgrounds[own], moving) * (count * processes.count / len(rows))
-
-
-@contextmanager
-def _learning(lesson: nn.Module, parameters: list[nn.Parameter]) -> Iterator[None]:
-    """Gradients for these parameters alone; processes exchange no others."""
-    chosen = {id(parameter) for parameter in parameters}
-    for parameter in lesson.parameters():
-        parameter.requires_grad_(id(parameter) in chosen)
-    yield
-    lesson.requires_grad_(True)
-
-
-@contextmanager
-def _same_bytes() -> Iterator[None]:
-    """Sums in one order, where torch has one: a run that goes on adds up the same numbers."""
-    before = torch.are_deterministic_algorithms_enabled()
-    torch.use_deterministic_algorithms(True, warn_only=True)
-    try:
-        yield
-    finally:
-        torch.use_deterministic_algorithms(before)
