@@ -9,7 +9,8 @@
 #define SCAN_ROWS (SCAN_THREADS / SCAN_ROW)
 
 groupshared uint scanned[SCAN_THREADS + SCAN_ROWS]; // a word between rows, so that they lie in different banks
-groupshared uint rowStarts[SCAN_ROWS + 1]; // and the sum of all
+groupshared uint rowStarts[SCAN_ROWS];
+groupshared uint scanTotal;
 
 // The sum of the values of the threads below this one, and of all; every thread of the group must call it.
 uint exclusiveScan(uint thread, uint value, out uint total)
@@ -41,9 +42,9 @@ uint exclusiveScan(uint thread, uint value, out uint total)
         sum += next;
     }
     if (thread == 0)
-        rowStarts[SCAN_ROWS] = sum;
+        scanTotal = sum;
     GroupMemoryBarrierWithGroupSync(); // a next scan writes only what its own thread reads from here on, up to its first
-    total = rowStarts[SCAN_ROWS];
+    total = scanTotal;
     return scanned[thread + row] + rowStarts[row];
 }
 

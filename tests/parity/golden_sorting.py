@@ -138,7 +138,8 @@ def splat_sort_cases() -> list[Case]:
     low = visible[np.argsort(keys[visible] & 0xFF, kind="stable")]
     elements = (keys[low].astype(np.uint32) >> 8 << 24) | low.astype(np.uint32)
     arguments = np.array([6 * len(visible), 2, 0, 0, len(visible)], np.uint32)
-    first = _sort_pass(0, count, pack_keys(keys), (visible, keys[visible] & 0xFF), elements, arguments)
+    beyond = np.append(keys, np.uint16(0))  # the other half of the last word, no key of the sort
+    first = _sort_pass(0, count, pack_keys(beyond), (visible, keys[visible] & 0xFF), elements, arguments)
     order = splat_sort(keys).astype(np.uint32)
     places = np.arange(len(visible))
     return first + _sort_pass(1, count, elements, (places, elements >> 24), order, arguments)

@@ -318,7 +318,7 @@ FAULTS = {
             "group + 1 < groups ? digit_counts[place + 1] : digits",
             "digit_counts[place + 1]",
         ),
-        Fault("last split of a digit lost", "return splitWords(thread, mine, DIGIT_BIT + SPLIT_BITS);", "return live;"),
+        Fault("last split of a digit lost", "live = splitWords(thread, mine, DIGIT_BIT + SPLIT_BITS);", ""),
         Fault("vertices of a draw not counted", "VERTICES_PER_SPLAT * total", "total"),
         Fault(
             "arguments written by the second pass",

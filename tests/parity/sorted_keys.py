@@ -28,7 +28,10 @@ def sort_keys(
     order = device.buffer(np.full(count, UNWRITTEN, np.uint32), name="order")
     table = {"digit_counts": counts, "arguments": arguments}
     commands = device.commands()
-    passes = ((device.buffer(pack_keys(keys), name="keys"), element), (element, order))
+    passes = (
+        (device.buffer(pack_keys(np.append(keys, np.zeros(len(keys) % 2, keys.dtype))), name="keys"), element),
+        (element, order),
+    )
     for second_pass, (source, target) in enumerate(passes):
         constants = {"second_pass": second_pass, "key_count": count}
         count_digits = device.kernel("splat_sort.compute", "CountDigits")

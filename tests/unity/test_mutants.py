@@ -80,7 +80,7 @@ def answer(content: bytes) -> tuple[str, str]:
         played = resample(clip, avatar.encoding.rate)
         assert len(played) <= MAX_FRAMES
         frame = decode_clip_frame(avatar, played, frame=min(3, len(played) - 1))
-        assert all(np.isfinite(values).all() for values in vars(frame).values())
+        assert all(np.isfinite(values).all() for values in vars(frame).values() if values is not None)
     parts = (zlib.crc32(data, zlib.crc32((name + kind).encode())) for name, (kind, data) in values(tree).items())
     return "ok", str(sum(parts))
 

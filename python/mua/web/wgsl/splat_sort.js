@@ -464,7 +464,9 @@ fn binByte_0( bytes_1 : vec4<u32>,  bin_0 : u32) -> u32
 
 var<workgroup> scanned_0 : array<u32, i32(272)>;
 
-var<workgroup> rowStarts_0 : array<u32, i32(17)>;
+var<workgroup> rowStarts_0 : array<u32, i32(16)>;
+
+var<workgroup> scanTotal_0 : u32;
 
 fn exclusiveScan_0( thread_2 : u32,  value_0 : u32,  total_0 : ptr<function, u32>) -> u32
 {
@@ -533,10 +535,10 @@ fn exclusiveScan_0( thread_2 : u32,  value_0 : u32,  total_0 : ptr<function, u32
     }
     if(_S17)
     {
-        rowStarts_0[i32(16)] = sum_2;
+        scanTotal_0 = sum_2;
     }
     workgroupBarrier();
-    (*total_0) = rowStarts_0[i32(16)];
+    (*total_0) = scanTotal_0;
     return scanned_0[thread_2 + row_0] + rowStarts_0[row_0];
 }
 
@@ -607,10 +609,10 @@ fn exclusiveScan_1( thread_3 : u32,  value_1 : u32,  total_1 : ptr<function, u32
     }
     if(_S22)
     {
-        rowStarts_0[i32(16)] = sum_5;
+        scanTotal_0 = sum_5;
     }
     workgroupBarrier();
-    (*total_1) = rowStarts_0[i32(16)];
+    (*total_1) = scanTotal_0;
     return scanned_0[thread_3 + row_1] + rowStarts_0[row_1];
 }
 
@@ -722,8 +724,8 @@ fn orderBlock_0( thread_5 : u32,  block_1 : u32) -> u32
         mine_2[i_5] = _S33;
         i_5 = i_5 + u32(1);
     }
-    var _S34 : u32 = splitWords_0(thread_5, mine_2, u32(28));
-    return _S34;
+    var live_0 : u32 = splitWords_0(thread_5, mine_2, u32(28));
+    return live_0;
 }
 
 fn groupCount_0() -> u32
@@ -759,8 +761,8 @@ fn placeDigits_0( thread_6 : u32,  group_0 : u32,  groups_0 : u32) -> u32
         earlier_0 = u32(0);
     }
     var total_3 : u32;
-    var _S35 : u32 = exclusiveScan_1(thread_6, digits_0 - mine_3, &(total_3));
-    places_0[thread_6] = _S35 + earlier_0;
+    var _S34 : u32 = exclusiveScan_1(thread_6, digits_0 - mine_3, &(total_3));
+    places_0[thread_6] = _S34 + earlier_0;
     workgroupBarrier();
     return total_3;
 }
@@ -778,51 +780,51 @@ fn writeArguments_0( total_4 : u32)
 fn sortedElement_0( word_0 : u32,  block_2 : u32) -> u32
 {
     var first_0 : u32 = (((((((word_0 >> (u32(11)))) & (u32(255)))) << (u32(24)))) | ((block_2 + ((word_0 & (u32(2047)))))));
-    var _S36 : u32;
+    var _S35 : u32;
     if((Constants_0.second_pass_0) != u32(0))
     {
-        _S36 = (word_0 & (u32(16777215)));
+        _S35 = (word_0 & (u32(16777215)));
     }
     else
     {
-        _S36 = first_0;
+        _S35 = first_0;
     }
-    return _S36;
+    return _S35;
 }
 
 @compute
 @workgroup_size(256, 1, 1)
 fn ScatterDigits(@builtin(local_invocation_index) thread_7 : u32, @builtin(workgroup_id) group_1 : vec3<u32>)
 {
-    var _S37 : u32 = group_1.x;
-    var block_3 : u32 = _S37 * u32(2048);
-    var live_0 : u32 = orderBlock_0(thread_7, block_3);
-    var others_0 : u32 = placeDigits_0(thread_7, _S37, groupCount_0());
-    var _S38 : bool;
+    var _S36 : u32 = group_1.x;
+    var block_3 : u32 = _S36 * u32(2048);
+    var live_1 : u32 = orderBlock_0(thread_7, block_3);
+    var others_0 : u32 = placeDigits_0(thread_7, _S36, groupCount_0());
+    var _S37 : bool;
     if((Constants_0.second_pass_0) == u32(0))
     {
-        _S38 = _S37 == u32(0);
+        _S37 = _S36 == u32(0);
     }
     else
     {
-        _S38 = false;
+        _S37 = false;
     }
-    if(_S38)
+    if(_S37)
     {
-        _S38 = thread_7 == u32(0);
+        _S37 = thread_7 == u32(0);
     }
     else
     {
-        _S38 = false;
+        _S37 = false;
     }
-    if(_S38)
+    if(_S37)
     {
-        writeArguments_0(others_0 + live_0);
+        writeArguments_0(others_0 + live_1);
     }
     var i_6 : u32 = thread_7;
     for(;;)
     {
-        if(i_6 < live_0)
+        if(i_6 < live_1)
         {
         }
         else
