@@ -60,9 +60,9 @@ class Fake {
     return handle;
   }
 
-  frameAll() {
+  frameAll(/** @type {readonly any[] | undefined} */ chosen = undefined) {
     this.camera.distance = 4;
-    this.camera.target = [0, 0.9, 0];
+    this.camera.target = [chosen?.[0].place[0] ?? 0, 0.9, 0];
     this.framed = (this.framed ?? 0) + 1;
   }
 

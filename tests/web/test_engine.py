@@ -278,6 +278,8 @@ def test_two_avatars_stand_where_they_are_placed(opened: Open, small: Path) -> N
     covered, half = transparent(page)[..., 3] > 0.2, SCREEN[0] // 2
     assert covered[:, :half].any()
     assert covered[:, half:].any()
+    page.evaluate("player.frameAll([avatar])")
+    assert page.evaluate("player.camera.target[0]") == pytest.approx(alone + 1.5)
     page.evaluate("(avatar.remove(), player.frameAll())")
     assert page.evaluate("player.camera.target[0]") == pytest.approx(alone - 1.5)
 

@@ -23,7 +23,7 @@ import { pressed, SHOWN } from "./keys.js";
 import { look } from "./look.js";
 import { Loop } from "./loop.js";
 import { AvatarError, createPlayer } from "./player.js";
-import { lookAt, turn, zoom } from "./view.js";
+import { turn, zoom } from "./view.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("./player.js").Player} Player */
@@ -264,9 +264,7 @@ export class MuaAvatar extends HTMLElementOrNone {
   lookAtNext() {
     if (!this.player || !this.avatars.length) return;
     this.#looked = (this.#looked + 1) % this.avatars.length;
-    const { bounds, place } = this.avatars[this.#looked];
-    const { width, height } = this.#controls.canvas;
-    lookAt(this.player.camera, bounds, place, width / height);
+    this.player.frameAll([this.avatars[this.#looked]]);
     this.#redraw();
   }
 

@@ -186,8 +186,9 @@ export class Engine {
     return this.renderer?.bytes ?? 0;
   }
 
-  frameAll() {
-    const boxes = this.entries.map((entry) => this.boxOf(entry));
+  frameAll(/** @type {readonly AvatarHandle[] | undefined} */ chosen = undefined) {
+    const shown = this.entries.filter(({ handle }) => chosen?.includes(handle) ?? true);
+    const boxes = shown.map((entry) => this.boxOf(entry));
     if (!boxes.length) return;
     const box = [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
     Object.assign(this.camera, framing(box, this.camera, this.screen));

@@ -69,7 +69,7 @@ export { AvatarError };
  * @property {boolean} playing
  * @property {number} speed 1 plays at the recorded speed
  * @property {CameraState} camera may be changed in place; the next picture follows
- * @property {() => void} frameAll puts the camera where all avatars are in the picture
+ * @property {(chosen?: readonly AvatarHandle[]) => void} frameAll puts the camera where all avatars, or those that are chosen, are in the picture
  * @property {Show} show may be changed in place
  * @property {Level} level of detail; "auto" by default
  * @property {number | null} budget splats of all avatars together where the level is "auto", for the nearest first; null: no limit

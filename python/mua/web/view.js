@@ -7,7 +7,6 @@ const ZOOM_STEP = 1.15; // of the distance, for one notch of the wheel
 export const TURN = (0.4 / 180) * Math.PI; // radians, for one pixel of a drag
 
 /** @typedef {import("./player.js").CameraState} CameraState */
-/** @typedef {import("./player.js").Box} Box */
 
 const clamp = (/** @type {number} */ x, /** @type {number} */ low, /** @type {number} */ high) => Math.min(Math.max(x, low), high);
 
@@ -35,12 +34,4 @@ export function pan(/** @type {CameraState} */ camera, /** @type {number} */ rig
   const across = [cos, 0, -sin];
   const up = [-sin * rise, level, -cos * rise];
   for (const i of [0, 1, 2]) camera.target[i] += metres * (down * up[i] - right * across[i]);
-}
-
-/** Where a box that stands at a place is in the middle of the picture and all of it is seen. */
-export function lookAt(/** @type {CameraState} */ camera, /** @type {Box} */ [low, high], /** @type {number[]} */ place, /** @type {number} */ aspect) {
-  const radius = Math.hypot(...low.map((x, i) => high[i] - x)) / 2;
-  for (const i of [0, 1, 2]) camera.target[i] = (low[i] + high[i]) / 2 + place[i];
-  const narrow = Math.min(1, aspect) * Math.tan(camera.fov / 2);
-  camera.distance = radius / Math.sin(Math.atan(narrow));
 }
