@@ -15,18 +15,21 @@ from commands import process
 from PIL import Image
 from recordings import content
 from silent import Silent
+from synthetic_avatar import synthetic_avatar
 
 from mua.asset import read
 from mua.baking.distillation import Baked
 from mua.baking.order import Order
-from mua.baking.pipeline import bake, recording_key
+from mua.baking.pipeline import bake, parts
 from mua.baking.plan import plan, split
+from mua.baking.recorded import recording_key
 from mua.baking.sources import RATE, load_character
 from mua.channels import ATTRIBUTES
 from mua.errors import InputError
 from mua.locks import DirectoryLock
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, Stretches
 from mua.pose.resample import resample
+from mua.recording import PlannedClip
 from mua.student.settings import Ranks, Schedule, preset
 
 SMALL = dataclasses.replace(
@@ -113,9 +116,34 @@ def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path
             character, skeleton=dataclasses.replace(skeleton, names=tuple(name + "_" for name in skeleton.names))
         ),
     ]
-    keys = [recording_key(order, one, []) for one in (character, character, *others)]
+    keys = [recording_key(parts(order, one), []) for one in (character, character, *others)]
     assert keys[0] == keys[1]
     assert len(set(keys)) == 1 + len(others)
+
+
+def test_a_recording_of_other_motion_is_not_taken_for_this_one() -> None:
+    clip = synthetic_avatar().clips[0]
+    first = PlannedClip(clip, held_out=False, wanted=frozenset({0}))
+    twist = Stretches(np.array([1]), np.tile(np.diag([1.0, 2, 1]), (len(clip), 1, 1, 1)))
+    others = [
+        dataclasses.replace(first, held_out=True),
+        dataclasses.replace(first, wanted=frozenset({0, 1})),
+        dataclasses.replace(first, whole=frozenset({0})),
+        *(
+            dataclasses.replace(first, clip=dataclasses.replace(clip, **changed))
+            for changed in (
+                {"name": "another"},
+                {"rotations": clip.rotations[::-1]},
+                {"translations": clip.translations + 1},
+                {"stretches": twist},
+                {"stretches": dataclasses.replace(twist, joints=np.array([2]))},
+                {"stretches": dataclasses.replace(twist, matrices=2 * twist.matrices)},
+            )
+        ),
+    ]
+    assert len({recording_key([b"teacher"], [one]) for one in (first, *others)}) == 1 + len(others)
+    assert recording_key([b"teacher"], [first]) == recording_key([b"teacher"], [first])
+    assert recording_key([b"another"], [first]) != recording_key([b"teacher"], [first])
 
 
 def clip(name: str, frames: int) -> Clip:

@@ -173,7 +173,10 @@ def test_edges_are_as_far_apart_as_one_was_shifted(shift: float) -> None:
 def test_blender_draws_a_white_surface_white_where_the_camera_has_it(order: Order, tmp_path: Path) -> None:
     blender = os.environ.get("BLENDER")
     if not blender:
-        pytest.skip("no Blender: set BLENDER to a Python that has bpy")
+        pytest.skip(
+            "needs Blender's Python package: BLENDER=PYTHON pytest -m long tests/test_render_capture.py, "
+            "PYTHON of an environment with bpy 5.0.1"
+        )
     prepare(replace(order, frames=1, held_out_frames=0), tmp_path)
     job = json.loads(job_file(tmp_path).read_text()) | {"unlit": True}
     job_file(tmp_path).write_text(json.dumps(job))

@@ -32,7 +32,6 @@ from mua.teaching.template_training import (
     TemplateSettings,
     fit_template,
     template_of,
-    train_template,
     training_run,
 )
 
@@ -105,6 +104,17 @@ def silent(_: Progress) -> None:
     pass
 
 
+def trained(
+    seen: Swinging,
+    rig: Rig,
+    settings: TemplateSettings,
+    directory: Path,
+    report: Callable[[Progress], None] = silent,
+) -> DrivableTemplate:
+    run = training_run(seen, rig, ENCODING, settings, directory=directory, report=report)
+    return fit_template(template_of(rig, ENCODING, settings), seen, rig, settings, run=run)
+
+
 def error(template: DrivableTemplate, seen: Swinging, rig: Rig) -> float:
     """The distance between the template and the true surface, metres."""
     samples = Samples.of(rig.mesh, 500)
@@ -124,7 +134,7 @@ def test_the_template_learns_how_motion_deforms_it(
     seen = swinging(rig, see(rig))
     skinned = error(DrivableTemplate(rig), seen, rig)
     assert skinned > 0.1 * RADIUS
-    learnt = train_template(seen, rig, ENCODING, SETTINGS, directory=tmp_path, report=silent)
+    learnt = trained(seen, rig, SETTINGS, tmp_path)
     assert error(learnt, seen, rig) < left * skinned
     assert not any(parameter.requires_grad for parameter in learnt.parameters())
 
@@ -139,7 +149,7 @@ def test_a_killed_training_ends_in_the_same_bytes(rig: Rig, tmp_path: Path, monk
             if (progress.stage, progress.step) == dies_at:
                 raise KeyboardInterrupt
 
-        return train_template(seen, rig, ENCODING, short, directory=directory, report=report)
+        return trained(seen, rig, short, directory, report)
 
     whole = train(tmp_path / "whole").state_dict()
     for stage in STAGES:
@@ -152,16 +162,16 @@ def test_a_killed_training_ends_in_the_same_bytes(rig: Rig, tmp_path: Path, monk
 def test_what_was_trained_is_taken_up_without_looking_again(rig: Rig, tmp_path: Path) -> None:
     seen = swinging(rig, surfaces(rig))
     short = replace(SETTINGS, nodes=Schedule(3, 2, 1e-2), offsets=Schedule(3, 2, 1e-2))
-    first = train_template(seen, rig, ENCODING, short, directory=tmp_path, report=silent).state_dict()
+    first = trained(seen, rig, short, tmp_path).state_dict()
 
     def never(_: Array) -> Observed:
         raise AssertionError("looked at a frame")
 
-    again = train_template(replace(seen, see=never), rig, ENCODING, short, directory=tmp_path, report=silent)
+    again = trained(replace(seen, see=never), rig, short, tmp_path)
     assert all(torch.equal(first[name], value) for name, value in again.state_dict().items())
     other = replace(short, seed=1)
     with pytest.raises(AssertionError, match="looked at a frame"):
-        train_template(replace(seen, see=never), rig, ENCODING, other, directory=tmp_path, report=silent)
+        trained(replace(seen, see=never), rig, other, tmp_path)
 
 
 def test_first_the_nodes_alone_are_trained(rig: Rig, tmp_path: Path) -> None:

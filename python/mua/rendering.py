@@ -91,7 +91,14 @@ def render_premultiplied(
 
 def projected(splats: Splats, camera: Camera) -> Projected:
     """The splats that a camera sees, ready to be drawn."""
-    seen, keys, ellipses = splat_project(
+    seen, keys, ellipses = visible(splats, camera)
+    colors = splat_colors(splats.centres[seen], splats.texel_dq[seen], splats.sh[seen], camera.position)
+    return Projected(ellipses[0], colors, splats.opacities[seen], splat_sort(keys))
+
+
+def visible(splats: Splats, camera: Camera) -> tuple[Array, Array, Array]:
+    """The splats [M] that a camera sees, with their keys [M] and ellipses [1, M, 6] (mua.kernels.splat_project)."""
+    return splat_project(
         splats.centres,
         covariances(splats.rotations, splats.scales),
         splats.opacities,
@@ -102,8 +109,6 @@ def projected(splats: Splats, camera: Camera) -> Projected:
         bounds=splats.bounds,
         normals=splats.normals,
     )
-    colors = splat_colors(splats.centres[seen], splats.texel_dq[seen], splats.sh[seen], camera.position)
-    return Projected(ellipses[0], colors, splats.opacities[seen], splat_sort(keys))
 
 
 def frame_bounds(splats: Splats) -> Array:

@@ -22,16 +22,14 @@ from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
-from mua.camera import Camera, orbit
+from mua.camera import orbit
 from mua.coarser import coarsest
-from mua.decode import Splats, decode_clip_frame
-from mua.kernels.dq_skinning import covariances
+from mua.decode import decode_clip_frame
 from mua.kernels.splat_draw import splat_colors
-from mua.kernels.splat_project import splat_project
 from mua.pose.encoding import PoseEncoding
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
-from mua.rendering import frame_bounds
+from mua.rendering import frame_bounds, visible
 from mua.rig.bounds import playback_bounds
 from mua.student.settings import preset
 
@@ -90,26 +88,10 @@ def assert_decodes_alike(path: Path, *, frames: int, level: int = 0) -> None:
         np.testing.assert_allclose(theirs.opacities, ours.opacities, rtol=0, atol=COLOUR)
         np.testing.assert_allclose(theirs.colours(camera.position), colours, rtol=0, atol=COLOUR)
         hidden = decoder.behind(tree, theirs, camera.view)
-        (shown, _), (seen, keys) = (seen_by(camera, ours, normals) for normals in (None, ours.normals))
+        shown, (seen, keys, _) = visible(replace(ours, normals=None), camera)[0], visible(ours, camera)
         np.testing.assert_array_equal(seen, shown[~hidden[shown]])
         assert hidden[shown].any() == (avatar.rig.texels.one_sided is not None)
         assert_same_keys(decoder.keys(tree, theirs, camera.view, camera.near)[seen], keys)
-
-
-def seen_by(camera: Camera, splats: Splats, normals: Array | None) -> tuple[Array, Array]:
-    """The splats that a camera sees, and their keys."""
-    seen, keys, _ = splat_project(
-        splats.centres,
-        covariances(splats.rotations, splats.scales),
-        splats.opacities,
-        camera.view[None],
-        camera.projection[None],
-        screen=camera.screen,
-        near=camera.near,
-        bounds=splats.bounds,
-        normals=normals,
-    )
-    return seen, keys
 
 
 def assert_same_keys(found: Array, expected: Array) -> None:

@@ -1,12 +1,11 @@
 """The stages of a bake in order; each leaves its result in the work directory and is resumed from there."""
 
-import hashlib
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
 import torch
 
-from mua import __version__
 from mua.atlas.texel_density import describe_texels
 from mua.baking.check import fidelity_of
 from mua.baking.distillation import Baked, Distillation, choose_device, finish, teach
@@ -15,8 +14,9 @@ from mua.baking.options import check_output
 from mua.baking.order import Order
 from mua.baking.plan import plan, split
 from mua.baking.playback import choose
+from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
-from mua.baking.sources import RATE, load_clips, ordered_character
+from mua.baking.sources import load_clips, ordered_character
 from mua.baking.taught import bake_taught
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity
@@ -25,7 +25,6 @@ from mua.locks import DirectoryLock
 from mua.memory import release_memory
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
-from mua.recording.workers import record_by_workers
 from mua.rig.character import Character
 from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
@@ -90,38 +89,21 @@ def _fidelity(character: Character, clips: list[Clip], texels: int, listener: Li
 
 
 def _record(order: Order, character: Character, planned: list[PlannedClip], listener: Listener) -> Recording:
-    """The teacher's recording, taken up where an earlier run of the same order left it."""
-    directory = order.work / f"recording-{recording_key(order, character, planned)}"
-    listener.stage("recording")
-    for sentence in bind_texels(character, make_template(character), size=order.settings.texels).notes:
+    """The stand-in teacher's recording."""
+    texels, seed = order.settings.texels, order.settings.seed
+    for sentence in bind_texels(character, make_template(character), size=texels).notes:
         listener.note(sentence)
-    total = sum(len(clip.wanted) for clip in planned)
-    record_by_workers(
-        partial(SimulatedTeacher, replace(character, clips=()), texels=order.settings.texels, seed=order.settings.seed),
-        planned,
-        directory,
-        jobs=order.jobs,
-        rate=RATE,
-        progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
-        note=listener.note,
-    )
-    return Recording(directory)
+    teacher = partial(SimulatedTeacher, replace(character, clips=()), texels=texels, seed=seed)
+    return recorded(teacher, recording_key(parts(order, character), planned), order, planned, listener)
 
 
-def recording_key(order: Order, character: Character, planned: list[PlannedClip]) -> str:
-    """Changes with everything that a recording depends on, so that no other order's frames are taken for these."""
-    digest = hashlib.sha256(f"{__version__} in parts {order.settings.texels} {order.settings.seed}".encode())
+def parts(order: Order, character: Character) -> Iterator[bytes]:
+    """What the stand-in teacher's frames depend on, besides the motion."""
     skeleton, mesh = character.skeleton, character.mesh
-    digest.update(repr((skeleton.names, skeleton.root)).encode())
+    yield f"in parts {order.settings.texels} {order.settings.seed} {skeleton.names} {skeleton.root}".encode()
     for array in (
         *(skeleton.parents, skeleton.bind_rotations, skeleton.bind_translations),
         *(mesh.vertices, mesh.faces, mesh.uv, mesh.uv_faces, character.base_color),
         *(character.skin_indices, character.skin_weights, character.looseness),
     ):
-        digest.update(b"none" if array is None else f"{array.shape}".encode() + array.tobytes())
-    for clip in planned:
-        digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
-        digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
-        if clip.clip.stretches is not None:
-            digest.update(clip.clip.stretches.joints.tobytes() + clip.clip.stretches.matrices.tobytes())
-    return digest.hexdigest()[:12]
+        yield b"none" if array is None else f"{array.shape}".encode() + array.tobytes()

@@ -1,6 +1,6 @@
 """A bake whose teacher learns, or has learnt, from the pictures of a capture."""
 
-import hashlib
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from mua import __version__
 from mua.baking.distillation import Baked, Distillation, finish, teach
 from mua.baking.lessons import carry_out
 from mua.baking.listener import Listener
 from mua.baking.order import Order
 from mua.baking.plan import plan, split
 from mua.baking.playback import choose
+from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import TAUGHT
 from mua.baking.sources import RATE, load_clips
 from mua.capture import open_capture
@@ -24,8 +24,6 @@ from mua.memory import release_memory
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.processes import ALONE
-from mua.recording import PlannedClip, Recording
-from mua.recording.workers import record_by_workers
 from mua.rig.character import Character
 from mua.teaching.folder import FILE, WEIGHTS, load_teacher
 from mua.teaching.trained import TrainedTeacher
@@ -45,7 +43,8 @@ def bake_taught(order: Order, device: torch.device, listener: Listener) -> Baked
     planned = plan(training, held, frames=order.settings.frames)
     clips = (*training, *held)
     choose(clips, order.clips)  # before hours of work
-    recording = _record(order, folder, planned, listener)
+    key = recording_key(_parts(folder), planned)
+    recording = recorded(partial(TrainedTeacher, folder), key, order, planned, listener)
     release_memory()
     distillation = Distillation(
         output=order.output,
@@ -84,29 +83,7 @@ def _motion(order: Order, folder: Path, listener: Listener) -> tuple[str, list[C
     return description.name, *split(clips, order.hold_out)
 
 
-def _record(order: Order, folder: Path, planned: list[PlannedClip], listener: Listener) -> Recording:
-    """The teacher's recording, taken up where an earlier run of the same order left it."""
-    directory = order.work / f"recording-{_recording_key(folder, planned)}"
-    listener.stage("recording")
-    total = sum(len(clip.wanted) for clip in planned)
-    record_by_workers(
-        partial(TrainedTeacher, folder),
-        planned,
-        directory,
-        jobs=order.jobs,
-        rate=RATE,
-        progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
-        note=listener.note,
-    )
-    return Recording(directory)
-
-
-def _recording_key(folder: Path, planned: list[PlannedClip]) -> str:
-    """Changes with the teacher and the plan, so that no other's frames are taken for these."""
-    digest = hashlib.sha256(__version__.encode())
+def _parts(folder: Path) -> Iterator[bytes]:
+    """What the recorded frames depend on, besides the motion."""
     for name in (FILE, WEIGHTS):
-        digest.update((folder / name).read_bytes())
-    for clip in planned:
-        digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
-        digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
-    return digest.hexdigest()[:12]
+        yield (folder / name).read_bytes()

@@ -96,24 +96,6 @@ def template_of(rig: Rig, encoding: PoseEncoding, settings: TemplateSettings) ->
     return DrivableTemplate(rig, MotionDeformation(rig, encoding, settings.sizes))
 
 
-def train_template(
-    observations: Observations,
-    rig: Rig,
-    encoding: PoseEncoding,
-    settings: TemplateSettings,
-    *,
-    directory: Path,
-    report: Report,
-    device: torch.device | None = None,
-    processes: Processes = ALONE,
-) -> DrivableTemplate:
-    """A template trained on what was seen; checkpoints in `directory` are taken up where they are of this training."""
-    run = training_run(
-        observations, rig, encoding, settings, directory=directory, report=report, device=device, processes=processes
-    )
-    return fit_template(template_of(rig, encoding, settings), observations, rig, settings, run=run)
-
-
 def training_run(
     observations: Observations,
     rig: Rig,

@@ -1,0 +1,44 @@
+"""A teacher's recording in a bake's work directory, taken up where an earlier run of the same order left it."""
+
+import hashlib
+from collections.abc import Callable, Iterable
+
+from mua import __version__
+from mua.baking.listener import Listener
+from mua.baking.order import Order
+from mua.baking.sources import RATE
+from mua.recording import PlannedClip, Recording
+from mua.recording.workers import record_by_workers
+from mua.teachers.teacher import Teacher
+
+
+def recorded(
+    make_teacher: Callable[[], Teacher], key: str, order: Order, planned: list[PlannedClip], listener: Listener
+) -> Recording:
+    """The recording of `planned`; `key` of `recording_key` tells it from other orders' recordings."""
+    directory = order.work / f"recording-{key}"
+    listener.stage("recording")
+    total = sum(len(clip.wanted) for clip in planned)
+    record_by_workers(
+        make_teacher,
+        planned,
+        directory,
+        jobs=order.jobs,
+        rate=RATE,
+        progress=lambda done, workers: listener.step(done, total, detail=f"{workers} at work"),
+        note=listener.note,
+    )
+    return Recording(directory)
+
+
+def recording_key(teacher: Iterable[bytes], planned: list[PlannedClip]) -> str:
+    """Changes with the teacher, given as the bytes that it depends on, with the clips and with what is kept of them."""
+    digest = hashlib.sha256(__version__.encode())
+    for part in teacher:
+        digest.update(part)
+    for clip in planned:
+        digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
+        digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
+        if clip.clip.stretches is not None:
+            digest.update(clip.clip.stretches.joints.tobytes() + clip.clip.stretches.matrices.tobytes())
+    return digest.hexdigest()[:12]
