@@ -15,7 +15,7 @@ from mua.decode import Splats, decode_clip_frame
 from mua.kernels.splat_project import REACH
 from mua.rendering import render_premultiplied
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
-from mua.splatting.rasterise import draw_quads, largest_shares, rasterise
+from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, rasterise_views
 from mua.splatting.tiles import TILE, assign
 
 SCREEN = (53, 37)  # not whole tiles
@@ -149,6 +149,44 @@ def test_gradients_reach_the_camera(name: str) -> None:
     assert by_gradient == pytest.approx(by_difference, rel=0.01)
 
 
+def views() -> tuple[TorchSplats, list[Eye], torch.Tensor]:
+    """Splats that want gradients, and cameras of different sizes, of which the third sees nothing."""
+    splats = random_splats(200)
+    tensors = in_torch(splats)
+    for name in DIFFERENTIATED:
+        getattr(tensors, name).requires_grad_()
+    screens = [SCREEN, (TILE, TILE), (9, 5), (2 * TILE + 1, 50)]
+    eyes = [Eye.of(camera(screen), tensors.centres.detach()) for screen in screens]
+    eyes[2].view[:3, :3] = torch.diag(torch.tensor([-1.0, 1, -1]))
+    return tensors, eyes, torch.tensor(splats.bounds)
+
+
+def test_several_cameras_in_one_call_see_what_they_see_one_after_another() -> None:
+    tensors, eyes, bounds = views()
+    together = rasterise_views(tensors, eyes, bounds)
+    alone = [rasterise(tensors, eye, bounds) for eye in eyes]
+    assert [image.shape for image in together] == [(eye.screen[1], eye.screen[0], 4) for eye in eyes]
+    assert all(torch.equal(a, b) for a, b in zip(together, alone, strict=True))
+    assert [bool(image.any()) for image in alone] == [True, True, False, True]
+
+
+def test_gradients_of_several_cameras_are_the_sums_of_each_ones() -> None:
+    rng = torch.Generator().manual_seed(7)
+    tensors, eyes, bounds = views()
+    weights = [torch.randn(*eye.screen[::-1], 4, generator=rng, dtype=torch.float64) for eye in eyes]
+    together = rasterise_views(tensors, eyes, bounds)
+    torch.stack([(w * image).sum() for w, image in zip(weights, together, strict=True)]).sum().backward()
+    found = {name: getattr(tensors, name).grad.clone() for name in DIFFERENTIATED}
+    for name in DIFFERENTIATED:
+        getattr(tensors, name).grad = None
+    for eye, weight in zip(eyes, weights, strict=True):
+        (weight * rasterise(tensors, eye, bounds)).sum().backward()
+    for name in DIFFERENTIATED:
+        wanted = getattr(tensors, name).grad
+        assert wanted.any()
+        torch.testing.assert_close(found[name], wanted, rtol=0, atol=1e-12 * float(wanted.abs().max()))
+
+
 def test_round_splats_have_finite_gradients() -> None:
     splats = random_splats(30)
     splats = replace(splats, scales=np.full((30, 3), 0.1), centres=np.tile([[0.0, 0, -2]], (30, 1)))
@@ -177,7 +215,7 @@ def test_a_pixel_that_is_done_blends_nothing_and_passes_no_gradient() -> None:
     half = 1 / (2 * TILE)
     shapes = torch.tensor([[8.5, 8.5, half, 0, half, 0.884]], dtype=torch.float64).repeat(40, 1)
     colors = torch.linspace(0, 1, 40, dtype=torch.float64)[:, None].repeat(1, 3).requires_grad_()
-    draw_quads(shapes, colors, (TILE, TILE)).sum().backward()
+    draw_quads([(shapes, colors)], [(TILE, TILE)])[0].sum().backward()
     assert colors.grad is not None
     assert colors.grad[0].all()
     assert not colors.grad[30:].any()
@@ -193,7 +231,8 @@ def test_tiles_hold_every_quad_whose_pixels_they_have_front_to_back(screen: tupl
     inside = np.abs(np.stack([column, row], axis=-1) + 0.5 - middle[:, None, None]) <= extent[:, None, None]
     quads, rows, columns = np.nonzero(inside.all(axis=-1))
     starts, held = tiles.starts.numpy(), tiles.quads.numpy()
-    expected = {(q, r // TILE * tiles.columns + c // TILE) for q, r, c in zip(quads, rows, columns, strict=True)}
+    columns_of_tiles = -(-screen[0] // TILE)
+    expected = {(q, r // TILE * columns_of_tiles + c // TILE) for q, r, c in zip(quads, rows, columns, strict=True)}
     found = [(q, tile) for tile in range(len(starts) - 1) for q in held[starts[tile] : starts[tile + 1]]]
     assert len(found) == len(set(found))
     assert expected <= set(found)

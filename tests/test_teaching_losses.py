@@ -26,7 +26,7 @@ from mua.teaching.mesh_losses import (
     roughness,
     track_error,
 )
-from mua.teaching.silhouette import outline, silhouette_error
+from mua.teaching.silhouette import Outline, outlines, silhouette_error
 
 BOUND = 1e-12  # some 100 operations on lengths of up to 2 metres in float64
 
@@ -146,7 +146,7 @@ def camera(side: int = 48) -> Camera:
 
 def test_an_outline_covers_what_triangles_cover(mesh: Mesh) -> None:
     posed, samples, seen = torch.tensor(mesh.vertices), Samples.of(mesh, 3000), camera()
-    cover = outline(posed, samples, Eye.of(seen, posed)).numpy()
+    cover = outlines(posed, samples, [Eye.of(seen, posed)])[0].numpy()
     clip = np.column_stack([mesh.vertices, np.ones(len(mesh.vertices))]) @ (seen.projection @ seen.view).T
     x, y = (clip[:, axis] / clip[:, 3] for axis in (0, 1))
     columns, rows = (x + 1) * 24, (1 - y) * 24
@@ -167,37 +167,37 @@ def test_silhouettes_have_the_gradient_of_finite_differences(mesh: Mesh, monkeyp
     """How discs turn is taken as given."""
     posed, samples = moved(mesh, by=0.003), Samples.of(mesh, 500)
     eye = Eye.of(camera(), posed)
-    mask = outline(posed * 1.1, samples, eye)
+    (mask,) = outlines(posed * 1.1, samples, [eye])
     turns = silhouette.facing(samples.on(posed)[1])
     monkeypatch.setattr(silhouette, "facing", lambda _: turns)
-    check_gradient(lambda at: silhouette_error(at, samples, eye, mask), posed, relative=1e-4)
+    check_gradient(lambda at: silhouette_error(at, samples, [Outline(eye, mask)]), posed, relative=1e-4)
 
 
 def test_silhouettes_pull_a_shifted_tube_to_its_mask(mesh: Mesh) -> None:
     posed, samples = torch.tensor(mesh.vertices), Samples.of(mesh, 1000)
     eye = Eye.of(camera(), posed)
-    mask = outline(posed, samples, eye)
+    (mask,) = outlines(posed, samples, [eye])
     right = torch.tensor(np.linalg.inv(camera().view)[:3, 0])
     shift = torch.tensor(0.05, dtype=torch.float64, requires_grad=True)
-    before = silhouette_error(posed + shift * right, samples, eye, mask)
+    before = silhouette_error(posed + shift * right, samples, [Outline(eye, mask)])
     before.backward()  # type: ignore[no-untyped-call]
     assert shift.grad is not None
     assert shift.grad > 0
-    assert silhouette_error(posed, samples, eye, mask) < before / 100
+    assert silhouette_error(posed, samples, [Outline(eye, mask)]) < before / 100
 
 
 def test_a_silhouette_counts_by_what_the_mask_covers(mesh: Mesh) -> None:
     """Room about the person changes nothing, and a mask without anyone is no division by zero."""
     posed, samples = torch.tensor(mesh.vertices), Samples.of(mesh, 500)
     eye = Eye.of(camera(), posed)
-    mask = outline(posed * 1.1, samples, eye)
-    wide = (outline(posed, samples, eye) - mask).square().sum() / mask.sum()
-    torch.testing.assert_close(silhouette_error(posed, samples, eye, mask), wide)
-    assert torch.isfinite(silhouette_error(posed, samples, eye, torch.zeros_like(mask)))
+    (mask,) = outlines(posed * 1.1, samples, [eye])
+    wide = (outlines(posed, samples, [eye])[0] - mask).square().sum() / mask.sum()
+    torch.testing.assert_close(silhouette_error(posed, samples, [Outline(eye, mask)]), wide)
+    assert torch.isfinite(silhouette_error(posed, samples, [Outline(eye, torch.zeros_like(mask))]))
 
 
 def test_a_triangle_without_area_is_a_finite_disc() -> None:
     flat = Mesh(np.array([[0.0, 1, 0]] * 3), np.array([[0, 1, 2]]), np.zeros((3, 2)), np.array([[0, 1, 2]]))
     samples = Samples.of(flat, 4)
-    image = outline(torch.tensor(flat.vertices), samples, Eye.of(camera(), torch.tensor(flat.vertices)))
+    image = outlines(torch.tensor(flat.vertices), samples, [Eye.of(camera(), torch.tensor(flat.vertices))])[0]
     assert torch.isfinite(image).all()

@@ -23,12 +23,12 @@ from mua.student.optimise import Progress
 from mua.student.settings import Schedule
 from mua.teaching.mesh_losses import Cloud, Samples, Tracks, chamfer
 from mua.teaching.motion_deformation import GraphSizes
-from mua.teaching.silhouette import outline
+from mua.teaching.silhouette import Outline
+from mua.teaching.silhouette import outlines as drawn_outlines
 from mua.teaching.template import DrivableTemplate
 from mua.teaching.template_training import (
     STAGES,
     Observed,
-    Outline,
     TemplateSettings,
     fit_template,
     template_of,
@@ -88,7 +88,8 @@ def outlines(rig: Rig) -> Callable[[Array], Observed]:
 
     def see(truth: Array) -> Observed:
         posed = torch.tensor(truth).float()
-        return Observed(outlines=[Outline(eye, outline(posed, samples, eye)) for eye in eyes])
+        drawn = drawn_outlines(posed, samples, eyes)
+        return Observed(outlines=[Outline(eye, mask) for eye, mask in zip(eyes, drawn, strict=True)])
 
     return see
 

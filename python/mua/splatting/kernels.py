@@ -47,7 +47,7 @@ def passes(real: Any) -> Passes:
     class Pixel:
         x: real  # its centre, pixels
         y: real
-        at: wp.int32  # into the image, row by row; -1 outside
+        at: wp.int32  # into the images, row by row; -1 outside
         first: wp.int32  # pair of its tile
         end: wp.int32
 
@@ -59,15 +59,17 @@ def passes(real: Any) -> Passes:
         v: real
 
     @wp.func
-    def pixel_of(thread: int, columns: int, width: int, height: int, starts: wp.array[wp.int32]):
+    def pixel_of(thread: int, places: wp.array2d[wp.int32], starts: wp.array[wp.int32]):
         pixel = Pixel()
         owner = thread // (tile * tile)
         inner = thread % (tile * tile)
-        column = (owner % columns) * tile + inner % tile
-        row = (owner // columns) * tile + inner // tile
+        column = places[owner, 0] + inner % tile
+        row = places[owner, 1] + inner // tile
+        width = places[owner, 2]
         pixel.x = real(column) + half
         pixel.y = real(row) + half
-        pixel.at = wp.where(column < width and row < height, row * width + column, -1)
+        inside = column < width and row < places[owner, 3]
+        pixel.at = wp.where(inside, places[owner, 4] + row * width + column, -1)
         pixel.first = starts[owner]
         pixel.end = starts[owner + 1]
         return pixel
@@ -87,18 +89,16 @@ def passes(real: Any) -> Passes:
 
     @wp.kernel(enable_backward=False, module="unique")
     def forward(
-        columns: int,
-        width: int,
-        height: int,
+        places: wp.array2d[wp.int32],
         starts: wp.array[wp.int32],
         quads: wp.array[wp.int32],
         shapes: wp.array2d[real],
         colors: wp.array2d[real],
-        image: wp.array2d[real],  # [W H, 4]
-        left: wp.array[real],  # [W H] transmittance behind the last quad
-        ends: wp.array[wp.int32],  # [W H] pair behind the last that was blended
+        image: wp.array2d[real],  # [P, 4] the pixels of all screens
+        left: wp.array[real],  # [P] transmittance behind the last quad
+        ends: wp.array[wp.int32],  # [P] pair behind the last that was blended
     ):
-        pixel = pixel_of(wp.tid(), columns, width, height, starts)
+        pixel = pixel_of(wp.tid(), places, starts)
         if pixel.at < 0:
             return
         transmittance = one
@@ -124,20 +124,18 @@ def passes(real: Any) -> Passes:
 
     @wp.kernel(enable_backward=False, module="unique")
     def backward(
-        columns: int,
-        width: int,
-        height: int,
+        places: wp.array2d[wp.int32],
         starts: wp.array[wp.int32],
         quads: wp.array[wp.int32],
         shapes: wp.array2d[real],
         colors: wp.array2d[real],
         left: wp.array[real],
         ends: wp.array[wp.int32],
-        wanted: wp.array2d[real],  # [W H, 4] gradient of the image
+        wanted: wp.array2d[real],  # [P, 4] gradient of the images
         shapes_gradient: wp.array2d[real],  # [M, 6]
         colors_gradient: wp.array2d[real],  # [M, 3]
     ):
-        pixel = pixel_of(wp.tid(), columns, width, height, starts)
+        pixel = pixel_of(wp.tid(), places, starts)
         if pixel.at < 0:
             return
         red = wanted[pixel.at, 0]
@@ -173,15 +171,13 @@ def passes(real: Any) -> Passes:
 
     @wp.kernel(enable_backward=False, module="unique")
     def weigh(
-        columns: int,
-        width: int,
-        height: int,
+        places: wp.array2d[wp.int32],
         starts: wp.array[wp.int32],
         quads: wp.array[wp.int32],
         shapes: wp.array2d[real],
         largest: wp.array[real],  # [M] weight in any pixel
     ):
-        pixel = pixel_of(wp.tid(), columns, width, height, starts)
+        pixel = pixel_of(wp.tid(), places, starts)
         if pixel.at < 0:
             return
         transmittance = one

@@ -1,8 +1,9 @@
-"""Quads to an image as a torch function, forward and backward by Warp on the CPU or on CUDA."""
+"""Quads to images as a torch function, forward and backward by Warp on the CPU or on CUDA."""
 
 # mypy: disable-error-code="no-untyped-call"
 # (Warp's functions have no types)
 
+from collections.abc import Sequence
 from typing import Any
 
 import torch
@@ -10,7 +11,7 @@ import warp as wp
 
 from mua.splatting.kernels import passes
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
-from mua.splatting.tiles import TILE, Tiles, assign
+from mua.splatting.tiles import TILE, Tiles, assign, join
 
 REALS = {torch.float32: wp.float32, torch.float64: wp.float64}
 
@@ -25,22 +26,30 @@ def rasterise(
 
     It differs where the transmittance falls below 1e-5: nothing is blended there any more.
     """
-    quads = project(splats, eye, bounds)
-    image = draw_quads(quads.shapes, quads.colors, eye.screen)
+    (image,) = rasterise_views(splats, [eye], bounds)
     return image if background is None else image[..., :3] + (1 - image[..., 3:]) * background
 
 
+def rasterise_views(
+    splats: TorchSplats,
+    eyes: Sequence[Eye],
+    bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
+) -> list[torch.Tensor]:
+    """Premultiplied sRGB and alpha [H, W, 4] of several cameras, each of a size of its own, by one launch."""
+    quads = [project(splats, eye, bounds) for eye in eyes]
+    return draw_quads([(one.shapes, one.colors) for one in quads], [eye.screen for eye in eyes])
+
+
 def draw_quads(
-    shapes: torch.Tensor,  # [M, 6] of mua.splatting.projection.Quads, front to back
-    colors: torch.Tensor,  # [M, 3]
-    screen: tuple[int, int],  # width, height, pixels
-) -> torch.Tensor:
-    """Premultiplied colour and alpha [H, W, 4]."""
-    shape = shapes.detach()
-    tiles = assign(shape[:, :2], half_extents(shape), screen)
-    width, height = screen
-    image: torch.Tensor = _Draw.apply(shapes, colors, tiles, screen)
-    return image.reshape(height, width, 4)
+    quads: Sequence[tuple[torch.Tensor, torch.Tensor]],  # shapes [M, 6] and colours [M, 3] of Quads, front to back
+    screens: Sequence[tuple[int, int]],  # width, height, pixels
+) -> list[torch.Tensor]:
+    """Premultiplied colour and alpha [H, W, 4] of each screen."""
+    shapes, colors = (torch.cat(parts) for parts in zip(*quads, strict=True))
+    assigned = [_tiles(own.detach(), screen) for (own, _), screen in zip(quads, screens, strict=True)]
+    images: torch.Tensor = _Draw.apply(shapes, colors, join(assigned, [len(own) for own, _ in quads]))
+    parts = images.split([one.pixels for one in assigned])
+    return [part.reshape(height, width, 4) for part, (width, height) in zip(parts, screens, strict=True)]
 
 
 def largest_shares(
@@ -51,25 +60,25 @@ def largest_shares(
     """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 of those out of the picture."""
     quads = project(splats, eye, bounds)
     shapes = quads.shapes.detach().contiguous()
-    tiles = assign(shapes[:, :2], half_extents(shapes), eye.screen)
     largest = shapes.new_zeros(len(shapes))
-    _launch(passes(REALS[shapes.dtype]).weigh, tiles, eye.screen, [shapes, largest])
+    _launch(passes(REALS[shapes.dtype]).weigh, _tiles(shapes, eye.screen), [shapes, largest])
     return torch.zeros_like(splats.opacities).index_copy(0, quads.splats, largest)
+
+
+def _tiles(shapes: torch.Tensor, screen: tuple[int, int]) -> Tiles:
+    return assign(shapes[:, :2], half_extents(shapes), screen)
 
 
 class _Draw(torch.autograd.Function):
     @staticmethod
-    def forward(
-        context: Any, shapes: torch.Tensor, colors: torch.Tensor, tiles: Tiles, screen: tuple[int, int]
-    ) -> torch.Tensor:
-        pixels = screen[0] * screen[1]
+    def forward(context: Any, shapes: torch.Tensor, colors: torch.Tensor, tiles: Tiles) -> torch.Tensor:
         shapes, colors = shapes.contiguous(), colors.contiguous()
-        image, left = shapes.new_empty(pixels, 4), shapes.new_empty(pixels)
-        ends = torch.empty(pixels, dtype=torch.int32, device=shapes.device)
+        image, left = shapes.new_empty(tiles.pixels, 4), shapes.new_empty(tiles.pixels)
+        ends = torch.empty(tiles.pixels, dtype=torch.int32, device=shapes.device)
         kernels = passes(REALS[shapes.dtype])
-        _launch(kernels.forward, tiles, screen, [shapes, colors, image, left, ends])
+        _launch(kernels.forward, tiles, [shapes, colors, image, left, ends])
         context.save_for_backward(shapes, colors, left, ends)
-        context.tiles, context.screen = tiles, screen
+        context.tiles = tiles
         return image
 
     @staticmethod
@@ -78,14 +87,14 @@ class _Draw(torch.autograd.Function):
         by_shapes, by_colors = torch.zeros_like(shapes), torch.zeros_like(colors)
         kernels = passes(REALS[shapes.dtype])
         tensors = [shapes, colors, left, ends, gradients[0].contiguous(), by_shapes, by_colors]
-        _launch(kernels.backward, context.tiles, context.screen, tensors)
-        return by_shapes, by_colors, None, None
+        _launch(kernels.backward, context.tiles, tensors)
+        return by_shapes, by_colors, None
 
 
-def _launch(kernel: Any, tiles: Tiles, screen: tuple[int, int], tensors: list[torch.Tensor]) -> None:
+def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor]) -> None:
     """A thread for each pixel of each tile."""
     device = wp.device_from_torch(tensors[0].device)
-    arrays = [wp.from_torch(tensor, requires_grad=False) for tensor in (tiles.starts, tiles.quads, *tensors)]
+    held = (tiles.places, tiles.starts, tiles.quads, *tensors)
+    arrays = [wp.from_torch(tensor, requires_grad=False) for tensor in held]
     stream = wp.stream_from_torch(tensors[0].device) if device.is_cuda else None
-    threads = tiles.columns * tiles.rows * TILE * TILE
-    wp.launch(kernel, dim=threads, inputs=[tiles.columns, *screen, *arrays], device=device, stream=stream)
+    wp.launch(kernel, dim=len(tiles.places) * TILE * TILE, inputs=arrays, device=device, stream=stream)

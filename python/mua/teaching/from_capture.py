@@ -23,7 +23,8 @@ from mua.teaching.model import Subject
 from mua.teaching.pose_refinement import PoseRefinement
 from mua.teaching.preview import Preview
 from mua.teaching.settings import TeacherSettings
-from mua.teaching.template_training import Observed, Outline
+from mua.teaching.silhouette import Outline
+from mua.teaching.template_training import Observed
 from mua.teaching.views import Seen, Views
 from mua.teaching.windows import Window, windows
 

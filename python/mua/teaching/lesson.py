@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from mua.channels import GEOMETRY
 from mua.splatting.likeness import structural_similarity
 from mua.teaching.colour_correction import ColourCorrection
-from mua.teaching.model import Frame, TeacherModel, draw
+from mua.teaching.model import Frame, TeacherModel, draw_views
 from mua.teaching.pose_refinement import PoseRefinement
 from mua.teaching.settings import TeacherSettings
 from mua.teaching.views import Seen, Views
@@ -53,15 +53,12 @@ class Lesson(nn.Module):
         moving: bool = True,  # False: the mean texture alone
     ) -> Tensor:
         """The mean loss over the views."""
-        frames: dict[int, tuple[Frame, Window]] = {}
-        losses = []
+        views: dict[int, list[tuple[int, Tensor]]] = {}  # cameras of each frame, and what is behind the person
         for row, colour in zip(rows.tolist(), backgrounds, strict=True):
             frame, camera = divmod(row, self._material.views.cameras)
-            if frame not in frames:
-                window = self.window(frame)
-                frames[frame] = self.teacher(window, look=self.looks[frame], moving=moving), window
-            losses.append(self._of_view(*frames[frame], frame, camera, colour))
-        return torch.stack(losses).mean()
+            views.setdefault(frame, []).append((camera, colour))
+        losses = [self._of_frame(frame, of, moving=moving) for frame, of in views.items()]
+        return torch.stack(losses).sum() / len(rows)
 
     def window(self, frame: int) -> Window:
         """The window of a frame, its poses refined where they are learnt."""
@@ -76,12 +73,19 @@ class Lesson(nn.Module):
         """Give the teacher the mean of the looks: what it shows of any motion."""
         self.teacher.look.copy_(self.looks.mean(dim=0))
 
-    def _of_view(self, frame: Frame, window: Window, index: int, camera: int, colour: Tensor) -> Tensor:
-        seen = self._material.views.see(index, camera)
-        image = self.correction(draw(self.teacher.splats(frame, window.joints[0]), seen.eye), camera)
-        background = colour if seen.background is None else seen.background
-        shown = image[..., :3] + (1 - image[..., 3:]) * background
-        return seen.weight * self._difference(shown, image[..., 3], seen, background) + self._restraint(frame, index)
+    def _of_frame(self, index: int, views: Sequence[tuple[int, Tensor]], *, moving: bool) -> Tensor:
+        """The sum of the losses of a frame's views, which are drawn in one call."""
+        window = self.window(index)
+        frame = self.teacher(window, look=self.looks[index], moving=moving)
+        splats = self.teacher.splats(frame, window.joints[0])
+        seen = [self._material.views.see(index, camera) for camera, _ in views]
+        loss = len(views) * self._restraint(frame, index)
+        for (camera, colour), one, drawn in zip(views, seen, draw_views(splats, [s.eye for s in seen]), strict=True):
+            image = self.correction(drawn, camera)
+            background = colour if one.background is None else one.background
+            shown = image[..., :3] + (1 - image[..., 3:]) * background
+            loss = loss + one.weight * self._difference(shown, image[..., 3], one, background)
+        return loss
 
     def _difference(self, shown: Tensor, alpha: Tensor, seen: Seen, background: Tensor) -> Tensor:
         weights, truth = self._weights, seen.over(background)

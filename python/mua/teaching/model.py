@@ -1,5 +1,6 @@
 """The teacher itself: a rest texture on the drivable template, and the networks that add what motion changes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ from mua.pose.encoding import PoseEncoding
 from mua.rig.rig import Rig
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye, TorchSplats
-from mua.splatting.rasterise import rasterise
+from mua.splatting.rasterise import rasterise_views
 from mua.teachers.bones import figure_scale
 from mua.teaching.settings import TeacherSettings
 from mua.teaching.template import DrivableTemplate
@@ -96,5 +97,10 @@ class TeacherModel(nn.Module):
 
 def draw(splats: TorchSplats, eye: Eye) -> Tensor:
     """Premultiplied sRGB and alpha [H, W, 4]."""
+    return draw_views(splats, [eye])[0]
+
+
+def draw_views(splats: TorchSplats, eyes: Sequence[Eye]) -> list[Tensor]:
+    """The same of several cameras."""
     bounds = torch.stack([splats.centres.amin(dim=0), splats.centres.amax(dim=0)]).detach()
-    return rasterise(splats, eye, bounds)
+    return rasterise_views(splats, eyes, bounds)

@@ -1,10 +1,13 @@
 """What a camera sees of the template's outline: the opacity of discs spread over it, against a mask."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import torch
 from torch import Tensor
 
 from mua.splatting.projection import Eye, TorchSplats
-from mua.splatting.rasterise import rasterise
+from mua.splatting.rasterise import rasterise_views
 from mua.teaching.mesh_losses import Samples
 
 SPREAD = 0.8  # standard deviation of a disc over the side of the square that is its share of the surface
@@ -12,11 +15,19 @@ FLATNESS = 0.1  # thickness over that
 OPACITY = 0.95
 
 
-def outline(
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A mask of the person."""
+
+    eye: Eye
+    mask: Tensor  # [H, W] in 0..1
+
+
+def outlines(
     posed: Tensor,  # [V, 3] world, metres
     samples: Samples,  # at equal shares of the area, each the middle of a disc
-    eye: Eye,
-) -> Tensor:
+    eyes: Sequence[Eye],
+) -> list[Tensor]:
     """How much of each pixel the template covers, [H, W] in 0..1; gradients move the discs, and do not turn them."""
     centres, normals = samples.on(posed)
     count, wide, turns = len(centres), SPREAD * samples.spacing, facing(normals.detach())
@@ -29,17 +40,20 @@ def outline(
         turns=turns,
     )
     bounds = torch.stack([centres.amin(dim=0), centres.amax(dim=0)]).detach()
-    return rasterise(splats, eye, bounds)[..., 3]
+    return [image[..., 3] for image in rasterise_views(splats, eyes, bounds)]
 
 
 def silhouette_error(
     posed: Tensor,  # [V, 3] world, metres
     samples: Samples,
-    eye: Eye,
-    mask: Tensor,  # [H, W] in 0..1
+    seen: Sequence[Outline],
 ) -> Tensor:
-    """Squared difference of the outline from a mask of the same size, over what the mask covers."""
-    return (outline(posed, samples, eye) - mask).square().sum() / mask.sum().clamp(min=1)
+    """Squared difference of the outlines from their masks, over what each mask covers; the mean."""
+    drawn = outlines(posed, samples, [one.eye for one in seen])
+    errors = [
+        (own - one.mask).square().sum() / one.mask.sum().clamp(min=1) for own, one in zip(drawn, seen, strict=True)
+    ]
+    return torch.stack(errors).mean()
 
 
 def facing(

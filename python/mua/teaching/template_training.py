@@ -17,14 +17,13 @@ from mua.checkpoint import Checkpoints, run_key
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.rig.rig import Rig
-from mua.splatting.projection import Eye
 from mua.student.optimise import Report, Run, optimise
 from mua.student.settings import Schedule
 from mua.teachers.bones import figure_scale
 from mua.teaching.learning import learning, same_bytes
 from mua.teaching.mesh_losses import Cloud, Samples, Tracks, chamfer, edges_of, roughness, track_error
 from mua.teaching.motion_deformation import Deformed, GraphSizes, MotionDeformation
-from mua.teaching.silhouette import silhouette_error
+from mua.teaching.silhouette import Outline, silhouette_error
 from mua.teaching.template import DrivableTemplate
 
 STAGES = ("template nodes", "template offsets")
@@ -54,14 +53,6 @@ class TemplateSettings:
     weights: TemplateWeights = field(default_factory=TemplateWeights)
     weight_decay: float = 1e-2
     seed: int = 0
-
-
-@dataclass(frozen=True, eq=False)
-class Outline:
-    """A mask of the person."""
-
-    eye: Eye
-    mask: Tensor  # [H, W] in 0..1
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,9 +176,8 @@ class _Lesson(nn.Module):
             loss = loss + weights.surface / self._unit * chamfer(posed, self._samples, observed.cloud)
         if observed.tracks is not None:
             loss = loss + weights.tracks / self._unit * track_error(posed, observed.tracks)
-        for outline in observed.outlines:
-            error = silhouette_error(posed, self._samples, outline.eye, outline.mask)
-            loss = loss + weights.silhouette / len(observed.outlines) * error
+        if observed.outlines:
+            loss = loss + weights.silhouette * silhouette_error(posed, self._samples, observed.outlines)
         return loss
 
     def _restraint(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
