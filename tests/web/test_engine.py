@@ -147,6 +147,18 @@ def test_pictures_are_those_of_the_desktop(opened: Open, device: Device, small: 
     assert min(found.values()) > LEAST_PSNR, found
 
 
+def test_a_shadow_that_is_shown_while_nothing_moves_falls_where_the_figure_stands(
+    opened: Open, device: Device, small: Path
+) -> None:
+    page, rate = opened(a=small.read_bytes()), read(small).encoding.rate
+    assert load(page) == ""
+    page.evaluate("player.camera.elevation = 0.4")
+    for toggles in (Toggles(), Toggles(shadow=True)):
+        show(page, toggles, 3, rate)
+        found = screenshot(page)
+    assert psnr(found, desktop(device, small, page, 3, Toggles(shadow=True))) > LEAST_PSNR
+
+
 def test_the_demo_looks_as_on_the_desktop(opened: Open, device: Device) -> None:
     if not DEMO.is_file():
         pytest.skip(f"needs {DEMO}: make demo")

@@ -20,7 +20,7 @@ import { BlendVertices } from "./wgsl/dq_skinning.js";
 
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 /** @typedef {import("./format/read.js").Clip} Clip */
-/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, place: string}} Slot an avatar on the device */
+/** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, standing: string}} Slot an avatar on the device, and where it stands */
 /** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, place: number[], ground: number}} Posed what a picture shows of one */
 /** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null}} Look */
 
@@ -72,7 +72,7 @@ export class Renderer {
     try {
       const frame = new AvatarFrame(new AvatarBuffers(memory, avatar));
       const overlays = new Overlays(memory, frame, { color: COLOR, depth: DEPTH });
-      slot = { memory, frame, overlays, schedule: new DecodeSchedule(frame), levels: new Levels(avatar), place: "" };
+      slot = { memory, frame, overlays, schedule: new DecodeSchedule(frame), levels: new Levels(avatar), standing: "" };
       this.rearrange([...this.slots, slot]);
     } finally {
       const lacking = await gpu.popErrorScope();
@@ -168,12 +168,11 @@ export class Renderer {
     const standing = posed.map(({ slot, place }, i) => ({ levels: slot.levels, pose: poses[i], place }));
     const levels = look.show.geometry ? posed.map(() => 0) : levelsOf(standing, look, camera);
     for (const [i, one] of posed.entries()) {
-      const { schedule, frame, overlays, place } = one.slot;
-      const pose = poses[i];
+      const { schedule, frame, overlays, standing } = one.slot;
       const changed = schedule.record(pass, asked(one, levels[i]), windows[i]);
-      one.slot.place = one.place.join();
-      if (!changed && one.slot.place === place) continue;
-      frame.repose(pass, pose, one.place);
+      one.slot.standing = [...one.place, one.ground].join();
+      if (!changed && one.slot.standing === standing) continue;
+      frame.repose(pass, poses[i], one.place);
       overlays.pose(one.ground + one.place[1]);
     }
     pass.end();
