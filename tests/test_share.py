@@ -260,7 +260,8 @@ def test_another_name_for_this_address_is_refused(port: int) -> None:
 
 def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
     code = "import sys; sys.argv[0] = 'mua-view'; from mua.cli.view import run; run()"
-    line = [sys.executable, "-u", "-c", code, str(avatar_file), "--web", "--no-open", "--show", "splats,template"]
+    line = [sys.executable, "-u", "-c", code, str(avatar_file), "--web", "--no-open"]
+    line += ["--show", "splats,template", "--stereo"]
     with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as ran:
         assert ran.stdout is not None
         assert ran.stderr is not None
@@ -268,13 +269,13 @@ def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
         found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", said)
         assert found, (said, ran.stderr.read() if ran.poll() is not None else "")
         element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
-        assert (element["src"], element["show"]) == ("a.muaavatar", "splats,mesh")
+        assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,mesh", "")
         ran.send_signal(signal.SIGINT)
         assert ran.wait() == 0
         assert ran.stderr.read() == ""
 
 
-@pytest.mark.parametrize("option", ["-o=a.png", "--stereo", "--motion=a.bvh", "--frame=3"])
+@pytest.mark.parametrize("option", ["-o=a.png", "--ipd=0.06", "--motion=a.bvh", "--frame=3"])
 def test_what_a_browser_would_not_follow_is_refused(command: Commands, avatar_file: Path, option: str) -> None:
     name, _, value = option.partition("=")
     sentence = command("view", avatar_file, "--web", "--no-open", name, *([value] if value else [])).sentence

@@ -23,6 +23,7 @@ class Fake {
   level = "auto";
   budget = null;
   follow = false;
+  stereo = false;
   camera = { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.8 };
   show = { splats: true, geometry: true, mesh: false, skeleton: false, shadow: false };
   milliseconds = { decode: 1.25, sort: 0.5 };

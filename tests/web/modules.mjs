@@ -6,7 +6,7 @@
 
 import { readFileSync } from "node:fs";
 import { frameBox } from "../../python/mua/web/bounds.js";
-import { cameraOf, framing, sees } from "../../python/mua/web/camera.js";
+import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
 import { coarserTexture, coarsest, levelCounts, texelLength, textureOf } from "../../python/mua/web/coarser.js";
 import { describe } from "../../python/mua/web/descriptor.js";
@@ -87,7 +87,9 @@ function views(box) {
   const state = { azimuth: 0.4, elevation: 0.2, fov: 0.6 };
   const { target, distance } = framing(box, state, [96, 128]);
   const camera = cameraOf({ ...state, target, distance }, [96, 128]);
-  return { target, distance, ...camera, texel: texelPixels(0.01, box, camera).texel, seen: seen(camera) };
+  const eyes = camerasOf({ ...state, target, distance }, true, [193, 128]); // an odd pixel is no eye's
+  const texel = texelPixels(0.01, box, [camera]).texel;
+  return { target, distance, ...camera, texel, seen: seen(camera), eyes, texelOfEyes: texelPixels(0.01, box, eyes).texel };
 }
 
 /** What a file that arrives in steps shows before all of it is there. */

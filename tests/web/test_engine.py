@@ -16,7 +16,7 @@ from web.browser import Browser, Page, Serve
 from mua.arrays import Array
 from mua.asset.read import read
 from mua.asset.write import encode
-from mua.camera import Camera
+from mua.camera import EYE_DISTANCE, Camera, stereo
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.levels import FULL, Levels
@@ -99,19 +99,27 @@ def psnr(image: Array, exact: Array) -> float:
 
 
 def desktop(
-    device: Device, file: Path, page: Page, frame: int, toggles: Toggles = SPLATS, level: str | int = FULL
+    device: Device,
+    file: Path,
+    page: Page,
+    frame: int,
+    toggles: Toggles = SPLATS,
+    level: str | int = FULL,
+    *,
+    both: bool = False,
 ) -> Array:
-    """The desktop player's picture from where the page's camera is."""
+    """The desktop player's picture from where the page's camera is, of both eyes where asked for."""
     buffers = AvatarBuffers(device, file)
     clip = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
     levels = Levels(buffers.avatar, level)
-    image = Offscreen(device, buffers, clip, toggles, levels=levels).picture(frame, [camera_of(page)])
+    cameras = stereo(camera_of(page, (SCREEN[0] // 2, SCREEN[1])), EYE_DISTANCE) if both else [camera_of(page)]
+    image = Offscreen(device, buffers, clip, toggles, levels=levels).picture(frame, cameras)
     return over(image, GREY) / 255
 
 
-def camera_of(page: Page) -> Camera:
+def camera_of(page: Page, screen: tuple[int, int] = SCREEN) -> Camera:
     at = json.loads(page.evaluate("JSON.stringify(player.camera)"))
-    return Viewpoint(np.array(at["target"]), at["distance"], at["azimuth"], at["elevation"]).camera(SCREEN)
+    return Viewpoint(np.array(at["target"]), at["distance"], at["azimuth"], at["elevation"]).camera(screen)
 
 
 def show(page: Page, toggles: Toggles, frame: int, rate: float) -> None:
@@ -157,6 +165,30 @@ def test_a_shadow_that_is_shown_while_nothing_moves_falls_where_the_figure_stand
         show(page, toggles, 3, rate)
         found = screenshot(page)
     assert psnr(found, desktop(device, small, page, 3, Toggles(shadow=True))) > LEAST_PSNR
+
+
+def test_two_eyes_side_by_side_are_those_of_the_desktop(opened: Open, device: Device, small: Path) -> None:
+    page, half = opened(a=small.read_bytes()), SCREEN[0] // 2
+    assert load(page) == ""
+    page.evaluate("Object.assign(player.camera, { azimuth: 0.7, elevation: 0.3 })")
+    page.evaluate("(player.stereo = true, player.frameAll())")
+    found = {}
+    for name, toggles in SHOWN.items():
+        show(page, toggles, 3, read(small).encoding.rate)
+        pair = screenshot(page)
+        found[name] = psnr(pair, desktop(device, small, page, 3, toggles, both=True))
+        assert np.abs(pair[:, :half] - pair[:, half:]).max() > 8 / 255, "an eye sees it from elsewhere"
+    assert min(found.values()) > LEAST_PSNR, found
+
+
+def test_two_eyes_see_all_of_what_is_framed(opened: Open, small: Path) -> None:
+    page, half = opened(a=small.read_bytes()), SCREEN[0] // 2
+    assert load(page) == ""
+    page.evaluate("(player.stereo = true, player.frameAll())")
+    show(page, SPLATS, 0, 24.0)
+    covered = transparent(page)[..., 3] > 0.2
+    assert covered.any()
+    assert not covered[:, [0, half - 1, half, -1]].any(), "cut off at a side"
 
 
 def test_the_demo_looks_as_on_the_desktop(opened: Open, device: Device) -> None:

@@ -19,7 +19,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode
-from mua.camera import orbit, perspective, sees
+from mua.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
 from mua.coarser import at_level, coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
@@ -217,6 +217,13 @@ def test_cameras_are_those_of_python() -> None:
         "texel": texel_pixels(0.01, box, [camera])[1],
         "distance": np.linalg.norm(camera.position - box.mean(axis=0)),
     }
+    eyes = stereo(camera, EYE_DISTANCE)
+    expected["texelOfEyes"] = texel_pixels(0.01, box, eyes)[1]
+    for eye, theirs in zip(found["eyes"], eyes, strict=True):
+        assert eye["screen"] == list(theirs.screen)
+        for name, value in {"view": theirs.view, "viewProjection": view_projection(theirs)}.items():
+            np.testing.assert_allclose(eye[name], value.ravel(), atol=EXACT)
+        np.testing.assert_allclose(eye["position"], theirs.position, atol=EXACT)
     places = [-12, -3, -0.5, 0, 0.5, 3, 12]
     boxes = [np.array([[x, y, z], [x + 0.5, y + 0.5, z + 0.5]]) for x in places for y in places for z in places]
     assert found["seen"] == [bool(sees(camera, one)) for one in boxes]

@@ -129,13 +129,14 @@ def view(
     if no_open and not web:
         raise InputError("--no-open: works only with --web, which is not given")
     if web:
-        left = {"-o": output, "--frame": frame, "--frames": frames, "--ipd": ipd, "--stereo": stereo, "--level": level}
+        left = {"-o": output, "--frame": frame, "--frames": frames, "--ipd": ipd, "--level": level}
         left |= {"--reference": reference, "--device": device, "--mapping": mapping, "--motion": motion}
         left |= {"--size": size, "--zoom": zoom, "--look-at": look_at, "--follow": follow, "--turntable": turntable}
-        from mua.cli.view_web import check_web, serve
+        from mua.cli.view_web import Where, check_web, serve
 
         check_web({**left, "--background": background})
-        serve(files, clip=clip, show=show, azimuth=azimuth, elevation=elevation, orbit=orbit, opens=not no_open)
+        where = Where(azimuth, elevation, orbit, stereo)
+        serve(files, where, clip=clip, show=show, opens=not no_open)
         return
     kind = kind_of(output, turntable=turntable)
     given: dict[str, object] = {

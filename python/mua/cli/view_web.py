@@ -3,6 +3,7 @@
 import math
 import webbrowser
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import typer
@@ -24,14 +25,32 @@ def check_web(given: Mapping[str, object]) -> None:
             raise InputError(f"{option}: does not work with --web; the page has controls of its own")
 
 
+@dataclass(frozen=True)
+class Where:
+    """From where a page shows avatars when it is opened."""
+
+    azimuth: float  # degrees from the figure's front
+    elevation: float  # degrees
+    orbit: float | None  # degrees per second
+    stereo: bool
+
+    def attributes(self, front: float) -> dict[str, str]:
+        """Of the element, for a figure whose front is at so many degrees. Errors: InputError for what is no number."""
+        given = {"azimuth": self.azimuth, "elevation": self.elevation, "orbit": self.orbit or 0.0}
+        for name, value in given.items():
+            if not math.isfinite(value):
+                raise InputError(f"--{name} is {value}; expected a finite number of degrees")
+        more = {"azimuth": f"{self.azimuth + front:.1f}", "elevation": f"{self.elevation:g}"}
+        more |= {} if self.orbit is None else {"orbit": f"{self.orbit:g}"}
+        return more | ({"stereo": ""} if self.stereo else {})
+
+
 def serve(
     files: list[Path],
+    where: Where,
     *,
     clip: str | None,
     show: str | None,
-    azimuth: float,  # degrees from the figure's front
-    elevation: float,  # degrees
-    orbit: float | None,  # degrees per second
     opens: bool,  # a browser
 ) -> None:
     """Serve the player with avatars until Ctrl-C is pressed.
@@ -40,12 +59,8 @@ def serve(
     """
     for file in files:
         require_file(file)
-    for option, value in {"--azimuth": azimuth, "--elevation": elevation, "--orbit": orbit or 0.0}.items():
-        if not math.isfinite(value):
-            raise InputError(f"{option} is {value}; expected a finite number of degrees")
     started = [opening(file, clip) for file in files]
-    more = {"azimuth": f"{azimuth + front(*started[0]):.1f}", "elevation": f"{elevation:g}"}
-    more |= {} if orbit is None else {"orbit": f"{orbit:g}"}
+    more = where.attributes(front(*started[0]))
     shown = Shown(title_of(files), clip, None if show is None else _shown(show), more)
     with serving(player_site(files, shown)) as server:
         typer.echo(f"{shown.title}: {address(server)} (Ctrl-C ends)")

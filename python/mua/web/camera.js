@@ -1,4 +1,4 @@
-// A camera that turns about its target. Matrices are row-major and act on columns; eye space is right-handed, Y up, looking
+// A camera that turns about its target, and the two eyes beside it. Matrices are row-major and act on columns; eye space is right-handed, Y up, looking
 // along -Z. References: python/mua/camera.py, python/mua/player/viewpoint.py.
 
 /** @typedef {import("./player.js").CameraState} CameraState */
@@ -15,6 +15,7 @@
 export const FOV = Math.PI / 6; // vertical; a portrait lens
 const NEAR = 0.02; // metres, at most
 const NEAR_SHARE = 0.01; // of the distance of what is looked at: so near a small figure is seen whole
+const EYE_DISTANCE = 0.063; // metres, of an adult
 const FILL = 0.92; // of the picture's half size, that the framed box reaches
 
 /** The view of a state on a screen. @param {CameraState} state @param {[number, number]} screen @returns {Camera} */
@@ -25,7 +26,26 @@ export function cameraOf({ azimuth, elevation, distance, target, fov }, screen) 
   const near = Math.min(NEAR, NEAR_SHARE * distance);
   const focal = 1 / Math.tan(fov / 2);
   const projection = [(focal * screen[1]) / screen[0], 0, 0, 0, 0, focal, 0, 0, 0, 0, -1, -2 * near, 0, 0, -1, 0];
-  const position = [0, 1, 2].map((axis) => -turn.reduce((sum, row, i) => sum + row[axis] * moved[i], 0));
+  return eyeOf(view, projection, screen, near);
+}
+
+/**
+ * The eyes of a picture of so many pixels: the camera of a state, or in stereo a left and a right one beside each other that
+ * look the same way, half of the picture each, their middle at the camera.
+ * @param {CameraState} state @param {boolean} stereo @param {[number, number]} size @returns {Camera[]}
+ */
+export function camerasOf(state, stereo, [width, height]) {
+  if (!stereo) return [cameraOf(state, [width, height])];
+  const { view, projection, screen, near } = cameraOf(state, [Math.max(Math.floor(width / 2), 1), height]);
+  return [EYE_DISTANCE / 2, -EYE_DISTANCE / 2].map((aside) => {
+    const moved = view.map((value, i) => (i === 3 ? value + aside : value));
+    return eyeOf(moved, projection, screen, near);
+  });
+}
+
+/** A camera by its matrices. @param {number[]} view @param {number[]} projection @param {[number, number]} screen @param {number} near @returns {Camera} */
+function eyeOf(view, projection, screen, near) {
+  const position = [0, 1, 2].map((axis) => -[0, 4, 8].reduce((sum, row) => sum + view[row + axis] * view[row + 3], 0));
   const depth = projection.map((value, i) => (i >= 8 && i < 12 ? (value + projection[i + 4]) / 2 : value));
   return { view, projection, viewProjection: product(depth, view), position, screen, near };
 }

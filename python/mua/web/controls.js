@@ -26,6 +26,7 @@ export class Controls {
     this.speed = /** @type {HTMLSelectElement} */ (find(".speed"));
     this.settings = find(".settings");
     this.whole = find(".whole");
+    this.stereo = /** @type {HTMLInputElement} */ (find(".stereo"));
     this.follow = /** @type {HTMLInputElement} */ (find(".follow"));
     this.level = /** @type {HTMLSelectElement} */ (find(".level"));
     this.avatars = find(".avatars");
@@ -53,6 +54,7 @@ export class Controls {
     on(this.scrub, "input", () => avatar.seek(Number(this.scrub.value)));
     on(this.clips, "change", () => (avatar.clip = this.clips.value));
     on(this.speed, "change", () => (avatar.speed = Number(this.speed.value)));
+    on(this.stereo, "change", () => avatar.toggleStereo());
     on(this.follow, "change", () => avatar.toggleFollow());
     on(this.level, "change", () => (avatar.level = levelNamed(this.level.value)));
     on(this.settings, "click", () => this.openPanel(Boolean(this.panel.hidden)));
@@ -122,6 +124,7 @@ export class Controls {
     this.speed.value = String(player.speed);
     for (const box of this.toggles) box.checked = player.show[/** @type {keyof typeof SHOWN} */ (box.name)];
     this.list(this.clips, player.clips.map(({ name }) => name), player.clip);
+    this.stereo.checked = player.stereo;
     this.follow.checked = player.follow;
     this.list(this.level, avatar.levels.map(String), String(player.level));
     this.listAvatars();

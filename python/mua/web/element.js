@@ -9,6 +9,7 @@
 //   show        what is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow
 //   level       of detail: auto (by the distance, if left out), full, or texels along a side of the texture
 //   budget      most splats of all avatars together where level is auto
+//   stereo      draws a left and a right eye side by side
 //   follow      lets the camera go with the figure
 //   azimuth     degrees that the camera stands round the figure, towards its left; 0 is its front
 //   elevation   degrees above the horizon
@@ -37,7 +38,7 @@ const FIRST = { splats: true, geometry: false, mesh: false, skeleton: false, sha
 const HTMLElementOrNone = /** @type {typeof HTMLElement} */ (globalThis.HTMLElement ?? class {});
 
 export class MuaAvatar extends HTMLElementOrNone {
-  static observedAttributes = ["src", "clip", "controls", "poster", "speed", "show", "level", "budget", "follow", "azimuth", "elevation"];
+  static observedAttributes = ["src", "clip", "controls", "poster", "speed", "show", "level", "budget", "stereo", "follow", "azimuth", "elevation"];
 
   /** @type {Player | null} what draws; null until an avatar is asked for */
   player = null;
@@ -144,6 +145,12 @@ export class MuaAvatar extends HTMLElementOrNone {
   nextLevel() {
     const at = this.levels.indexOf(this.level);
     this.level = this.levels[(at + 1) % this.levels.length];
+  }
+
+  /** Draw two eyes side by side, or one. */
+  toggleStereo() {
+    if (this.player) this.player.stereo = !this.player.stereo;
+    this.#redraw();
   }
 
   /** Let the camera go with the figure, or stay. */
@@ -322,7 +329,7 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */
   async #show(/** @type {boolean} */ first) {
-    for (const name of first ? ["clip", "speed", "show", "level", "budget", "follow"] : ["clip"]) this.#adopt(name);
+    for (const name of first ? ["clip", "speed", "show", "level", "budget", "stereo", "follow"] : ["clip"]) this.#adopt(name);
     if (first) this.#arrange();
     this.#fit(); // the bar has taken its place
     await this.#loop.draw();
@@ -383,6 +390,7 @@ export class MuaAvatar extends HTMLElementOrNone {
     if (name === "speed") player.speed = this.#number("speed", 1);
     if (name === "level") player.level = levelNamed(value);
     if (name === "budget") player.budget = value === null ? null : this.#number("budget", Infinity);
+    if (name === "stereo") player.stereo = value !== null;
     if (name === "follow") player.follow = value !== null;
     if (name === "show" && value !== null) {
       const shown = value.split(",").map((word) => word.trim());

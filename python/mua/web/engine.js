@@ -1,7 +1,7 @@
 // State of a player, the loop that draws it, and what it does when the device is lost.
 
 import { Arrival } from "./arrival.js";
-import { framing, FOV } from "./camera.js";
+import { camerasOf, framing, FOV } from "./camera.js";
 import { framesAt, sample } from "./clip.js";
 import { AvatarError } from "./error.js";
 import { sizesOf } from "./levels.js";
@@ -45,6 +45,7 @@ export class Engine {
     /** @type {number | null} */
     this.budget = null;
     this.follow = false;
+    this.stereo = false;
     this.playing = true;
     this.speed = 1;
     this.frameStep = 0; // seconds of the clip from one picture to the next, as it plays
@@ -191,7 +192,7 @@ export class Engine {
     const boxes = shown.map((entry) => this.boxOf(entry));
     if (!boxes.length) return;
     const box = [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
-    Object.assign(this.camera, framing(box, this.camera, this.screen));
+    Object.assign(this.camera, framing(box, this.camera, camerasOf(this.camera, this.stereo, this.screen)[0].screen));
     const followed = this.followed();
     this.camera.target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at - followed[i]));
   }
@@ -212,7 +213,8 @@ export class Engine {
   get look() {
     const followed = this.followed();
     const target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at + followed[i]));
-    return { camera: { ...this.camera, target }, show: this.show, level: this.level, budget: this.budget };
+    const { show, level, budget, stereo } = this;
+    return { camera: { ...this.camera, target }, stereo, show, level, budget };
   }
 
   /** @returns {[number, number]} */

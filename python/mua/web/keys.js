@@ -25,6 +25,7 @@ export const KEYS = {
     ]),
   ),
   a: ["a", "look at the next avatar", (avatar) => avatar.lookAtNext()],
+  s: ["s", "stereo", (avatar) => avatar.toggleStereo()],
   f: ["f", "follow", (avatar) => avatar.toggleFollow()],
   l: ["l", "next level of detail", (avatar) => avatar.nextLevel()],
   c: ["c", "next clip", (avatar) => avatar.nextClip()],

@@ -22,23 +22,23 @@ export class Levels {
     this.shown = 0;
   }
 
-  /** What a camera sees of it. @param {import("./skeleton.js").Pose} pose @param {number[]} place @param {import("./camera.js").Camera} camera */
-  seen(pose, place, camera) {
+  /** What the eyes see of it. @param {import("./skeleton.js").Pose} pose @param {number[]} place @param {import("./camera.js").Camera[]} cameras */
+  seen(pose, place, cameras) {
     const { skeleton, bounds } = this.avatar;
     const root = world(skeleton, pose).places.subarray(3 * skeleton.root);
     const box = Array.from(bounds, (value, i) => value + root[i % 3] + place[i % 3]);
-    return { ...texelPixels(this.length, box, camera), counts: this.counts, shown: this.shown };
+    return { ...texelPixels(this.length, box, cameras), counts: this.counts, shown: this.shown };
   }
 }
 
 /**
  * The level of each for the next picture, 0 being the finest. @param {Standing[]} standing
- * @param {{level: import("./player.js").Level, budget: number | null}} wanted @param {import("./camera.js").Camera} camera
+ * @param {{level: import("./player.js").Level, budget: number | null}} wanted @param {import("./camera.js").Camera[]} cameras
  */
-export function levelsOf(standing, { level, budget }, camera) {
+export function levelsOf(standing, { level, budget }, cameras) {
   const chosen =
     level === "auto"
-      ? chooseLevels(standing.map(({ levels, pose, place }) => levels.seen(pose, place, camera)), budget)
+      ? chooseLevels(standing.map(({ levels, pose, place }) => levels.seen(pose, place, cameras)), budget)
       : standing.map(({ levels }) => (typeof level === "number" ? Math.max(levels.sizes.indexOf(level), 0) : 0));
   standing.forEach(({ levels }, i) => (levels.shown = chosen[i]));
   return chosen;

@@ -25,6 +25,7 @@ export const MARKUP = `
 <section class="panel" id="panel" aria-label="Settings" hidden>
   <h2>Show</h2>
   ${Object.entries(SHOWN).map(toggle).join("\n  ")}
+  <label><input type="checkbox" class="stereo">Stereo, side by side</label>
   <label><input type="checkbox" class="follow">Follow the figure</label>
   <label class="row">Level of detail <select class="level"></select></label>
   <h2>Avatars</h2>

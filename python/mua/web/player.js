@@ -73,6 +73,7 @@ export { AvatarError };
  * @property {Show} show may be changed in place
  * @property {Level} level of detail; "auto" by default
  * @property {number | null} budget splats of all avatars together where the level is "auto", for the nearest first; null: no limit
+ * @property {boolean} stereo whether a left and a right eye share the width of the picture; not by default
  * @property {boolean} follow whether the camera goes with the first avatar along the ground; not by default
  * @property {() => Promise<void>} draw one picture now, at the canvas' size; resolves when it is drawn
  * @property {() => void} start draws a picture for every frame of the display

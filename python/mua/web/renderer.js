@@ -1,7 +1,7 @@
 // A device and what it holds of the avatars, and the pictures that it draws of them. A lost device's renderer is left behind
 // and another one made.
 
-import { cameraOf } from "./camera.js";
+import { camerasOf } from "./camera.js";
 import { AvatarBuffers } from "./buffers.js";
 import { KERNELS as DECODING, kernelsFor } from "./channels.js";
 import { window } from "./clip.js";
@@ -22,7 +22,7 @@ import { BlendVertices } from "./wgsl/dq_skinning.js";
 /** @typedef {import("./format/read.js").Clip} Clip */
 /** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, standing: string}} Slot an avatar on the device, and where it stands */
 /** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, place: number[], ground: number}} Posed what a picture shows of one */
-/** @typedef {{camera: import("./player.js").CameraState, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null}} Look */
+/** @typedef {{camera: import("./player.js").CameraState, stereo: boolean, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null}} Look */
 
 export class Renderer {
   /** @returns {Promise<Renderer>} */
@@ -130,16 +130,16 @@ export class Renderer {
 
   submit(/** @type {GPUTexture} */ target, /** @type {Posed[]} */ posed, /** @type {Look} */ look) {
     const { device, timing, splats } = this;
-    const camera = cameraOf(look.camera, [target.width, target.height]);
+    const cameras = camerasOf(look.camera, look.stereo, [target.width, target.height]);
     const encoder = device.gpu.createCommandEncoder();
-    this.pose(encoder, posed, look, camera);
+    this.pose(encoder, posed, look, cameras);
     if (splats) {
       const pass = encoder.beginComputePass({ label: "sort", timestampWrites: timing.of("sort") });
-      splats.sort(pass, camera);
+      splats.sort(pass, cameras);
       pass.end();
     }
     const overlays = posed.map(({ slot }) => slot.overlays);
-    this.scene.draw(encoder, target, { frame: splats, overlays, camera, show: look.show }, timing.of("draw"));
+    this.scene.draw(encoder, target, { frame: splats, overlays, cameras, show: look.show }, timing.of("draw"));
     const then = timing.end(encoder);
     device.uniforms.upload();
     device.gpu.queue.submit([encoder.finish()]);
@@ -160,13 +160,13 @@ export class Renderer {
     this.device.gpu.queue.submit([encoder.finish()]);
   }
 
-  /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUCommandEncoder} encoder @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera} camera */
-  pose(encoder, posed, look, camera) {
+  /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUCommandEncoder} encoder @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera[]} cameras */
+  pose(encoder, posed, look, cameras) {
     const pass = encoder.beginComputePass({ label: "decode", timestampWrites: this.timing.of("decode") });
     const windows = posed.map(windowOf);
     const poses = posed.map((one, i) => windows[i]({ clip: one.clip.name, frame: one.frame })[0]);
     const standing = posed.map(({ slot, place }, i) => ({ levels: slot.levels, pose: poses[i], place }));
-    const levels = look.show.geometry ? posed.map(() => 0) : levelsOf(standing, look, camera);
+    const levels = look.show.geometry ? posed.map(() => 0) : levelsOf(standing, look, cameras);
     for (const [i, one] of posed.entries()) {
       const { schedule, frame, overlays, standing } = one.slot;
       const changed = schedule.record(pass, asked(one, levels[i]), windows[i]);

@@ -22,13 +22,13 @@ export class Scene {
   }
 
   /**
-   * Append a picture to what is submitted next.
+   * Append a picture of one or two eyes, side by side from the left, to what is submitted next.
    * @param {GPUCommandEncoder} encoder
    * @param {GPUTexture} target
-   * @param {{frame: SplatFrame | null, overlays: Overlays[], camera: Camera, show: import("./player.js").Show}} shown
+   * @param {{frame: SplatFrame | null, overlays: Overlays[], cameras: Camera[], show: import("./player.js").Show}} shown
    * @param {GPURenderPassTimestampWrites} [timestampWrites]
    */
-  draw(encoder, target, { frame, overlays, camera, show }, timestampWrites) {
+  draw(encoder, target, { frame, overlays, cameras, show }, timestampWrites) {
     if (show.shadow) for (const overlay of overlays) overlay.drawMask(encoder);
     const pass = encoder.beginRenderPass({
       colorAttachments: [{ view: target.createView(), loadOp: "clear", storeOp: "store", clearValue: this.background }],
@@ -40,18 +40,22 @@ export class Scene {
       },
       timestampWrites,
     });
-    overlays.forEach((overlay, i) => {
-      if (show.geometry && frame?.seen[i]) overlay.drawGeometry(pass, camera, frame.splats, frame.starts[i]);
-      if (show.mesh || (show.splats && overlay.bare)) overlay.drawTemplate(pass, camera);
+    cameras.forEach((camera, eye) => {
+      setEye(pass, eye, camera);
+      overlays.forEach((overlay, i) => {
+        if (show.geometry && frame?.seen[i]) overlay.drawGeometry(pass, camera, frame.splats, frame.starts[i]);
+        if (show.mesh || (show.splats && overlay.bare)) overlay.drawTemplate(pass, camera);
+      });
+      for (const overlay of overlays) if (show.shadow) overlay.drawGround(pass, camera);
+      if (show.splats && frame) this.drawSplats(pass, frame, camera, eye);
+      for (const overlay of overlays) if (show.skeleton) overlay.drawSkeleton(pass, camera);
     });
-    for (const overlay of overlays) if (show.shadow) overlay.drawGround(pass, camera);
-    if (show.splats && frame) this.drawSplats(pass, frame, camera);
-    for (const overlay of overlays) if (show.skeleton) overlay.drawSkeleton(pass, camera);
     pass.end();
   }
 
-  drawSplats(/** @type {GPURenderPassEncoder} */ pass, /** @type {SplatFrame} */ frame, /** @type {Camera} */ camera) {
-    const constants = { view_projection: camera.viewProjection, screen: camera.screen, eye: 0 };
+  /** @param {GPURenderPassEncoder} pass @param {SplatFrame} frame @param {Camera} camera @param {number} eye */
+  drawSplats(pass, frame, camera, eye) {
+    const constants = { view_projection: camera.viewProjection, screen: camera.screen, eye };
     this.splats.bind(pass, { order: frame.order, splats: frame.splats }, constants);
     pass.drawIndirect(frame.arguments, 0);
   }
@@ -65,4 +69,10 @@ export class Scene {
     }
     return this.depth;
   }
+}
+
+/** Confine what follows to the part of the target that an eye has. @param {GPURenderPassEncoder} pass @param {number} eye @param {Camera} camera */
+function setEye(pass, eye, { screen: [width, height] }) {
+  pass.setViewport(eye * width, 0, width, height, 0, 1);
+  pass.setScissorRect(eye * width, 0, width, height);
 }

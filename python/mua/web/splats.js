@@ -67,12 +67,14 @@ export class SplatFrame {
     return this.avatars.reduce((all, avatar, i) => all + (this.seen[i] ? even(avatar.splatCount) : 0), 0);
   }
 
-  /** Append the dispatches from posed texels to `order`, the splats that a camera sees, back to front. */
-  sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera} */ camera) {
-    this.seen = this.avatars.map((avatar) => avatar.places.length > 0 && sees(camera, reach(avatar.bounds)));
+  /** Append the dispatches from posed texels to `order`, the splats that one or two eyes see, back to front. */
+  sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera[]} */ cameras) {
+    this.seen = this.avatars.map(
+      ({ places, bounds }) => places.length > 0 && cameras.some((camera) => sees(camera, reach(bounds))),
+    );
     const { starts } = this;
     this.avatars.forEach((avatar, i) => {
-      if (this.seen[i]) this.project(pass, avatar, starts[i], camera);
+      if (this.seen[i]) this.project(pass, avatar, starts[i], cameras);
     });
     this.sortDigit(pass, this.keys, this.halfSorted, 0);
     this.sortDigit(pass, this.halfSorted, this.order, 1);
@@ -84,9 +86,10 @@ export class SplatFrame {
     return [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((box) => box[i])));
   }
 
-  /** @param {GPUComputePassEncoder} pass @param {AvatarFrame} avatar @param {number} firstSplat @param {Camera} camera */
-  project(pass, avatar, firstSplat, camera) {
+  /** @param {GPUComputePassEncoder} pass @param {AvatarFrame} avatar @param {number} firstSplat @param {Camera[]} cameras */
+  project(pass, avatar, firstSplat, cameras) {
     const box = this.box();
+    const [left, right = left] = cameras;
     this.kernels.SplatProject.dispatch(
       pass,
       [groups(avatar.splatCount, PROJECTED), 1, 1],
@@ -100,13 +103,13 @@ export class SplatFrame {
         keys: this.keys,
       },
       {
-        view: [...camera.view, ...camera.view],
-        projection: [...camera.projection, ...camera.projection],
+        view: [...left.view, ...right.view],
+        projection: [...left.projection, ...right.projection],
         bounds_low: [...box.slice(0, 3), 1],
         bounds_high: [...box.slice(3), 1],
-        screen: camera.screen,
-        near: camera.near,
-        eyes: 1,
+        screen: left.screen,
+        near: left.near,
+        eyes: cameras.length,
         texel_count: avatar.splatCount,
         first_splat: firstSplat,
       },
