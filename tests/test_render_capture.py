@@ -12,7 +12,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from capture_fit import edge_distance, read_vertices
-from capture_job import Order, job_file, prepare
+from capture_job import TRACKED, Order, job_file, prepare
 from captures import make_capture
 from PIL import Image
 from render_capture import parser, render_capture, run_renderer
@@ -20,7 +20,9 @@ from render_capture import parser, render_capture, run_renderer
 from mua import rotation
 from mua.baking.sources import load_clips
 from mua.capture import open_capture
+from mua.capture.tracks import read_tracks
 from mua.errors import InputError
+from mua.rig.surface_points import interpolate, spread_points
 from mua.teachers.surface import SkinnedSurface
 
 RADIANS = 1e-4
@@ -63,6 +65,21 @@ def test_true_surfaces_are_those_of_the_poses(folder: Path) -> None:
         for frame, moved in enumerate(SkinnedSurface(character).frames(capture.motion(clip.name))):
             file = capture.place(str(capture.meshes), clip=clip.name, frame=frame)
             np.testing.assert_allclose(read_vertices(file), moved.places, atol=1e-4)
+
+
+def test_true_tracks_follow_points_of_the_surface(folder: Path) -> None:
+    capture = open_capture(folder)
+    mesh = capture.character(uv="auto").mesh
+    triangles, barycentrics = spread_points(mesh, TRACKED)
+    for clip in capture.clips:
+        (tracks,) = read_tracks(capture, clip.name)
+        assert tracks.bind is not None
+        np.testing.assert_allclose(tracks.bind, interpolate(mesh.vertices, mesh.faces[triangles], barycentrics))
+        for frame, points in enumerate(tracks.points):
+            file = capture.place(str(capture.meshes), clip=clip.name, frame=frame)
+            wanted = interpolate(read_vertices(file), mesh.faces[triangles], barycentrics)
+            np.testing.assert_allclose(points, wanted, atol=1e-6)  # metres, in single precision
+        assert (tracks.weights == 1).all()
 
 
 def test_the_job_has_every_picture_of_the_capture_once(folder: Path) -> None:

@@ -15,12 +15,14 @@ from taught import FEW
 import mua
 from mua.baking import lessons
 from mua.capture import open_capture
+from mua.capture.outline import posed_template
+from mua.capture.write import write_capture
 from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.student.settings import Schedule
 from mua.teachers.teacher import TeacherFrame
 from mua.teaching import settings
-from mua.teaching.template_training import TemplateSettings
+from mua.teaching.template_training import TemplateSettings, TemplateWeights
 from mua.teaching.trained import TrainedTeacher
 
 TEXELS = 64
@@ -64,6 +66,34 @@ def test_a_drivable_template_follows_the_motion(capture: Path, tmp_path: Path, m
     assert np.abs(one.mesh - teacher.rig.mesh.vertices).max() > 1e-4
     assert np.abs(one.mesh - other.mesh).max() > 1e-4
     assert np.abs(one.mesh - other.mesh).max() < 0.1
+
+
+def test_tracks_of_a_capture_are_trained_on(capture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Points that went 5 cm to one side of the skinned template take the drivable one with them."""
+    for entry in capture.iterdir():
+        if entry.name != "capture.json":
+            (tmp_path / entry.name).symlink_to(entry)
+    given = open_capture(capture)
+    write_capture(replace(given, folder=tmp_path, tracks="{clip}.npz"))
+    bind = given.surfaces.vertices[::20]
+    points = posed_template(given.surfaces, given.motion("walk"))[:, ::20] + [0.05, 0, 0]
+    np.savez(tmp_path / "walk.npz", points=points, bind=bind)
+    few, none = Schedule(steps=12, batch=1, lr=5e-2), TemplateWeights(silhouette=0.0)
+    monkeypatch.setattr(lessons, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few, weights=none))
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
+    teacher = TrainedTeacher(mua.teach(tmp_path, output=tmp_path / "t", steps=1, texels=TEXELS, drivable=True))
+    (frame,) = (one for one in teacher.frames(given.motion("walk"), {2}) if isinstance(one, TeacherFrame))
+    assert (frame.mesh - teacher.rig.mesh.vertices).mean(axis=0)[0] == pytest.approx(0.05, abs=0.025)
+
+
+def test_tracks_that_are_not_there_are_a_sentence(capture: Path, tmp_path: Path, teach: Teach) -> None:
+    for entry in capture.iterdir():
+        if entry.name != "capture.json":
+            (tmp_path / entry.name).symlink_to(entry)
+    write_capture(replace(open_capture(capture), folder=tmp_path, tracks="{clip}.npz"))
+    assert "walk.npz: there is no such file" in teach(tmp_path, "-o", tmp_path / "teacher", *OPTIONS).sentence
+    np.savez(tmp_path / "walk.npz", points=np.full((FRAMES["walk"], 3, 3), 9.0))
+    assert "no tracked point lies on the posed" in teach(tmp_path, "-o", tmp_path / "teacher", *OPTIONS).sentence
 
 
 def test_the_same_command_trains_nothing_again(capture: Path, made: Path, teach: Teach) -> None:

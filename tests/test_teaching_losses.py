@@ -20,13 +20,12 @@ from mua.teaching.mesh_losses import (
     SIDEWAYS,
     Cloud,
     Samples,
-    Tracks,
     chamfer,
     edges_of,
     roughness,
-    track_error,
 )
 from mua.teaching.silhouette import Outline, outlines, silhouette_error
+from mua.teaching.track_losses import Tracks, track_error
 
 BOUND = 1e-12  # some 100 operations on lengths of up to 2 metres in float64
 
@@ -125,6 +124,19 @@ def test_tracks_count_where_they_were_seen(mesh: Mesh) -> None:
         assert float(track_error(posed, tracks_at(mesh, posed, by=by))) == pytest.approx(expected, abs=BOUND)
     tracks = tracks_at(mesh, posed, by=0.09)
     check_gradient(lambda vertices: track_error(vertices, tracks), moved(mesh, seed=1))
+
+
+def test_a_point_that_one_camera_saw_counts_its_distance_from_the_ray(mesh: Mesh) -> None:
+    posed = moved(mesh)
+    tracks = replace(tracks_at(mesh, posed, by=0.0), points=torch.tensor([[0.0, 5, 0]], dtype=torch.float64))
+    points = (tracks.barycentrics[..., None] * posed[tracks.corners]).sum(1)
+    away = points - tracks.points
+    ray = torch.nn.functional.normalize(away + torch.tensor([0.05, 0.02, -0.01]), dim=1)
+    wanted = float((torch.linalg.cross(away, ray).square().sum(1) * tracks.weights).sum() / tracks.weights.sum())
+    seen = replace(tracks, points=tracks.points.expand_as(points), directions=ray)
+    assert float(track_error(posed, seen)) == pytest.approx(wanted, abs=BOUND)
+    assert wanted > 1e-4
+    check_gradient(lambda vertices: track_error(vertices, seen), moved(mesh, seed=1))
 
 
 def test_roughness_is_nothing_for_what_all_share(mesh: Mesh) -> None:

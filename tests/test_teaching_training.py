@@ -21,7 +21,7 @@ from mua.splatting.projection import Eye
 from mua.student import optimise
 from mua.student.optimise import Progress
 from mua.student.settings import Schedule
-from mua.teaching.mesh_losses import Cloud, Samples, Tracks, chamfer
+from mua.teaching.mesh_losses import Cloud, Samples, chamfer
 from mua.teaching.motion_deformation import GraphSizes
 from mua.teaching.silhouette import Outline
 from mua.teaching.silhouette import outlines as drawn_outlines
@@ -34,6 +34,7 @@ from mua.teaching.template_training import (
     template_of,
     training_run,
 )
+from mua.teaching.track_losses import Tracks
 
 ENCODING = PoseEncoding(joints=(1, 2), rate=30.0)
 SETTINGS = TemplateSettings(

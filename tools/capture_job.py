@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
+from capture_fit import read_vertices
 from PIL import Image
 from scipy.spatial import ConvexHull
 from virtual_studio import Run, chosen_runs, held_back, on_the_spot, ring
@@ -22,11 +23,13 @@ from mua.files import replacing, write_bytes
 from mua.motion.load import unique_names
 from mua.pose.clip import Clip
 from mua.rig.character import Character
+from mua.rig.surface_points import interpolate, spread_points
 from mua.teachers.simulated_surface import SimulatedSurface
 from mua.teachers.surface import SkinnedSurface
 
 ATLAS = 2048  # texels of the rendered picture of all materials along a side
 IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame:06d}.ply"
+TRACKS, TRACKED = "tracks/{clip}.npz", 1000  # points all over the surface that are followed
 ONE_FILE = (".glb", ".vrm", ".usdc", ".usdz")  # kinds of characters that can be copied
 CORNERS = np.dtype([("count", "u1"), ("vertices", "<i4", 3)])  # of a face of a .ply
 
@@ -72,6 +75,7 @@ def prepare(order: Order, folder: Path) -> None:
     filmed = film(order, character)
     clips = write_motions(folder, character, filmed)
     outline = write_meshes(order, folder, character, filmed, clips)
+    write_tracks(folder, character, clips)
     capture = Capture(
         folder=folder,
         name=character.name,
@@ -89,6 +93,7 @@ def prepare(order: Order, folder: Path) -> None:
         clips=tuple(clips),
         images=IMAGES,
         meshes=MESHES,
+        tracks=TRACKS,
     )
     write_capture(capture)
     write_job(order, capture, character, outline)
@@ -141,6 +146,18 @@ def write_meshes(
                 corners.append(moved.places[ConvexHull(moved.places).vertices])
         print(f"moved {clip.name}: {len(wanted)} of {len(clip)} frames are filmed", flush=True)
     return np.concatenate(corners)
+
+
+def write_tracks(folder: Path, character: Character, clips: Sequence[CaptureClip]) -> None:
+    """Write where points of the surface truly are in all frames of each clip; all are seen."""
+    mesh = character.mesh
+    triangles, barycentrics = spread_points(mesh, TRACKED)
+    corners = mesh.faces[triangles]
+    for clip in clips:
+        surfaces = (read_vertices(folder / MESHES.format(clip=clip.name, frame=k)) for k in range(clip.frames))
+        points = np.stack([interpolate(surface, corners, barycentrics) for surface in surfaces])
+        with replacing(folder / TRACKS.format(clip=clip.name)) as temporary, temporary.open("wb") as file:
+            np.savez(file, points=points.astype(np.float32), bind=interpolate(mesh.vertices, corners, barycentrics))
 
 
 def mesh_ply(vertices: Array, faces: Array) -> bytes:

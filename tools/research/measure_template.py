@@ -32,10 +32,11 @@ from mua.student.distil import moving_joints
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Progress
 from mua.teachers.surface import SimulatedSurface
-from mua.teaching.mesh_losses import Cloud, Samples, Tracks
+from mua.teaching.mesh_losses import Cloud, Samples
 from mua.teaching.motion_deformation import GraphSizes, MotionDeformation
 from mua.teaching.template import DrivableTemplate
 from mua.teaching.template_training import Observed, TemplateSettings, fit_template, template_of, training_run
+from mua.teaching.track_losses import Tracks
 
 POINTS = 20_000  # of a true surface, in training
 MEASURED = 60_000  # where distances are measured

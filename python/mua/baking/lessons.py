@@ -13,13 +13,14 @@ from mua.processes import Processes
 from mua.student.optimise import Progress, Run
 from mua.teaching.folder import Description, save_teacher
 from mua.teaching.from_capture import Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
-from mua.teaching.lesson import Lesson, Perceptual
+from mua.teaching.lesson import Lesson, Material, Perceptual
 from mua.teaching.measured import measured_surfaces
 from mua.teaching.model import TeacherModel
 from mua.teaching.preview import Preview
 from mua.teaching.settings import TeacherSettings
 from mua.teaching.template_training import STAGES as TEMPLATE_STAGES
-from mua.teaching.template_training import TemplateSettings, fit_template
+from mua.teaching.template_training import Observations, TemplateSettings, fit_template
+from mua.teaching.tracked import Tracked, tracks_of
 from mua.teaching.train import STAGES, TEXTURE, train_teacher
 
 TEMPLATE = TemplateSettings()
@@ -41,11 +42,11 @@ def carry_out(
     filmed = read_filmed(capture, settings, device, views=output / "work" / "views")
     if weights is None:
         listener.note("without --lpips-weights no perceptual term is trained on")
-    material = material_of(filmed, _perceptual(weights, device))
+    material = replace(material_of(filmed, _perceptual(weights, device)), tracks=tracks_of(filmed))
     torch.manual_seed(settings.seed)
     teacher = TeacherModel(filmed.subject, settings)
     lesson = Lesson(teacher, material, settings, refinement=refinement_of(filmed, settings)).to(device)
-    checkpoints = Checkpoints(output / "work", _key(filmed, settings, weights), processes)
+    checkpoints = Checkpoints(output / "work", _key(filmed, settings, weights, material), processes)
     if processes.first:
         checkpoints.remove_leftovers((*TEMPLATE_STAGES, *STAGES))
     preview = preview_of(filmed, output / "progress") if processes.first else None
@@ -53,19 +54,22 @@ def carry_out(
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes)
     if settings.drivable:
         own = replace(TEMPLATE, seed=settings.seed)
-        seen = measured_surfaces(filmed) or Outlines(material)
+        seen: Observations = measured_surfaces(filmed) or Outlines(material)
+        seen = Tracked(seen, material.tracks) if material.tracks else seen
         fit_template(teacher.template, seen, filmed.subject.rig, own, run=run)
     train_teacher(lesson, material, settings, run=run)
     if processes.first:
         save_teacher(output, teacher, Description(capture.name, settings, filmed.subject.encoding, filmed.roles))
 
 
-def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None) -> str:
+def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None, material: Material) -> str:
     """Changes with everything that a training depends on but the pictures themselves."""
     clips = [torch.from_numpy(values) for clip in filmed.clips for values in (clip.rotations, clip.translations)]
+    points = [values for of in material.tracks for values in (of.tracks.points, of.tracks.weights)]
     said = filmed.capture.file.read_bytes()
     return run_key(
-        (__version__, settings, said, None if weights is None else weights.name), [filmed.subject.surfels, *clips]
+        (__version__, settings, said, None if weights is None else weights.name),
+        [filmed.subject.surfels, *clips, *points],
     )
 
 

@@ -50,7 +50,8 @@ class Capture:
     masks: str | None = None  # as images; None: the alpha of the images
     backgrounds: str | None = None  # pattern of the empty set, a picture for each camera
     meshes: str | None = None  # pattern of surfaces in the world, metres
-    tracks: str | None = None  # pattern of points followed through a clip
+    tracks: str | None = None  # pattern of points followed through a clip, in the world
+    tracks_2d: str | None = None  # pattern of points followed through a camera's pictures of a clip
     template_height: float | None = None  # metres; None: as the file says
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the template that nobody filmed
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture
-from mua.capture.diagnose import unlikely
+from mua.capture.diagnose import misplaced_tracks, unlikely
 from mua.capture.fit import Posed, Seen, chosen_frames, look_at
 from mua.capture.inventory import missing_files
 from mua.errors import InputError
@@ -58,6 +58,7 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
     posed = _posed(capture, problems)
     views = _views(capture, posed, frames, problems)
     problems += unlikely(capture, posed, views)
+    problems += misplaced_tracks(capture, posed)
     person = [vertices.mean(axis=(0, 1)) for vertices in posed.vertices.values()]
     cameras = tuple(
         CameraFit(

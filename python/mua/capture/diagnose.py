@@ -5,10 +5,13 @@ from itertools import groupby
 
 import numpy as np
 
+from mua.arrays import Array
 from mua.capture.capture import Capture
 from mua.capture.conventions import better_convention
 from mua.capture.fit import Posed, Seen, mean_overlap
-from mua.capture.outline import overlap, posed_template, rough_overlap, silhouette
+from mua.capture.outline import POINTS, overlap, posed_template, rough_overlap, silhouette
+from mua.capture.tracks import PointTracks, read_tracks
+from mua.errors import InputError
 
 POOR = 0.6  # of overlap, below which outline and mask are not of the same thing
 OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apart from others
@@ -16,6 +19,8 @@ GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask bette
 SHIFT_GAIN = 0.03  # the same for all views of a clip together
 FAR = 100.0  # metres from the template to cameras, beyond which lengths have another unit
 FARTHEST_SHIFT = 30  # frames by which pictures and poses may be apart
+BESIDE = 0.1  # of the template's height, beyond which tracked points are not on it
+TRACKED = 200  # points that are looked at
 TRIED = 6  # views that such shifts are tried on
 
 
@@ -39,6 +44,35 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
             "tried fit better: look at the picture."
         ]
     return told + apart
+
+
+def misplaced_tracks(capture: Capture, posed: Posed) -> Iterator[str]:
+    """Tracks that cannot be read, and those that are not of the person, a sentence for each."""
+    for clip in capture.clips if capture.tracks or capture.tracks_2d else ():
+        try:
+            read = read_tracks(capture, clip.name)
+        except InputError as error:
+            yield f"Clip {clip.name}: {error}."
+            continue
+        for tracks in read if clip.name in posed.vertices else ():
+            away, height = _tracked_away(tracks, posed.vertices[clip.name]), np.ptp(posed.surfaces.vertices[:, 1])
+            if away > BESIDE * height:
+                yield (
+                    f"Clip {clip.name}: {tracks.file}: half of the points are more than {away:.2f} m from the posed "
+                    "template; expected points of the person, counted from the clip's first frame."
+                )
+
+
+def _tracked_away(tracks: PointTracks, vertices: Array) -> float:
+    """The median distance of tracked points from the nearest vertices [F, V, 3] in the frame with the most, metres."""
+    frame = int(np.count_nonzero(tracks.weights, axis=1).argmax())
+    seen = np.flatnonzero(tracks.weights[frame])[:TRACKED]
+    near = vertices[frame, :: max(1, vertices.shape[1] // POINTS)]
+    apart = near - tracks.points[frame, seen, None]
+    if tracks.directions is not None:
+        ray = tracks.directions[frame, seen, None]
+        apart = apart - np.sum(apart * ray, axis=2, keepdims=True) * ray
+    return float(np.median(np.linalg.norm(apart, axis=2).min(axis=1)))
 
 
 def _by_camera(views: Sequence[Seen]) -> Mapping[str, list[Seen]]:

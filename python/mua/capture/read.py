@@ -26,9 +26,11 @@ PLACES = {  # what each pattern may name
     "backgrounds": ("camera",),
     "meshes": ("clip", "frame"),
     "tracks": ("clip",),
+    "tracks_2d": ("clip", "camera"),
 }
+OF_WHOLE_CLIPS = ("tracks", "tracks_2d")  # whose first frame is that of the clip
 NEEDED = ("format", "version", "name", "rate", "template", "clips", "images", "cameras")
-OPTIONAL = ("masks", "backgrounds", "meshes", "tracks", "template_height", "leave_out")
+OPTIONAL = ("masks", "backgrounds", "meshes", "tracks", "tracks_2d", "template_height", "leave_out")
 
 
 def open_capture(folder: PathLike) -> Capture:
@@ -80,7 +82,8 @@ def _check_whole(capture: Capture) -> None:
     }
     for field, places in PLACES.items():
         if getattr(capture, field) is not None:
-            _check_pattern(getattr(capture, field), f"{capture.file}: {field}", places, counts)
+            own = {**counts, "clip": len(capture.clips)} if field in OF_WHOLE_CLIPS else counts
+            _check_pattern(getattr(capture, field), f"{capture.file}: {field}", places, own)
     if capture.meshes is not None and FRAME not in capture.meshes:
         raise InputError(f"{capture.file}: meshes is {capture.meshes!r}; expected a file for each {{frame}}")
     require_file(capture.template)

@@ -33,7 +33,7 @@ def _described(capture: Capture) -> dict[str, Any]:
     if capture.leave_out:
         described["leave_out"] = list(capture.leave_out)
     described["clips"] = [_clip(clip, capture.folder) for clip in capture.clips]
-    for field in ("images", "masks", "backgrounds", "meshes", "tracks"):
+    for field in ("images", "masks", "backgrounds", "meshes", "tracks", "tracks_2d"):
         if getattr(capture, field) is not None:
             described[field] = getattr(capture, field)
     return described | {"cameras": [_camera(camera) for camera in capture.cameras]}

@@ -6,12 +6,16 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from mua.channels import GEOMETRY
+from mua.channels import ATTRIBUTES, GEOMETRY
 from mua.splatting.likeness import structural_similarity
+from mua.splatting.projection import TorchSplats
+from mua.teachers.bones import figure_scale
 from mua.teaching.colour_correction import ColourCorrection
 from mua.teaching.model import Frame, TeacherModel, draw_views
 from mua.teaching.pose_refinement import PoseRefinement
 from mua.teaching.settings import TeacherSettings
+from mua.teaching.template_training import UNIT
+from mua.teaching.track_losses import TexelTracks
 from mua.teaching.views import Seen, Views
 from mua.teaching.windows import Window
 
@@ -26,6 +30,7 @@ class Material:
     windows: Sequence[Window]
     poses: Sequence[list[int]]  # of each frame's window, newest first, among those of the refinement
     perceptual: Perceptual | None = None
+    tracks: Sequence[TexelTracks] = ()  # of each frame, where points were followed
 
 
 class Lesson(nn.Module):
@@ -45,6 +50,7 @@ class Lesson(nn.Module):
         self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
         self.refinement = refinement
         self._material, self._weights = material, settings.weights
+        self._unit = (UNIT * figure_scale(teacher.rig.mesh.vertices)) ** 2
 
     def forward(
         self,
@@ -79,7 +85,7 @@ class Lesson(nn.Module):
         frame = self.teacher(window, look=self.looks[index], moving=moving)
         splats = self.teacher.splats(frame, window.joints[0])
         seen = [self._material.views.see(index, camera) for camera, _ in views]
-        loss = len(views) * self._restraint(frame, index)
+        loss = len(views) * (self._restraint(frame, index) + self._misalignment(frame, splats, index))
         for (camera, colour), one, drawn in zip(views, seen, draw_views(splats, [s.eye for s in seen]), strict=True):
             image = self.correction(drawn, camera)
             background = colour if one.background is None else one.background
@@ -96,6 +102,16 @@ class Lesson(nn.Module):
             pair = (picture.permute(2, 0, 1)[None].clamp(0, 1) for picture in (shown, truth))
             loss = loss + weights.perceptual * self._material.perceptual(*pair)
         return loss
+
+    def _misalignment(self, frame: Frame, splats: TorchSplats, index: int) -> Tensor:
+        """How far texels are from where their points were followed to (the paper's L_cor-tex)."""
+        if not self._material.tracks:
+            return splats.centres.new_zeros(())
+        return (
+            self._weights.tracks
+            / self._unit
+            * self._material.tracks[index].error(frame.posed, splats, frame.texture[:, ATTRIBUTES["offset"]])
+        )
 
     def _restraint(self, frame: Frame, index: int) -> Tensor:
         """Keeps what pictures do not decide near nothing."""

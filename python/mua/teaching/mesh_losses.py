@@ -1,4 +1,4 @@
-"""How far a posed template is from what was measured of a frame: surfaces, tracked points, and its own smoothness.
+"""How far a posed template is from what was measured of a frame: its surface, and its own smoothness.
 
 Which points are nearest is taken as given; gradients reach the template's vertices alone.
 """
@@ -72,16 +72,6 @@ class Samples:
         return points, torch.nn.functional.normalize(across, dim=1, eps=1e-12)
 
 
-@dataclass(frozen=True, eq=False)
-class Tracks:
-    """Where points of the template were seen in a frame."""
-
-    corners: Tensor  # [P, 3] int64 vertices about each
-    barycentrics: Tensor  # [P, 3]
-    points: Tensor  # [P, 3] world, metres
-    weights: Tensor  # [P] 0 where a point was not seen
-
-
 def chamfer(
     posed: Tensor,  # [V, 3] world, metres
     samples: Samples,
@@ -103,20 +93,6 @@ def chamfer(
     away = _apart(points - to_points[there], to_normals[there], sideways, reach)
     back = _apart(gather(points, here) - to_points, to_normals, sideways, reach)
     return away + back
-
-
-def track_error(
-    posed: Tensor,  # [V, 3] world, metres
-    tracks: Tracks,
-    *,
-    reach: float = REACH,
-) -> Tensor:
-    """Mean squared distance of tracked points from where they were seen, metres^2; beyond `reach` it grows linearly."""
-    points = (tracks.barycentrics.to(posed)[..., None] * gather(posed, tracks.corners)).sum(1)
-    tiny = torch.finfo(posed.dtype).tiny
-    away = ((points - tracks.points).square().sum(1) + tiny).sqrt()
-    error = torch.where(away < reach, away.square(), 2 * reach * away - reach**2)
-    return (tracks.weights * error).sum() / tracks.weights.sum().clamp(min=1e-9)
 
 
 def roughness(

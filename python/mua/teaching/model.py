@@ -39,6 +39,7 @@ class Frame(NamedTuple):
     canonical: Tensor  # [V, 3] metres
     texture: Tensor  # [N, 23] raw channels
     added: Tensor  # [N, 23] what the networks add, in units
+    posed: Tensor  # [V, 3] the template in the world, metres
 
 
 class TeacherModel(nn.Module):
@@ -77,11 +78,11 @@ class TeacherModel(nn.Module):
         template = self.template(window.descriptors, window.joints)
         mean = self.mean_texture()
         if not moving:
-            return Frame(template.canonical[0], mean, torch.zeros_like(mean))
+            return Frame(template.canonical[0], mean, torch.zeros_like(mean), template.posed[0])
         added = self.nets(template.posed, window.root, window.back, self.look if look is None else look)
         added = MOST_RESIDUAL * torch.tanh(added / MOST_RESIDUAL)
         texture = mean + (self.still + added) * self.nets.units
-        return Frame(template.canonical[0], texture, added)
+        return Frame(template.canonical[0], texture, added, template.posed[0])
 
     def mean_texture(self) -> Tensor:
         """[N, 23] the surfels in the mean colours of the pictures."""

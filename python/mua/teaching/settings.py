@@ -14,6 +14,7 @@ class LossWeights:
     ssim: float = 0.1
     alpha: float = 0.1  # of the opacity beside the mask
     perceptual: float = 0.1  # of LPIPS, where its weights are given
+    tracks: float = 0.02  # of tracked points' squared distance in centimetres on a person, where there are tracks
     residual: float = 1e-3  # of the square of what the networks add to the geometry, in `texels.UNITS`
     correction: float = 1e-2  # of the square of what cameras' colours and frames' codes are away from none
 

@@ -21,10 +21,11 @@ from mua.student.optimise import Report, Run, optimise
 from mua.student.settings import Schedule
 from mua.teachers.bones import figure_scale
 from mua.teaching.learning import learning, same_bytes
-from mua.teaching.mesh_losses import Cloud, Samples, Tracks, chamfer, edges_of, roughness, track_error
+from mua.teaching.mesh_losses import Cloud, Samples, chamfer, edges_of, roughness
 from mua.teaching.motion_deformation import Deformed, GraphSizes, MotionDeformation
 from mua.teaching.silhouette import Outline, silhouette_error
 from mua.teaching.template import DrivableTemplate
+from mua.teaching.track_losses import Tracks, track_error
 
 STAGES = ("template nodes", "template offsets")
 UNIT = 0.01  # metres on a person: an error of 1 in every term that is a length
