@@ -24,6 +24,7 @@ from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
 FRAMES, SIDE = 5, 24
+LENS = [0.01, -0.02, 1e-3, 2e-3, 0.03]
 JOINTS = [name for name, _, _ in NOMINAL[55]]
 PIXEL_BOUND = 1e-3  # float32 positions of a template some metres away, at a focal length of 1200
 WORLDS = {"y": [0.0, 0, 0], "-y": [np.pi, 0, 0], "z": [np.pi / 2, 0, 0]}  # turn from Y up to a set's world
@@ -75,7 +76,7 @@ def write_source(folder: Path, world: Any) -> Path:
         matrix[:3, :3] = matrix[:3, :3] @ turn.as_matrix().T
         k = [[1200.0, 0, 350], [0, 1180, 512.5], [0, 0, 1]]
         camera = {"K": np.ravel(k).tolist(), "R": matrix[:3, :3].ravel().tolist(), "T": matrix[:3, 3].tolist()}
-        cameras[name] = camera | {"imgSize": [SIDE, SIDE], "distCoeff": [0.01, 0, 0, 0, 0]}
+        cameras[name] = camera | {"imgSize": [SIDE, SIDE], "distCoeff": LENS}
         for frame in range(FRAMES):
             for place in (f"{name}/{frame:08d}.jpg", f"{name}/mask/pha/{frame:08d}.jpg"):
                 (folder / place).parent.mkdir(parents=True, exist_ok=True)
@@ -124,7 +125,7 @@ def test_joints_are_where_the_sets_own_cameras_see_them(source: Path, command: C
         found, depth = pixels(camera, at[:, order])
         assert (depth > 1).all()
         np.testing.assert_allclose(found, joints_seen(source, camera.name), atol=PIXEL_BOUND)
-        assert camera.distortion == (0.01, 0, 0, 0, 0)
+        assert camera.distortion == tuple(LENS)
     assert (at[:, skeleton.names.index("head"), 1] > at[:, skeleton.names.index("pelvis"), 1]).all()
 
 
@@ -138,6 +139,32 @@ def test_frames_that_a_camera_lacks_are_left_out(tmp_path: Path, command: Comman
     ]
     view = capture.view("frames_000003", 1, "22010708")
     assert 255 * view.image[12, 12, 0] == pytest.approx(36, abs=4)  # frame 4, in JPEG
+
+
+def test_the_full_calibration_is_the_one_that_is_read(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    (source / "calibration.json").write_text("{}")
+    assert len(open_capture(described(source, command)).cameras) == 2
+
+
+def test_the_template_is_as_tall_and_as_whole_as_asked(tmp_path: Path, command: Commands) -> None:
+    """Poses are those of the person at that height: on a template twice as tall, joints are twice as far apart."""
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    whole = open_capture(described(source, command))
+    height = float(np.ptp(whole.surfaces.vertices[:, 1]))
+    taller = open_capture(described(source, command, "--height", 2 * height))
+    assert np.ptp(taller.surfaces.vertices[:, 1]) == pytest.approx(2 * height)
+    apart = []
+    for capture in (whole, taller):
+        clip, skeleton = capture.motion("frames_000000"), capture.surfaces.skeleton
+        _, at = skeleton.world(clip.rotations, clip.translations)
+        apart.append(at[0, skeleton.names.index("head")] - at[0, skeleton.names.index("pelvis")])
+    np.testing.assert_allclose(apart[1], 2 * apart[0], atol=1e-6)
+    ended = command(
+        *("capture", "describe", source, "--template", tmp_path / "template.glb", "-o", tmp_path / "out"),
+        *("--leave-out", "hat"),
+    )
+    assert "--leave-out hat" in ended.sentence
 
 
 def test_thumans_names_are_known_too(tmp_path: Path, command: Commands) -> None:

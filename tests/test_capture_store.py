@@ -1,8 +1,10 @@
 """Stored views are those of the capture, made once; masks that do not fit count less."""
 
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from PIL import Image
 
 from mua.capture import Capture, View
 from mua.capture import store as stores
+from mua.capture.pictures import read_picture
 from mua.capture.store import ViewStore
 from mua.capture.trust import MaskTrust
 from mua.errors import InputError
@@ -74,19 +77,36 @@ def test_a_video_is_decoded_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert sorted(decoded) == ["mask", "video"]
 
 
-CHANGES: dict[str, Callable[[Capture], Capture]] = {
-    "calibration": lambda c: replace(c, cameras=tuple(replace(one, focal=(80.0, 80.0)) for one in c.cameras)),
-    "numbers of images": lambda c: replace(c, clips=(replace(c.clips[0], first_image=1), c.clips[1])),
+def of_cameras(**changes: Any) -> Callable[[Capture], Capture]:
+    return lambda c: replace(c, cameras=tuple(replace(one, **changes) for one in c.cameras))
+
+
+CHANGES: dict[str, tuple[Callable[[Capture], Capture], dict[str, Any]]] = {  # of the capture, and of the store
+    "focal length": (of_cameras(focal=(80.0, 80.0)), {}),
+    "middle of the picture": (of_cameras(centre=(30.0, 32.0)), {}),
+    "lens": (of_cameras(distortion=(-0.1, 0.05, 0.0, 0.0, 0.0)), {}),
+    "numbers of images": (lambda c: replace(c, clips=(replace(c.clips[0], first_image=1), c.clips[1])), {}),
+    "height": (lambda c: c, {"rows": 24}),
+    "cut": (lambda c: c, {"crop": False}),
 }
 
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_stored_for_something_else_is_not_used(small_capture: Capture, tmp_path: Path, change: str) -> None:
-    ViewStore(small_capture, tmp_path, rows=32).view("walk", 1, "front")
-    changed = CHANGES[change](small_capture)
-    found = ViewStore(changed, tmp_path, rows=32).view("walk", 1, "front")
-    same(found, changed.view("walk", 1, "front", crop=True, rows=32))
+    asked = {"crop": True, "rows": 32}
+    ViewStore(small_capture, tmp_path, crop=True, rows=32).view("walk", 1, "front")
+    of_capture, of_store = CHANGES[change]
+    changed, asked = of_capture(small_capture), asked | of_store
+    found = ViewStore(changed, tmp_path, crop=asked["crop"], rows=asked["rows"]).view("walk", 1, "front")
+    same(found, changed.view("walk", 1, "front", **asked))
     assert len(list(tmp_path.rglob("*.png"))) == 2
+
+
+def test_a_video_that_begins_elsewhere_is_read_again(tmp_path: Path) -> None:
+    capture = filmed(tmp_path / "filmed")
+    ViewStore(capture, tmp_path / "store").view("walk", 0, "left")
+    later = replace(capture, clips=(replace(capture.clips[0], first_image=2, frames=2), capture.clips[1]))
+    same(ViewStore(later, tmp_path / "store").view("walk", 0, "left"), later.view("walk", 0, "left", crop=True))
 
 
 def test_a_store_asks_no_camera_for_more_rows_than_it_has(small_capture: Capture, tmp_path: Path) -> None:
@@ -94,19 +114,74 @@ def test_a_store_asks_no_camera_for_more_rows_than_it_has(small_capture: Capture
     same(store.view("walk", 1, "front"), small_capture.view("walk", 1, "front", crop=True))
 
 
-def test_a_picture_that_changed_is_read_again(tmp_path: Path) -> None:
-    capture = make_capture(tmp_path / "capture")
+@pytest.mark.parametrize("kept", ["size", "time"])
+@pytest.mark.parametrize("what", ["image", "mask"])
+def test_a_picture_that_changed_is_read_again(tmp_path: Path, what: str, kept: str) -> None:
+    capture = replace(make_capture(tmp_path / "capture"), masks="masks/{clip}/{camera}/{frame}.png")
+    files = capture.files("walk", 0, "front")
+    assert files.mask is not None
+    files.mask.parent.mkdir(parents=True)
+    Image.fromarray(np.random.default_rng(1).integers(0, 256, (SIDE, SIDE), dtype=np.uint8)).save(files.mask)
     store = ViewStore(capture, tmp_path / "store")
     store.view("walk", 0, "front")
-    Image.new("RGBA", (SIDE, SIDE), (9, 9, 9, 255)).save(capture.files("walk", 0, "front").image)
+    changed = files.image if what == "image" else files.mask
+    before = changed.stat()
+    Image.new("RGBA", (SIDE, SIDE), (9, 9, 9, 255)).save(changed)
+    if kept == "size":
+        content = changed.read_bytes()
+        changed.write_bytes(content[: before.st_size] + bytes(before.st_size - len(content)))  # PNG ends before
+        os.utime(changed, ns=(0, before.st_mtime_ns + 10**9))
+    else:
+        os.utime(changed, ns=(0, before.st_mtime_ns))
     same(store.view("walk", 0, "front"), capture.view("walk", 0, "front", crop=True))
 
 
 def test_beyond_the_limit_views_are_read_but_not_stored(small_capture: Capture, tmp_path: Path) -> None:
-    store = ViewStore(small_capture, tmp_path, limit=1)
-    for frame in range(3):
-        same(store.view("walk", frame, "front"), small_capture.view("walk", frame, "front", crop=True))
+    """What an earlier store left counts too."""
+    for limit in (1, 2):
+        store = ViewStore(small_capture, tmp_path, limit=limit)
+        for frame in range(3):
+            same(store.view("walk", frame, "front"), small_capture.view("walk", frame, "front", crop=True))
     assert len(list(tmp_path.rglob("*.png"))) == 1
+
+
+def test_frames_that_are_stored_are_left_alone(tmp_path: Path) -> None:
+    capture = filmed(tmp_path / "filmed")
+    store = ViewStore(capture, tmp_path / "store")
+    store.view("walk", 2, "left")
+    before = {file: file.stat().st_ino for file in (tmp_path / "store").rglob("*.png")}
+    store.view("walk", 0, "left")
+    after = {file: file.stat().st_ino for file in (tmp_path / "store").rglob("*.png")}
+    assert (len(before), len(after)) == (2, 4)
+    assert after.items() >= before.items()
+
+
+def test_a_view_that_was_half_written_is_none(
+    small_capture: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def killed(picture: Image.Image, place: Path, **told: object) -> None:
+        place.write_bytes(b"\x89PNG")
+        raise KeyboardInterrupt
+
+    store = ViewStore(small_capture, tmp_path)
+    with monkeypatch.context() as patched:
+        patched.setattr(Image.Image, "save", killed)
+        with pytest.raises(KeyboardInterrupt):
+            store.view("walk", 1, "front")
+    found = store.view("walk", 1, "front")
+    same(found, small_capture.view("walk", 1, "front", crop=True))
+
+
+def test_the_empty_set_is_read_once(small_capture: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    capture = replace(small_capture, backgrounds=str(tmp_path / "{camera}.png"))
+    Image.new("RGB", (SIDE, SIDE), (1, 2, 3)).save(tmp_path / "front.png")
+    store, read = ViewStore(capture, tmp_path / "store"), []
+    monkeypatch.setattr(
+        stores, "read_picture", lambda path, **asked: (read.append(path), read_picture(path, **asked))[1]
+    )
+    for frame in (0, 1, 0, 1):
+        store.view("walk", frame, "front")
+    assert read == [tmp_path / "front.png"]
 
 
 def test_a_video_that_ends_early_is_told_where_its_frame_is_wanted(tmp_path: Path) -> None:
@@ -116,6 +191,23 @@ def test_a_video_that_ends_early_is_told_where_its_frame_is_wanted(tmp_path: Pat
     store.view("walk", 1, "left")
     with pytest.raises(InputError, match=r"left\.mp4: has 4 frames; frame 4, counted from 0, is wanted"):
         store.view("walk", 2, "left")
+
+
+def test_a_video_of_masks_that_ends_early_is_told_where_its_frame_is_wanted(tmp_path: Path) -> None:
+    capture = filmed(tmp_path / "filmed")
+    masks = (np.full((SIDE, SIDE, 3), 255, np.uint8) for _ in range(2))
+    write_video(tmp_path / "filmed" / "mask" / "walk" / "left.mp4", masks, rate=30)
+    store = ViewStore(capture, tmp_path / "store")
+    same(store.view("walk", 1, "left"), capture.view("walk", 1, "left", crop=True))
+    with pytest.raises(InputError, match=r"left\.mp4: has 2 frames; frame 2, counted from 0, is wanted"):
+        store.view("walk", 2, "left")
+
+
+def test_a_video_of_another_size_is_refused(tmp_path: Path) -> None:
+    capture = filmed(tmp_path / "filmed")
+    wider = replace(capture, cameras=tuple(replace(one, size=(SIDE + 2, SIDE)) for one in capture.cameras))
+    with pytest.raises(InputError, match=r"left\.mp4: the picture is 64 x 64 pixels; .* 66 x 64"):
+        ViewStore(wider, tmp_path / "store").view("walk", 0, "left")
 
 
 def test_masks_that_fit_count_in_full_and_those_of_other_things_not(tmp_path: Path) -> None:

@@ -28,9 +28,10 @@ def matrices() -> list[Array]:
     return found
 
 
-def skeletool(*, radial: float = 0, animated: int = 0) -> str:
+def skeletool(*, radial: float = 0, animated: int = 0, mirrored: bool = False) -> str:
     lines = [SKELETOOL]
     for number, matrix in enumerate(matrices()):
+        matrix[0] *= -1 if mirrored else 1
         intrinsic = np.eye(4)
         intrinsic[:3, :3] = K
         flat = {"intrinsic": intrinsic, "extrinsic": matrix}
@@ -80,6 +81,9 @@ def test_cameras_see_points_where_the_formula_says(tmp_path: Path, text: str) ->
         (skeletool().replace("name", "size"), "line 2: 'size' comes before the first camera's name"),
         (captury(model="fisheye"), "line 3: the distortion is 'fisheye', expected OpenCV"),
         (captury(focal=-61), "the focal length is -12.2 and"),
+        (captury().replace("\t1\t", "\t0.9\t", 1), "line 3: the pixels' aspect is 0.9, expected 1"),
+        (captury().replace("\t1\t", "\t1.1\t", 1), "line 3: the pixels' aspect is 1.1, expected 1"),
+        (skeletool(mirrored=True), "camera 0: its axes are not those of a right-handed camera"),
         (captury().replace("OpenCV\t", ""), "line 3: has 22 columns, expected 23"),
     ],
 )

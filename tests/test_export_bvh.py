@@ -60,6 +60,7 @@ def test_an_independent_reader_finds_the_joints_where_they_were(tmp_path: Path, 
 
 def test_our_reader_finds_rate_names_joints_and_bind_pose(tmp_path: Path) -> None:
     skeleton, clip = tree()
+    clip = replace(clip, rate=27.4)
     path = tmp_path / "a.bvh"
     path.write_text(bvh_text(skeleton, clip))
     read = read_bvh(path, scale=1.0)
@@ -67,13 +68,15 @@ def test_our_reader_finds_rate_names_joints_and_bind_pose(tmp_path: Path) -> Non
     bind, rest = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     order = [read.skeleton.names.index("_".join(name.split())) for name in skeleton.names]
     found_turned, found = read.skeleton.world(read.clip.rotations, read.clip.translations)
-    assert (read.clip.rate, len(read.clip)) == (25.0, len(clip))
+    assert (read.clip.rate, len(read.clip)) == (pytest.approx(27.4, rel=1e-6), len(clip))
     np.testing.assert_allclose(found[:, order], placed, atol=PLACE_BOUND)
     since = rotation.multiply(turned, np.broadcast_to(rotation.conjugate(bind), turned.shape))
     np.testing.assert_allclose(np.abs(np.sum(since * found_turned[:, order], axis=-1)), 1, atol=1e-9)
     offsets, upwards = read.skeleton.bind_translations[order], skeleton.parents >= 0
     expected = (rest - rest[skeleton.parents])[upwards]
     np.testing.assert_allclose(offsets[upwards], expected, atol=2 * WRITTEN)
+    (root,) = (line.split()[1:] for line in path.read_text().splitlines() if line.startswith("  OFFSET"))
+    np.testing.assert_allclose(np.array(root, float), rest[skeleton.root], atol=2 * WRITTEN)
 
 
 def test_joints_follow_the_order_of_the_skeleton_and_their_parents() -> None:

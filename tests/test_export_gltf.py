@@ -57,8 +57,22 @@ def test_a_glb_is_a_skinned_mesh_unless_asked_for_more(
     ended = command("export", avatar_file, "-o", tmp_path / "a.glb")
     assert ended.out.startswith(f"{tmp_path / 'a.glb'}: mesh of {len(stored.rig.mesh.faces)} triangles, 3 joints, 7 fr")
     found = ReadGlb(tmp_path / "a.glb")
-    assert [node["name"] for node in found.json["nodes"]] == [*stored.rig.skeleton.names, stored.name]
+    names = [*stored.rig.skeleton.names, stored.name]
+    assert [node["name"] for node in found.json["nodes"]] == names
     assert found.json["animations"][0]["name"] == "wave"
+    assert names[found.json["skins"][0]["skeleton"]] == stored.rig.skeleton.names[stored.rig.skeleton.root]
+    assert [material["doubleSided"] for material in found.json["materials"]] == [True]  # sleeves show their inside
+
+
+def test_only_joints_that_move_in_their_parents_have_keys_of_places(
+    command: Commands, stored: mua.Avatar, avatar_file: Path, tmp_path: Path
+) -> None:
+    found = ReadGlb(exported(command, avatar_file, tmp_path, "skeleton"))
+    targets = [channel["target"] for channel in found.json["animations"][0]["channels"]]
+    still = (stored.clips[0].translations == stored.rig.skeleton.bind_translations).all(axis=(0, 2))
+    placed = {target["node"] for target in targets if target["path"] == "translation"}
+    assert placed == set(np.flatnonzero(~still).tolist())
+    assert 0 < len(placed) < len(still)
 
 
 @pytest.mark.parametrize("frames", [range(FRAMES), range(1, 6, 2)])
@@ -159,6 +173,10 @@ def test_splats_by_the_draft_extension_are_those_of_the_frame_and_marked_as_a_dr
     np.testing.assert_array_equal(arrays[f"{own}:ROTATION"], posed.rotations[:, [1, 2, 3, 0]])
     np.testing.assert_allclose(arrays[f"{own}:SCALE"], posed.scales, rtol=4 * EPSILON)
     np.testing.assert_allclose(arrays[f"{own}:OPACITY"][:, 0], posed.opacities, atol=4 * EPSILON)
+    linear = arrays["COLOR_0"][:, :3]
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    np.testing.assert_allclose(srgb, np.clip(mean_colors(posed.sh), 0, 1), atol=12.92 / 65535)
+    np.testing.assert_allclose(arrays["COLOR_0"][:, 3], posed.opacities, atol=1 / 65535)
     np.testing.assert_array_equal(arrays[f"{own}:SH_DEGREE_0_COEF_0"], splats.sh[:, :3])
     for k in range(3):
         np.testing.assert_array_equal(arrays[f"{own}:SH_DEGREE_1_COEF_{k}"], splats.sh[:, 3 + 3 * k : 6 + 3 * k])

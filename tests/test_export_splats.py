@@ -149,6 +149,18 @@ def test_any_rotation_comes_back(tmp_path: Path, kind: str, step: float) -> None
     assert np.abs(np.sum(found * any_way[order], axis=1)).min() > 1 - (2 * step) ** 2
 
 
+def test_a_spz_keeps_the_place_just_below_a_power_of_two(tmp_path: Path) -> None:
+    """Where rounding reaches the next bit."""
+    edge = np.nextafter(np.float32(8), np.float32(0))
+    far = replace(exported(), centres=np.tile(np.float32([edge, -edge, 0]), (len(exported()), 1)))
+    found = read_by_gaussforge(written(tmp_path, spz_bytes(far)), "spz")
+    np.testing.assert_allclose(found.centres, far.centres, atol=2.0**-18)
+
+
+def test_a_spz_does_not_hold_the_time_at_which_it_was_made() -> None:
+    assert spz_bytes(exported())[4:8] == bytes(4)
+
+
 def test_a_spz_says_that_its_splats_are_filtered() -> None:
     header = gzip.decompress(spz_bytes(exported()))[:16]
     assert header[:8] == b"NGSP\3\0\0\0"
@@ -190,6 +202,15 @@ def test_a_flat_chunk_has_no_range(tmp_path: Path) -> None:
     flat = replace(exported(), centres=exported().centres * np.float32([1, 1, 0]))
     found = read_by_gaussforge(written(tmp_path, compressed_ply_bytes(flat)), "compressed.ply")
     np.testing.assert_array_equal(found.centres[:, 2], 0)
+
+
+def test_a_chunk_that_is_all_but_flat_is_flat(tmp_path: Path) -> None:
+    """Readers take ranges this small for none, and shares of them for shares of 1."""
+    thin = replace(exported(), centres=exported().centres * np.float32([1, 1, 1e-6]))
+    content = compressed_ply_bytes(thin)
+    vertices = plyfile.PlyData.read(str(written(tmp_path, content)))["vertex"].data
+    assert 0 < np.ptp(thin.centres[:, 2]) < 1e-5
+    np.testing.assert_array_equal(vertices["packed_position"] & 0x7FF, 0)
 
 
 def test_a_narrow_chunk_keeps_its_range(tmp_path: Path) -> None:

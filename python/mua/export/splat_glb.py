@@ -36,7 +36,7 @@ def _attributes(glb: Glb, splats: WorldSplats) -> Attributes:
     arrays = {
         "ROTATION": xyzw(splats.rotations),
         "SCALE": splats.scales.astype("<f4"),
-        "OPACITY": np.clip(splats.opacities, 0, 1).astype("<f4"),
+        "OPACITY": splats.opacities.astype("<f4"),
         "SH_DEGREE_0_COEF_0": coefficients[:, 0],
         **{f"SH_DEGREE_1_COEF_{k}": coefficients[:, 1 + k] for k in range(3)},
     }
