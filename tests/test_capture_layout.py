@@ -106,6 +106,11 @@ def test_a_camera_stands_where_its_view_does() -> None:
     np.testing.assert_allclose(camera.camera().position, camera.position, atol=ROUNDING)
 
 
+def test_a_field_of_view_reaches_from_edge_to_edge() -> None:
+    camera = tilted_camera(centre=(110.0, 90.0), focal=(190.0, 80.0))
+    assert camera.field_of_view == pytest.approx(np.degrees(np.arctan2(110, 190) + np.arctan2(320 - 110, 190)))
+
+
 def changed(capture: Capture, change: Callable[[dict[str, Any]], Any]) -> None:
     """Put a fault into capture.json."""
     said = json.loads(capture.file.read_text())

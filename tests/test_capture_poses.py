@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from captures import FRAMES, make_capture, motions
 
 from mua.arrays import Array
-from mua.capture import Capture
+from mua.capture import Capture, poses
 from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
@@ -27,7 +28,7 @@ def places(skeleton: Skeleton, clip: Clip) -> dict[str, Array]:
 def test_poses_are_those_that_were_recorded_from_the_first_on(small_capture: Capture, name: str) -> None:
     clip = small_capture.motion(name)
     assert (len(clip), clip.rate, clip.name) == (FRAMES[name], small_capture.rate, name)
-    found = places(small_capture.character(uv="keep").skeleton, clip)
+    found = places(small_capture.surfaces.skeleton, clip)
     expected = places(procedural_character().skeleton, motions()[name])
     assert found.keys() == expected.keys()
     for joint, at in expected.items():
@@ -54,6 +55,38 @@ def test_a_pose_that_is_no_number_is_named(tmp_path: Path) -> None:
     file.write_text("\n".join([*lines[:-1], " ".join(["nan", *lines[-1].split()[1:]])]) + "\n")
     with pytest.raises(InputError, match=r"walk\.bvh.*nan"):
         capture.motion("walk")
+
+
+def found_in(monkeypatch: pytest.MonkeyPatch, *clips: Clip) -> None:
+    """Let the readers of motion find these clips."""
+    monkeypatch.setattr(poses, "load_motions", lambda *_, **__: [SimpleNamespace(clip=clip) for clip in clips])
+
+
+@pytest.mark.parametrize("part", ["rotations", "translations"])
+def test_a_pose_that_a_reader_lets_through_is_named(
+    small_capture: Capture, monkeypatch: pytest.MonkeyPatch, part: str
+) -> None:
+    clip = small_capture.motion("walk")
+    values = getattr(clip, part).copy()
+    values[2, 1, 0] = np.inf
+    found_in(monkeypatch, replace(clip, **{part: values}))
+    with pytest.raises(InputError, match=r"walk\.bvh: pose 2: a joint's place or turn is not finite"):
+        small_capture.motion("walk")
+
+
+def test_of_several_motions_the_one_of_the_clips_name_is_taken(
+    small_capture: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clip = small_capture.whole_motion("walk")
+    jump = replace(clip, name="jump")
+    later = replace(clip.cut(slice(1, None)), name="walk")
+    found_in(monkeypatch, jump, later)
+    np.testing.assert_array_equal(small_capture.whole_motion("walk").rotations, later.rotations)
+    found_in(monkeypatch, jump)
+    assert small_capture.whole_motion("walk").name == "walk", "a motion alone has any name"
+    found_in(monkeypatch, jump, replace(clip, name="run"))
+    with pytest.raises(InputError, match=r"holds 2 motions \('jump', 'run'\), none of which is called 'walk'"):
+        small_capture.whole_motion("walk")
 
 
 def test_the_template_has_the_height_and_the_parts_that_were_filmed(small_capture: Capture) -> None:

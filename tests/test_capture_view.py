@@ -2,16 +2,22 @@
 
 from dataclasses import replace
 from pathlib import Path
+from subprocess import run
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from captures import FRAMES, SIDE, looking, make_capture
+from imageio_ffmpeg import get_ffmpeg_exe
 from PIL import Image
 
 from mua.arrays import Array
-from mua.capture import Capture, CaptureCamera
+from mua.capture import Capture, CaptureCamera, video
 from mua.capture.lens import distorted, undistort
+from mua.capture.pictures import as_mask
 from mua.capture.smaller import area_average
+from mua.capture.video import video_frames
+from mua.capture.view import person
 from mua.errors import InputError
 from mua.kernels.splat_project import eye_ellipses
 from mua.player.video import write_video
@@ -74,6 +80,13 @@ def test_a_smaller_picture_holds_means_of_areas(old: int, new: int) -> None:
     np.testing.assert_allclose(found, expected, rtol=old * 2**-22)
 
 
+def test_an_edge_that_is_rounded_beyond_the_picture_is_its_end() -> None:
+    picture = np.arange(12.0).reshape(3, 4, 1)
+    beyond = np.nextafter([[0, 1.5, 3], [0, 2, 4]], np.inf)
+    found = area_average(picture, beyond[0], beyond[1])
+    np.testing.assert_allclose(found, area_average(picture, np.array([0, 1.5, 3]), np.array([0, 2.0, 4])), atol=1e-6)
+
+
 @pytest.mark.parametrize("rows", [None, 48, 17])
 def test_cutting_and_shrinking_move_the_camera_with_the_picture(small_capture: Capture, rows: int | None) -> None:
     """A patch of the whole picture lies where both cameras project the same points of the world."""
@@ -102,6 +115,13 @@ def test_the_box_holds_the_whole_person_with_a_margin(small_capture: Capture) ->
     assert part.mask.size < whole.mask.size / 2
 
 
+def test_the_margin_is_a_twentieth_of_the_longer_side_and_a_pixel() -> None:
+    mask = np.zeros((140, 100))
+    mask[20:120, 50:70] = 1
+    assert person(mask) == (44, 14, 76, 126)
+    assert person(mask[:, 50:]) == (0, 14, 26, 126)
+
+
 def test_an_empty_mask_keeps_the_whole_picture(tmp_path: Path) -> None:
     capture = make_capture(tmp_path)
     Image.new("RGBA", (SIDE, SIDE)).save(capture.files("walk", 0, "front").image)
@@ -109,15 +129,34 @@ def test_an_empty_mask_keeps_the_whole_picture(tmp_path: Path) -> None:
 
 
 def test_colours_at_the_rim_are_not_darkened_by_what_has_no_colour(tmp_path: Path) -> None:
-    """A red square whose surroundings are clear black stays red where new pixels lie over its edge."""
+    """A red square whose surroundings are clear white stays red where new pixels lie over its edge."""
     capture = make_capture(tmp_path)
-    picture = np.zeros((SIDE, SIDE, 4), np.uint8)
+    picture = np.tile(np.uint8([255, 255, 255, 0]), (SIDE, SIDE, 1))
     picture[10:31, 10:31] = [200, 0, 0, 255]
     Image.fromarray(picture).save(capture.files("walk", 0, "front").image)
     view = capture.view("walk", 0, "front", rows=SIDE // 4)
     covered = view.mask > STEP
-    np.testing.assert_allclose(view.image[covered][:, 0], 200 / 255, atol=STEP)
+    np.testing.assert_allclose(view.image[covered], [[200 / 255, 0, 0]] * covered.sum(), atol=STEP)
     assert view.mask.sum() * 16 == pytest.approx(21 * 21, rel=0.01)
+
+
+def test_what_is_nearly_clear_has_its_colour(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path)
+    faint = np.tile(np.uint8([200, 90, 10, 2]), (SIDE, SIDE, 1))
+    Image.fromarray(faint).save(capture.files("walk", 0, "front").image)
+    view = capture.view("walk", 0, "front", rows=SIDE // 2)
+    np.testing.assert_allclose(255 * view.image[5, 5], [200, 90, 10], atol=0.5)
+    np.testing.assert_allclose(255 * view.mask, 2, atol=1e-4)
+
+
+def test_a_clear_colour_of_a_palette_is_a_mask_too(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path)
+    picture = Image.new("P", (SIDE, SIDE))
+    picture.putpalette([0, 0, 0, 200, 90, 10])
+    picture.paste(1, (10, 20, 30, 50))
+    picture.save(capture.files("walk", 0, "front").image, transparency=0)
+    view = capture.view("walk", 0, "front")
+    assert (view.mask.sum(), view.mask[20:50, 10:30].min()) == (20 * 30, 1)
 
 
 def test_masks_of_their_own_are_read_in_place_of_alpha(tmp_path: Path) -> None:
@@ -132,6 +171,13 @@ def test_masks_of_their_own_are_read_in_place_of_alpha(tmp_path: Path) -> None:
     np.testing.assert_array_equal(view.mask, mask)
     with Image.open(capture.files("walk", 2, "right").image) as image:
         np.testing.assert_allclose(255 * view.image, np.asarray(image)[..., :3], atol=1e-4)
+
+
+@pytest.mark.parametrize(("light", "cover"), [([0, 0, 1], 255), ([255, 0, 0], 255), ([2, 2, 0], 2), ([0, 0, 0], 0)])
+def test_a_mask_covers_by_its_lightest_channel(light: list[int], cover: int) -> None:
+    """Some tools write 0 and 1; what is nearly black beside is nearly nothing."""
+    found = as_mask(np.array([[light, [0, 0, 0]]], np.uint8))
+    np.testing.assert_array_equal(found, [[[cover], [0]]])
 
 
 def test_a_background_is_seen_as_the_picture_is(tmp_path: Path) -> None:
@@ -156,7 +202,7 @@ def filmed(tmp_path_factory: pytest.TempPathFactory) -> Capture:
     (capture.folder / "video").mkdir()
     numbered = [np.full((SIDE, SIDE, 3), 40 + 4 * number, np.uint8) for number in range(45)]
     for name in ("front", "mask"):
-        write_video(capture.folder / "video" / f"{name}.mp4", iter(numbered), rate=29.97)
+        write_video(capture.folder / "video" / f"{name}.mp4", iter(numbered), rate=30000 / 1001)
     return replace(capture, clips=clips)
 
 
@@ -167,6 +213,28 @@ def test_a_video_gives_the_frame_of_its_number(filmed: Capture, clip: str, frame
     coded = 2.5 / 255  # that an encoder changes of an even picture
     assert view.image.mean() == pytest.approx((40 + 4 * number) / 255, abs=coded / 2)
     assert view.mask.mean() == pytest.approx((40 + 4 * number) / 255, abs=coded / 2)
+
+
+def test_a_video_of_another_size_is_refused(filmed: Capture) -> None:
+    wider = replace(filmed, cameras=tuple(replace(one, size=(SIDE, SIDE + 2)) for one in filmed.cameras))
+    with pytest.raises(InputError, match=r"front\.mp4: the picture is 64 x 64 pixels; .* 64 x 66"):
+        wider.view("walk", 0, "front")
+
+
+def test_a_pause_between_frames_is_not_filled(filmed: Capture) -> None:
+    """Each frame is there once, whatever the time between them."""
+    paused = filmed.folder / "video" / "paused.mkv"
+    command = [get_ffmpeg_exe(), "-v", "error", "-i", filmed.folder / "video" / "front.mp4"]
+    run([*command, "-vf", "setpts=PTS+gte(N\\,20)/TB", "-fps_mode", "vfr", paused], check=True)
+    assert len(list(video_frames(paused))) == 45
+
+
+def test_a_video_without_a_rate_says_so(filmed: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        video, "run", lambda *_, **__: SimpleNamespace(stderr=b"Stream #0:0: Video: h264, 0 fps, 25 tbr")
+    )
+    with pytest.raises(InputError, match=r"front\.mp4: ffmpeg cannot read it as a video of a steady rate"):
+        filmed.view("walk", 0, "front")
 
 
 def test_a_video_that_is_too_short_says_how_long_it_is(filmed: Capture) -> None:
@@ -195,10 +263,13 @@ def test_names_a_picture_that_cannot_be_a_view(tmp_path: Path) -> None:
 def test_names_a_frame_a_clip_and_a_number_of_rows_that_are_none(small_capture: Capture) -> None:
     with pytest.raises(InputError, match="frame is 4; clip 'walk' has frames 0 to 3"):
         small_capture.view("walk", FRAMES["walk"], "front")
+    with pytest.raises(InputError, match="frame is -1; clip 'walk' has frames 0 to 3"):
+        small_capture.view("walk", -1, "front")
     with pytest.raises(InputError, match="none is called 'jump'"):
         small_capture.view("jump", 0, "front")
-    with pytest.raises(InputError, match="rows is 65; camera front has 64"):
-        small_capture.view("walk", 0, "front", rows=65)
+    for rows in (0, 65):
+        with pytest.raises(InputError, match=f"rows is {rows}; camera front has 64"):
+            small_capture.view("walk", 0, "front", rows=rows)
 
 
 def test_cameras_stand_as_they_look() -> None:

@@ -150,7 +150,7 @@ def test_frames_are_parsed() -> None:
 
 def test_names_need_one_place_for_the_number() -> None:
     assert file_names(Path("a/b_%02d.ply"), range(3, 5), suffix=".ply") == [Path("a/b_03.ply"), Path("a/b_04.ply")]
-    for name in ("b_%s%d.ply", "b_%.ply", "b_%%.ply", "b_%q.ply"):
+    for name in ("b_%s%d.ply", "b_%.ply", "b_%%.ply", "b_%q.ply", "b_%.0s.ply"):
         with pytest.raises(InputError, match="expected one place for the number of the frame"):
             file_names(Path(name), range(2), suffix=".ply")
 

@@ -20,8 +20,9 @@ from mua import rotation
 from mua.characters.read import read_character
 from mua.export.character_glb import character_glb
 from mua.export.frames import ExportFrames
+from mua.export.glb import Glb, to_linear
 from mua.export.splats import mean_colors, world_splats
-from mua.export.surface import skinned_mesh
+from mua.export.surface import painted, skinned_mesh
 from mua.motion.read import read_motion
 from mua.player.surface import surface_mesh
 
@@ -145,6 +146,40 @@ def test_the_texture_has_the_colours_of_the_splats(
     colors = np.clip(mean_colors(stored.decode("wave", 3).sh), 0, 1) * 255
     assert np.abs(image.reshape(-1, 3)[texels.texels] - colors).max() <= 0.5 + 1e-4
     assert image.reshape(-1, 3)[0].any(), "texels outside of the charts have colours too"
+
+
+def test_colours_beyond_white_and_black_are_painted_white_and_black(stored: mua.Avatar) -> None:
+    texels = stored.rig.texels
+    colors = np.where(np.arange(len(texels.texels))[:, None] % 2, 1.2, -0.2) * np.ones(3)
+    image = painted(texels, colors).reshape(-1, 3)[texels.texels]
+    np.testing.assert_array_equal(image, np.where(colors > 1, 255, 0))
+
+
+def test_colours_are_made_linear_by_the_standards_table() -> None:
+    """Values of sRGB's transfer function, on both sides of where its straight part ends."""
+    srgb = np.array([0, 0.02, 0.04, 0.05, 0.2, 0.5, 0.9, 1])
+    linear = [0, 0.001548, 0.003096, 0.003936, 0.033105, 0.214041, 0.787412, 1]
+    np.testing.assert_allclose(to_linear(srgb), linear, atol=5e-7)
+
+
+def test_every_part_of_the_buffer_begins_at_a_word() -> None:
+    glb = Glb()
+    glb.view(b"abc")
+    number = glb.view(b"defg")
+    assert [glb.document.bufferViews[n].byteOffset for n in range(number + 1)] == [0, 4]
+    assert glb.content().endswith(b"abc\0defg")
+
+
+def test_a_joint_that_stands_elsewhere_than_at_rest_is_there(
+    command: Commands, stored: mua.Avatar, avatar_file: Path, tmp_path: Path
+) -> None:
+    clip = stored.clips[0]
+    moved = clip.translations.copy()
+    moved[:, 2] += [0.1, 0, 0.05]
+    mua.save(avatar_file, replace(stored, clips=(mua.Clip(clip.name, clip.rate, clip.rotations, moved),)))
+    found = ReadGlb(exported(command, avatar_file, tmp_path, "skeleton"))
+    _, placed = stored.rig.skeleton.world(clip.rotations, moved)
+    np.testing.assert_allclose(found.joint_worlds(3)[:, :3, 3], placed[3], atol=PLACE_BOUND)
 
 
 def test_trimesh_reads_the_detailed_geometry_with_its_colours(

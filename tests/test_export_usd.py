@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import Commands
+from people import upright
 from PIL import Image
 from pxr import Ar, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, UsdVol
 from synthetic_avatar import with_surface
@@ -14,6 +15,7 @@ import mua
 from mua import rotation
 from mua.export.splats import mean_colors, world_splats
 from mua.export.surface import skinned_mesh
+from mua.export.usd import joint_paths
 from mua.kernels.dq_skinning import blend_vertices
 from mua.motion.read import read_motion
 from mua.player.surface import surface_mesh
@@ -96,6 +98,11 @@ def test_the_mesh_has_its_uvs_upward_and_colours(
     colors = np.array(mesh.GetDisplayColorAttr().Get())
     assert colors.shape == (len(mesh.GetPointsAttr().Get()), 3)
     assert np.ptp(colors) > 0.01
+
+
+def test_joints_whose_names_usd_takes_for_one_have_paths_of_their_own() -> None:
+    skeleton = upright(("hips", "left leg", "left.leg", "left leg"), (-1, 0, 0, 2), [[0, 1, 0]] * 4)
+    assert joint_paths(skeleton) == ["hips", "hips/left_leg", "hips/left_leg_", "hips/left_leg_/left_leg"]
 
 
 def test_the_detailed_geometry_has_points_and_colours_at_every_frame(

@@ -18,6 +18,7 @@ from PIL import Image
 from render_capture import parser, render_capture, run_renderer
 
 from mua import rotation
+from mua.atlas.uv import build_atlas
 from mua.baking.sources import load_clips
 from mua.capture import open_capture
 from mua.capture.tracks import read_tracks
@@ -48,7 +49,7 @@ def folder(order: Order, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_folder_is_a_capture_of_the_same_poses(order: Order, folder: Path) -> None:
     capture = open_capture(folder)
-    character = capture.character(uv="keep")
+    character = build_atlas(capture.surfaces, uv="keep", size=16)
     assert [(clip.frames, clip.held_out) for clip in capture.clips] == [(3, False), (2, True)]
     given, _ = load_clips(character, [Path(name) for name in (*order.motion, *order.held_out_motion)], mapping=None)
     for clip, whole in zip(capture.clips, given, strict=True):
@@ -60,7 +61,7 @@ def test_the_folder_is_a_capture_of_the_same_poses(order: Order, folder: Path) -
 
 def test_true_surfaces_are_those_of_the_poses(folder: Path) -> None:
     capture = open_capture(folder)
-    character = capture.character(uv="auto")
+    character = build_atlas(capture.surfaces, uv="keep", size=16)
     for clip in capture.clips:
         for frame, moved in enumerate(SkinnedSurface(character).frames(capture.motion(clip.name))):
             file = capture.place(str(capture.meshes), clip=clip.name, frame=frame)

@@ -6,7 +6,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
 
-from mua.atlas.detail import UvMode
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.capture.camera import CaptureCamera
@@ -106,9 +105,9 @@ class Capture:
         """The template's skinned surface as its file has it, in metres; read once."""
         return read_surfaces(self.template, size=FigureSize(height=self.template_height), leave_out=self.leave_out)
 
-    def character(self, *, uv: UvMode = "auto") -> Character:
+    def character(self) -> Character:
         """The template with one UV layout and one picture for all its materials; charts are cut where it has none."""
-        return build_atlas(self.surfaces, uv=uv, size=ATLAS)
+        return build_atlas(self.surfaces, uv="auto", size=ATLAS)
 
     def motion(self, clip: str) -> Clip:
         """The poses of a clip's frames on the template's skeleton, at the capture's rate: one for each frame.

@@ -24,8 +24,8 @@ def _averages(
         return values
     from scipy.sparse import csr_matrix  # not needed for whole pictures
 
-    first = np.minimum(np.floor(edges[:-1]).astype(int), len(values) - 1)
-    last = np.clip(np.ceil(edges[1:]).astype(int), first + 1, len(values))
+    first = np.floor(edges[:-1]).astype(int)
+    last = np.minimum(np.ceil(edges[1:]).astype(int), len(values))  # edges are rounded
     counts = last - first
     new = np.repeat(np.arange(len(counts)), counts)
     old = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + first[new]
