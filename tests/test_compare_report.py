@@ -7,7 +7,8 @@ from dataclasses import replace
 from rich.console import Console
 
 from mua.compare import entries, report
-from mua.compare.entries import Cost, Entry, Picture
+from mua.compare.cost import Cost
+from mua.compare.entries import Entry, Picture
 from mua.compare.metrics import Scores
 from mua.compare.scores import Result, Sample
 from mua.recording import WholeFrame

@@ -1,13 +1,16 @@
 """mua-eval of a capture: a teacher and avatars beside its pictures, by cameras and in clips that are held out."""
 
 import csv
+import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from captures import TEXELS, make_capture, motions
 from commands import Commands
+from compared import SETTINGS as QUICK
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
 from taught import FEW
@@ -16,9 +19,14 @@ import mua
 from mua.asset.write import write
 from mua.capture import open_capture
 from mua.compare import filmed, filmed_report
-from mua.compare.filmed import TRAINED, UNSEEN, Judged, Likeness, Shot, judge, likeness, shots
+from mua.compare.cost import Cost
+from mua.compare.filmed import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot, judge, likeness, shots
 from mua.decode import Splats, pose_splats
+from mua.errors import InputError
 from mua.pose.clip import Clip
+from mua.pose.resample import resample
+from mua.pose.skeleton import Skeleton
+from mua.student.settings import PRESETS as STUDENTS
 from mua.teachers.procedural import procedural_character
 from mua.teachers.still import StillTeacher
 from mua.teaching.settings import PRESETS
@@ -31,12 +39,27 @@ def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_capture(tmp_path_factory.mktemp("capture")).folder
 
 
+@pytest.fixture(scope="module")
+def teacher(capture: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A teacher of the capture, trained for a few steps."""
+    folder = tmp_path_factory.mktemp("teacher")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(PRESETS, "tiny", FEW)
+        mua.teach(capture, output=folder, texels=64)
+    return folder
+
+
 def test_held_out_cameras_see_every_tenth_frame_of_each_split(capture: Path) -> None:
     opened = open_capture(capture)
     assert shots(opened, None) == [Shot(TRAINED, "walk", 0, "above"), Shot(UNSEEN, "reach", 0, "above")]
     assert [shot.frame for shot in shots(opened, 2)] == [1, 3, 0, 1]
+
+
+def test_a_capture_without_held_out_cameras_is_refused(capture: Path) -> None:
+    opened = open_capture(capture)
     everyone = replace(opened, cameras=tuple(replace(camera, held_out=False) for camera in opened.cameras))
-    assert len(shots(everyone, None)) == 2 * len(opened.cameras)
+    with pytest.raises(InputError, match=r"capture\.json: cameras: none has held_out, expected one at least"):
+        shots(everyone, None)
 
 
 def test_what_drew_the_pictures_is_nearly_all_there(capture: Path) -> None:
@@ -47,7 +70,10 @@ def test_what_drew_the_pictures_is_nearly_all_there(capture: Path) -> None:
         return pose_splats(teacher.rig, shown.mesh, texture=shown.texture, pose=shown.pose)
 
     opened = open_capture(capture)
-    for one in judge(opened, shots(opened, 1), {"own": show}):
+    chosen = shots(opened, 1)
+    see = partial(opened.view, crop=True)
+    for one in judge(opened, chosen, [FilmedEntry("own", show)], see=see, kept=chosen[:1]):
+        assert list(one.pictures) == (["image", "own"] if one.shot == chosen[0] else [])
         assert one.scores["own"].psnr > MADE_SO
         assert one.scores["own"].ssim > 0.99
         assert one.scores["own"].flip < 0.02
@@ -60,30 +86,35 @@ def test_likeness_of_a_picture_that_is_off_by_a_tenth() -> None:
 
 
 def judged() -> list[Judged]:
-    picture = np.full((9, 7, 3), 0.5)
+    picture = np.full((9, 7, 3), 128, np.uint8)
     scores = {name: Likeness(db, 0.9, 0.1, np.nan) for name, db in (("a", 20.0), ("b", 30.0))}
     pictures = {"image": picture, "a": picture, "b": picture}
     return [Judged(Shot(TRAINED, "walk", frame, "cam"), pictures, scores) for frame in range(2)]
 
 
 def test_tables_have_a_row_for_each_entry_and_a_dash_for_what_is_not_there() -> None:
-    text = filmed_report.markdown(judged(), ["a", "b"], "Two pictures.")
-    assert "| a | 20.00 | 0.9000 | 0.1000 | - | - | - |" in text
+    entries = [FilmedEntry("a", nothing, Cost(2_500_000, 30_000_000)), FilmedEntry("b", nothing)]
+    text = filmed_report.markdown(judged(), entries, ["Two pictures."])
+    assert "- Two pictures." in text
+    assert "| a | 20.00 | 0.9000 | 0.1000 | - | - | - | 2.500 | 30.00 |" in text
+    assert "| b | 30.00 | 0.9000 | 0.1000 | - | - | - | - | - |" in text
     assert "LPIPS" not in text
     lines = list(csv.DictReader(filmed_report.as_csv(judged()).splitlines()))
     assert [line["entry"] for line in lines] == ["a", "b", "a", "b"]
-    assert filmed_report.contact_sheet(judged(), UNSEEN) is None
-    sheet = filmed_report.contact_sheet(judged(), TRAINED)
+    assert filmed_report.contact_sheet(judged(), UNSEEN, ["a", "b"], "b") is None
+    sheet = filmed_report.contact_sheet(judged(), TRAINED, ["a", "b"], "b")
     assert sheet is not None
     assert sheet.width == 4 * filmed_report.LEAST_WIDTH
 
 
+def nothing(clip: Clip, frame: int) -> Splats:
+    raise AssertionError("is not drawn")
+
+
 def test_the_command_compares_a_teacher_with_the_pictures(
-    capture: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+    capture: Path, teacher: Path, tmp_path: Path, command: Commands
 ) -> None:
-    monkeypatch.setitem(PRESETS, "tiny", FEW)
-    mua.teach(capture, output=tmp_path / "teacher", texels=64)
-    ended = command("eval", capture, "--teacher", tmp_path / "teacher", "-o", tmp_path / "evaluation", "--frames", "1")
+    ended = command("eval", capture, "--teacher", teacher, "-o", tmp_path / "evaluation", "--frames", "1")
     assert ended.status == 0, ended
     text = (tmp_path / "evaluation" / "results.md").read_text()
     assert f"| {filmed.BASELINE} |" in text
@@ -91,6 +122,36 @@ def test_the_command_compares_a_teacher_with_the_pictures(
     for name in ("training_poses.png", "clips_held_out.png"):
         with Image.open(tmp_path / "evaluation" / name) as sheet:
             assert sheet.height > 30
+    assert len(list((tmp_path / "evaluation" / "work" / "views").rglob("*.png"))) == 2
+    assert not (tmp_path / "evaluation" / "curve.png").exists()
+
+
+def test_the_command_trains_systems_at_several_sizes_and_once(
+    capture: Path, teacher: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(STUDENTS, "tiny", replace(QUICK, frames=3))
+    names, sizes = ("--system", "ours", "--system", "linear"), ("--scale", "1", "--scale", "0.5")
+    order = (capture, "--teacher", teacher, *names, *sizes, "--steps", "2", "--preset", "tiny", "--frames", "1")
+    output = tmp_path / "evaluation"
+    ended = command("eval", *order, "-o", output)
+    assert ended.status == 0, ended
+    told = json.loads((output / "results.json").read_text())
+    rows = {one["name"]: one for one in told["entries"]}
+    assert {"ours x0.5", "ours", "linear x0.5", "linear"} < set(rows)
+    (equal,) = (one for one in told["entries"] if one["system"] == "linear" and one["scale"] not in (0.5, 1))
+    assert equal["parameters"] <= rows["ours"]["parameters"]
+    assert equal["flops"] <= rows["ours"]["flops"]
+    assert {one["rival"] for one in told["standings"]} == {equal["name"]}
+    assert "learnt" not in rows["ours"]
+    assert "on 3 frames of the teacher at 64 texels" in (output / "results.md").read_text()
+    with Image.open(output / "curve.png") as plot:
+        assert np.asarray(plot).std() > 5
+    trained = {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")}
+    assert len(trained) == len([one for one in told["entries"] if one["system"]])
+    before = (output / "results.json").read_bytes()
+    assert command("eval", *order, "-o", output).status == 0
+    assert {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")} == trained
+    assert (output / "results.json").read_bytes() == before
 
 
 def test_an_avatar_on_another_skeleton_is_refused(capture: Path, tmp_path: Path, command: Commands) -> None:
@@ -101,11 +162,40 @@ def test_an_avatar_on_another_skeleton_is_refused(capture: Path, tmp_path: Path,
     )
 
 
+def moved(skeleton: Skeleton) -> Skeleton:
+    places = skeleton.bind_translations.copy()
+    places[1] += 0.25
+    return replace(skeleton, bind_translations=places)
+
+
+def test_a_teacher_of_another_template_is_refused(capture: Path, teacher: Path) -> None:
+    template = open_capture(capture).surfaces.skeleton
+    assert [one.name for one in filmed.teacher_entries(teacher, template)] == [filmed.BASELINE, filmed.TEACHER]
+    renamed = replace(template, names=tuple(f"{name}_" for name in template.names))
+    with pytest.raises(InputError, match=r"--teacher .*: its joints are not those of the capture's template"):
+        filmed.teacher_entries(teacher, renamed)
+    with pytest.raises(InputError, match=r"--teacher .*: its joints are up to 0\.25 m from those of the capture's"):
+        filmed.teacher_entries(teacher, moved(template))
+
+
+def test_an_avatar_shows_a_capture_at_another_rate_at_the_same_moment(tmp_path: Path) -> None:
+    avatar = synthetic_avatar()
+    write(tmp_path / "a.muaavatar", avatar, storage="f32")
+    entry = filmed.avatar_entry(tmp_path / "a.muaavatar", avatar.rig.skeleton)
+    clip = avatar.clips[0]
+    rate = avatar.encoding.rate
+    one = entry.show(resample(clip, rate), 3)
+    np.testing.assert_allclose(entry.show(resample(clip, 2 * rate), 6).centres, one.centres, atol=1e-5)
+    assert np.abs(entry.show(resample(clip, rate), 2).centres - one.centres).max() > 1e-3
+
+
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
         ((), "give a --teacher or avatar files"),
-        (("--system", "ours"), "--system ours: is trained on a recording"),
+        (("--system", "ours"), "--system ours: learns from a teacher; give its folder with --teacher"),
+        (("--system", "theirs"), "--system theirs: expected one of all, pca-only"),
+        (("--teacher", "x", "--scale", "2"), "--scale 2: is the size of a --system, and none is given"),
         (("--teacher", "absent"), "--teacher absent: there is no such directory"),
     ],
 )
@@ -117,3 +207,7 @@ def test_a_wrong_option_is_a_sentence(
 
 def test_a_recording_has_no_pictures_to_compare_a_teacher_with(written: Path, command: Commands) -> None:
     assert "compared with the pictures of a capture" in command("eval", written, "--teacher", "x").sentence
+
+
+def test_systems_of_a_recording_have_one_size(written: Path, command: Commands) -> None:
+    assert "--scale 2: is for systems that are compared with" in command("eval", written, "--scale", "2").sentence

@@ -1,6 +1,5 @@
 """A bake whose teacher learns, or has learnt, from the pictures of a capture."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -25,7 +24,7 @@ from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.processes import ALONE
 from mua.rig.character import Character
-from mua.teaching.folder import FILE, WEIGHTS, load_teacher
+from mua.teaching.folder import load_teacher, teacher_bytes
 from mua.teaching.trained import TrainedTeacher
 
 
@@ -43,7 +42,7 @@ def bake_taught(order: Order, device: torch.device, listener: Listener) -> Baked
     planned = plan(training, held, frames=order.settings.frames)
     clips = (*training, *held)
     choose(clips, order.clips)  # before hours of work
-    key = recording_key(_parts(folder), planned)
+    key = recording_key(teacher_bytes(folder), planned)
     recording = recorded(partial(TrainedTeacher, folder), key, order, planned, listener)
     release_memory()
     distillation = Distillation(
@@ -81,9 +80,3 @@ def _motion(order: Order, folder: Path, listener: Listener) -> tuple[str, list[C
     for sentence in notes:
         listener.note(sentence)
     return description.name, *split(clips, order.hold_out)
-
-
-def _parts(folder: Path) -> Iterator[bytes]:
-    """What the recorded frames depend on, besides the motion."""
-    for name in (FILE, WEIGHTS):
-        yield (folder / name).read_bytes()

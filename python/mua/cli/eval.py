@@ -25,6 +25,16 @@ OPTIONS = {
         list[str],
         choice((ALL, *SYSTEM_NAMES), "--system", help="System to train and compare; may be repeated", several=True),
     ],
+    "scale": Annotated[
+        list[float],
+        typer.Option(
+            min=0.01,
+            max=100.0,
+            help="Size of the systems relative to the preset's, where RECORDING is a capture; may be repeated, for a "
+            "curve of quality against cost.",
+            show_default="1",
+        ),
+    ],
     "seconds": Annotated[float, typer.Option(min=0.0, help="Training time of each system, in seconds.")],
     "steps": Annotated[
         int | None,
@@ -55,8 +65,9 @@ OPTIONS = {
 def evaluate(**options: Any) -> None:
     """Compare avatar files and other systems with the teacher of RECORDING, in tables, plots and contact sheets.
 
-    Where RECORDING is the folder of a capture, a --teacher and avatar files are compared with its pictures instead, by
-    the cameras and in the clips that are held out.
+    Where RECORDING is the folder of a capture, a --teacher, avatar files and systems trained on that teacher are
+    compared with its pictures instead, by the cameras and in the clips that are held out. Every system is also trained
+    at the largest size that costs at most as much as ours.
 
     Trained systems are kept in the directory 'work' of the output; the same command does not train them again.
     """
@@ -66,16 +77,18 @@ def evaluate(**options: Any) -> None:
         _check_filmed(order)
     else:
         require_recording(order.recording)
+        if order.scale:
+            raise InputError(f"--scale {order.scale[0]:g}: is for systems that are compared with pictures of a capture")
         if order.teacher is not None:
             raise InputError(f"--teacher {order.teacher}: is compared with the pictures of a capture, not a recording")
     for file in (*order.avatars, *(() if order.lpips_weights is None else (order.lpips_weights,))):
         require_file(file)
+    preset(order.preset)
     if filmed:
         from mua.cli.filmed_evaluation import compare as compare_filmed
 
         compare_filmed(order)
         return
-    preset(order.preset)
 
     from mua.cli.evaluation import compare  # after the options are checked, because it takes seconds to load
 
@@ -84,8 +97,13 @@ def evaluate(**options: Any) -> None:
 
 def _check_filmed(order: EvaluationOrder) -> None:
     """Raises InputError for what cannot be compared with pictures."""
-    if order.system:
-        raise InputError(f"--system {order.system[0]}: is trained on a recording; leave the option out for a capture")
+    for name in order.system:
+        if name not in (ALL, *SYSTEM_NAMES):
+            raise InputError(f"--system {name}: expected one of {', '.join((ALL, *SYSTEM_NAMES))}")
+    if order.system and order.teacher is None:
+        raise InputError(f"--system {order.system[0]}: learns from a teacher; give its folder with --teacher")
+    if order.scale and not order.system:
+        raise InputError(f"--scale {order.scale[0]:g}: is the size of a --system, and none is given")
     if order.teacher is None and not order.avatars:
         raise InputError("give a --teacher or avatar files to compare with the pictures of the capture")
     if order.teacher is not None:

@@ -6,6 +6,7 @@ geometry and appearance at a detail level. With these the published FLOPs come o
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
@@ -68,13 +69,14 @@ class Maps(nn.Module):
 class Convolutions(nn.Module):
     """Three convolutions and a 1 x 1 decoder, which starts at zero: at the mean of the training frames."""
 
-    def __init__(self, outputs: int) -> None:
+    def __init__(self, outputs: int, sizes: Sizes) -> None:
         super().__init__()
+        widths = [sizes.times(width, 1 / 2) for width in WIDTHS]
         layers: list[nn.Module] = []
-        for fan_in, fan_out in pairwise((MAP_CHANNELS, *WIDTHS)):
+        for fan_in, fan_out in pairwise((MAP_CHANNELS, *widths)):
             layers += [nn.Conv2d(fan_in, fan_out, KERNEL, padding=KERNEL // 2), nn.ReLU()]
         self.features = nn.Sequential(*layers)
-        self.decode = nn.Conv2d(WIDTHS[-1], outputs, 1)
+        self.decode = nn.Conv2d(widths[-1], outputs, 1)
 
     def forward(self, maps: Tensor) -> Tensor:
         decoded: Tensor = self.decode(self.features(maps))
@@ -89,17 +91,18 @@ class Lines(nn.Module):
 
     encoding: Tensor
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, sizes: Sizes) -> None:
         super().__init__()
         self.register_buffer("encoding", texture_encoding(size))  # [4 octaves, n, n]
-        features = PROJECTED + len(self.encoding)
-        self.project = nn.Conv2d(3, PROJECTED, 1)
+        projected, width = sizes.times(PROJECTED, 1 / 2), sizes.times(LINE_WIDTH, 1 / 2)
+        features = projected + len(self.encoding)
+        self.project = nn.Conv2d(3, projected, 1)
         self.pool = nn.Parameter(torch.zeros(2, size, size))  # [axis, row, column], softmax along what is pooled
-        widths = (features, *[LINE_WIDTH] * LINE_LAYERS)
+        widths = (features, *[width] * LINE_LAYERS)
         self.along = nn.ModuleList(
             nn.Sequential(*(layer for a, b in pairwise(widths) for layer in _line(a, b))) for _ in range(2)
         )
-        self.decode = nn.Linear(LINE_WIDTH, 3 * CHANNELS)
+        self.decode = nn.Linear(width, 3 * CHANNELS)
 
     def forward(self, maps: Tensor) -> Tensor:
         """[F, 3 x 23, n, n]; the decoder's weights meet the rows before these meet the columns, which is cheaper."""
@@ -112,7 +115,7 @@ class Lines(nn.Module):
 
     def flops(self, size: int) -> int:
         """Projection and two poolings on the map; two lines; the outer product decoded as our details are."""
-        features = PROJECTED + len(self.encoding)
+        features = self.project.out_channels + len(self.encoding)
         on_map = size**2 * (self.project.weight.numel() + 2 * features)
         on_lines = size * sum(p.numel() for p in self.along.parameters() if p.dim() == 3)
         return 2 * (on_map + on_lines + self.decode.weight.numel() * (size + size**2))
@@ -206,25 +209,31 @@ class BandNetwork(Network):
 
 def ours(sizes: Sizes) -> BandNetwork:
     """Our student."""
-    return BandNetwork(sizes, ranks=(sizes.settings.geometry, sizes.settings.appearance))
+    return BandNetwork(sizes, ranks=own_ranks(sizes))
 
 
 def conv_conv(sizes: Sizes) -> Network:
     """Convolutions for every subband (paper, Ablations, 2D Conv (All Levels))."""
-    return BandNetwork(sizes, ll=Convolutions(CHANNELS), details=[_detail_convolutions(), _detail_convolutions()])
+    details = [_detail_convolutions(sizes) for _ in range(2)]
+    return BandNetwork(sizes, ll=Convolutions(CHANNELS, sizes), details=details)
 
 
 def conv_blendshapes(sizes: Sizes) -> Network:
     """Convolutions for LL, our details (paper, Ablations, 2D Conv (LL) + 1D Factorized Blendshapes)."""
-    ranks = [Ranks(0, own.d3, own.d2) for own in (sizes.settings.geometry, sizes.settings.appearance)]
-    return BandNetwork(sizes, ranks=ranks, ll=Convolutions(CHANNELS))
+    ranks = [replace(own, ll=0) for own in own_ranks(sizes)]
+    return BandNetwork(sizes, ranks=ranks, ll=Convolutions(CHANNELS, sizes))
 
 
 def blendshapes_conv1d(sizes: Sizes) -> Network:
     """Our LL, details by 1D convolutions (paper, Ablations, 2D Blendshapes (LL) + 1D Conv)."""
-    ranks = [Ranks(own.ll, 0, 0) for own in (sizes.settings.geometry, sizes.settings.appearance)]
+    ranks = [replace(own, d3=0, d2=0) for own in own_ranks(sizes)]
     side = sizes.settings.texels // COARSE_TEXELS
-    return BandNetwork(sizes, ranks=ranks, details=[[Lines(side << level)] for level in range(2)])
+    return BandNetwork(sizes, ranks=ranks, details=[[Lines(side << level, sizes)] for level in range(2)])
+
+
+def own_ranks(sizes: Sizes) -> list[Ranks]:
+    """Those of our student's geometry and appearance."""
+    return [sizes.ranks(own) for own in (sizes.settings.geometry, sizes.settings.appearance)]
 
 
 def join(parts: Iterable[Bands]) -> Bands:
@@ -278,8 +287,8 @@ def _line(fan_in: int, fan_out: int) -> list[nn.Module]:
     return [nn.Conv1d(fan_in, fan_out, KERNEL, padding=KERNEL // 2), nn.ReLU()]
 
 
-def _detail_convolutions() -> list[Convolutions]:
-    return [Convolutions(3 * (part.stop - part.start)) for part in PARTS.values()]
+def _detail_convolutions(sizes: Sizes) -> list[Convolutions]:
+    return [Convolutions(3 * (part.stop - part.start), sizes) for part in PARTS.values()]
 
 
 def _bands_from(frames: TrainingFrames, first: int, channels: slice, rows: Tensor) -> Bands:

@@ -8,16 +8,14 @@ import numpy as np
 import torch
 
 from mua.arrays import Array
-from mua.asset.count import flops, parameters
-from mua.asset.read import load
-from mua.asset.summary import storage_of
 from mua.bench.measure import measure
 from mua.bench.report import total_milliseconds
 from mua.checkpoint import Checkpoints
+from mua.compare.cost import Cost, file_cost, learnt_cost
 from mua.compare.motion import motion_of
 from mua.compare.network import NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
-from mua.compare.systems import SYSTEMS
+from mua.compare.systems import SYSTEMS, train_or_restore
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.inverse_dwt import unpack_channels
@@ -27,7 +25,6 @@ from mua.recording import Recording, WholeFrame
 from mua.rig.rig import Rig
 from mua.student.optimise import Report
 
-FLOAT = 4  # bytes of a system's number; avatar files count as stored
 FPS_FRAMES = 5  # timed of each file
 MEAN = "mean texture"
 PLAYED = ", own mesh"
@@ -39,17 +36,6 @@ class Picture:
 
     texture: Array  # [N, 23] raw channels
     mesh: Array | None = None  # [V, 3] canonical vertices, metres; None: the teacher's
-
-
-@dataclass(frozen=True)
-class Cost:
-    """The paper's right-hand columns; None where they do not apply."""
-
-    parameters: int | None = None
-    flops: int | None = None  # of a frame; posing and drawing excluded
-    bytes: int | None = None  # of the file, or 4 a parameter
-    fps: float | None = None  # of the player on this device; decoding, posing and drawing included
-    storage: str = ""  # f32, f16, i8 or packed, of a file
 
 
 @dataclass(frozen=True)
@@ -66,8 +52,7 @@ class Entry:
 def mean_entry(recording: Recording) -> Entry:
     """The mean texture of the training frames: what a system must beat."""
     texture = recording.mean_texture().astype(np.float32)
-    cost = Cost(parameters=texture.size, flops=0, bytes=FLOAT * texture.size)
-    return Entry(MEAN, lambda _: Picture(texture), cost)
+    return Entry(MEAN, lambda _: Picture(texture), learnt_cost(texture.size, flops=0))
 
 
 def avatar_entries(device: Device, path: Path, rig: Rig, *, size: int, played: bool) -> list[Entry]:
@@ -79,13 +64,7 @@ def avatar_entries(device: Device, path: Path, rig: Rig, *, size: int, played: b
     _check_rig(path, buffers.avatar.rig, rig)
     decoder = _Decoder(device, buffers)
     avatar = buffers.avatar
-    cost = Cost(
-        parameters=sum(parameters(avatar).values()),
-        flops=sum(flops(avatar).values()),
-        bytes=path.stat().st_size,
-        fps=frames_per_second(device, path, size=size),
-        storage=storage_of(load(path)),
-    )
+    cost = file_cost(path, avatar, fps=frames_per_second(device, path, size=size))
     entries = [Entry(path.stem, lambda frame: Picture(decoder(frame).texture), cost)]
     return [*entries, Entry(path.stem + PLAYED, decoder, cost, own_mesh=True)] if played else entries
 
@@ -102,15 +81,10 @@ def system_entry(
     """Train the system called `name`, or take up what an earlier run made of it; one that fails becomes a sentence."""
     try:
         system = SYSTEMS[name](frames.sizes)
-        kept = checkpoints.load(f"system {name}")
-        if kept is not None:
-            system.restore(kept, frames)
-        else:
-            system.fit(frames, budget, torch.Generator().manual_seed(frames.sizes.settings.seed), report)
-            checkpoints.save(f"system {name}", system.state())
+        train_or_restore(system, frames, stage=f"system {name}", budget=budget, checkpoints=checkpoints, report=report)
     except Exception as error:  # whatever one system stumbles over, the others go on
         return Entry(name, None, failure=sentence(error))
-    cost = Cost(parameters=system.parameters, flops=system.flops, bytes=FLOAT * system.parameters)
+    cost = learnt_cost(system.parameters, system.flops)
     return Entry(name, lambda frame: Picture(system_texture(system, recording, frames, frame)), cost)
 
 

@@ -1,11 +1,11 @@
-"""How near a teacher and avatar files are to the pictures of a capture, by cameras that nobody learnt from.
+"""How near a teacher, avatars and systems are to the pictures of a capture, by cameras that nobody learnt from.
 
 Over white and inside the box around the mask; PSNR over all pixels and colours, SSIM with the usual window.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import flip_evaluator
@@ -17,10 +17,15 @@ from mua.arrays import Array
 from mua.asset.read import read
 from mua.camera import Camera
 from mua.capture import Capture
+from mua.capture.view import View
+from mua.compare.cost import Cost, file_cost
 from mua.compare.metrics import LPIPS_UNIT
-from mua.decode import Splats, decode_clip_frame, pose_splats
+from mua.decode import Splats, decode, pose_splats
 from mua.errors import InputError
 from mua.pose.clip import Clip
+from mua.pose.resample import sample
+from mua.pose.skeleton import Skeleton
+from mua.rendering import to_bytes
 from mua.splatting.likeness import structural_similarity
 from mua.splatting.perceptual import Lpips
 from mua.splatting.projection import Eye, TorchSplats
@@ -34,6 +39,19 @@ SPLITS = (TRAINED, UNSEEN)
 IMAGE, BASELINE, TEACHER = "image", "mean texture", "teacher"
 
 Show = Callable[[Clip, int], Splats]  # of a frame of a clip
+See = Callable[[str, int, str], View]  # what a camera saw of a frame of a clip, in the box around the mask
+NEAR = 1e-4  # of a skeleton's size: joints that are so near in the bind pose are in the same place
+
+
+@dataclass(frozen=True)
+class FilmedEntry:
+    """What is compared with the pictures: a teacher, an avatar file or a trained system."""
+
+    name: str
+    show: Show
+    cost: Cost = field(default_factory=Cost)
+    system: str = ""  # of the paper's tables; empty: none of these
+    scale: float = 1.0  # of a system's size
 
 
 @dataclass(frozen=True)
@@ -58,16 +76,23 @@ class Likeness:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """One view: the capture's picture, then every entry's by name, and what these are worth."""
+    """One view: the capture's picture, then every entry's by name where pictures are kept, and what these are worth."""
 
     shot: Shot
-    pictures: dict[str, Array]  # [H, W, 3] in 0..1
+    pictures: dict[str, Array]  # [H, W, 3] uint8
     scores: dict[str, Likeness]
 
 
 def shots(capture: Capture, most: int | None) -> list[Shot]:
-    """Every tenth frame of each clip, or `most` of each split, evenly; by the cameras held out, or all if none is."""
-    cameras = [camera.name for camera in capture.cameras if camera.held_out] or [one.name for one in capture.cameras]
+    """Every tenth frame of each clip, or `most` of each split, evenly; by the cameras that are held out.
+
+    Errors: InputError where none is.
+    """
+    cameras = [camera.name for camera in capture.cameras if camera.held_out]
+    if not cameras:
+        raise InputError(
+            f"{capture.file}: cameras: none has held_out, expected one at least that no teacher learns from"
+        )
     chosen = []
     for split in SPLITS:
         clips = [clip for clip in capture.clips if clip.held_out == (split == UNSEEN)]
@@ -81,25 +106,51 @@ def shots(capture: Capture, most: int | None) -> list[Shot]:
     return chosen
 
 
-def teacher_entries(folder: Path) -> dict[str, Show]:
-    """The teacher of a folder, and its mean texture on the skinned template: what it must beat."""
-    return {BASELINE: _shown(TrainedTeacher(folder, moving=False)), TEACHER: _shown(TrainedTeacher(folder))}
+def teacher_entries(folder: Path, template: Skeleton) -> list[FilmedEntry]:
+    """The teacher of a folder, and its mean texture on the skinned template: what it must beat.
+
+    Errors: InputError where it was trained on another template than the capture's.
+    """
+    teacher = TrainedTeacher(folder)
+    require_skeleton(f"--teacher {folder}", teacher.rig.skeleton, template)
+    still = TrainedTeacher(folder, moving=False)
+    return [FilmedEntry(BASELINE, _shown(still)), FilmedEntry(TEACHER, _shown(teacher))]
 
 
-def avatar_entry(path: Path, joints: Sequence[str]) -> Show:
+def avatar_entry(path: Path, template: Skeleton) -> FilmedEntry:
     """An avatar file; raises InputError where its skeleton is not that of the capture's template."""
     avatar = read(path)
-    if list(avatar.rig.skeleton.names) != list(joints):
-        raise InputError(f"{path}: its joints are not those of the capture's template")
-    return lambda clip, frame: decode_clip_frame(avatar, clip, frame=frame)
+    require_skeleton(str(path), avatar.rig.skeleton, template)
+    encoding = avatar.encoding
+
+    def show(clip: Clip, frame: int) -> Splats:
+        ages = np.arange(encoding.window)
+        if clip.rate == encoding.rate:
+            poses = clip.cut(np.maximum(frame - ages, 0))
+        else:
+            poses = sample(clip, np.maximum(frame * encoding.rate / clip.rate - ages, 0), rate=encoding.rate)
+        return decode(avatar, poses.rotations, translations=poses.translations)
+
+    return FilmedEntry(path.stem, show, file_cost(path, avatar))
+
+
+def require_skeleton(name: str, own: Skeleton, template: Skeleton) -> None:
+    """Raises InputError where joints are not the template's, by name and by place."""
+    if own.names != template.names:
+        raise InputError(f"{name}: its joints are not those of the capture's template")
+    places = [one.world(one.bind_rotations, one.bind_translations)[1] for one in (own, template)]
+    apart = float(np.abs(places[0] - places[1]).max())
+    if apart > NEAR * template.size:
+        raise InputError(f"{name}: its joints are up to {apart:.3g} m from those of the capture's template")
 
 
 def judge(
     capture: Capture,
     chosen: Sequence[Shot],
-    entries: dict[str, Show],
+    entries: Sequence[FilmedEntry],
     *,
-    rows: int | None = None,  # of a whole picture; None: as filmed
+    see: See,
+    kept: Collection[Shot] = (),  # those whose pictures are kept
     lpips: Lpips | None = None,
 ) -> Iterator[Judged]:
     """Each view in turn; views of one frame follow each other, so that every entry decodes a frame once."""
@@ -109,12 +160,13 @@ def judge(
     for shot in chosen:
         if (shot.clip, shot.frame) != last:
             last = shot.clip, shot.frame
-            decoded = {name: show(motions[shot.clip], shot.frame) for name, show in entries.items()}
-        view = capture.view(shot.clip, shot.frame, shot.camera, crop=True, rows=rows)
+            decoded = {one.name: one.show(motions[shot.clip], shot.frame) for one in entries}
+        view = see(shot.clip, shot.frame, shot.camera)
         truth = view.mask[..., None] * view.image + (1 - view.mask[..., None])
         pictures = {name: drawn(splats, view.camera) for name, splats in decoded.items()}
         scores = {name: likeness(picture, truth, lpips=lpips) for name, picture in pictures.items()}
-        yield Judged(shot, {IMAGE: truth, **pictures}, scores)
+        shown = {IMAGE: truth, **pictures} if shot in kept else {}
+        yield Judged(shot, {name: to_bytes(picture) for name, picture in shown.items()}, scores)
 
 
 @torch.no_grad()

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -11,39 +12,47 @@ from PIL import Image
 from rich.table import Table
 
 from mua.arrays import Array
-from mua.compare.filmed import IMAGE, SPLITS, Judged, Likeness, mean
+from mua.compare.filmed import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Shot, mean
+from mua.compare.order import OURS
+from mua.compare.standing import Standing
 from mua.fidelity.strips import GAIN, caption, difference
 from mua.rendering import to_bytes
 
 DIGITS = {"psnr": 2, "ssim": 4, "flip": 4, "lpips": 2}
 HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "flip": "FLIP", "lpips": "LPIPS"}
+COSTS = ("M parameters", "MFLOP")
+NOTHING = "-"
 LEAST_WIDTH = 190  # pixels of a picture under its caption
 SHEET_ROWS = 6
 
 
-def rows(judged: Sequence[Judged], names: Sequence[str]) -> list[list[str]]:
-    """A row for each entry: its name, then PSNR, SSIM, FLIP and, if measured, LPIPS of each split."""
-    return [[name, *(cell for split in SPLITS for cell in _cells(mean(judged, name, split), judged))] for name in names]
+def rows(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> list[list[str]]:
+    """A row for each entry: its name, then PSNR, SSIM, FLIP and, if measured, LPIPS of each split, then its cost."""
+    return [
+        [one.name, *(cell for split in SPLITS for cell in _cells(mean(judged, one.name, split), judged)), *_costs(one)]
+        for one in entries
+    ]
 
 
 def headings(judged: Sequence[Judged]) -> list[str]:
     """What stands over the columns."""
-    return ["", *(f"{HEADINGS[metric]}, {split}" for split in SPLITS for metric in _metrics(judged))]
+    return ["", *(f"{HEADINGS[metric]}, {split}" for split in SPLITS for metric in _metrics(judged)), *COSTS]
 
 
-def table(judged: Sequence[Judged], names: Sequence[str]) -> Table:
+def table(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> Table:
     """For a terminal."""
     made = Table(*headings(judged))
-    for row in rows(judged, names):
+    for row in rows(judged, entries):
         made.add_row(*row)
     return made
 
 
-def markdown(judged: Sequence[Judged], names: Sequence[str], about: str) -> str:
-    """The table under a sentence."""
+def markdown(judged: Sequence[Judged], entries: Sequence[FilmedEntry], about: Sequence[str]) -> str:
+    """The table under what is said of it."""
     heads = headings(judged)
-    lines = [heads, ["---"] * len(heads), *rows(judged, names)]
-    return f"{about}\n\n" + "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+    lines = [heads, ["---"] * len(heads), *rows(judged, entries)]
+    said = "\n".join(f"- {sentence}" for sentence in about)
+    return f"{said}\n\n" + "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
 
 
 def as_csv(judged: Sequence[Judged]) -> str:
@@ -57,26 +66,66 @@ def as_csv(judged: Sequence[Judged]) -> str:
     return text.getvalue()
 
 
-def contact_sheet(judged: Sequence[Judged], split: str) -> Image.Image | None:
-    """Image, every entry and how the last differs from the image, for some views of a split; None where it has none."""
-    own = [one for one in judged if one.shot.split == split]
-    if not own:
+def as_json(
+    judged: Sequence[Judged], entries: Sequence[FilmedEntry], about: Sequence[str], found: Sequence[Standing]
+) -> str:
+    """Costs and means of every entry, the points of the curve, and how ours stands; null where there is no number."""
+    told = [
+        {
+            "name": one.name,
+            "system": one.system or None,
+            "scale": one.scale if one.system else None,
+            **asdict(one.cost),
+            "mean": {split: _finite(mean(judged, one.name, split)) for split in SPLITS},
+        }
+        for one in entries
+    ]
+    whole = {"about": list(about), "entries": told, "standings": [asdict(one) for one in found]}
+    return json.dumps(whole, indent=1, allow_nan=False) + "\n"
+
+
+def sheet_shots(chosen: Sequence[Shot]) -> list[Shot]:
+    """The views that contact sheets show: some of each split, evenly."""
+    shown = []
+    for split in SPLITS:
+        own = [shot for shot in chosen if shot.split == split]
+        places = np.unique(np.linspace(0, len(own) - 1, min(SHEET_ROWS, len(own))).astype(int))
+        shown += [own[place] for place in places]
+    return shown
+
+
+def student_of(entries: Sequence[FilmedEntry]) -> FilmedEntry:
+    """Whose difference from the image is shown: ours, or the last avatar, or what comes last."""
+    ours = [one for one in entries if one.system == OURS and one.scale == 1]
+    return (ours or [one for one in entries if not one.system] or list(entries))[-1]
+
+
+def sheet_names(entries: Sequence[FilmedEntry], rival: str | None) -> list[str]:
+    """Whose pictures stand beside the image: all that is no system, ours, and the rival."""
+    student = student_of(entries).name
+    return [one.name for one in entries if not one.system or one.name in (student, rival)]
+
+
+def contact_sheet(judged: Sequence[Judged], split: str, names: Sequence[str], student: str) -> Image.Image | None:
+    """Image, entries and how the student differs from the image, in the views of a split whose pictures are kept."""
+    shown = [one for one in judged if one.shot.split == split and one.pictures]
+    if not shown:
         return None
-    chosen = [own[i] for i in np.unique(np.linspace(0, len(own) - 1, min(SHEET_ROWS, len(own))).astype(int))]
-    width = max(LEAST_WIDTH, *(one.pictures[IMAGE].shape[1] for one in chosen))
-    return Image.fromarray(np.vstack([_strip(one, width) for one in chosen]))
+    width = max(LEAST_WIDTH, *(one.pictures[IMAGE].shape[1] for one in shown))
+    return Image.fromarray(np.vstack([_strip(one, width, names, student) for one in shown]))
 
 
-def _strip(one: Judged, width: int) -> Array:
-    last = list(one.pictures.values())[-1]
-    shown = [*one.pictures.values(), difference(last, one.pictures[IMAGE])]
-    titles = [f"{one.shot.clip} {one.shot.frame} {one.shot.camera}", *list(one.pictures)[1:], f"difference x{GAIN}"]
-    return np.vstack([caption(titles, width), np.hstack([to_bytes(_centred(picture, width)) for picture in shown])])
+def _strip(one: Judged, width: int, names: Sequence[str], student: str) -> Array:
+    image = one.pictures[IMAGE]
+    differs = to_bytes(difference(one.pictures[student] / 255, image / 255))
+    shown = [image, *(one.pictures[name] for name in names), differs]
+    titles = [f"{one.shot.clip} {one.shot.frame} {one.shot.camera}", *names, f"{student}, difference x{GAIN}"]
+    return np.vstack([caption(titles, width), np.hstack([_centred(picture, width) for picture in shown])])
 
 
 def _centred(picture: Array, width: int) -> Array:
     left = (width - picture.shape[1]) // 2
-    return np.pad(picture, ((0, 0), (left, width - picture.shape[1] - left), (0, 0)), constant_values=1)
+    return np.pad(picture, ((0, 0), (left, width - picture.shape[1] - left), (0, 0)), constant_values=255)
 
 
 def _metrics(judged: Sequence[Judged]) -> list[str]:
@@ -85,4 +134,20 @@ def _metrics(judged: Sequence[Judged]) -> list[str]:
 
 
 def _cells(scores: Likeness | None, judged: Sequence[Judged]) -> list[str]:
-    return ["-" if scores is None else f"{getattr(scores, metric):.{DIGITS[metric]}f}" for metric in _metrics(judged)]
+    return [
+        NOTHING if scores is None else f"{getattr(scores, metric):.{DIGITS[metric]}f}" for metric in _metrics(judged)
+    ]
+
+
+def _costs(entry: FilmedEntry) -> list[str]:
+    cost = entry.cost
+    return [
+        NOTHING if cost.parameters is None else f"{cost.parameters / 1e6:.3f}",
+        NOTHING if cost.flops is None else f"{cost.flops / 1e6:.2f}",
+    ]
+
+
+def _finite(scores: Likeness | None) -> dict[str, float | None] | None:
+    if scores is None:
+        return None
+    return {name: value if math.isfinite(value) else None for name, value in asdict(scores).items()}

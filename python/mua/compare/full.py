@@ -59,7 +59,7 @@ class Blendshapes(FullNetwork):
 
     def __init__(self, sizes: Sizes, parts: tuple[slice, ...]) -> None:
         super().__init__(sizes)
-        self.bases = tuple(Basis(part, sizes.settings.components, sizes=sizes) for part in parts)
+        self.bases = tuple(Basis(part, sizes.times(sizes.settings.components), sizes=sizes) for part in parts)
         self.registered = nn.ModuleList(self.bases)
 
     def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
@@ -127,7 +127,7 @@ class SingleLevel(FullNetwork):
     def __init__(self, sizes: Sizes) -> None:
         super().__init__(sizes)
         settings = sizes.settings
-        ranks = (2 * settings.geometry.ll, 2 * settings.appearance.ll)
+        ranks = (sizes.times(2 * settings.geometry.ll), sizes.times(2 * settings.appearance.ll))
         self.parts = tuple(Separable(part, rank, sizes=sizes) for part, rank in zip(PARTS, ranks, strict=True))
         self.registered = nn.ModuleList(self.parts)
 
@@ -227,8 +227,8 @@ class LinearMap(FullNetwork):
 
     def __init__(self, sizes: Sizes) -> None:
         super().__init__(sizes)
-        side = max(self.size // CELL, 1)
-        rank = max(sizes.settings.components // 2, 1)
+        side = min(sizes.times(self.size // CELL, 1 / 4), self.size)  # its square and the rank share the scale
+        rank = sizes.times(sizes.settings.components // 2, 1 / 2)
         row, column = self.texels // self.size, self.texels % self.size
         self.register_buffer("cells", row * side // self.size * side + column * side // self.size)
         self.code = nn.Linear(self.inputs, rank)

@@ -104,7 +104,7 @@ class NetworkSystem:
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
         """Train a new network; the closed-form start, where the system has one, counts towards the seconds."""
         started = budget.clock()
-        network = self._build(frames.sizes)
+        network = self._build(self._sizes)
         network.attach(frames, frames.device)
 
         def told(progress: Any) -> None:

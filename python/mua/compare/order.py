@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-ALL = "all"
+ALL, OURS = "all", "ours"
 SYSTEM_NAMES = (
     "pca-only",
     "single-level",
@@ -13,7 +13,7 @@ SYSTEM_NAMES = (
     "blendshapes+1d-conv",
     "full-blendshapes",
     "linear",
-    "ours",
+    OURS,
 )
 
 
@@ -25,6 +25,7 @@ class EvaluationOrder:
     avatars: Sequence[Path] = ()
     teacher: Path | None = None  # folder that mua-teach wrote, where the recording is a capture
     system: Sequence[str] = ()  # those of the paper's tables, or all
+    scale: Sequence[float] = ()  # of the systems, where the recording is a capture; none: that of the preset alone
     seconds: float = 60.0  # of training of each system, unless there are steps
     steps: int | None = None
     preset: str = "preview"  # whose sizes the systems have

@@ -16,7 +16,7 @@ from mua.pose.encoding import PoseEncoding
 from mua.rig.rig import Rig
 from mua.student.local import Parts
 from mua.student.model import Coarse, Student, lowpass_texels
-from mua.student.settings import Settings
+from mua.student.settings import Ranks, Settings
 from mua.wavelets import Bands
 
 ALL = slice(0, CHANNELS)
@@ -31,6 +31,15 @@ class Sizes:
     vertices: int
     texels: Tensor  # [N] the valid texels as row * size + col
     wavelet: str
+    scale: float = 1.0  # of what a texture is made of: ranks, components, cells and widths of convolutions
+
+    def times(self, count: float, power: float = 1.0) -> int:
+        """So many at the scale, at least one; what parameters grow with the square of takes half the power."""
+        return max(round(count * self.scale**power), 1)
+
+    def ranks(self, own: Ranks) -> Ranks:
+        """Ranks at the scale."""
+        return Ranks(self.times(own.ll), self.times(own.d3), self.times(own.d2))
 
 
 @dataclass(frozen=True)

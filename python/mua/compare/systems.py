@@ -3,10 +3,14 @@
 from collections.abc import Callable
 from functools import partial
 
+import torch
+
+from mua.checkpoint import Checkpoints
 from mua.compare.bands import blendshapes_conv1d, conv_blendshapes, conv_conv, ours
 from mua.compare.full import LinearMap, SingleLevel, full_blendshapes, pca_only
 from mua.compare.network import Network, NetworkSystem
-from mua.compare.system import Sizes
+from mua.compare.system import Budget, Sizes, TrainingFrames
+from mua.student.optimise import Report
 
 NETWORKS: dict[str, Callable[[Sizes], Network]] = {
     "pca-only": pca_only,
@@ -20,3 +24,21 @@ NETWORKS: dict[str, Callable[[Sizes], Network]] = {
 }
 
 SYSTEMS = {name: partial(NetworkSystem, name, build=build) for name, build in NETWORKS.items()}
+
+
+def train_or_restore(
+    system: NetworkSystem,
+    frames: TrainingFrames,
+    *,
+    stage: str,  # under which it is kept
+    budget: Budget,
+    checkpoints: Checkpoints,  # of this recording, these settings and this budget
+    report: Report,
+) -> None:
+    """Train a system, or take up what an earlier run made of it."""
+    kept = checkpoints.load(stage)
+    if kept is not None:
+        system.restore(kept, frames)
+        return
+    system.fit(frames, budget, torch.Generator().manual_seed(frames.sizes.settings.seed), report)
+    checkpoints.save(stage, system.state())

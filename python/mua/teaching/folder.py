@@ -2,7 +2,7 @@
 
 import json
 import pickle
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -52,6 +52,12 @@ def load_teacher(folder: Path) -> tuple[TeacherModel, Description]:
     except (OSError, RuntimeError, EOFError, KeyError, TypeError, pickle.UnpicklingError) as error:
         raise InputError(f"{folder / WEIGHTS}: does not hold the weights that {FILE} describes") from error
     return model.requires_grad_(False).eval(), description
+
+
+def teacher_bytes(folder: Path) -> Iterator[bytes]:
+    """What a teacher's frames depend on, besides the motion."""
+    for name in (FILE, WEIGHTS):
+        yield (folder / name).read_bytes()
 
 
 def _described(file: Path) -> Description:
