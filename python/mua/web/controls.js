@@ -1,5 +1,6 @@
 // The bar, the panel and the sentences of an element: what they ask of it, and what they show of it.
 
+import { levelNamed } from "./attributes.js";
 import { SHOWN } from "./keys.js";
 import { ICONS, MARKUP } from "./markup.js";
 
@@ -183,11 +184,6 @@ export class Controls {
     this.stages.hidden = !times.length;
     this.adapter.textContent = (times.length ? "" : "This device keeps no time. ") + player.adapter;
   }
-}
-
-/** What a player is asked for by a name in the panel or an attribute: by the distance, the finest, or texels along a side. @returns {import("./player.js").Level} */
-export function levelNamed(/** @type {string | null} */ name) {
-  return name === "full" ? "full" : Number(name) || "auto";
 }
 
 function line(/** @type {string[]} */ ...cells) {

@@ -17,40 +17,32 @@
 //
 // Events: `load` when an avatar is shown, `error` with the error in `detail`, `picture` when the first one is drawn.
 
-import { Controls, levelNamed } from "./controls.js";
+import { adopt, ASKABLE, FOLLOWED, levelNamed } from "./attributes.js";
+import { Controls } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
 import { pressed, SHOWN } from "./keys.js";
+import { Loading } from "./loading.js";
 import { look } from "./look.js";
 import { Loop } from "./loop.js";
-import { AvatarError, createPlayer } from "./player.js";
-import { turn, zoom } from "./view.js";
+import { AvatarError } from "./player.js";
+import { Stage } from "./stage.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("./player.js").Player} Player */
-/** @typedef {string | File | ArrayBuffer} Source */
+/** @typedef {import("./loading.js").Source} Source */
 
-const DEGREE = Math.PI / 180;
 const SHARPEST = 2; // device pixels of a CSS pixel that are drawn: more cost much and show little
-const GAP = 0.15; // metres between avatars that stand side by side
 const FIRST = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
 
 const HTMLElementOrNone = /** @type {typeof HTMLElement} */ (globalThis.HTMLElement ?? class {});
 
 export class MuaAvatar extends HTMLElementOrNone {
-  static observedAttributes = ["src", "clip", "controls", "poster", "speed", "show", "level", "budget", "stereo", "follow", "azimuth", "elevation"];
+  static observedAttributes = FOLLOWED;
 
-  /** @type {Player | null} what draws; null until an avatar is asked for */
-  player = null;
   /** Milliseconds from the start of the page to the first picture; 0 before. */
   firstPicture = 0;
 
-  /** @type {Promise<Player> | null} */
-  #opening = null;
-  /** @type {Source[]} */
-  #sources = [];
-  #run = 0; // counts what src has been
-  #framed = 1; // metres from which all is seen
   #watched = new ResizeObserver(() => {
     this.#controls.update();
     this.#fit();
@@ -59,9 +51,11 @@ export class MuaAvatar extends HTMLElementOrNone {
     this.#loop.setVisible(entry.isIntersecting);
   });
   #controls;
+  #loading;
+  #stage = new Stage(this);
   #loop = new Loop(this, {
     tick: (seconds) => this.#tick(seconds),
-    fail: (error) => this.#fail(error),
+    fail: (error) => this.#loading.fail(error),
   });
 
   constructor() {
@@ -69,8 +63,13 @@ export class MuaAvatar extends HTMLElementOrNone {
     const root = this.attachShadow({ mode: "open" });
     root.adoptedStyleSheets = [look()];
     this.#controls = new Controls(root, this);
+    this.#loading = new Loading(this, this.#controls, {
+      opened: (player) => this.#begin(player),
+      show: (first) => this.#show(first),
+      withdraw: () => this.#withdraw(),
+    });
     const moved = () => this.#redraw();
-    listen(this.#controls.canvas, { camera: () => this.player?.camera, framed: () => this.#framed, moved });
+    listen(this.#controls.canvas, { camera: () => this.player?.camera, framed: () => this.#stage.framed, moved });
     this.addEventListener("keydown", (event) => pressed(event, this));
     this.addEventListener("fullscreenchange", () => this.#controls.update());
     acceptFiles(this);
@@ -79,13 +78,13 @@ export class MuaAvatar extends HTMLElementOrNone {
   connectedCallback() {
     for (const part of [this.#controls.canvas, this.#controls.bar]) this.#watched.observe(part);
     this.#seen.observe(this);
-    if (!this.player && !this.#opening) void this.reload();
+    if (!this.#loading.begun) void this.reload();
   }
 
   disconnectedCallback() {
     this.#watched.disconnect();
     this.#seen.disconnect();
-    queueMicrotask(() => this.isConnected || this.#dispose()); // an element that is moved stays as it is
+    queueMicrotask(() => this.isConnected || this.#loading.dispose()); // an element that is moved stays as it is
   }
 
   attributeChangedCallback(/** @type {string} */ name, /** @type {string | null} */ before, /** @type {string | null} */ value) {
@@ -93,8 +92,13 @@ export class MuaAvatar extends HTMLElementOrNone {
     if (name === "poster") this.#setPoster(value);
     else if (name === "src") this.isConnected && void this.reload();
     else if (name === "azimuth" || name === "elevation") this.resetView();
-    else this.#adopt(name);
-    this.#controls.update();
+    else if (this.player) adopt(this.player, this, name);
+    this.#redraw();
+  }
+
+  /** What draws; null until an avatar is asked for. @returns {Player | null} */
+  get player() {
+    return this.#loading?.player ?? null;
   }
 
   /** The avatars that are shown. */
@@ -161,27 +165,12 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Load what src names, anew. */
   async reload() {
-    const sources = (this.getAttribute("src") ?? "").split(/\s+/).filter(Boolean);
-    const files = this.#sources.filter((source) => typeof source !== "string");
-    this.#dispose();
-    if (sources.length + files.length) await this.add(...sources, ...files);
-    else this.#controls.hush();
+    await this.#loading.reload();
   }
 
   /** Show more avatars beside those that are there; what fails is said on the page and told by the event `error`. */
   async add(/** @type {Source[]} */ ...sources) {
-    const run = this.#run;
-    for (const source of sources) {
-      this.#sources.push(source);
-      try {
-        await this.#load(source, run);
-      } catch (error) {
-        this.#sources = this.#sources.filter((each) => each !== source || typeof source === "string");
-        if (run === this.#run) this.#fail(error);
-        return;
-      }
-      if (run !== this.#run) return; // another src since
-    }
+    await this.#loading.add(sources);
   }
 
   /** Let the reader choose files to show. */
@@ -245,33 +234,24 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Turn as a drag of so many pixels does. */
   turn(/** @type {number} */ right, /** @type {number} */ down) {
-    if (this.player) turn(this.player.camera, right, down);
+    this.#stage.turn(right, down);
     this.#redraw();
   }
 
   /** Nearer by so many notches of a wheel. */
   zoom(/** @type {number} */ notches) {
-    if (this.player) zoom(this.player.camera, notches, this.#framed);
+    this.#stage.zoom(notches);
     this.#redraw();
   }
 
   /** Put the camera where all avatars are seen, from where the attributes say. */
   resetView() {
-    if (!this.player || !this.avatars.length) return;
-    const { camera } = this.player;
-    camera.azimuth = DEGREE * this.#number("azimuth", 0);
-    camera.elevation = DEGREE * this.#number("elevation", 0);
-    this.player.frameAll();
-    this.#framed = camera.distance;
+    this.#stage.reset();
     this.#redraw();
   }
 
-  #looked = -1; // which avatar is in the middle
-
   lookAtNext() {
-    if (!this.player || !this.avatars.length) return;
-    this.#looked = (this.#looked + 1) % this.avatars.length;
-    this.player.frameAll([this.avatars[this.#looked]]);
+    this.#stage.lookAtNext();
     this.#redraw();
   }
 
@@ -289,7 +269,7 @@ export class MuaAvatar extends HTMLElementOrNone {
       Object.assign(document.createElement("a"), { href: address, download: name }).click();
       setTimeout(() => URL.revokeObjectURL(address), 60_000);
     } catch (error) {
-      this.#fail(error);
+      this.#loading.fail(error);
     }
   }
 
@@ -299,38 +279,16 @@ export class MuaAvatar extends HTMLElementOrNone {
     else await this.requestFullscreen();
   }
 
-  /** One avatar after the other. */
-  async #load(/** @type {Source} */ source, /** @type {number} */ run) {
-    this.#controls.load(0, "Starting the player");
-    const player = await this.#open();
-    const onProgress = (/** @type {number} */ share, /** @type {string} */ sentence) => {
-      if (run === this.#run) this.#controls.load(share, sentence);
-    };
-    const address = typeof source === "string" ? new URL(source, document.baseURI).href : source;
-    let begun = false; // with a part of it
-    const onPart = async (/** @type {AvatarHandle} */ part) => {
-      if (run !== this.#run || (!part.splats && !this.#controls.poster.hidden)) return; // a poster shows more than a mesh
-      const first = !begun;
-      begun = true;
-      await this.#show(first);
-    };
-    try {
-      const handle = await player.load(address, { onProgress, onPart: (part) => void onPart(part).catch(() => {}) });
-      if (run !== this.#run) return handle.remove();
-      await this.#show(!begun);
-      this.#controls.hush();
-      this.#controls.update();
-      this.dispatchEvent(new CustomEvent("load", { detail: handle }));
-    } catch (error) {
-      if (begun && run === this.#run) await this.#withdraw();
-      throw error;
-    }
+  /** A player that shows nothing yet. */
+  #begin(/** @type {Player} */ player) {
+    Object.assign(player.show, FIRST);
   }
 
   /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */
   async #show(/** @type {boolean} */ first) {
-    for (const name of first ? ["clip", "speed", "show", "level", "budget", "stereo", "follow"] : ["clip"]) this.#adopt(name);
+    if (this.player) for (const name of first ? ASKABLE : ["clip"]) adopt(this.player, this, name);
     if (first) this.#arrange();
+    this.#redraw();
     this.#fit(); // the bar has taken its place
     await this.#loop.draw();
     this.#controls.poster.hidden = true;
@@ -349,72 +307,9 @@ export class MuaAvatar extends HTMLElementOrNone {
     await this.player?.draw();
   }
 
-  /** The player; made when first needed. */
-  async #open() {
-    this.#fit();
-    this.#opening ??= createPlayer(this.#controls.canvas);
-    const [opening, run] = [this.#opening, this.#run];
-    const player = await opening;
-    if (run !== this.#run || this.player === player) return player;
-    this.player = player;
-    player.playing = false;
-    Object.assign(player.show, FIRST);
-    player.onerror = (error) => this.#fail(error, { again: true });
-    return player;
-  }
-
-  #dispose() {
-    this.#run += 1;
-    const opening = this.#opening;
-    [this.#opening, this.player, this.#sources] = [null, null, []];
-    opening?.then((player) => player.dispose(), () => {}); // why it did not open has been said
-  }
-
-  /** Say what went wrong. */
-  #fail(/** @type {unknown} */ error, { again = false } = {}) {
-    const known = error instanceof AvatarError ? error : new AvatarError(`The avatar cannot be shown: ${error instanceof Error ? error.message : error}.`);
-    const empty = !this.avatars.length;
-    if (again) this.player?.stop();
-    if (empty && !this.player) this.#opening = null; // opened anew when asked for again
-    this.#controls.update();
-    this.#controls.say(known.message, { again: again || (empty && this.hasAttribute("src")), close: !again && !empty });
-    this.dispatchEvent(new CustomEvent("error", { detail: known }));
-  }
-
-  /** Follow an attribute. */
-  #adopt(/** @type {string} */ name) {
-    const { player } = this;
-    if (!player) return;
-    const value = this.getAttribute(name);
-    if (name === "clip" && value && player.clips.some((clip) => clip.name === value)) player.clip = value;
-    if (name === "speed") player.speed = this.#number("speed", 1);
-    if (name === "level") player.level = levelNamed(value);
-    if (name === "budget") player.budget = value === null ? null : this.#number("budget", Infinity);
-    if (name === "stereo") player.stereo = value !== null;
-    if (name === "follow") player.follow = value !== null;
-    if (name === "show" && value !== null) {
-      const shown = value.split(",").map((word) => word.trim());
-      for (const each of /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN))) player.show[each] = shown.includes(each);
-    }
-    this.#redraw();
-  }
-
-  #number(/** @type {string} */ name, /** @type {number} */ otherwise) {
-    const value = Number.parseFloat(this.getAttribute(name) ?? "");
-    return Number.isFinite(value) ? value : otherwise;
-  }
-
   /** Stand avatars side by side and show all of them. */
   #arrange() {
-    const widths = this.avatars.map(({ bounds: [low, high] }) => high[0] - low[0] + GAP);
-    let right = -widths.reduce((sum, width) => sum + width, 0) / 2;
-    for (const [i, avatar] of this.avatars.entries()) {
-      const [low, high] = avatar.bounds;
-      avatar.place = this.avatars.length > 1 ? [right + widths[i] / 2 - (low[0] + high[0]) / 2, 0, 0] : [0, 0, 0];
-      right += widths[i];
-    }
-    this.#looked = -1;
-    this.resetView();
+    this.#stage.arrange();
     this.#redraw();
   }
 
@@ -427,7 +322,7 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** With every picture while it plays. */
   #tick(/** @type {number} */ seconds) {
-    if (this.player && !lessMotion()) this.player.camera.azimuth += DEGREE * this.#number("orbit", 0) * seconds;
+    if (!lessMotion()) this.#stage.orbit(seconds);
     this.#controls.tick();
   }
 

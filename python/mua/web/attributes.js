@@ -1,0 +1,48 @@
+// What an element's attributes ask of its player.
+
+import { SHOWN } from "./keys.js";
+
+/** @typedef {import("./player.js").Player} Player */
+
+/** Those that are followed whenever they change. */
+export const FOLLOWED = ["src", "clip", "controls", "poster", "speed", "show", "level", "budget", "stereo", "follow", "azimuth", "elevation"];
+
+/** @type {Record<string, (player: Player, value: string | null) => void>} by the attribute's name */
+const ASKED = {
+  clip(player, value) {
+    if (value && player.clips.some(({ name }) => name === value)) player.clip = value;
+  },
+  speed: (player, value) => (player.speed = numberIn(value, 1)),
+  level: (player, value) => (player.level = levelNamed(value)),
+  budget: (player, value) => (player.budget = value === null ? null : numberIn(value, Infinity)),
+  stereo: (player, value) => (player.stereo = value !== null),
+  follow: (player, value) => (player.follow = value !== null),
+  show(player, value) {
+    if (value === null) return;
+    const shown = value.split(",").map((word) => word.trim());
+    for (const each of /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN))) player.show[each] = shown.includes(each);
+  },
+};
+
+/** Those that a player can be asked for. */
+export const ASKABLE = Object.keys(ASKED);
+
+/** Let a player do what an element's attribute asks for. */
+export function adopt(/** @type {Player} */ player, /** @type {HTMLElement} */ element, /** @type {string} */ name) {
+  ASKED[name]?.(player, element.getAttribute(name));
+}
+
+/** The number that an attribute holds. */
+export function numberOf(/** @type {HTMLElement} */ element, /** @type {string} */ name, /** @type {number} */ otherwise) {
+  return numberIn(element.getAttribute(name), otherwise);
+}
+
+function numberIn(/** @type {string | null} */ text, /** @type {number} */ otherwise) {
+  const value = Number.parseFloat(text ?? "");
+  return Number.isFinite(value) ? value : otherwise;
+}
+
+/** What a player is asked for by a name in the panel or an attribute: by the distance, the finest, or texels along a side. @returns {import("./player.js").Level} */
+export function levelNamed(/** @type {string | null} */ name) {
+  return name === "full" ? "full" : Number(name) || "auto";
+}
