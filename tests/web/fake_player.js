@@ -4,6 +4,7 @@
 import { AvatarError } from "./error.js";
 
 export { AvatarError };
+export const offersVR = async () => Boolean(globalThis.fakeHeadset);
 globalThis.AvatarError = AvatarError;
 
 export async function createPlayer(canvas) {
@@ -24,6 +25,8 @@ class Fake {
   budget = null;
   follow = false;
   stereo = false;
+  vr = false;
+  onvr = null;
   camera = { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.8 };
   show = { splats: true, geometry: true, mesh: false, skeleton: false, shadow: false };
   milliseconds = { decode: 1.25, sort: 0.5 };
@@ -84,6 +87,17 @@ class Fake {
 
   stop() {
     this.started = false;
+  }
+
+  async enterVR() {
+    if (globalThis.fakeHeadset !== "willing") throw new AvatarError("The headset cannot show the avatar: denied");
+    this.vr = true;
+    this.onvr?.(true);
+  }
+
+  leaveVR() {
+    this.vr = false;
+    this.onvr?.(false);
   }
 
   async screenshot() {

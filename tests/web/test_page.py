@@ -334,13 +334,14 @@ def test_the_page_may_not_ask_for_anything_else(browser: Browser, serve: Serve) 
 
 
 def test_every_control_is_reached_by_the_keyboard_and_has_a_name(opened: Open) -> None:
-    page = opened()
+    page = opened(before="globalThis.fakeHeadset = 'willing'")
     page.evaluate(f"{part('.settings')}.click()")
     seen = set()
     for _ in range(40):
         page.press("Tab")
         seen.add(page.evaluate(f"{SHADOW}.activeElement?.className || {SHADOW}.activeElement?.name || ''"))
-    assert {"play", "scrub", "clips", "speed", "settings", "picture", "whole", "splats", "shadow", "reset"} <= seen
+    bar = {"play", "scrub", "clips", "speed", "settings", "picture", "whole", "vr"}
+    assert bar | {"splats", "shadow", "stereo", "follow", "level", "reset"} <= seen
     assert [node for node in _controls(page.do("tree")) if not node.get("name")] == []
 
 
@@ -359,9 +360,31 @@ def test_escape_closes_the_panel(opened: Open) -> None:
     assert page.evaluate(f"[{part('.panel')}.hidden, {SHADOW}.activeElement.className]") == [True, "settings"]
 
 
+def test_without_a_headset_there_is_no_button_for_it(opened: Open) -> None:
+    assert opened().evaluate(f"{part('.vr')}.checkVisibility()") is False
+
+
+def test_a_headset_is_entered_and_left_by_a_button(opened: Open) -> None:
+    page = opened(before="globalThis.fakeHeadset = 'willing'")
+    page.evaluate(f"{part('.vr')}.focus()")
+    page.press("Enter")
+    assert page.evaluate(f"[fake.vr, {part('.vr')}.getAttribute('aria-pressed')]") == [True, "true"]
+    page.evaluate(f"{part('.vr')}.click()")
+    assert page.evaluate(f"[fake.vr, {part('.vr')}.getAttribute('aria-pressed')]") == [False, "false"]
+    page.evaluate("fake.onvr(fake.vr = true)")  # by itself
+    assert page.evaluate(f"{part('.vr')}.getAttribute('aria-pressed')") == "true"
+
+
+def test_a_headset_that_is_refused_is_a_sentence_beside_the_avatar(opened: Open) -> None:
+    page = opened(before="globalThis.fakeHeadset = 'unwilling'")
+    page.evaluate(f"{part('.vr')}.click()")
+    page.wait(f"{SENTENCE} === 'The headset cannot show the avatar: denied'")
+    assert page.evaluate("[fake.vr, fake.playing, fake.avatars.length]") == [False, True, 1]
+
+
 @pytest.mark.parametrize("size", [DESKTOP, TABLET, PHONE], ids=["desktop", "tablet", "phone"])
 def test_nothing_is_cut_off_at_any_size(opened: Open, size: tuple[int, int]) -> None:
-    page = opened(size=size, touch=size == PHONE)
+    page = opened(size=size, touch=size == PHONE, before="globalThis.fakeHeadset = 'willing'")
     page.evaluate(f"{part('.settings')}.click()")
     code = f"""[...{SHADOW}.querySelectorAll("button, select, input, canvas, .panel")]
       .filter((part) => part.checkVisibility() && !part.closest(".panel"))
@@ -370,6 +393,12 @@ def test_nothing_is_cut_off_at_any_size(opened: Open, size: tuple[int, int]) -> 
       .map(([name]) => name)"""
     assert page.evaluate(code) == []
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_all_buttons_take_two_rows_of_a_phone(opened: Open) -> None:
+    page = opened(size=PHONE, touch=True, before="globalThis.fakeHeadset = 'willing'")
+    tops = f"[...{SHADOW}.querySelectorAll('.bar button, .bar select')].map((one) => one.getBoundingClientRect().top)"
+    assert len(set(page.evaluate(tops))) == 2
 
 
 @pytest.mark.parametrize(("scheme", "bright"), [("light", True), ("dark", False)])

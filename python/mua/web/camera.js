@@ -1,5 +1,5 @@
-// A camera that turns about its target, and the two eyes beside it. Matrices are row-major and act on columns; eye space is right-handed, Y up, looking
-// along -Z. References: python/mua/camera.py, python/mua/player/viewpoint.py.
+// A camera that turns about its target, the two eyes beside it, and those of a headset. Matrices are row-major and act on
+// columns; eye space is right-handed, Y up, looking along -Z. References: python/mua/camera.py, python/mua/player/viewpoint.py.
 
 /** @typedef {import("./player.js").CameraState} CameraState */
 /**
@@ -13,7 +13,7 @@
  */
 
 export const FOV = Math.PI / 6; // vertical; a portrait lens
-const NEAR = 0.02; // metres, at most
+export const NEAR = 0.02; // metres, at most
 const NEAR_SHARE = 0.01; // of the distance of what is looked at: so near a small figure is seen whole
 const EYE_DISTANCE = 0.063; // metres, of an adult
 const FILL = 0.92; // of the picture's half size, that the framed box reaches
@@ -41,6 +41,24 @@ export function camerasOf(state, stereo, [width, height]) {
     const moved = view.map((value, i) => (i === 3 ? value + aside : value));
     return eyeOf(moved, projection, screen, near);
   });
+}
+
+/**
+ * [4, 4] from the world to a room whose origin is on the floor below the reader, who looks along -Z.
+ * @param {number[]} foot world, metres: what comes before the reader, on the floor
+ * @param {number} azimuth radians from which it is then seen
+ * @param {number} apart metres between the two
+ */
+export function roomOf(foot, azimuth, apart) {
+  const turn = rotation(azimuth, 0);
+  return [...turn.flatMap((row, axis) => [...row, -dot(row, foot) - (axis === 2 ? apart : 0)]), 0, 0, 0, 1];
+}
+
+/** An eye of a headset in a room. @param {number[]} room [4, 4] from the world @param {import("./webxr.js").View} view @param {[number, number]} screen @returns {Camera} */
+export function eyeInRoom(room, { projectionMatrix, transform }, screen) {
+  const clip = rows(projectionMatrix);
+  const projection = clip.map((value, i) => (i >= 8 && i < 12 ? 2 * value - clip[i + 4] : value));
+  return eyeOf(product(rows(transform.inverse.matrix), room), projection, screen, clip[11] / clip[10]);
 }
 
 /** A camera by its matrices. @param {number[]} view @param {number[]} projection @param {[number, number]} screen @param {number} near @returns {Camera} */
@@ -103,6 +121,11 @@ function rotation(/** @type {number} */ azimuth, /** @type {number} */ elevation
 
 /** @param {number[]} a @param {number[]} b */
 const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+
+/** A matrix [4, 4] that is given column by column. */
+function rows(/** @type {ArrayLike<number>} */ columns) {
+  return Array.from(columns, (_, i) => columns[4 * (i % 4) + Math.floor(i / 4)]);
+}
 
 /** Matrices [4, 4], row by row. */
 function product(/** @type {number[]} */ a, /** @type {number[]} */ b) {

@@ -27,6 +27,7 @@ export class Controls {
     this.speed = /** @type {HTMLSelectElement} */ (find(".speed"));
     this.settings = find(".settings");
     this.whole = find(".whole");
+    this.vr = /** @type {HTMLButtonElement} */ (find(".vr"));
     this.stereo = /** @type {HTMLInputElement} */ (find(".stereo"));
     this.follow = /** @type {HTMLInputElement} */ (find(".follow"));
     this.level = /** @type {HTMLSelectElement} */ (find(".level"));
@@ -61,6 +62,7 @@ export class Controls {
     on(this.settings, "click", () => this.openPanel(Boolean(this.panel.hidden)));
     on(find(".picture"), "click", () => void avatar.savePicture());
     on(this.whole, "click", () => void avatar.toggleFullscreen());
+    on(this.vr, "click", () => void avatar.toggleVR());
     on(find(".open"), "click", () => avatar.openFiles());
     on(find(".reset"), "click", () => avatar.resetView());
     on(this.file, "change", () => {
@@ -117,6 +119,9 @@ export class Controls {
     for (const part of /** @type {HTMLInputElement[]} */ ([this.play, this.scrub, this.clips, this.speed])) part.disabled = !here || !player?.clips.length;
     this.whole.hidden = !document.fullscreenEnabled;
     this.whole.setAttribute("aria-pressed", String(avatar.matches(":fullscreen")));
+    this.vr.hidden = !avatar.offersVR;
+    this.vr.disabled = !here;
+    this.vr.setAttribute("aria-pressed", String(player?.vr ?? false));
     this.frame.style.setProperty("--bar", `${this.bar.offsetHeight}px`); // all else stands above it
     this.canvas.setAttribute("aria-label", avatar.avatars.map(({ name }) => name).join(", ") || "No avatar");
     if (!player) return;

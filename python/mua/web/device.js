@@ -1,6 +1,7 @@
 // The graphics device: buffers, and the memory through which constants travel.
 
 import { AvatarError } from "./error.js";
+import { offersVR } from "./webxr.js";
 
 const ALIGNMENT = 256; // bytes; no device asks for more between the constants of two dispatches
 const CAPACITY = 1 << 18; // bytes: a thousand dispatches may wait for one submit
@@ -11,9 +12,11 @@ const LEAST_BUFFERS = 8; // that one stage binds
 export class Device {
   /** @throws {AvatarError} where the browser has none */
   static async open(/** @type {import("./player.js").PlayerOptions} */ options = {}) {
-    const adapter = await navigator.gpu.requestAdapter({
-      powerPreference: options.powerPreference ?? "high-performance",
-    });
+    const powerPreference = options.powerPreference ?? "high-performance";
+    const inHeadset = { powerPreference, xrCompatible: true };
+    const adapter =
+      ((await offersVR()) && (await navigator.gpu.requestAdapter(inHeadset))) ||
+      (await navigator.gpu.requestAdapter({ powerPreference }));
     if (!adapter)
       throw new AvatarError(
         "The browser offers no graphics device through WebGPU: its list of supported devices may leave this one out.",

@@ -25,7 +25,7 @@ import { pressed, SHOWN } from "./keys.js";
 import { Loading } from "./loading.js";
 import { look } from "./look.js";
 import { Loop } from "./loop.js";
-import { AvatarError } from "./player.js";
+import { AvatarError, offersVR } from "./player.js";
 import { Stage } from "./stage.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
@@ -42,6 +42,8 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Milliseconds from the start of the page to the first picture; 0 before. */
   firstPicture = 0;
+  /** Whether there is a headset that could show the avatars. */
+  offersVR = false;
 
   #watched = new ResizeObserver(() => {
     this.#controls.update();
@@ -79,6 +81,7 @@ export class MuaAvatar extends HTMLElementOrNone {
     for (const part of [this.#controls.canvas, this.#controls.bar]) this.#watched.observe(part);
     this.#seen.observe(this);
     if (!this.#loading.begun) void this.reload();
+    void this.#findHeadset();
   }
 
   disconnectedCallback() {
@@ -279,9 +282,25 @@ export class MuaAvatar extends HTMLElementOrNone {
     else await this.requestFullscreen();
   }
 
+  /** Show the avatars in a headset, or on the page again; only while the browser handles a click or a key. */
+  async toggleVR() {
+    try {
+      if (this.player?.vr) this.player.leaveVR();
+      else await this.player?.enterVR();
+    } catch (error) {
+      this.#loading.fail(error);
+    }
+  }
+
+  async #findHeadset() {
+    this.offersVR = await offersVR();
+    this.#controls.update();
+  }
+
   /** A player that shows nothing yet. */
   #begin(/** @type {Player} */ player) {
     Object.assign(player.show, FIRST);
+    player.onvr = () => this.#redraw();
   }
 
   /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */

@@ -9,6 +9,7 @@ import { load } from "./load.js";
 import { groundHeight } from "./overlays.js";
 import { Renderer } from "./renderer.js";
 import { world } from "./skeleton.js";
+import { VR } from "./vr.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 /** @typedef {import("./player.js").ClipInfo} ClipInfo */
@@ -57,6 +58,9 @@ export class Engine {
     this.request = 0; // of the next picture; 0 where the loop stands
     this.before = 0; // time of the last step, milliseconds
     this.drawn = ""; // what the canvas shows
+    this.room = new VR(this);
+    /** @type {((vr: boolean) => void) | null} */
+    this.onvr = null;
     this.disposed = false;
   }
 
@@ -75,6 +79,7 @@ export class Engine {
 
   /** Open another device and upload all avatars again. */
   async recover(/** @type {number} */ lasted) {
+    this.leaveVR(); // it draws on the lost device
     this.renderer = null;
     this.drawn = "";
     try {
@@ -189,9 +194,8 @@ export class Engine {
 
   frameAll(/** @type {readonly AvatarHandle[] | undefined} */ chosen = undefined) {
     const shown = this.entries.filter(({ handle }) => chosen?.includes(handle) ?? true);
-    const boxes = shown.map((entry) => this.boxOf(entry));
-    if (!boxes.length) return;
-    const box = [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
+    if (!shown.length) return;
+    const box = this.box(shown);
     Object.assign(this.camera, framing(box, this.camera, camerasOf(this.camera, this.stereo, this.screen)[0].screen));
     const followed = this.followed();
     this.camera.target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at - followed[i]));
@@ -222,6 +226,12 @@ export class Engine {
     return [Math.max(this.canvas.width, 1), Math.max(this.canvas.height, 1)];
   }
 
+  /** World box of avatars in the present frame: lowest then highest corner, metres. */
+  box(entries = this.entries) {
+    const boxes = entries.map((entry) => this.boxOf(entry));
+    return [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
+  }
+
   /** World box of an avatar in the present frame. */
   boxOf(/** @type {Entry} */ { avatar, handle }) {
     const { skeleton, encoding } = avatar;
@@ -246,19 +256,26 @@ export class Engine {
   /** What a picture shows now; an avatar without clips stands in its bind pose. @returns {import("./renderer.js").Posed[]} */
   posed() {
     return this.entries.map((entry) => {
-      const { avatar, slot, grounds, handle } = entry;
+      const { avatar, slot, handle } = entry;
       const clip = this.clipOf(avatar) ?? stillClip(avatar);
-      const ground = this.show.shadow ? (grounds.get(clip.name) ?? groundHeight(avatar, clip)) : 0;
-      if (this.show.shadow) grounds.set(clip.name, ground);
+      const ground = this.show.shadow ? this.groundOf(entry) : 0;
       const frame = this.frameOf(avatar, clip);
       return { slot, clip, frame, following: this.followingOf(avatar, clip, frame), place: [...handle.place], ground };
     });
   }
 
+  /** Height on which an avatar stands in what it plays, metres. */
+  groundOf(/** @type {Entry} */ { avatar, grounds }) {
+    const clip = this.clipOf(avatar) ?? stillClip(avatar);
+    const ground = grounds.get(clip.name) ?? groundHeight(avatar, clip);
+    grounds.set(clip.name, ground);
+    return ground;
+  }
+
   /** The frame to decode ahead; this one where the clip rests or skips frames, or what is shown must be exact. */
   followingOf(/** @type {Avatar} */ { encoding }, /** @type {Clip} */ clip, /** @type {number} */ frame) {
     const step = this.frameStep * encoding.rate;
-    const ahead = this.request && this.playing && !this.show.geometry && step > 0 && step < 1;
+    const ahead = (this.request || this.vr) && this.playing && !this.show.geometry && step > 0 && step < 1;
     return ahead ? (frame + 1) % framesAt(clip, encoding.rate) : frame;
   }
 
@@ -268,6 +285,7 @@ export class Engine {
   }
 
   drawNow() {
+    if (this.vr) return; // it draws the next picture
     if (this.renderer && this.canvas.width && this.canvas.height) this.renderer.draw(this.posed(), this.look);
   }
 
@@ -291,10 +309,8 @@ export class Engine {
   /** One turn of the loop, which draws where anything changed. */
   step(/** @type {number} */ now) {
     this.request = requestAnimationFrame((next) => this.step(next));
-    const passed = Math.min(Math.max(now - this.before, 0) / 1000, LONGEST_STEP);
-    this.before = now;
-    this.frameStep = passed * this.speed;
-    if (this.playing) this.time += this.frameStep;
+    if (this.vr) return;
+    this.advance(now);
     const frames = this.entries.map(({ avatar, handle }) => {
       const clip = this.clipOf(avatar);
       return [handle.name, clip?.name, clip && this.frameOf(avatar, clip), handle.place];
@@ -306,14 +322,40 @@ export class Engine {
       else if (this.playing) this.renderer.lookAhead(this.posed());
       this.drawn = wanted;
     } catch (error) {
-      this.stop();
-      this.tell(asAvatarError(error, "The avatar cannot be drawn"));
+      this.fail(error);
     }
+  }
+
+  /** Stop where a picture cannot be drawn, and say why. */
+  fail(/** @type {unknown} */ error) {
+    this.stop();
+    this.tell(asAvatarError(error, "The avatar cannot be drawn"));
+  }
+
+  /** Play on until a time of the display or the headset, milliseconds. */
+  advance(/** @type {number} */ now) {
+    const passed = Math.min(Math.max(now - this.before, 0) / 1000, LONGEST_STEP);
+    this.before = now;
+    this.frameStep = passed * this.speed;
+    if (this.playing) this.time += this.frameStep;
+  }
+
+  get vr() {
+    return this.room.headset !== null;
+  }
+
+  async enterVR() {
+    await this.room.enter();
+  }
+
+  leaveVR() {
+    this.room.leave();
   }
 
   dispose() {
     if (this.disposed) return;
     this.stop();
+    this.leaveVR();
     this.disposed = true;
     for (const { slot } of this.entries.splice(0)) slot.memory.free();
     this.renderer?.destroy();

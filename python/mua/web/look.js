@@ -137,7 +137,10 @@ progress { width: 14rem; max-width: 100%; accent-color: var(--accent); }
 @container avatar (max-width: 40rem) {
   .scrub { order: -1; flex-basis: 50%; }
   .clock { order: -1; min-width: 5rem; }
-  .clips { flex: 1 1 5rem; min-width: 4rem; }
+  .bar { gap: 0.4rem 0.3rem; }
+  .clips { flex: 1 1 4rem; min-width: 4rem; }
+  .speed { flex: 0 1 4.5rem; min-width: 4rem; }
+  .bar select { padding: 0 0.3rem; }
   .play { order: -2; }
   .panel { inset: auto 0 var(--bar); width: auto; max-height: 55%; border-width: 1px 0 0; border-radius: 10px 10px 0 0; }
   button, select, .panel label, .panel li { min-height: 2.75rem; }

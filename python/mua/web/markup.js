@@ -9,6 +9,7 @@ export const ICONS = {
   pause: icon("M6 4.5h4v15H6zm8 0h4v15h-4z"),
   settings: icon("M3 6h10v2H3zm14 0h4v2h-4zM14 4h2v6h-2zM3 16h4v2H3zm8 0h10v2H11zM8 14h2v6H8z"),
   picture: icon("M9 4 7.5 6H4v13h16V6h-3.5L15 4zm3 4.5a4 4 0 1 1 0 8 4 4 0 0 1 0-8zm0 1.8a2.2 2.2 0 1 0 0 4.4 2.2 2.2 0 0 0 0-4.4z"),
+  vr: icon("M3 7h18v10h-5.2l-2.3-3h-3l-2.3 3H3zm4 2.5a2 2 0 1 0 0 4 2 2 0 0 0 0-4zm10 0a2 2 0 1 0 0 4 2 2 0 0 0 0-4z"),
   whole: icon("M4 4h6v2H6v4H4zm10 0h6v6h-2V6h-4zM4 14h2v4h4v2H4zm14 0h2v6h-6v-2h4z"),
 };
 
@@ -52,6 +53,7 @@ export const MARKUP = `
   <button type="button" class="settings" aria-label="Settings" aria-controls="panel" aria-expanded="false">${ICONS.settings}</button>
   <button type="button" class="picture" aria-label="Save a picture">${ICONS.picture}</button>
   <button type="button" class="whole" aria-label="Whole screen" aria-pressed="false">${ICONS.whole}</button>
+  <button type="button" class="vr" aria-label="Show in a headset" aria-pressed="false" hidden>${ICONS.vr}</button>
 </div>
 <div class="says" hidden>
   <p role="status"></p>

@@ -8,8 +8,9 @@
 //   player.start();
 
 import { AvatarError } from "./error.js";
+import { offersVR } from "./webxr.js";
 
-export { AvatarError };
+export { AvatarError, offersVR };
 
 /**
  * @typedef {object} Show what a picture shows, back to front; the names of mua-view --show
@@ -78,6 +79,11 @@ export { AvatarError };
  * @property {() => Promise<void>} draw one picture now, at the canvas' size; resolves when it is drawn
  * @property {() => void} start draws a picture for every frame of the display
  * @property {() => void} stop
+ * @property {boolean} vr whether a headset shows the avatars, in place of the canvas
+ * @property {() => Promise<void>} enterVR shows them in a headset, before the reader on the floor; called by a click or a key,
+ *   where `offersVR()` is true
+ * @property {() => void} leaveVR gives the canvas back its picture; the headset's own button does the same
+ * @property {((vr: boolean) => void) | null} onvr a headset begins to show the avatars, or has ended
  * @property {() => Promise<Blob>} screenshot the present picture as a PNG, its background transparent unless one was given
  * @property {Readonly<Record<string, number>>} milliseconds of the device by stage; empty where it keeps no time
  * @property {number} bytes of the device's memory that it holds

@@ -128,9 +128,10 @@ export class Renderer {
     }
   }
 
-  submit(/** @type {GPUTexture} */ target, /** @type {Posed[]} */ posed, /** @type {Look} */ look) {
+  /** Draw on to a texture; seen by the camera of `look`, or by eyes that are given, side by side. @param {GPUTexture} target @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera[]} [eyes] */
+  submit(target, posed, look, eyes) {
     const { device, timing, splats } = this;
-    const cameras = camerasOf(look.camera, look.stereo, [target.width, target.height]);
+    const cameras = eyes ?? camerasOf(look.camera, look.stereo, [target.width, target.height]);
     const encoder = device.gpu.createCommandEncoder();
     this.pose(encoder, posed, look, cameras);
     if (splats) {
