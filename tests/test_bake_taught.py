@@ -9,9 +9,11 @@ from commands import Commands
 from taught import FEW
 
 import mua
+from mua.baking.taught import _parts
 from mua.student.settings import PRESETS as STUDENTS
 from mua.student.settings import Ranks, Schedule
 from mua.teaching import settings as teaching
+from mua.teaching.folder import FILE, WEIGHTS
 
 
 @pytest.fixture(scope="module")
@@ -66,3 +68,9 @@ def test_a_wrong_option_is_a_sentence(
     (teacher / "teacher.json").touch()
     places = {"capture": capture, "teacher": teacher, "folder": tmp_path}
     assert sentence in command("bake", *(option.format(**places) for option in options)).sentence
+
+
+def test_what_is_recorded_depends_on_settings_and_weights(tmp_path: Path) -> None:
+    for name in (FILE, WEIGHTS):
+        (tmp_path / name).write_bytes(name.encode())
+    assert list(_parts(tmp_path)) == [FILE.encode(), WEIGHTS.encode()]

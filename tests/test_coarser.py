@@ -53,6 +53,15 @@ def test_a_texel_is_the_mean_of_its_block_and_grows_with_their_number(members: l
     assert coarse.rig.texels.texels.tolist() == block_numbers(avatar.rig.texels)[:1].tolist()
 
 
+@pytest.mark.parametrize(("hidden", "expected"), [([True] * 3, True), ([True, False, True], False)])
+def test_a_block_is_one_sided_where_all_of_it_is(hidden: list[bool], expected: bool) -> None:
+    avatar = block(synthetic_avatar(), [0, 1, 3])
+    texels = replace(avatar.rig.texels, one_sided=np.array(hidden))
+    coarse = at_level(replace(avatar, rig=replace(avatar.rig, texels=texels)), 1)
+    assert coarse.rig.texels.one_sided is not None
+    assert coarse.rig.texels.one_sided.tolist() == [expected]
+
+
 def test_quaternions_of_opposite_signs_do_not_cancel() -> None:
     avatar = block(synthetic_avatar(), [0, 1])
     static = np.zeros((11, 2))

@@ -62,6 +62,12 @@ def test_a_capture_without_held_out_cameras_is_refused(capture: Path) -> None:
         shots(everyone, None)
 
 
+def test_of_a_long_clip_every_tenth_frame_is_compared(capture: Path) -> None:
+    opened = open_capture(capture)
+    longer = replace(opened, clips=(replace(opened.clips[0], frames=21),))
+    assert [shot.frame for shot in shots(longer, None)] == [0, 10, 20]
+
+
 def test_what_drew_the_pictures_is_nearly_all_there(capture: Path) -> None:
     teacher = StillTeacher(procedural_character(), texels=TEXELS, template_vertices=500)
 

@@ -91,3 +91,25 @@ def test_poses_of_a_clip_at_another_rate_are_within_the_decoded_frames() -> None
 def test_without_clips_nothing_is_measured() -> None:
     avatar = synthetic_avatar()
     assert one_sided.with_one_sided(avatar, []) is avatar
+
+
+def test_what_was_marked_before_is_measured_anew() -> None:
+    avatar = opened(closed())
+    marked = with_one_sided(avatar, np.ones(len(avatar.rig.texels.texels), bool))
+    np.testing.assert_array_equal(measured(marked), measured(avatar))
+
+
+def test_every_pose_is_seen_from_elsewhere() -> None:
+    splats = decode_clip_frame(closed(), closed().clips[0], frame=0)
+    first, second = ([camera.position for camera in one_sided.around(splats, 0.03, first=n)] for n in (0, 10))
+    assert np.linalg.norm(np.array(first) - second, axis=1).min() > 0.1
+    middle = np.stack([splats.centres.min(axis=0), splats.centres.max(axis=0)]).mean(axis=0)
+    assert np.abs(np.mean(first, axis=0) - middle).max() < 0.3 * np.linalg.norm(first[0] - middle)
+
+
+def test_poses_that_differ_in_where_the_body_faces_alone_are_one() -> None:
+    clip = synthetic_avatar().clips[0]
+    still = np.repeat(clip.rotations[:1], len(clip), axis=0)
+    turned = still.copy()
+    turned[:, 0] = clip.rotations[:, 0]
+    assert len(one_sided.distinct_poses([replace(clip, rotations=turned)], clip.rate, root=0)) == 1

@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 import torch
 from synthetic_avatar import synthetic_avatar
-from taught import CAMERAS, FRAMES, SETTINGS, errors, material, run_in, subject, taught, teacher
+from taught import CAMERAS, FRAMES, SETTINGS, errors, material, motion, run_in, subject, taught, teacher
 from together import errors as errors_of
 from together import start
 
 from mua.processes import Processes
 from mua.student.optimise import Progress
 from mua.student.settings import Schedule
-from mua.teaching.lesson import Lesson
+from mua.teaching.colour_correction import ColourCorrection
+from mua.teaching.lesson import Lesson, Material
+from mua.teaching.model import MOST_RESIDUAL, TeacherModel
 from mua.teaching.pose_refinement import PoseRefinement
-from mua.teaching.train import MEAN, TEXTURE, _loss, train_teacher
+from mua.teaching.settings import LossWeights
+from mua.teaching.train import MEAN, TEXTURE, _loss, _rates, train_teacher
 from mua.teaching.views import Seen, Views
 
 ROUNDING = 1e-3  # of losses: sums in another order, which steps of Adam let grow
@@ -158,3 +161,88 @@ def test_views_of_a_batch_are_cameras_of_few_frames() -> None:
     assert len(rows) == len(set(rows.tolist())) == 6
     assert len({row // views.cameras for row in rows.tolist()}) <= 3
     assert len(Views(5, 1, views.see).draw(4, torch.Generator())) == 4
+
+
+def test_every_view_can_be_drawn() -> None:
+    views = Views(3, 4, lambda frame, camera: pytest.fail("nothing is seen yet"))
+    generator = torch.Generator().manual_seed(0)
+    assert {row for _ in range(60) for row in views.draw(4, generator).tolist()} == set(range(12))
+
+
+def test_a_batch_shows_two_views_of_a_frame() -> None:
+    views = Views(1000, 4, lambda frame, camera: pytest.fail("nothing is seen yet"))
+    rows = views.draw(8, torch.Generator().manual_seed(0))
+    frames, times = (rows // 4).unique(return_counts=True)
+    assert (len(frames), times.tolist()) == (4, [2] * 4)
+
+
+def test_all_that_is_learnt_beside_the_mean_texture_has_a_rate() -> None:
+    shown = material()
+    lesson = Lesson(teacher(), shown, SETTINGS, refinement=refinement(3.0))
+    rates = {id(parameter): rate for learnt, rate in _rates(lesson) for parameter in learnt}
+    wanted = {name: id(parameter) for name, parameter in lesson.named_parameters() if name != "teacher.mean"}
+    assert set(rates) == set(wanted.values())
+    assert rates[wanted["teacher.still"]] == 10 * rates[wanted["looks"]] == 10 * rates[wanted["refinement.turns"]]
+
+
+@torch.no_grad()
+def test_a_picture_of_the_empty_set_takes_the_place_of_a_drawn_background() -> None:
+    def losses(shown: Material) -> list[float]:
+        lesson = Lesson(teacher(), shown, SETTINGS)
+        return [float(lesson(torch.tensor([0]), torch.full((1, 3), light))) for light in (0.0, 0.7)]
+
+    def before_grey(seen: Seen, camera: int) -> Seen:
+        return replace(seen, background=torch.full_like(seen.image, 0.7))
+
+    of_set, drawn = losses(material(before_grey)), losses(material())
+    assert of_set[0] == of_set[1] == pytest.approx(drawn[1], rel=1e-6)
+    assert drawn[0] != pytest.approx(drawn[1], rel=1e-3)
+
+
+def test_a_frame_learns_its_own_look_alone() -> None:
+    lesson = Lesson(teacher(), material(), SETTINGS)
+    with torch.no_grad():
+        for parameter in lesson.teacher.nets.parameters():
+            parameter.add_(0.1 * torch.randn(parameter.shape, generator=torch.Generator().manual_seed(2)))
+    lesson(torch.tensor([CAMERAS]), torch.ones(1, 3)).backward()
+    assert lesson.looks.grad is not None
+    assert lesson.looks.grad[1].any()
+    assert not lesson.looks.grad[[0, 2]].any()
+
+
+def test_what_is_added_to_colours_costs_nothing_of_itself() -> None:
+    """Only what moves or reshapes splats is held near nothing."""
+    lesson = Lesson(teacher(), material(), replace(SETTINGS, weights=LossWeights(l1=0, ssim=0, alpha=0, residual=1)))
+    last = lesson.teacher.nets.appearance.last.bias
+    with torch.no_grad():
+        last.fill_(0.5)
+        assert float(lesson(torch.tensor([0]), torch.ones(1, 3))) == 0
+        lesson.teacher.nets.geometry.last.bias.fill_(0.5)
+        assert float(lesson(torch.tensor([0]), torch.ones(1, 3))) == pytest.approx(0.25, rel=0.01)
+
+
+@torch.no_grad()
+def test_what_all_cameras_share_is_no_cameras_own_colour() -> None:
+    image = torch.rand(4, 5, 4, generator=torch.Generator().manual_seed(0))
+    correction = ColourCorrection(2)
+    correction.change[:, 0, 0] = 0.3
+    torch.testing.assert_close(correction(image, 1), image)
+    correction.change[1, 0, 3] = 0.2  # of what is covered alone
+    wanted = image.clone()
+    wanted[..., 0] += 0.1 * image[..., 3]
+    torch.testing.assert_close(correction(image, 1), wanted)
+
+
+@torch.no_grad()
+def test_no_residual_is_so_large_that_a_splat_is_lost_for_good() -> None:
+    own = teacher()
+    own.nets.geometry.last.bias.fill_(1e6)
+    assert own(motion()[0]).added.max() == pytest.approx(MOST_RESIDUAL)
+
+
+def test_a_larger_figure_has_larger_offsets() -> None:
+    rig = subject().rig
+    larger = replace(rig, mesh=replace(rig.mesh, vertices=3 * rig.mesh.vertices))
+    small, large = (TeacherModel(replace(subject(), rig=own), SETTINGS).nets.units for own in (rig, larger))
+    torch.testing.assert_close(large[:3], 3 * small[:3])
+    torch.testing.assert_close(large[3:], small[3:])

@@ -1,0 +1,149 @@
+"""What a training takes of a capture: nothing that is held out, each frame with its own poses, and what it looks at."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+from captures import FRAMES, make_capture
+from PIL import Image
+from taught import FEW, SETTINGS, material, motion, teacher
+
+from mua.capture import Capture
+from mua.errors import InputError
+from mua.teaching.from_capture import OUTLINES, Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
+from mua.teaching.lesson import Lesson
+from mua.teaching.preview import Preview, picture_of, psnr
+
+CPU = torch.device("cpu")
+ROWS = 32
+STEP = 0.5 / 255 + 1e-6  # by which a picture of 8 bits is rounded
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Capture]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mua.capture.capture.ATLAS", 64)
+        yield make_capture(tmp_path_factory.mktemp("capture"))
+
+
+@pytest.fixture(scope="module")
+def filmed(capture: Capture, tmp_path_factory: pytest.TempPathFactory) -> Filmed:
+    return read_filmed(capture, replace(FEW, texels=32, rows=ROWS), CPU, views=tmp_path_factory.mktemp("views"))
+
+
+@pytest.fixture(scope="module")
+def both(filmed: Filmed) -> Filmed:
+    """Where nothing is held out of the clips."""
+    return replace(filmed, clips=(*filmed.clips, *filmed.held), held=())
+
+
+def test_what_is_held_out_is_not_learnt_from(filmed: Filmed, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = set()
+    monkeypatch.setattr(Filmed, "see", lambda self, clip, frame, camera: asked.add((clip, frame, camera.name)))
+    views = material_of(filmed).views
+    for frame in range(views.frames):
+        for camera in range(views.cameras):
+            views.see(frame, camera)
+    assert asked == {("walk", frame, camera) for frame in range(4) for camera in ("front", "left", "right")}
+    assert [clip.name for clip in filmed.held] == ["reach"]
+
+
+def test_a_view_is_that_of_the_capture_and_weighs_what_its_mask_is_trusted(capture: Capture, filmed: Filmed) -> None:
+    trusted = replace(filmed, trust=SimpleNamespace(weight=lambda clip, frame, view: 0.1 * frame))  # type: ignore[arg-type]
+    seen = trusted.see("walk", 3, capture.camera("left"))
+    view = capture.view("walk", 3, "left", crop=True, rows=ROWS)
+    np.testing.assert_array_equal(seen.image, view.image)
+    np.testing.assert_array_equal(seen.mask, view.mask)
+    np.testing.assert_allclose(seen.eye.view, view.camera.view, rtol=1e-6)
+    assert seen.weight == pytest.approx(0.3)
+    assert seen.background is None
+
+
+def test_each_frame_has_the_poses_of_its_own_clip(both: Filmed) -> None:
+    """Frames are numbered over all clips; before its first frame a clip is held still."""
+    own = material_of(both)
+    assert (own.views.frames, len(own.windows), len(own.poses)) == (6, 6, 6)
+    assert own.poses[0] == [0, 0, 0]
+    assert own.poses[4] == [4, 4, 4]
+    assert [poses[0] for poses in own.poses] == list(range(6))
+    assert all(4 <= pose <= 5 for poses in own.poses[4:] for pose in poses)
+    refinement = refinement_of(both, replace(FEW, refine=3.0))
+    assert refinement is not None
+    for window, poses in zip(own.windows, own.poses, strict=True):
+        torch.testing.assert_close(refinement(poses).detach(), window.joints, atol=1e-5, rtol=0)
+
+
+def test_poses_are_refined_only_where_that_is_asked_for(both: Filmed) -> None:
+    assert refinement_of(both, FEW) is None
+
+
+def test_outlines_are_masks_of_different_cameras_of_the_frame(both: Filmed) -> None:
+    shown = material_of(both)
+    outlines = Outlines(shown)
+    found = outlines.observe(5, torch.Generator().manual_seed(0)).outlines
+    masks = [shown.views.see(5, camera).mask for camera in range(shown.views.cameras)]
+    which = {next(i for i, mask in enumerate(masks) if torch.equal(mask, one.mask)) for one in found}
+    assert len(found) == len(which) == OUTLINES
+    torch.testing.assert_close(outlines.joints[5], shown.windows[5].joints[0])
+    assert outlines.descriptors.shape == (6, both.subject.encoding.width)
+
+
+def test_a_preview_is_of_the_middles_of_both_kinds_of_clips_by_a_camera_held_out(
+    capture: Capture, filmed: Filmed, both: Filmed, tmp_path: Path
+) -> None:
+    preview = preview_of(filmed, tmp_path)
+    for (seen, window), (clip, frames) in zip(preview.seen, FRAMES.items(), strict=True):
+        view = capture.view(clip, frames // 2, "above", crop=True, rows=ROWS)
+        np.testing.assert_array_equal(seen.image, view.image)
+        own = capture.motion(clip).pose(frames // 2)
+        placed = filmed.subject.rig.skeleton.world(own.rotations, own.translations)[1]
+        np.testing.assert_allclose(window.root, placed[filmed.subject.rig.skeleton.root], atol=1e-5)
+    assert len(preview_of(both, tmp_path).seen) == 1
+
+
+def test_nothing_to_learn_from_is_refused(capture: Capture, tmp_path: Path) -> None:
+    clips = tuple(replace(clip, held_out=True) for clip in capture.clips)
+    cameras = tuple(replace(camera, held_out=True) for camera in capture.cameras)
+    for nothing in (replace(capture, clips=clips), replace(capture, cameras=cameras)):
+        with pytest.raises(InputError, match="every clip or every camera is held out"):
+            read_filmed(nothing, FEW, CPU, views=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("steps", "expected"),
+    [(60, [25, 50, 60]), (10, [10]), (4000, list(range(200, 4001, 200)))],
+)
+def test_pictures_of_progress_are_few_and_the_last_step_has_one(
+    tmp_path: Path, steps: int, expected: list[int]
+) -> None:
+    preview = Preview(tmp_path, [])
+    assert [step for step in range(1, steps + 1) if preview.due(step, steps)] == expected
+
+
+def test_a_preview_shows_the_picture_the_teacher_and_their_difference(tmp_path: Path) -> None:
+    shown = material()
+    lesson = Lesson(teacher(), shown, SETTINGS)
+    with torch.no_grad():
+        lesson.looks.normal_(generator=torch.Generator().manual_seed(1))
+    seen = [(shown.views.see(frame, 1), motion()[2 * frame]) for frame in (0, 2)]
+    found = Preview(tmp_path, seen)(lesson, "texels", moving=True)
+    with Image.open(tmp_path / "texels.png") as opened:
+        pixels = np.asarray(opened) / 255
+    rows, scores = [], []
+    for one, window in seen:
+        truth = one.over(torch.ones(3)).numpy()
+        image = picture_of(lesson.teacher, window, one, look=lesson.looks.mean(dim=0))
+        rows.append(np.hstack([truth, image, np.clip(1 - 4 * np.abs(image - truth), 0, 1)]))
+        scores.append(psnr(image, truth))
+    np.testing.assert_allclose(pixels, np.clip(np.vstack(rows), 0, 1), atol=STEP)
+    assert found == pytest.approx(np.mean(scores))
+    assert [path.name for path in tmp_path.iterdir()] == ["texels.png"]
+
+
+def test_psnr_of_a_tenth_is_twenty() -> None:
+    truth = np.full((4, 5, 3), 0.5)
+    assert psnr(truth + 0.1, truth) == pytest.approx(20)
