@@ -21,6 +21,7 @@ SMALL = replace(
     sweeps=1,
     regression=Schedule(steps=40, batch=8, lr=1e-3),
     finetune=Schedule(steps=20, batch=4, lr=1e-4),
+    pictures=2,
 )
 STAGE_NAMES = (
     "coarse mesh",

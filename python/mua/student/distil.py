@@ -3,6 +3,7 @@
 import math
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from threading import Lock
 from typing import Protocol
@@ -22,6 +23,7 @@ from mua.rig.rig import Rig
 from mua.student.local import body_parts
 from mua.student.model import Student
 from mua.student.optimise import Progress
+from mua.student.sensitivity import measure_sensitivities
 from mua.student.settings import Settings, StageName
 from mua.student.train import Samples, stages, train
 from mua.teachers.bones import figure_scale
@@ -102,7 +104,8 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     student.mean.copy_(torch.from_numpy(normal.mean))
     student.scale.copy_(torch.from_numpy(normal.scale))
     parts = body_parts(recording.rig, encoding) if settings.generalisation.fade < 1 else None
-    return student, replace(_samples(recording, descriptors), parts=parts)
+    measure = partial(measure_sensitivities, recording, settings.pictures) if settings.pictures else None
+    return student, replace(_samples(recording, descriptors), parts=parts, sensitivities=measure)
 
 
 def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: bool = False) -> Array:

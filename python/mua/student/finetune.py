@@ -22,6 +22,26 @@ def subband_loss(predicted: Bands, truth: Bands) -> Tensor:
     return LL_WEIGHT * ll + d3 + d2
 
 
+def picture_loss(
+    predicted: Bands,
+    truth: Bands,
+    sensitivities: Bands,  # of one frame, as `mua.student.sensitivity` measures them
+) -> Tensor:
+    """Mean squared error, each number times what a unit of it changes in pictures: to first order, that of pictures."""
+    errors = [((a - b) * s).square() for a, b, s in zip(predicted, truth, sensitivities, strict=True)]
+    return torch.stack([error.sum() for error in errors]).sum() / sum(error.numel() for error in errors)
+
+
+def relative(
+    sensitivities: Bands,
+    weights: Tensor,  # [C] that subbands are multiplied by
+) -> Bands:
+    """Sensitivities to weighted subbands, with a root mean square of one."""
+    by_weight = [own / weights[:, None, None] for own in sensitivities]
+    mean = torch.cat([own.square().flatten() for own in by_weight]).mean()
+    return Bands(*(own / mean.sqrt().clamp(min=torch.finfo(mean.dtype).tiny) for own in by_weight))
+
+
 @contextmanager
 def weighted(branch: Branch, weights: Tensor) -> Iterator[None]:
     """Scale the branch's subbands by `weights` [C] within the block: Adam's steps are then alike for all channels."""
@@ -51,8 +71,9 @@ def finetune(
     run: Run,
     basis_rate: float = BASIS_RATE,
     weight_decay: float = Generalisation.weight_decay,
+    error: Callable[[Bands, Bands], Tensor] = subband_loss,
 ) -> None:
-    """Train bases and MLP together on the paper's loss over weighted subbands."""
+    """Train bases and MLP together on an error of weighted subbands, by default the paper's loss."""
     schedule = schedule.over(len(inputs))
 
     def loss(model: nn.Module) -> Tensor:
@@ -60,7 +81,7 @@ def finetune(
             ll, d3, d2 = (band.to(run.device) for band in bands(share.rows))
             scale = weights[:, None, None]
             predicted = model(inputs[share.rows.to(inputs.device)])
-            return subband_loss(predicted, Bands(ll * scale, d3 * scale, d2 * scale))
+            return error(predicted, Bands(ll * scale, d3 * scale, d2 * scale))
 
         return run.processes.mean_loss(draw_frames(len(inputs), schedule, run), part, frames=len(inputs))
 

@@ -77,6 +77,7 @@ class Settings:
     sweeps: int  # of alternating least squares
     regression: Schedule
     finetune: Schedule
+    pictures: int = 0  # in which fine-tuning's weights are measured; without any, it descends the paper's loss
     generalisation: Generalisation = Generalisation()
     seed: int = 0
     start: Literal["closed form", "random"] = "closed form"
@@ -92,7 +93,8 @@ PRESETS = {
         hidden=128,
         sweeps=10,
         regression=Schedule(steps=4000, batch=256, lr=3e-3, epochs=2000),
-        finetune=Schedule(steps=2000, batch=16, lr=5e-4, warm_up=0.1, epochs=20),
+        finetune=Schedule(steps=2000, batch=16, lr=5e-4, warm_up=0.1, epochs=25),
+        pictures=12,
     ),
     "preview": Settings(
         texels=384,
@@ -104,6 +106,7 @@ PRESETS = {
         sweeps=15,
         regression=Schedule(steps=4000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=1000, batch=16, lr=5e-4, warm_up=0.1, epochs=20),
+        pictures=32,
     ),
     "paper": Settings(
         texels=768,
@@ -115,6 +118,7 @@ PRESETS = {
         sweeps=20,
         regression=Schedule(steps=20000, batch=512, lr=2e-3, epochs=3000),
         finetune=Schedule(steps=5000, batch=64, lr=5e-4, warm_up=0.1, epochs=20),
+        pictures=64,
     ),
 }
 

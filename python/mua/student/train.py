@@ -1,6 +1,7 @@
 """Distillation of training frames into a student: closed-form start, regression, fine-tuning."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -16,13 +17,14 @@ from mua.student.branches import each_branch, side_by_side
 from mua.student.coarse import fit_coarse
 from mua.student.conditioned import fold
 from mua.student.factorize import blendshapes, separable_blendshapes
-from mua.student.finetune import finetune
+from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
 from mua.student.local import Parts, texture_locality
 from mua.student.model import Alphas, Branch, Student, outer_products
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
 from mua.student.regress import regress, squared_error
+from mua.student.sensitivity import STAGE as SENSITIVITIES
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
 from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
@@ -30,6 +32,8 @@ from mua.teachers.bones import figure_scale
 from mua.wavelets import Bands
 
 BRANCHES = ("geometry", "appearance")
+# What bases learn from pictures holds for unseen motion too, while faster MLPs learn the frames by heart.
+SEEN_BASIS_RATE = 12.0  # learning rate of the bases relative to that of the MLP
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +45,7 @@ class Samples:
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
+    sensitivities: Callable[[Run], Bands] | None = None  # of pictures to samples; without them, the paper's loss counts
 
     def __len__(self) -> int:
         return len(self.descriptors)
@@ -74,12 +79,14 @@ def train(
     inputs = student.normalize(samples.descriptors.to(device))
     random = settings.start == "random"
     start = fit_coarse_from_noise if random else partial(fit_coarse, parts=samples.parts)
-    fit = fit_branch_from_noise if random else partial(fit_branch, parts=samples.parts, until=only)
     if only in (None, "coarse"):
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
     release_memory()
     if only == "coarse":
         return
+    seen = None if random or only not in (None, "fine-tuning") else _sensitivities(samples, run.alone(SENSITIVITIES))
+    learn = partial(fit_branch, parts=samples.parts, until=only, sensitivities=seen)
+    fit = fit_branch_from_noise if random else learn
 
     def teach(name: str, branch: Branch, channels: slice, run: Run) -> None:
         source = hold(
@@ -101,6 +108,14 @@ def train(
     student.requires_grad_(False).eval()
 
 
+def _sensitivities(samples: Samples, run: Run) -> Bands | None:
+    """What the samples measure, kept for a run that goes on; None where they measure nothing."""
+    measure = samples.sensitivities
+    if measure is None:
+        return None
+    return Bands(**run.once(SENSITIVITIES, lambda: measure(run)._asdict()))
+
+
 def _silent(_: Progress) -> None:
     pass
 
@@ -116,6 +131,7 @@ def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
         "fine-tuning": ("fine-tuning",),
     }
     kept = {stage: tuple(f"{name} {end}" for end in ends for name in BRANCHES) for stage, ends in endings.items()}
+    kept["fine-tuning"] = (SENSITIVITIES, *kept["fine-tuning"])
     return {"coarse": ("coarse components", "coarse mesh whitening", "coarse mesh"), **kept}
 
 
@@ -145,6 +161,7 @@ def fit_branch(
     run: Run,
     parts: Parts | None = None,
     until: StageName | None = None,
+    sensitivities: Bands | None = None,  # of pictures to the samples of all 23 channels, of one frame
 ) -> None:
     """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
 
@@ -156,6 +173,10 @@ def fit_branch(
     if until in ("bases", "regression"):
         return
     release_memory()
+    error, basis_rate = subband_loss, BASIS_RATE
+    if sensitivities is not None:
+        error = partial(picture_loss, sensitivities=relative(sensitivities.of(channels), weights))
+        basis_rate = SEEN_BASIS_RATE
     stage = f"{name} fine-tuning"
     finetune(
         branch,
@@ -166,6 +187,8 @@ def fit_branch(
         stage=stage,
         run=run.alone(stage),
         weight_decay=settings.generalisation.weight_decay,
+        basis_rate=basis_rate,
+        error=error,
     )
     fold(branch)
 

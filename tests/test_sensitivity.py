@@ -1,0 +1,157 @@
+"""By how much pictures change with a sample of the subbands, against pictures of subbands that were changed."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from compared import SETTINGS
+from synthetic_student import quick, same
+
+from mua.arrays import Array
+from mua.camera import orbit
+from mua.channels import ATTRIBUTES, CHANNELS
+from mua.checkpoint import Checkpoints
+from mua.decode import box_of
+from mua.recording import Recording
+from mua.splatting.posing import TorchRig, pose_splats
+from mua.splatting.projection import Eye
+from mua.splatting.rasterise import rasterise
+from mua.student import distil as distillation
+from mua.student import sensitivity
+from mua.student.distil import distil
+from mua.student.finetune import picture_loss, relative
+from mua.student.model import Student, lowpass_texels
+from mua.student.optimise import Progress, Run
+from mua.student.sensitivity import GOLDEN, measure_sensitivities
+from mua.wavelets import Bands
+
+CPU = torch.device("cpu")
+SIDE = 40  # pixels
+DRAWS = 150  # of random signs
+SAMPLING = 0.25  # four standard errors of their mean square, over a channel's samples
+STEP = {10: 1e-2, 11: 1e-2, 0: 1e-5}  # of the channels that are changed: opacity, red, an offset
+
+
+class Quiet:
+    def __init__(self) -> None:
+        self.stages: list[str] = []
+
+    def stage(self, name: str) -> None:
+        self.stages.append(name)
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        pass
+
+
+def run(tmp_path: Path, seed: int = 0) -> Run:
+    return Run(torch.Generator().manual_seed(seed), Checkpoints(tmp_path, "key"), lambda _: None, CPU)
+
+
+def changed_pictures(recording: Recording, channel: int, step: float) -> Array:
+    """Mean squared change of a picture of the first frame, for each sample of a channel's LL and D3, over `step`."""
+    size, clip = recording.rig.texels.size // 16, recording.clips[0]
+    mean = torch.from_numpy(recording.mean_texture()).double()
+    pose, rig = clip.pose(clip.recorded[0]), TorchRig.of(recording.rig, mean)
+    joints = torch.from_numpy(recording.rig.skeleton.skinning(pose.rotations, pose.translations)).double()
+    mesh = torch.from_numpy(recording.meshes([0])[0]).double()
+    texels = torch.from_numpy(recording.rig.texels.texels).long()
+    box = box_of(pose_splats(rig, joints, mesh, mean).centres.numpy())
+    camera = orbit(box, screen=(SIDE, SIDE), azimuth=GOLDEN, elevation=0.0)
+
+    def picture(bands: Bands) -> torch.Tensor:
+        texture = lowpass_texels(bands, recording.wavelet, texels)[0].T + mean
+        splats = pose_splats(rig, joints, mesh, texture)
+        return rasterise(splats, Eye.of(camera, mean), torch.from_numpy(box), torch.zeros(3).double())
+
+    changes = []
+    for band in range(4):
+        for place in np.ndindex(size, size):
+            pictures = []
+            for sign in (-1, 1):
+                zero = (torch.zeros(shape, dtype=torch.float64) for shape in _shapes(size))
+                bands = Bands(*zero)
+                chosen = bands.ll[0] if band == 0 else bands.d3[0, band - 1]
+                chosen[(channel, *place)] = sign * step
+                pictures.append(picture(bands))
+            changes.append(((pictures[1] - pictures[0]) / (2 * step)).square().mean().item())
+    return np.array(changes)
+
+
+def _shapes(size: int) -> list[tuple[int, ...]]:
+    fine = 2 * size
+    return [(1, CHANNELS, size, size), (1, 3, CHANNELS, size, size), (1, 3, CHANNELS, fine, fine)]
+
+
+def test_a_sample_counts_for_what_a_unit_of_it_changes_in_pictures(
+    smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sensitivity, "SIDE", SIDE)
+    one_frame = [measure_sensitivities(smooth_recording, 1, run(tmp_path, seed)).ll.square() for seed in range(DRAWS)]
+    found = torch.stack(one_frame).mean((0, 1, 3, 4))
+    for channel, step in STEP.items():
+        expected = changed_pictures(smooth_recording, channel, step).mean()
+        np.testing.assert_allclose(found[channel], expected, rtol=SAMPLING)
+
+
+def test_the_channels_of_an_attribute_are_seen_at_the_same_samples(smooth_recording: Recording, tmp_path: Path) -> None:
+    measured = measure_sensitivities(smooth_recording, 2, run(tmp_path))
+    for band in (measured.ll[0], measured.d2[0, 0]):
+        for own in ATTRIBUTES.values():
+            pattern = band[own] / band[own].square().mean((1, 2), keepdim=True).sqrt()
+            torch.testing.assert_close(pattern, pattern[:1].expand_as(pattern))
+        assert (band > 0).all()  # other pictures may show what these do not
+
+
+def test_the_loss_is_that_of_pictures_to_first_order() -> None:
+    rng = torch.Generator().manual_seed(0)
+    truth, predicted = (Bands(*(torch.randn(5, *s[1:], generator=rng) for s in _shapes(2))) for _ in range(2))
+    counts = Bands(*(torch.rand(1, *s[1:], generator=rng) for s in _shapes(2)))
+    errors = [((a - b) * c).flatten() for a, b, c in zip(predicted, truth, counts, strict=True)]
+    torch.testing.assert_close(picture_loss(predicted, truth, counts), torch.cat(errors).square().mean())
+
+
+def test_sensitivities_to_weighted_subbands_have_a_mean_square_of_one() -> None:
+    rng = torch.Generator().manual_seed(0)
+    counts, weights = Bands(*(torch.rand(s, generator=rng) for s in _shapes(2))), torch.rand(23, generator=rng) + 0.1
+    found = relative(counts, weights)
+    torch.testing.assert_close(torch.cat([band.flatten() for band in found]).square().mean(), torch.tensor(1.0))
+    ratio = found.ll * weights[:, None, None] / counts.ll
+    torch.testing.assert_close(ratio, ratio[:1, :1, :1, :1].expand_as(ratio))
+
+
+def distilled(recording: Recording, directory: Path, *, pictures: int, heard: Quiet | None = None) -> Student:
+    settings = replace(quick(SETTINGS), pictures=pictures)
+    return distil(recording, settings, device=CPU, directory=directory, report=heard or Quiet())
+
+
+def test_sensitivities_are_measured_once_and_end_in_the_same_bytes(
+    smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = distilled(smooth_recording, tmp_path, pictures=2)
+    for kept in tmp_path.glob("* fine-tuning.pt"):
+        kept.unlink()
+
+    def again(recording: Recording, pictures: int, run: Run) -> Bands:
+        raise AssertionError("measured twice")
+
+    monkeypatch.setattr(distillation, "measure_sensitivities", again)
+    assert same(first, distilled(smooth_recording, tmp_path, pictures=2))
+    with pytest.raises(AssertionError, match="measured twice"):
+        distilled(smooth_recording, tmp_path, pictures=3)  # another run
+
+
+def test_pictures_change_what_fine_tuning_ends_in(smooth_recording: Recording, tmp_path: Path) -> None:
+    heard = Quiet()
+    measured = distilled(smooth_recording, tmp_path / "a", pictures=2, heard=heard)
+    assert sensitivity.STAGE in heard.stages
+    without = distilled(smooth_recording, tmp_path / "b", pictures=0)
+    for one, other in zip(measured.branches, without.branches, strict=True):
+        assert not torch.equal(one.ll_basis, other.ll_basis)
+
+
+def test_every_picture_is_reported(smooth_recording: Recording, tmp_path: Path) -> None:
+    told: list[Progress] = []
+    measure_sensitivities(smooth_recording, 3, replace(run(tmp_path), report=told.append))
+    assert [(one.step, one.steps) for one in told] == [(1, 3), (2, 3), (3, 3)]
