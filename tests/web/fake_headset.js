@@ -25,6 +25,7 @@
     async end() {
       if (this.ended) throw new DOMException("The session has ended", "InvalidStateError");
       this.ended = true;
+      await new Promise((done) => setTimeout(done)); // as a browser, which tells it a little later
       this.dispatchEvent(new Event("end"));
     }
   }

@@ -181,6 +181,14 @@ def test_two_eyes_side_by_side_are_those_of_the_desktop(opened: Open, device: De
     assert min(found.values()) > LEAST_PSNR, found
 
 
+def test_a_picture_too_narrow_for_two_eyes_is_one(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    page.evaluate("(player.canvas.width = 1, player.stereo = true, player.draw())")
+    assert transparent(page).shape == (SCREEN[1], 1, 4)
+    assert page.evaluate("faults") == []
+
+
 def test_two_eyes_see_all_of_what_is_framed(opened: Open, small: Path) -> None:
     page, half = opened(a=small.read_bytes()), SCREEN[0] // 2
     assert load(page) == ""

@@ -45,6 +45,13 @@ def eye_to_clip(aside: float) -> Array:
     )
 
 
+def projection_of(clip: Array) -> Array:
+    """The same with z of -w to w, as cameras have it."""
+    projection = clip.copy()
+    projection[2] = 2 * clip[2] - clip[3]
+    return projection
+
+
 def room_to_eye(aside: float) -> Array:
     """[4, 4] of a head at 0.9 m that looks a little down and to the side."""
     (cy, sy), (cx, sx) = [(np.cos(angle), np.sin(angle)) for angle in (0.05, 0.1)]
@@ -88,14 +95,10 @@ def world_to_room(file: Path) -> Array:
 def desktop(device: Device, file: Path, eyes: Sequence[tuple[Array, Array]], shown: str) -> Array:
     """The desktop player's picture for these eyes, side by side over the empty room, [H, E W, 3] of 0 to 1."""
     buffers, room = AvatarBuffers(device, file), world_to_room(file)
-    clip = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
-    cameras = []
-    for view, clip_space in eyes:
-        projection = clip_space.copy()
-        projection[2] = 2 * clip_space[2] - clip_space[3]  # z of -w to w
-        cameras.append(Camera(view @ room, projection, SCREEN))
+    cameras = [Camera(view @ room, projection_of(clip), SCREEN) for view, clip in eyes]
+    played = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
     levels = Levels(buffers.avatar, FULL)
-    return over(Offscreen(device, buffers, clip, SHOWN[shown], levels=levels).picture(FRAME, cameras), BACKDROP) / 255
+    return over(Offscreen(device, buffers, played, SHOWN[shown], levels=levels).picture(FRAME, cameras), BACKDROP) / 255
 
 
 def image(page: Page, eye: int) -> Array:
@@ -128,6 +131,31 @@ def test_each_eye_is_shown_what_the_desktop_would_draw_for_it(
     assert np.abs(expected - BACKDROP).max() > 0.2, "the figure is in the picture"
     assert np.abs(found[0] - found[1]).max() > 8 / 255
     assert found[0][:6].max() == 0, "nothing is drawn beside what the eye sees"
+
+
+def test_an_eye_of_a_headset_has_the_matrices_of_a_camera(opened: Open) -> None:
+    (view, clip), room = EYES[0], room_to_eye(0.3)
+    eye = f"eyeInRoom({columns(room.T)}, {given(EYES)}[0], {list(SCREEN)})"
+    found = opened().evaluate(f"import('./camera.js').then(({{ eyeInRoom }}) => {eye})")
+    expected = Camera(view @ room, projection_of(clip), SCREEN)
+    assert found["near"] == pytest.approx(NEAR)
+    np.testing.assert_allclose(found["view"], expected.view.ravel(), atol=1e-12)
+    np.testing.assert_allclose(found["projection"], expected.projection.ravel(), atol=1e-12)
+    np.testing.assert_allclose(found["viewProjection"], (clip @ expected.view).ravel(), atol=1e-12)
+    np.testing.assert_allclose(found["position"], expected.position, atol=1e-12)
+
+
+@pytest.mark.parametrize("follow", [False, True])
+def test_the_room_goes_with_a_figure_that_is_followed(opened: Open, small: Path, follow: bool) -> None:
+    page, rate = opened(before=FAKE, a=small.read_bytes()), read(small).encoding.rate
+    assert load(page) == ""
+    page.evaluate(f"(player.follow = {json.dumps(follow)}, player.time = 0, player.enterVR())")
+    place = "player.room.headset.asks.room()"
+    before = page.evaluate(place)
+    page.evaluate(f"player.time = {FRAME / rate}")
+    moved, walked = np.subtract(page.evaluate(place), before), page.evaluate("player.followed()")
+    np.testing.assert_allclose(moved.reshape(4, 4)[:3, 3], np.multiply(walked, -1), atol=1e-12)
+    assert bool(np.abs(walked).max() > 1e-4) is follow
 
 
 def test_a_headset_of_one_eye_is_shown_one(opened: Open, device: Device, small: Path) -> None:
@@ -171,6 +199,7 @@ def test_the_page_has_its_picture_again_when_the_session_ends(opened: Open, smal
     assert page.evaluate("[player.vr, said]") == [True, [True]]
     held, drawn = page.evaluate("[player.room.headset.memory.textures.length, drawn]")
     page.evaluate(f"(globalThis.was = player.room.headset, {how})")
+    page.wait("!player.vr")
     assert page.evaluate("[player.vr, said]") == [False, [True, False]]
     assert page.evaluate("drawn") == drawn + 1
     assert page.evaluate("JSON.stringify(player.look.camera)") == camera
@@ -200,7 +229,8 @@ def test_a_picture_that_cannot_be_drawn_leaves_the_headset_and_is_told(opened: O
     page = opened(before=FAKE, a=small.read_bytes())
     enter(page, small)
     page.evaluate(f"(headset.session.state.layers = [], headset.show(1000, {given(EYES)}))")
-    assert page.evaluate("[player.vr, headset.session.ended]") == [False, True]
+    page.wait("!player.vr")
+    assert page.evaluate("headset.session.ended")
     assert page.evaluate("faults") == ["The avatar cannot be drawn: Not a layer of this session"]
 
 
@@ -214,7 +244,7 @@ def test_what_is_disposed_of_leaves_the_headset(opened: Open, small: Path) -> No
     page = opened(before=FAKE, a=small.read_bytes())
     enter(page, small)
     page.evaluate("player.dispose()")
-    assert page.evaluate("[headset.session.ended, player.vr]") == [True, False]
+    page.wait("headset.session.ended && !player.vr")
 
 
 def test_a_lost_device_leaves_the_headset(opened: Open, small: Path) -> None:
@@ -222,8 +252,18 @@ def test_a_lost_device_leaves_the_headset(opened: Open, small: Path) -> None:
     enter(page, small)
     page.evaluate("new Promise((resolve) => setTimeout(resolve, 2100))")  # a device lost at once is given up
     page.evaluate('lose("unknown")')
-    page.wait("headset.session.ended && player.bytes > 0")
-    assert page.evaluate("[player.vr, faults]") == [False, []]
+    page.wait("headset.session.ended && player.bytes > 0 && !player.vr")
+    assert page.evaluate("faults") == []
+
+
+def test_a_headset_that_is_being_left_is_shown_no_more(opened: Open, small: Path) -> None:
+    page = opened(before=FAKE, a=small.read_bytes())
+    enter(page, small)
+    page.evaluate(f"headset.show(1000, {given(EYES)})")
+    before = image(page, 0)
+    page.evaluate(f"(player.leaveVR(), headset.show(1100, {given(EYES[::-1])}))")
+    page.wait("!player.vr")
+    np.testing.assert_array_equal(image(page, 0), before)
 
 
 OFFERED = "import('./player.js').then(({ offersVR }) => offersVR())"

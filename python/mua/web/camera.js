@@ -35,8 +35,8 @@ export function cameraOf({ azimuth, elevation, distance, target, fov }, screen) 
  * @param {CameraState} state @param {boolean} stereo @param {[number, number]} size @returns {Camera[]}
  */
 export function camerasOf(state, stereo, [width, height]) {
-  if (!stereo) return [cameraOf(state, [width, height])];
-  const { view, projection, screen, near } = cameraOf(state, [Math.max(Math.floor(width / 2), 1), height]);
+  if (!stereo || width < 2) return [cameraOf(state, [width, height])];
+  const { view, projection, screen, near } = cameraOf(state, [Math.floor(width / 2), height]);
   return [EYE_DISTANCE / 2, -EYE_DISTANCE / 2].map((aside) => {
     const moved = view.map((value, i) => (i === 3 ? value + aside : value));
     return eyeOf(moved, projection, screen, near);

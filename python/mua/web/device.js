@@ -5,7 +5,7 @@ import { offersVR } from "./webxr.js";
 
 const ALIGNMENT = 256; // bytes; no device asks for more between the constants of two dispatches
 const CAPACITY = 1 << 18; // bytes: a thousand dispatches may wait for one submit
-const RAISED_LIMITS = ["maxBufferSize", "maxStorageBufferBindingSize"]; // as much as the device has
+const RAISED_LIMITS = ["maxBufferSize", "maxStorageBufferBindingSize", "maxTextureDimension2D"]; // as much as the device has
 const LEAST_BUFFERS = 8; // that one stage binds
 
 /** An open device, counting what it holds. */

@@ -55,6 +55,7 @@ export class Headset {
     this.session = session;
     this.space = space; // the reader's, its origin on the floor
     this.asks = asks;
+    this.left = false;
     this.binding = bindingOf(session, device.gpu);
     this.format = this.binding.getPreferredColorFormat();
     this.layer = this.binding.createProjectionLayer({ colorFormat: this.format });
@@ -68,6 +69,7 @@ export class Headset {
 
   /** @param {number} now milliseconds @param {import("./webxr.js").Frame} frame */
   frame(now, frame) {
+    if (this.left) return; // it ends as soon as the browser has ended it; the device may be gone
     this.session.requestAnimationFrame((then, next) => this.frame(then, next));
     const views = frame.getViewerPose(this.space)?.views;
     if (!views?.length) return; // nobody knows where the reader's head is
@@ -123,6 +125,7 @@ export class Headset {
   }
 
   leave() {
+    this.left = true;
     this.session.end().catch(() => {}); // it has ended
   }
 
