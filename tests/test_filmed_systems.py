@@ -15,6 +15,7 @@ from mua.compare import filmed_systems
 from mua.compare.cost import Cost, learnt_cost
 from mua.compare.curve import COSTS, curve, points
 from mua.compare.filmed import TRAINED, UNSEEN, FilmedEntry, Judged, Likeness, Shot
+from mua.compare.filmed_report import sheet_names, student_of
 from mua.compare.filmed_systems import STEPS_OF_TWO, Sized, cost_of, largest_within, sized, trained_entries
 from mua.compare.network import Forgetful
 from mua.compare.standing import best, sentences, standings
@@ -144,6 +145,13 @@ def test_ours_stands_among_systems_that_cost_at_most_as_much() -> None:
     assert standings(views(), [one for one in ENTRIES if one.system != "ours"]) == []
     assert standings(views(), ENTRIES[:4]) == []
     assert best(views(), [], TRAINED) is None
+
+
+def test_a_sheet_shows_what_is_no_system_then_ours_then_the_rival() -> None:
+    assert sheet_names(ENTRIES[::-1], "small") == ["file", "teacher", "ours", "small"]
+    assert sheet_names(ENTRIES[:2], None) == ["teacher", "file"]
+    assert student_of(ENTRIES).name == "ours"
+    assert student_of(ENTRIES[:2]).name == "file"
 
 
 def test_the_curve_has_a_point_for_each_size_of_a_system(tmp_path: Path) -> None:

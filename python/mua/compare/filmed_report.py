@@ -102,8 +102,8 @@ def student_of(entries: Sequence[FilmedEntry]) -> FilmedEntry:
 
 def sheet_names(entries: Sequence[FilmedEntry], rival: str | None) -> list[str]:
     """Whose pictures stand beside the image: all that is no system, ours, and the rival."""
-    student = student_of(entries).name
-    return [one.name for one in entries if not one.system or one.name in (student, rival)]
+    shown = [one.name for one in entries if not one.system]
+    return list(dict.fromkeys([*shown, student_of(entries).name, *([rival] if rival else [])]))
 
 
 def contact_sheet(judged: Sequence[Judged], split: str, names: Sequence[str], student: str) -> Image.Image | None:
