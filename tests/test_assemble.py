@@ -59,3 +59,40 @@ def test_first_of_equal_keeps_the_order_of_appearance() -> None:
 def test_scene_without_triangles_is_refused(parts: tuple[Part, ...]) -> None:
     with pytest.raises(InputError, match=r"body\.glb: no skinned mesh"):
         assemble(scene(parts=parts), HERE)
+
+
+def boxes(*, wound: tuple[int, ...]) -> Part:
+    """Boxes of 1, 2, 3, ... along a side beside each other, 1 wound outward and -1 inward; each corner has a UV."""
+    sides = [[1, 3, 2, 0], [6, 7, 5, 4], [4, 5, 1, 0], [3, 7, 6, 2], [2, 6, 4, 0], [5, 7, 3, 1]]
+    triangles = np.array([[a, b, c] for a, b, c, d in sides] + [[a, c, d] for a, b, c, d in sides])
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    places = np.concatenate([(k + 1) * corners + [10 * k + 100, 0, 0] for k in range(len(wound))])
+    faces = np.concatenate([triangles[:, ::way] + 8 * k for k, way in enumerate(wound)])
+    uv = places[:, :2] / 200
+    count = len(places)
+    return replace(
+        part(),
+        positions=places,
+        faces=faces,
+        uv=uv,
+        uv_faces=faces,
+        joints=np.zeros((count, 1), int),
+        weights=np.ones((count, 1)),
+    )
+
+
+def test_closed_pieces_wound_inside_out_are_turned() -> None:
+    """With their texture coordinates; the others stay as they are."""
+    mixed, outward = (assemble(scene(parts=(boxes(wound=wound),)), HERE) for wound in ((1, -1, -1), (1, 1, 1)))
+    np.testing.assert_array_equal(mixed.faces, outward.faces)
+    np.testing.assert_array_equal(mixed.uv[mixed.uv_faces], outward.uv[outward.uv_faces])
+    assert "24 triangles of closed pieces are wound inside out and are turned." in mixed.notes
+    assert not any("wound" in note for note in outward.notes)
+
+
+@pytest.mark.parametrize("change", ["open", "not alike"])
+def test_a_piece_without_an_inside_stays_as_it_is(change: str) -> None:
+    box = boxes(wound=(-1,))
+    faces = box.faces[1:] if change == "open" else np.concatenate([box.faces[:1, ::-1], box.faces[1:]])
+    surfaces = assemble(scene(parts=(replace(box, faces=faces, uv_faces=faces),)), HERE)
+    np.testing.assert_array_equal(surfaces.vertices[surfaces.faces], box.positions[faces])

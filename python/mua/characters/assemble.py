@@ -12,6 +12,7 @@ from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.correction import check_scales, corrected
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
+from mua.characters.winding import inside_out
 from mua.errors import InputError
 from mua.rig.character import MAX_INFLUENCES
 from mua.scene import Part, Scene, Source, without
@@ -61,7 +62,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
         bind = bind_pose(scene)
         mesh = _merge(scene, bind)
     size_notes = tuple(f"{note} {OTHER_SIZE}" for note in change.size_notes)
-    mesh = _weld(mesh)
+    mesh = _outward(_weld(mesh))
     rigged = rigid_skeleton(scene, bind)
     joint_of_node = np.zeros(len(scene.parents), np.int32)
     joint_of_node[rigged.nodes] = np.arange(len(rigged.nodes))
@@ -220,6 +221,18 @@ def _weld(mesh: _Mesh) -> _Mesh:
         colors=mesh.colors[kept],
         notes=(*mesh.notes, *told),
     )
+
+
+def _outward(mesh: _Mesh) -> _Mesh:
+    """Turn the triangles of closed pieces that are wound inside out: splats are sunk and lit by where these face."""
+    turned = inside_out(mesh.vertices, mesh.faces)
+    if not turned.any():
+        return mesh
+    faces, uv_faces, colors = mesh.faces.copy(), mesh.uv_faces.copy(), mesh.colors.copy()
+    for corners in (faces, uv_faces, colors):
+        corners[turned] = corners[turned][:, ::-1]
+    told = f"{np.count_nonzero(turned):,} triangles of closed pieces are wound inside out and are turned."
+    return replace(mesh, faces=faces, uv_faces=uv_faces, colors=colors, notes=(*mesh.notes, told))
 
 
 def first_of_equal(rows: Array) -> tuple[Array, Array]:
