@@ -20,11 +20,12 @@ from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
 from mua.student import distil as distillation
 from mua.student import sensitivity
+from mua.student import train as training
 from mua.student.distil import distil
 from mua.student.finetune import picture_loss, relative
 from mua.student.model import Student, lowpass_texels
 from mua.student.optimise import Progress, Run
-from mua.student.sensitivity import GOLDEN, measure_sensitivities
+from mua.student.sensitivity import GOLDEN, LEAST, measure_sensitivities, shared_pattern
 from mua.wavelets import Bands
 
 CPU = torch.device("cpu")
@@ -101,7 +102,14 @@ def test_the_channels_of_an_attribute_are_seen_at_the_same_samples(smooth_record
         for own in ATTRIBUTES.values():
             pattern = band[own] / band[own].square().mean((1, 2), keepdim=True).sqrt()
             torch.testing.assert_close(pattern, pattern[:1].expand_as(pattern))
-        assert (band > 0).all()  # other pictures may show what these do not
+
+
+def test_what_no_picture_shows_counts_a_little() -> None:
+    squares = torch.rand(CHANNELS, 4, 4, generator=torch.Generator().manual_seed(0))
+    squares[:, 2, 1] = 0
+    found = shared_pattern(squares)
+    torch.testing.assert_close(found[:, 2, 1], LEAST * squares.mean((1, 2)))
+    assert torch.isfinite(shared_pattern(torch.zeros_like(squares))).all()
 
 
 def test_the_loss_is_that_of_pictures_to_first_order() -> None:
@@ -149,6 +157,17 @@ def test_pictures_change_what_fine_tuning_ends_in(smooth_recording: Recording, t
     without = distilled(smooth_recording, tmp_path / "b", pictures=0)
     for one, other in zip(measured.branches, without.branches, strict=True):
         assert not torch.equal(one.ll_basis, other.ll_basis)
+
+
+def test_bases_learn_from_pictures_at_a_rate_of_their_own(
+    smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    students = []
+    for rate in (0.0, training.SEEN_BASIS_RATE):
+        monkeypatch.setattr(training, "SEEN_BASIS_RATE", rate)
+        students.append(distilled(smooth_recording, tmp_path / str(rate), pictures=2))
+    for still, moved in zip(*(student.branches for student in students), strict=True):
+        assert not torch.equal(still.ll_basis, moved.ll_basis)
 
 
 def test_every_picture_is_reported(smooth_recording: Recording, tmp_path: Path) -> None:

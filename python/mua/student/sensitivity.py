@@ -50,7 +50,7 @@ def measure_sensitivities(recording: Recording, pictures: int, run: Run) -> Band
         total = Bands(*(one + other for one, other in zip(total, squares, strict=True)))
         run.report(Progress(STAGE, number, pictures, None, number / (time.monotonic() - started)))
     coarse = (total.ll + total.d3.sum(0)) / 4
-    ll, d2 = (_shared(band / pictures).sqrt()[None] for band in (coarse, total.d2.mean(0)))
+    ll, d2 = (shared_pattern(band / pictures).sqrt()[None] for band in (coarse, total.d2.mean(0)))
     return Bands(ll, ll[:, None], d2[:, None])
 
 
@@ -87,7 +87,7 @@ def _squares(
     return Bands(*(band.grad.square() for band in away if band.grad is not None))
 
 
-def _shared(
+def shared_pattern(
     squares: Tensor,  # [23, h, w] by channel and sample
 ) -> Tensor:
     """The same with one pattern over samples for all channels of an attribute, which are seen where it is."""
