@@ -20,7 +20,7 @@ from mua.asset.flatbuffer import FormatError
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode
 from mua.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
-from mua.coarser import at_level, coarsest, texel_length
+from mua.coarser import REACH, at_level, coarsest, texel_length
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
 from mua.level_choice import texel_pixels
@@ -177,13 +177,37 @@ def test_levels_without_details_become_the_same_filter(tmp_path: Path, wavelet: 
         np.testing.assert_allclose(filtered["taps"], taps.ravel(), rtol=EXACT, atol=EXACT)
 
 
-@pytest.mark.parametrize("made", [synthetic_avatar, lambda: sparse_avatar(4)], ids=["full", "sparse"])
-def test_coarser_levels_are_those_of_python(tmp_path: Path, made: Any) -> None:
+def scattered() -> Avatar:
+    """Texels far apart in space beside each other in the texture, and rotations of either sign."""
+    avatar, rng = synthetic_avatar(), np.random.default_rng(2)
+    static = avatar.geometry.static.copy()
+    static[0] += rng.choice([0, 3 * REACH * texel_length(avatar)], static.shape[1])
+    static[3:7] = 0.9 * rng.choice([-1, 1], static.shape[1]) + 0.1 * static[3:7]
+    return replace(avatar, geometry=replace(avatar.geometry, static=static))
+
+
+def with_taps(taps: int) -> Avatar:
+    avatar = synthetic_avatar()
+    filters = {name: np.pad(getattr(avatar.wavelet, name), (taps - 10) // 2) for name in ("rec_lo", "rec_hi")}
+    return replace(avatar, wavelet=replace(avatar.wavelet, **filters))
+
+
+COARSER: dict[str, Any] = {
+    "full": synthetic_avatar,
+    "sparse": lambda: sparse_avatar(4),
+    "scattered": scattered,
+    "as many taps as may be": lambda: with_taps(32),
+    "too many taps": lambda: with_taps(34),
+}
+
+
+@pytest.mark.parametrize("made", COARSER)
+def test_coarser_levels_are_those_of_python(tmp_path: Path, made: str) -> None:
     path = tmp_path / "a.muaavatar"
-    write(path, made())
+    write(path, COARSER[made](), storage="f32")
     avatar, [found] = read(path), node("levels", path)
-    assert len(found) == coarsest(avatar) == 2
-    counts = [len(at_level(avatar, number).rig.texels.texels) for number in range(3)]
+    assert len(found) == coarsest(avatar) == (0 if made == "too many taps" else 2)
+    counts = [len(at_level(avatar, number).rig.texels.texels) for number in range(len(found) + 1)]
     assert node("values", path, 0)[0]["counts"] == counts
     for number, level in enumerate(found, 1):
         expected = at_level(avatar, number)
