@@ -12,7 +12,7 @@ from synthetic_avatar import synthetic_avatar
 from mua import rotation
 from mua.camera import Camera, orbit, perspective
 from mua.decode import Splats, decode_clip_frame
-from mua.kernels.splat_project import REACH
+from mua.kernels.splat_project import LEAST_OPACITY, REACH
 from mua.rendering import render_premultiplied
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, rasterise_views
@@ -66,6 +66,14 @@ def test_the_picture_is_the_reference_renderers(count: int) -> None:
     expected = render_premultiplied(splats, camera())
     np.testing.assert_allclose(drawn(splats, camera()), expected, rtol=0, atol=2e-5)  # what a done pixel leaves out
     assert count == 0 or expected[..., 3].max() > 0.2
+
+
+def test_a_splat_that_changes_no_8_bit_picture_is_left_out() -> None:
+    splats = in_torch(random_splats(3))
+    opacities = torch.tensor([LEAST_OPACITY, np.nextafter(LEAST_OPACITY, 0), 0.5], dtype=torch.float64)
+    bounds = torch.stack([splats.centres.amin(dim=0), splats.centres.amax(dim=0)])
+    quads = project(replace(splats, opacities=opacities), Eye.of(camera(), splats.centres), bounds)
+    assert sorted(quads.splats.tolist()) == [0, 2]
 
 
 def test_one_sided_splats_are_left_out_where_the_reference_leaves_them_out() -> None:

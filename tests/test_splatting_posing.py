@@ -8,6 +8,7 @@ import torch
 from synthetic_avatar import synthetic_avatar
 
 from mua.decode import Splats, decode_clip_frame
+from mua.kernels.dq_skinning import LARGEST_LOG_SCALE
 from mua.model import Model
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import TorchSplats
@@ -38,6 +39,13 @@ def test_splats_are_those_of_the_reference(avatar: Model, decoded: Splats) -> No
     wanted["turns"] = decoded.texel_dq[:, :4]
     for name, values in wanted.items():
         np.testing.assert_allclose(getattr(splats, name).numpy(), values, rtol=1e-7, atol=1e-9, err_msg=name)
+
+
+def test_a_scale_is_held_where_players_hold_it(avatar: Model, decoded: Splats) -> None:
+    joints, canonical, texture = joints_of(avatar), torch.tensor(decoded.canonical), torch.tensor(decoded.texture)
+    texture[0, 7:10] = torch.tensor([LARGEST_LOG_SCALE - 1, LARGEST_LOG_SCALE, LARGEST_LOG_SCALE + 1])
+    found = pose_splats(TorchRig.of(avatar.rig, canonical), joints, canonical, texture).scales[0]
+    np.testing.assert_allclose(found.log(), [LARGEST_LOG_SCALE - 1, LARGEST_LOG_SCALE, LARGEST_LOG_SCALE], rtol=1e-12)
 
 
 def test_terms_on_the_other_hemisphere_change_nothing(avatar: Model, decoded: Splats) -> None:
