@@ -27,6 +27,7 @@ FAKE = (Path(__file__).parent / "fake_headset.js").read_text()
 BACKDROP = (0.44, 0.47, 0.5)  # sRGB of the empty room
 IMAGE, SEEN = (168, 128), (slice(6, 166), slice(4, 124))  # rows and columns: of an image, and of what an eye sees of it
 SCREEN = (120, 160)
+ROUNDED = 2 / 255  # two pictures of 8 bits, each rounded
 BEFORE = 1.2  # metres between the reader and what is nearest
 NEAR, FAR = 0.02, 1000.0
 FRAME, AZIMUTH = 3, 0.7
@@ -63,6 +64,7 @@ def room_to_eye(aside: float) -> Array:
 
 
 EYES = [(room_to_eye(aside), eye_to_clip(aside)) for aside in (-0.032, 0.032)]
+APART = [(room_to_eye(aside), eye_to_clip(aside / 2)) for aside in (-0.5, 0.5)]  # as no person's, to tell them apart
 
 
 def columns(matrix: Array) -> list[float]:
@@ -131,6 +133,15 @@ def test_each_eye_is_shown_what_the_desktop_would_draw_for_it(
     assert np.abs(expected - BACKDROP).max() > 0.2, "the figure is in the picture"
     assert np.abs(found[0] - found[1]).max() > 8 / 255
     assert found[0][:6].max() == 0, "nothing is drawn beside what the eye sees"
+
+
+def test_each_eye_has_colours_and_shapes_of_its_own(opened: Open, device: Device, small: Path) -> None:
+    page = opened(before=FAKE, a=small.read_bytes())
+    enter(page, small, "splats")
+    page.evaluate(f"headset.show(1000, {given(APART)})")
+    seen = np.concatenate([image(page, eye)[SEEN] for eye in range(2)], axis=1)
+    expected = desktop(device, small, APART, "splats")
+    assert np.abs(seen[..., :3] - expected).max() <= ROUNDED
 
 
 def test_an_eye_of_a_headset_has_the_matrices_of_a_camera(opened: Open) -> None:
