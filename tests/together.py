@@ -16,6 +16,9 @@ from unittest.mock import patch
 import torch
 import torch._dynamo  # which the first optimiser of a process would import
 from recordings import RATE, FormulaTeacher, plan
+from swinging import SETTINGS as TEMPLATE
+from swinging import outlines, swinging, tube_rig
+from swinging import trained as trained_template
 from synthetic_avatar import synthetic_rig
 from synthetic_student import SETTINGS, quick, train_in
 from taught import taught
@@ -82,6 +85,21 @@ def trained(
     return train_in(directory, RECIPES[name], report, processes=processes), losses
 
 
+def template_losses(
+    directory: Path, processes: Processes = ALONE
+) -> tuple[dict[str, torch.Tensor], dict[tuple[str, int], float | None]]:
+    """What a template learns from outlines by cameras that are drawn, and the loss of each stage and step."""
+    losses: dict[tuple[str, int], float | None] = {}
+    rig, few = tube_rig(), Schedule(steps=8, batch=3, lr=1e-2)
+    seen = replace(swinging(rig, outlines(rig)), drawn=1)
+
+    def report(progress: Progress) -> None:
+        losses[progress.stage, progress.step] = progress.loss
+
+    settings = replace(TEMPLATE, nodes=few, offsets=few)
+    return trained_template(seen, rig, settings, directory, report, processes=processes).state_dict(), losses
+
+
 def _train(directory: Path, processes: Processes, *names: str) -> None:
     for name in names:
         student, losses = trained(name, directory / name, processes)
@@ -120,6 +138,8 @@ def main(program: str, directory: Path) -> None:
                 directory / "teacher", lambda one: losses.update({(one.stage, one.step): one.loss}), processes=processes
             )
             torch.save((lesson.state_dict(), losses), directory / f"teach.{processes.rank}.pt")
+        elif program == "template":
+            torch.save(template_losses(directory / "template", processes), directory / f"template.{processes.rank}.pt")
         elif program == "record":
             teacher = FormulaTeacher(synthetic_rig())
             record_together(teacher, plan(teacher.rig), directory / "recording", processes=processes, rate=RATE)

@@ -28,6 +28,7 @@ from mua.teaching.template import DrivableTemplate
 from mua.teaching.track_losses import Tracks, track_error
 
 STAGES = ("template nodes", "template offsets")
+SEEDS = 1 << 62
 UNIT = 0.01  # metres on a person: an error of 1 in every term that is a length
 
 
@@ -154,8 +155,8 @@ class _Lesson(nn.Module):
         self._edges = edges_of(rig.mesh)
         self._unit, self._size = (UNIT * size) ** 2, size
 
-    def forward(self, frames: Tensor, generator: torch.Generator) -> Tensor:
-        """The mean loss over frames [B]."""
+    def forward(self, frames: Tensor, seeds: Tensor) -> Tensor:
+        """The mean loss over frames [B]; a seed [B] for what each frame's observation draws."""
         deformation = self.template.deformation
         assert isinstance(deformation, MotionDeformation)
         device = deformation.mean.device
@@ -165,8 +166,8 @@ class _Lesson(nn.Module):
         deformed = deformation.deform(descriptors, offsets=self.offsets)
         posed = self.template.pose(deformed.vertices, joints).posed
         seen = [
-            self._away(own, self._observations.observe(frame, generator))
-            for frame, own in zip(frames.tolist(), posed, strict=True)
+            self._away(own, self._observations.observe(frame, torch.Generator().manual_seed(seed)))
+            for frame, seed, own in zip(frames.tolist(), seeds.tolist(), posed, strict=True)
         ]
         return torch.stack(seen).mean() + self._restraint(deformation, deformed)
 
@@ -193,7 +194,9 @@ class _Lesson(nn.Module):
 def _mean_loss(model: Callable[..., Tensor], *, frames: int, schedule: Schedule, run: Run) -> Tensor:
     """This process's part of the mean loss over a batch that all processes draw alike."""
     drawn = torch.randint(frames, (schedule.batch,), generator=run.generator)
-    own = drawn[run.processes.rank :: run.processes.count]
-    if not len(own):  # fewer frames than processes: one that counts nothing
-        return 0 * model(drawn[:1], run.generator)
-    return model(own, run.generator) * (len(own) * run.processes.count / len(drawn))
+    seeds = torch.randint(SEEDS, (schedule.batch,), generator=run.generator)
+    own = slice(run.processes.rank, None, run.processes.count)
+    count = len(drawn[own])
+    if not count:  # fewer frames than processes: one that counts nothing
+        return 0 * model(drawn[:1], seeds[:1])
+    return model(drawn[own], seeds[own]) * (count * run.processes.count / len(drawn))
