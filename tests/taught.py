@@ -63,12 +63,17 @@ def teacher(settings: TeacherSettings = SETTINGS) -> TeacherModel:
     return TeacherModel(subject(), settings)
 
 
+def looks_of_pictures(truth: TeacherModel) -> torch.Tensor:
+    """What the colours of `material` differ by from grey, [N, 3]."""
+    across = torch.arange(len(truth.mean))[:, None] / torch.tensor([60.0, 90, 150])
+    return 0.3 * torch.sin(across)
+
+
 def material(change: Callable[[Seen, int], Seen] = lambda seen, camera: seen) -> Material:
     """Pictures of a teacher whose colours and folds depend on the pose; `change` is done to those of each camera."""
     truth = teacher()
-    across = torch.arange(len(truth.mean))[:, None] / torch.tensor([60.0, 90, 150])
     with torch.no_grad():
-        truth.mean.copy_(0.3 * torch.sin(across))
+        truth.mean.copy_(looks_of_pictures(truth))
     seen = {}
     for frame in range(FRAMES):
         window = motion()[2 * frame]

@@ -7,7 +7,19 @@ import numpy as np
 import pytest
 import torch
 from synthetic_avatar import synthetic_avatar
-from taught import CAMERAS, FRAMES, SETTINGS, errors, material, motion, run_in, subject, taught, teacher
+from taught import (
+    CAMERAS,
+    FRAMES,
+    SETTINGS,
+    errors,
+    looks_of_pictures,
+    material,
+    motion,
+    run_in,
+    subject,
+    taught,
+    teacher,
+)
 from together import errors as errors_of
 from together import start
 
@@ -153,6 +165,41 @@ def test_poses_are_turned_to_fit_the_pictures(tmp_path: Path) -> None:
     lesson = Lesson(teacher(settings), shown, settings, refinement=poses)
     train_teacher(lesson, shown, settings, run=run_in(tmp_path))
     assert away(poses) < 0.9 * before
+
+
+def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
+    """By the very distance by which the given poses were off; in the first and last frame, folds look like a part."""
+    clip, skeleton = synthetic_avatar().clips[0], subject().rig.skeleton
+    off = torch.tensor([[0.02, -0.01, 0.015], [0, 0, 0], [-0.015, 0.02, 0.01], [0, 0, 0], [0.01, 0.01, -0.02]])
+    shifted = torch.from_numpy(clip.translations.copy()).float()
+    shifted[: len(off), skeleton.root] += off
+    poses = PoseRefinement(skeleton, torch.from_numpy(clip.rotations), shifted, most=4.0)
+    shown = replace(material(), poses=[[0] * 3, [2] * 3, [4] * 3])
+    settings = replace(SETTINGS, code=0)
+    lesson = Lesson(teacher(settings), shown, settings, refinement=poses)
+    with torch.no_grad():
+        lesson.teacher.mean.copy_(looks_of_pictures(lesson.teacher))
+    optimizer = torch.optim.Adam([poses.moves], lr=0.1)
+    for _ in range(30):
+        optimizer.zero_grad()
+        lesson(torch.arange(FRAMES * CAMERAS), torch.zeros(FRAMES * CAMERAS, 3)).backward()
+        optimizer.step()
+    left = off + torch.tanh(poses.moves[: len(off)].detach()) * poses.farthest
+    share = left[::2].norm(dim=1) / off[::2].norm(dim=1)
+    assert share[1] < 0.1
+    assert (share < 0.5).all()
+    with torch.no_grad():
+        window = lesson.window(0)
+        torch.testing.assert_close(window.root, motion()[0].root + left[0], rtol=0, atol=1e-5)
+
+
+def test_the_root_is_moved_no_farther_than_is_allowed() -> None:
+    poses, straight = refinement(3.0), refinement(3.0)
+    with torch.no_grad():
+        poses.moves.fill_(100.0)
+        away = poses.place(poses([0])[0]) - straight.place(straight([0])[0])
+    torch.testing.assert_close(away, torch.full((3,), 0.03), rtol=0, atol=1e-5)
+    assert poses.size() > 0
 
 
 def test_views_of_a_batch_are_cameras_of_few_frames() -> None:

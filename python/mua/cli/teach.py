@@ -32,7 +32,10 @@ OPTIONS = {
     ],
     "refine": Annotated[
         float,
-        typer.Option(help="Degrees by which each joint may be turned to fit the pictures better; 0 trusts the poses."),
+        typer.Option(
+            help="Degrees by which each joint, and centimetres by which the root may be moved to fit the pictures "
+            "better; 0 trusts the poses."
+        ),
     ],
     "lpips_weights": Annotated[
         Path | None,

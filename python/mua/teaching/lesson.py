@@ -72,7 +72,7 @@ class Lesson(nn.Module):
         if self.refinement is None:
             return window
         joints = self.refinement(self._material.poses[frame])
-        return Window(joints, window.descriptors, window.root, window.back)
+        return Window(joints, window.descriptors, self.refinement.place(joints[0]), window.back)
 
     @torch.no_grad()
     def keep_mean_look(self) -> None:

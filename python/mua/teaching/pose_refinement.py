@@ -1,4 +1,4 @@
-"""Poses that fit the pictures: small turns of every joint of every frame, learnt beside the teacher and bounded."""
+"""Poses that fit the pictures: in every frame small turns of all joints and a small move of the root, both bounded."""
 
 import math
 
@@ -6,7 +6,9 @@ import torch
 from torch import Tensor, nn
 
 from mua.pose.skeleton import Skeleton
-from mua.splatting.posing import multiply, rotate
+from mua.splatting.posing import dual_transform, multiply, rotate
+
+MOVE = 0.01  # metres on a person along each axis that the root may be moved for each degree that joints may be turned
 
 
 class PoseRefinement(nn.Module):
@@ -15,6 +17,7 @@ class PoseRefinement(nn.Module):
     rotations: Tensor  # [F, J, 4]
     translations: Tensor  # [F, J, 3]
     unbind: Tensor  # [J, 8]
+    rest: Tensor  # [3] of the root in the bind pose, metres
 
     def __init__(
         self,
@@ -23,13 +26,17 @@ class PoseRefinement(nn.Module):
         translations: Tensor,  # [F, J, 3] local, metres
         *,
         most: float,  # degrees about each axis
+        size: float = 1.0,  # of the figure over that of a person
     ) -> None:
         super().__init__()
-        self.most = math.radians(most)
+        self.most, self.farthest, self.root = math.radians(most), MOVE * most * size, skeleton.root
         self.parents = [int(parent) for parent in skeleton.parents]
         self.register_buffer("rotations", rotations.float(), persistent=False)
         self.register_buffer("translations", translations.float(), persistent=False)
         self.register_buffer("unbind", torch.as_tensor(skeleton.bind_inverse).float(), persistent=False)
+        _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+        self.register_buffer("rest", torch.as_tensor(places[skeleton.root]).float(), persistent=False)
+        self.moves = nn.Parameter(torch.zeros(len(rotations), 3))  # of the root, in shares of `farthest`
         self.turns = nn.Parameter(torch.zeros(len(rotations), len(self.parents), 3))  # half angles in shares of `most`
 
     def forward(
@@ -39,11 +46,20 @@ class PoseRefinement(nn.Module):
         """Dual quaternions [k, J, 8], bind pose to world."""
         half = torch.tanh(self.turns[frames]) * (self.most / 2)
         turn = nn.functional.normalize(torch.cat([torch.ones_like(half[..., :1]), half], dim=-1), dim=-1)
-        return self._skinning(multiply(self.rotations[frames], turn), self.translations[frames])
+        moved = torch.zeros_like(self.translations[frames])
+        moved[:, self.root] = torch.tanh(self.moves[frames]) * self.farthest
+        return self._skinning(multiply(self.rotations[frames], turn), self.translations[frames] + moved)
+
+    def place(
+        self,
+        joints: Tensor,  # [J, 8] bind pose to world
+    ) -> Tensor:
+        """Where the root is, [3], metres."""
+        return dual_transform(joints[self.root], self.rest)
 
     def size(self) -> Tensor:
         """The mean square of what is learnt."""
-        return self.turns.square().mean()
+        return self.turns.square().mean() + self.moves.square().mean()
 
     def _skinning(self, rotations: Tensor, translations: Tensor) -> Tensor:
         """As `mua.pose.skeleton.Skeleton.skinning`."""

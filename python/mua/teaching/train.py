@@ -49,7 +49,7 @@ def _rates(lesson: Lesson) -> list[tuple[list[nn.Parameter], float]]:
     """What the networks' training learns, and its learning rate over theirs."""
     beside = [lesson.correction.change, *([lesson.looks] if lesson.looks.numel() else [])]
     if lesson.refinement is not None:
-        beside.append(lesson.refinement.turns)
+        beside += [lesson.refinement.turns, lesson.refinement.moves]
     return [(list(lesson.teacher.nets.parameters()), 1.0), ([lesson.teacher.still], STILL_RATE), (beside, BESIDE_RATE)]
 
 
