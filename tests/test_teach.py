@@ -1,15 +1,21 @@
 """mua-teach: what it leaves, what it tells, and the teacher that comes of it."""
 
+import errno
 import json
+import os
+import re
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import torch
 from captures import FRAMES, make_capture
 from commands import Commands, Ended
+from PIL import Image
 from taught import FEW
 
 import mua
@@ -22,6 +28,7 @@ from mua.errors import InputError
 from mua.student.settings import Schedule
 from mua.teachers.teacher import TeacherFrame
 from mua.teaching import settings
+from mua.teaching.folder import load_teacher, save_teacher
 from mua.teaching.template_training import TemplateSettings, TemplateWeights
 from mua.teaching.trained import TrainedTeacher
 
@@ -130,6 +137,94 @@ def test_a_capture_that_holds_all_cameras_out_is_refused(capture: Path, tmp_path
     assert "every camera is held out" in teach(tmp_path, "-o", tmp_path / "teacher").sentence
 
 
+class Until:
+    """A listener that does something after a step of the last stage."""
+
+    def __init__(self, step: int, do: Callable[[], None]) -> None:
+        self._at, self._do, self._stage = step, do, ""
+
+    def stage(self, name: str) -> None:
+        self._stage = name
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        if (self._stage, done) == ("texels", self._at):
+            self._do()
+
+    def note(self, sentence: str) -> None: ...
+
+
+def copied(capture: Path, folder: Path) -> Path:
+    """A capture that a test may spoil."""
+    shutil.copytree(capture, folder)
+    return folder
+
+
+def test_pictures_that_vanish_are_named_and_what_was_trained_is_kept(
+    capture: Path, made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
+    given, output = copied(capture, tmp_path / "capture"), tmp_path / "teacher"
+    images = given / "images" / "walk"
+    hide = Until(1, lambda: images.rename(images.with_name("hidden")) and None)
+    with pytest.raises(InputError, match=r"^camera (front|left|right), clip walk, frame \d: .*\.png: there is no such"):
+        mua.teach(given, output=output, steps=3, texels=TEXELS, listener=hide)
+    assert (output / "work" / "mean texture.pt").is_file()
+    images.with_name("hidden").rename(images)
+    trained: list[int] = []
+    again = Until(3, lambda: trained.append(3))
+    mua.teach(given, output=output, steps=3, texels=TEXELS, listener=again)
+    assert (output / "weights.pt").read_bytes() == (made / "weights.pt").read_bytes()
+
+
+def test_a_full_disk_keeps_what_was_trained(
+    capture: Path, made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
+    save = torch.save
+
+    def full(state: Any, file: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    fill = Until(1, lambda: monkeypatch.setattr(torch, "save", full))
+    with pytest.raises(InputError, match=r"texels\.pt: .*No space left on device"):
+        mua.teach(capture, output=tmp_path, steps=3, texels=TEXELS, listener=fill)
+    monkeypatch.setattr(torch, "save", save)
+    assert (tmp_path / "work" / "mean texture.pt").is_file()
+    mua.teach(capture, output=tmp_path, steps=3, texels=TEXELS)
+    assert (tmp_path / "weights.pt").read_bytes() == (made / "weights.pt").read_bytes()
+
+
+def spoilt_pictures(capture: Path, change: Callable[[Image.Image], Image.Image | None], camera: str = "*") -> None:
+    """Change the pictures of a camera; None takes them away."""
+    for file in capture.glob(f"images/*/{camera}/*.png"):
+        with Image.open(file) as opened:
+            changed = change(opened.copy())
+        if changed is None:
+            file.unlink()
+        else:
+            changed.save(file)
+
+
+def test_masks_that_are_all_empty_are_a_sentence(capture: Path, tmp_path: Path, teach: Teach) -> None:
+    given = copied(capture, tmp_path / "capture")
+
+    def empty(image: Image.Image) -> Image.Image:
+        image.putalpha(0)
+        return image
+
+    spoilt_pictures(given, empty)
+    ended = teach(given, "-o", tmp_path / "teacher", *OPTIONS)
+    assert re.search(r"front/\d+\.png: none of \d+ masks .* shows the posed template", ended.sentence)
+    assert not (tmp_path / "teacher" / "teacher.json").exists()
+
+
+def test_a_camera_without_pictures_is_a_sentence(capture: Path, tmp_path: Path, teach: Teach) -> None:
+    given = copied(capture, tmp_path / "capture")
+    spoilt_pictures(given, lambda image: None, "left")
+    sentence = teach(given, "-o", tmp_path / "teacher", "--texels", TEXELS, "--steps", "12").sentence
+    assert re.search(r"camera left, clip walk, frame \d: .*left/.*\.png: there is no such file", sentence)
+
+
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
@@ -164,6 +259,16 @@ def test_a_damaged_teacher_is_a_sentence(
         (tmp_path / file).write_bytes(content)
     with pytest.raises(InputError, match=sentence):
         TrainedTeacher(tmp_path)
+
+
+def test_the_bytes_of_a_teacher_do_not_tell_which_process_wrote_them(
+    made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, description = load_teacher(made)
+    monkeypatch.setattr(os, "getpid", lambda: 123_456_789)
+    save_teacher(tmp_path, model, description)
+    for name in ("teacher.json", "rig.npz", "weights.pt"):
+        assert (tmp_path / name).read_bytes() == (made / name).read_bytes(), name
 
 
 def test_weights_hold_nothing_but_tensors(made: Path) -> None:

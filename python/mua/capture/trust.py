@@ -20,14 +20,22 @@ class MaskTrust:
     """Weights of views; the usual overlap is the median over some of them."""
 
     def __init__(self, capture: Capture) -> None:
-        """Look at a few frames of each clip in all cameras."""
+        """Look at a few frames of each clip in all cameras; raises InputError where no mask shows the template."""
         surfaces = capture.surfaces
         some = slice(None, None, max(1, len(surfaces.vertices) // POINTS))
         self._points = surfaces.vertices[some]
         self._skinning = Skinning(surfaces.skin_indices[some], surfaces.skin_weights[some])
         motions = {clip.name: capture.motion(clip.name) for clip in capture.clips}
         self._joints = {n: surfaces.skeleton.skinning(m.rotations, m.translations) for n, m in motions.items()}
-        self.usual = float(np.median([*_some(capture, self._overlap)] or [0]))
+        found = [*_some(capture, self._overlap)]
+        self.usual = float(np.median(found or [0]))
+        if found and not any(found):
+            clip, camera = capture.clips[0], capture.cameras[0]
+            files = capture.files(clip.name, chosen_frames(capture, clip, None)[0], camera.name)
+            raise InputError(
+                f"{files.mask or files.image}: none of {len(found)} masks that were looked at, of which this is the "
+                f"first, shows the posed template; mua-capture check {capture.folder} says why"
+            )
 
     def weight(self, clip: str, frame: int, view: View) -> float:
         """How much a view counts, 0..1; 0 where its mask covers nothing."""

@@ -1,5 +1,6 @@
 """What a taught teacher is on disk: the rig, the settings and the weights, and nothing of the capture."""
 
+import io
 import json
 import pickle
 from collections.abc import Iterator, Mapping
@@ -10,7 +11,7 @@ from typing import Any
 import torch
 
 from mua.errors import InputError
-from mua.files import replacing, write_bytes
+from mua.files import write_bytes
 from mua.pose.encoding import PoseEncoding
 from mua.recording.rig_file import load_rig, save_rig
 from mua.rig.rig import Rig
@@ -35,8 +36,9 @@ class Description:
 def save_teacher(folder: Path, model: TeacherModel, description: Description) -> None:
     """Write a teacher; teacher.json comes last, so that a folder which holds it is whole."""
     save_rig(folder / RIG, model.rig)
-    with replacing(folder / WEIGHTS) as temporary:
-        torch.save({name: tensor.cpu() for name, tensor in model.state_dict().items()}, temporary)
+    content = io.BytesIO()  # an archive in a file would hold its temporary name, another one in each process
+    torch.save({name: tensor.cpu() for name, tensor in model.state_dict().items()}, content)
+    write_bytes(folder / WEIGHTS, content.getvalue())
     said = {"format": FORMAT, "version": VERSION, **asdict(description)}
     write_bytes(folder / FILE, (json.dumps(said, indent=1) + "\n").encode())
 

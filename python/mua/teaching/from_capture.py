@@ -17,6 +17,7 @@ from mua.pose.descriptor import choose_joints, choose_translated
 from mua.pose.encoding import PoseEncoding
 from mua.splatting.projection import Eye
 from mua.student.distil import moving_joints
+from mua.teachers.bones import figure_scale
 from mua.teachers.still import StillTeacher
 from mua.teaching.lesson import Material, Perceptual
 from mua.teaching.model import Subject
@@ -53,8 +54,11 @@ class Filmed:
         return windows(self.subject.rig.skeleton, self.subject.encoding, clip)
 
     def see(self, clip: str, frame: int, camera: CaptureCamera) -> Seen:
-        """A view, cut to the person."""
-        view = self.views.view(clip, frame, camera.name)
+        """A view, cut to the person; raises InputError that names camera, clip and frame where it cannot be read."""
+        try:
+            view = self.views.view(clip, frame, camera.name)
+        except InputError as error:
+            raise InputError(f"camera {camera.name}, clip {clip}, frame {frame}: {error}") from error
         image, mask = self._tensor(view.image), self._tensor(view.mask)
         background = None if view.background is None else self._tensor(view.background)
         return Seen(image, mask, Eye.of(view.camera, image), background, self.trust.weight(clip, frame, view))
@@ -134,7 +138,9 @@ def refinement_of(filmed: Filmed, settings: TeacherSettings) -> PoseRefinement |
         torch.from_numpy(np.concatenate([getattr(clip, name) for clip in filmed.clips]))
         for name in ("rotations", "translations")
     )
-    return PoseRefinement(filmed.subject.rig.skeleton, rotations, translations, most=settings.refine)
+    rig = filmed.subject.rig
+    size = figure_scale(rig.mesh.vertices)
+    return PoseRefinement(rig.skeleton, rotations, translations, most=settings.refine, size=size)
 
 
 def preview_of(filmed: Filmed, folder: Path) -> Preview:
