@@ -30,7 +30,7 @@ class TeacherSettings:
     mean: Schedule  # of the mean texture
     texture: Schedule  # of the networks
     window: int = 3  # k, poses that a frame is told from
-    code: int = 8  # numbers of a frame's look; 0: looks differ by pose alone
+    code: int = 0  # numbers of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the pictures
     drivable: bool = False  # whether motion deforms the template, or its skin alone
     weights: LossWeights = field(default_factory=LossWeights)
