@@ -12,11 +12,16 @@ groupshared uint scanned[SCAN_THREADS + SCAN_ROWS]; // a word between rows, so t
 groupshared uint rowStarts[SCAN_ROWS];
 groupshared uint scanTotal;
 
+// Where a thread's value lies in `scanned`.
+uint scanPlace(uint thread)
+{
+    return thread + thread / SCAN_ROW;
+}
+
 // The sum of the values of the threads below this one, and of all; every thread of the group must call it.
 uint exclusiveScan(uint thread, uint value, out uint total)
 {
-    uint row = thread / SCAN_ROW;
-    scanned[thread + row] = value;
+    scanned[scanPlace(thread)] = value;
     GroupMemoryBarrierWithGroupSync();
     uint steps = thread < SCAN_ROWS ? SCAN_ROW : 0; // known at run time alone, so that the others' loop is skipped
     uint sum = 0;
@@ -45,7 +50,7 @@ uint exclusiveScan(uint thread, uint value, out uint total)
         scanTotal = sum;
     GroupMemoryBarrierWithGroupSync(); // a next scan writes only what its own thread reads from here on, up to its first
     total = scanTotal;
-    return scanned[thread + row] + rowStarts[row];
+    return scanned[scanPlace(thread)] + rowStarts[thread / SCAN_ROW];
 }
 
 #endif

@@ -386,6 +386,31 @@ fn loadWords_0( thread_0 : u32,  block_0 : u32,  mine_0 : ptr<function, array<u3
     return;
 }
 
+fn scanPlace_0( thread_1 : u32) -> u32
+{
+    return thread_1 + thread_1 / u32(16);
+}
+
+var<workgroup> words_0 : array<u32, i32(2048)>;
+
+fn writeCounters_0( place_1 : u32,  bytes_0 : vec4<u32>)
+{
+    var k_0 : u32 = u32(0);
+    for(;;)
+    {
+        if(k_0 < u32(4))
+        {
+        }
+        else
+        {
+            break;
+        }
+        words_0[u32(272) * k_0 + place_1] = bytes_0[k_0];
+        k_0 = k_0 + u32(1);
+    }
+    return;
+}
+
 fn counterBytes_0( counts_0 : vec2<u32>) -> vec4<u32>
 {
     var _S8 : u32 = counts_0.x;
@@ -393,73 +418,107 @@ fn counterBytes_0( counts_0 : vec2<u32>) -> vec4<u32>
     return (vec4<u32>(_S8, (_S8 >> (u32(4))), _S9, (_S9 >> (u32(4)))) & (vec4<u32>(u32(252645135))));
 }
 
-var<workgroup> counters_0 : array<vec4<u32>, i32(272)>;
-
-var<workgroup> rowTotals_0 : array<vec4<u32>, i32(16)>;
-
-fn scanRows_0( thread_1 : u32,  bytes_0 : vec4<u32>)
+fn readCounters_0( place_2 : u32) -> vec4<u32>
 {
-    counters_0[thread_1 + thread_1 / u32(16)] = bytes_0;
-    workgroupBarrier();
-    var _S10 : bool = thread_1 < u32(16);
-    var _S11 : u32;
-    if(_S10)
-    {
-        _S11 = u32(16);
-    }
-    else
-    {
-        _S11 = u32(0);
-    }
-    var _S12 : vec4<u32> = vec4<u32>(vec4<i32>(i32(0)));
-    var i_1 : u32 = u32(0);
-    var sum_0 : vec4<u32> = _S12;
+    var bytes_1 : vec4<u32> = vec4<u32>(vec4<i32>(i32(0)));
+    var k_1 : u32 = u32(0);
     for(;;)
     {
-        if(i_1 < _S11)
+        if(k_1 < u32(4))
         {
         }
         else
         {
             break;
         }
-        var next_0 : vec4<u32> = counters_0[u32(17) * thread_1 + i_1];
-        counters_0[u32(17) * thread_1 + i_1] = sum_0;
-        var sum_1 : vec4<u32> = sum_0 + next_0;
-        i_1 = i_1 + u32(1);
-        sum_0 = sum_1;
+        bytes_1[k_1] = words_0[u32(272) * k_1 + place_2];
+        k_1 = k_1 + u32(1);
     }
-    if(_S10)
-    {
-        rowTotals_0[thread_1] = sum_0;
-    }
-    workgroupBarrier();
-    return;
+    return bytes_1;
 }
 
-var<workgroup> starts_0 : array<u32, i32(256)>;
-
-fn binByte_0( bytes_1 : vec4<u32>,  bin_0 : u32) -> u32
+fn scanRows_0( thread_2 : u32,  counts_1 : vec2<u32>) -> vec4<u32>
 {
-    var pair_1 : vec2<u32>;
+    var _S10 : u32 = scanPlace_0(thread_2);
+    var k_2 : u32 = u32(0);
+    for(;;)
+    {
+        if(k_2 < u32(2))
+        {
+        }
+        else
+        {
+            break;
+        }
+        words_0[u32(272) * k_2 + _S10] = counts_1[k_2];
+        k_2 = k_2 + u32(1);
+    }
+    workgroupBarrier();
+    var _S11 : bool = thread_2 < u32(16);
+    if(_S11)
+    {
+        k_2 = u32(16);
+    }
+    else
+    {
+        k_2 = u32(0);
+    }
+    var _S12 : vec4<u32> = vec4<u32>(vec4<i32>(i32(0)));
+    var _S13 : u32 = u32(17) * thread_2;
+    var i_1 : u32 = u32(0);
+    var place_3 : u32 = _S13;
+    var sum_0 : vec4<u32> = _S12;
+    for(;;)
+    {
+        if(i_1 < k_2)
+        {
+        }
+        else
+        {
+            break;
+        }
+        var next_0 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
+        var k_3 : u32 = u32(0);
+        for(;;)
+        {
+            if(k_3 < u32(2))
+            {
+            }
+            else
+            {
+                break;
+            }
+            next_0[k_3] = words_0[u32(272) * k_3 + place_3];
+            k_3 = k_3 + u32(1);
+        }
+        writeCounters_0(place_3, sum_0);
+        var sum_1 : vec4<u32> = sum_0 + counterBytes_0(next_0);
+        var _S14 : u32 = place_3 + u32(1);
+        i_1 = i_1 + u32(1);
+        place_3 = _S14;
+        sum_0 = sum_1;
+    }
+    if(_S11)
+    {
+        writeCounters_0(place_3, sum_0);
+    }
+    workgroupBarrier();
+    return readCounters_0(_S10);
+}
+
+fn rowCounter_0( row_0 : u32,  bin_0 : u32) -> u32
+{
+    var _S15 : u32 = (bin_0 & (u32(1)));
+    var _S16 : i32;
     if(bin_0 < u32(8))
     {
-        pair_1 = bytes_1.xy;
+        _S16 = i32(0);
     }
     else
     {
-        pair_1 = bytes_1.zw;
+        _S16 = i32(2);
     }
-    var _S13 : u32;
-    if(((bin_0 & (u32(1)))) != u32(0))
-    {
-        _S13 = pair_1.y;
-    }
-    else
-    {
-        _S13 = pair_1.x;
-    }
-    return (((_S13 >> ((u32(4) * ((bin_0 & (u32(6)))))))) & (u32(255)));
+    return ((((words_0[u32(272) * (_S15 + u32(_S16)) + u32(17) * row_0 + u32(16)]) >> ((u32(4) * ((bin_0 & (u32(6)))))))) & (u32(255)));
 }
 
 var<workgroup> scanned_0 : array<u32, i32(272)>;
@@ -468,59 +527,58 @@ var<workgroup> rowStarts_0 : array<u32, i32(16)>;
 
 var<workgroup> scanTotal_0 : u32;
 
-fn exclusiveScan_0( thread_2 : u32,  value_0 : u32,  total_0 : ptr<function, u32>) -> u32
+fn exclusiveScan_0( thread_3 : u32,  value_0 : u32,  total_0 : ptr<function, u32>) -> u32
 {
-    var row_0 : u32 = thread_2 / u32(16);
-    scanned_0[thread_2 + row_0] = value_0;
+    scanned_0[scanPlace_0(thread_3)] = value_0;
     workgroupBarrier();
-    var _S14 : bool = thread_2 < u32(16);
-    var _S15 : i32;
-    if(_S14)
+    var _S17 : bool = thread_3 < u32(16);
+    var _S18 : i32;
+    if(_S17)
     {
-        _S15 = i32(16);
+        _S18 = i32(16);
     }
     else
     {
-        _S15 = i32(0);
+        _S18 = i32(0);
     }
-    var _S16 : u32 = u32(_S15);
+    var _S19 : u32 = u32(_S18);
     var i_2 : u32 = u32(0);
     var sum_2 : u32 = u32(0);
     for(;;)
     {
-        if(i_2 < _S16)
+        if(i_2 < _S19)
         {
         }
         else
         {
             break;
         }
-        var next_1 : u32 = scanned_0[u32(17) * thread_2 + i_2];
-        scanned_0[u32(17) * thread_2 + i_2] = sum_2;
+        var next_1 : u32 = scanned_0[u32(17) * thread_3 + i_2];
+        scanned_0[u32(17) * thread_3 + i_2] = sum_2;
         var sum_3 : u32 = sum_2 + next_1;
         i_2 = i_2 + u32(1);
         sum_2 = sum_3;
     }
-    if(_S14)
-    {
-        rowStarts_0[thread_2] = sum_2;
-    }
-    workgroupBarrier();
-    var _S17 : bool = thread_2 == u32(0);
     if(_S17)
     {
-        _S15 = i32(16);
+        rowStarts_0[thread_3] = sum_2;
+    }
+    workgroupBarrier();
+    var _S20 : bool = thread_3 == u32(0);
+    if(_S20)
+    {
+        _S18 = i32(16);
     }
     else
     {
-        _S15 = i32(0);
+        _S18 = i32(0);
     }
-    var _S18 : u32 = u32(_S15);
+    var _S21 : u32 = u32(_S18);
     i_2 = u32(0);
     sum_2 = u32(0);
     for(;;)
     {
-        if(i_2 < _S18)
+        if(i_2 < _S21)
         {
         }
         else
@@ -533,68 +591,67 @@ fn exclusiveScan_0( thread_2 : u32,  value_0 : u32,  total_0 : ptr<function, u32
         i_2 = i_2 + u32(1);
         sum_2 = sum_4;
     }
-    if(_S17)
+    if(_S20)
     {
         scanTotal_0 = sum_2;
     }
     workgroupBarrier();
     (*total_0) = scanTotal_0;
-    return scanned_0[thread_2 + row_0] + rowStarts_0[row_0];
+    return scanned_0[scanPlace_0(thread_3)] + rowStarts_0[thread_3 / u32(16)];
 }
 
-fn exclusiveScan_1( thread_3 : u32,  value_1 : u32,  total_1 : ptr<function, u32>) -> u32
+fn exclusiveScan_1( thread_4 : u32,  value_1 : u32,  total_1 : ptr<function, u32>) -> u32
 {
-    var row_1 : u32 = thread_3 / u32(16);
-    scanned_0[thread_3 + row_1] = value_1;
+    scanned_0[scanPlace_0(thread_4)] = value_1;
     workgroupBarrier();
-    var _S19 : bool = thread_3 < u32(16);
-    var _S20 : i32;
-    if(_S19)
+    var _S22 : bool = thread_4 < u32(16);
+    var _S23 : i32;
+    if(_S22)
     {
-        _S20 = i32(16);
+        _S23 = i32(16);
     }
     else
     {
-        _S20 = i32(0);
+        _S23 = i32(0);
     }
-    var _S21 : u32 = u32(_S20);
+    var _S24 : u32 = u32(_S23);
     var i_3 : u32 = u32(0);
     var sum_5 : u32 = u32(0);
     for(;;)
     {
-        if(i_3 < _S21)
+        if(i_3 < _S24)
         {
         }
         else
         {
             break;
         }
-        var next_3 : u32 = scanned_0[u32(17) * thread_3 + i_3];
-        scanned_0[u32(17) * thread_3 + i_3] = sum_5;
+        var next_3 : u32 = scanned_0[u32(17) * thread_4 + i_3];
+        scanned_0[u32(17) * thread_4 + i_3] = sum_5;
         var sum_6 : u32 = sum_5 + next_3;
         i_3 = i_3 + u32(1);
         sum_5 = sum_6;
     }
-    if(_S19)
-    {
-        rowStarts_0[thread_3] = sum_5;
-    }
-    workgroupBarrier();
-    var _S22 : bool = thread_3 == u32(0);
     if(_S22)
     {
-        _S20 = i32(16);
+        rowStarts_0[thread_4] = sum_5;
+    }
+    workgroupBarrier();
+    var _S25 : bool = thread_4 == u32(0);
+    if(_S25)
+    {
+        _S23 = i32(16);
     }
     else
     {
-        _S20 = i32(0);
+        _S23 = i32(0);
     }
-    var _S23 : u32 = u32(_S20);
+    var _S26 : u32 = u32(_S23);
     i_3 = u32(0);
     sum_5 = u32(0);
     for(;;)
     {
-        if(i_3 < _S23)
+        if(i_3 < _S26)
         {
         }
         else
@@ -607,23 +664,44 @@ fn exclusiveScan_1( thread_3 : u32,  value_1 : u32,  total_1 : ptr<function, u32
         i_3 = i_3 + u32(1);
         sum_5 = sum_7;
     }
-    if(_S22)
+    if(_S25)
     {
         scanTotal_0 = sum_5;
     }
     workgroupBarrier();
     (*total_1) = scanTotal_0;
-    return scanned_0[thread_3 + row_1] + rowStarts_0[row_1];
+    return scanned_0[scanPlace_0(thread_4)] + rowStarts_0[thread_4 / u32(16)];
 }
 
-var<workgroup> words_0 : array<u32, i32(2048)>;
-
-fn splitWords_0( thread_4 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> u32
+fn binByte_0( bytes_2 : vec4<u32>,  bin_1 : u32) -> u32
 {
-    var _S24 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
+    var pair_1 : vec2<u32>;
+    if(bin_1 < u32(8))
+    {
+        pair_1 = bytes_2.xy;
+    }
+    else
+    {
+        pair_1 = bytes_2.zw;
+    }
+    var _S27 : u32;
+    if(((bin_1 & (u32(1)))) != u32(0))
+    {
+        _S27 = pair_1.y;
+    }
+    else
+    {
+        _S27 = pair_1.x;
+    }
+    return (((_S27 >> ((u32(4) * ((bin_1 & (u32(6)))))))) & (u32(255)));
+}
+
+fn splitWords_0( thread_5 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> u32
+{
+    var _S28 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
     var ranks_0 : array<u32, i32(8)>;
     var i_4 : u32 = u32(0);
-    var counts_1 : vec2<u32> = _S24;
+    var counts_2 : vec2<u32> = _S28;
     for(;;)
     {
         if(i_4 < u32(8))
@@ -633,8 +711,8 @@ fn splitWords_0( thread_4 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> 
         {
             break;
         }
-        var bin_1 : u32 = ((((mine_1[i_4]) >> (bit_0))) & (u32(15)));
-        var shift_0 : u32 = u32(4) * ((bin_1 & (u32(7))));
+        var bin_2 : u32 = ((((mine_1[i_4]) >> (bit_0))) & (u32(15)));
+        var shift_0 : u32 = u32(4) * ((bin_2 & (u32(7))));
         var one_0 : u32;
         if((mine_1[i_4]) != u32(4294967295))
         {
@@ -644,36 +722,35 @@ fn splitWords_0( thread_4 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> 
         {
             one_0 = u32(0);
         }
-        var _S25 : bool = bin_1 < u32(8);
-        var _S26 : u32;
-        if(_S25)
+        var _S29 : bool = bin_2 < u32(8);
+        var _S30 : u32;
+        if(_S29)
         {
-            _S26 = counts_1.x;
+            _S30 = counts_2.x;
         }
         else
         {
-            _S26 = counts_1.y;
+            _S30 = counts_2.y;
         }
-        ranks_0[i_4] = (((_S26 >> (shift_0))) & (u32(15)));
-        var _S27 : vec2<u32>;
-        if(_S25)
+        ranks_0[i_4] = (((_S30 >> (shift_0))) & (u32(15)));
+        var _S31 : vec2<u32>;
+        if(_S29)
         {
-            _S27 = vec2<u32>(one_0, u32(0));
+            _S31 = vec2<u32>(one_0, u32(0));
         }
         else
         {
-            _S27 = vec2<u32>(u32(0), one_0);
+            _S31 = vec2<u32>(u32(0), one_0);
         }
-        var counts_2 : vec2<u32> = counts_1 + _S27;
+        var counts_3 : vec2<u32> = counts_2 + _S31;
         i_4 = i_4 + u32(1);
-        counts_1 = counts_2;
+        counts_2 = counts_3;
     }
-    scanRows_0(thread_4, counterBytes_0(counts_1));
+    var _S32 : vec4<u32> = scanRows_0(thread_5, counts_2);
     var total_2 : u32;
-    var _S28 : u32 = exclusiveScan_0(thread_4, binByte_0(rowTotals_0[thread_4 % u32(16)], thread_4 / u32(16)), &(total_2));
-    starts_0[thread_4] = _S28;
+    var start_0 : u32 = exclusiveScan_0(thread_5, rowCounter_0(thread_5 % u32(16), thread_5 / u32(16)), &(total_2));
+    scanned_0[scanPlace_0(thread_5)] = start_0;
     workgroupBarrier();
-    var _S29 : vec4<u32> = counters_0[thread_4 + thread_4 / u32(16)];
     i_4 = u32(0);
     for(;;)
     {
@@ -684,11 +761,11 @@ fn splitWords_0( thread_4 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> 
         {
             break;
         }
-        var _S30 : u32 = i_4;
-        var bin_2 : u32 = ((((mine_1[i_4]) >> (bit_0))) & (u32(15)));
+        var _S33 : u32 = i_4;
+        var bin_3 : u32 = ((((mine_1[i_4]) >> (bit_0))) & (u32(15)));
         if((mine_1[i_4]) != u32(4294967295))
         {
-            words_0[starts_0[u32(16) * bin_2 + thread_4 / u32(16)] + binByte_0(_S29, bin_2) + ranks_0[i_4]] = mine_1[_S30];
+            words_0[scanned_0[u32(17) * bin_3 + thread_5 / u32(16)] + binByte_0(_S32, bin_3) + ranks_0[i_4]] = mine_1[_S33];
         }
         i_4 = i_4 + u32(1);
     }
@@ -696,11 +773,11 @@ fn splitWords_0( thread_4 : u32,  mine_1 : array<u32, i32(8)>,  bit_0 : u32) -> 
     return total_2;
 }
 
-fn orderBlock_0( thread_5 : u32,  block_1 : u32) -> u32
+fn orderBlock_0( thread_6 : u32,  block_1 : u32) -> u32
 {
     var mine_2 : array<u32, i32(8)>;
-    loadWords_0(thread_5, block_1, &(mine_2));
-    var _S31 : u32 = splitWords_0(thread_5, mine_2, u32(24));
+    loadWords_0(thread_6, block_1, &(mine_2));
+    var _S34 : u32 = splitWords_0(thread_6, mine_2, u32(24));
     var i_5 : u32 = u32(0);
     for(;;)
     {
@@ -711,20 +788,21 @@ fn orderBlock_0( thread_5 : u32,  block_1 : u32) -> u32
         {
             break;
         }
-        var _S32 : u32 = u32(8) * thread_5 + i_5;
-        var _S33 : u32;
-        if(_S32 < _S31)
+        var _S35 : u32 = u32(8) * thread_6 + i_5;
+        var _S36 : u32;
+        if(_S35 < _S34)
         {
-            _S33 = words_0[_S32];
+            _S36 = words_0[_S35];
         }
         else
         {
-            _S33 = u32(4294967295);
+            _S36 = u32(4294967295);
         }
-        mine_2[i_5] = _S33;
+        mine_2[i_5] = _S36;
         i_5 = i_5 + u32(1);
     }
-    var live_0 : u32 = splitWords_0(thread_5, mine_2, u32(28));
+    workgroupBarrier();
+    var live_0 : u32 = splitWords_0(thread_6, mine_2, u32(28));
     return live_0;
 }
 
@@ -733,20 +811,18 @@ fn groupCount_0() -> u32
     return (elementCount_0() + u32(2048) - u32(1)) / u32(2048);
 }
 
-var<workgroup> places_0 : array<u32, i32(256)>;
-
-fn placeDigits_0( thread_6 : u32,  group_0 : u32,  groups_0 : u32) -> u32
+fn placeDigits_0( thread_7 : u32,  group_0 : u32,  groups_0 : u32) -> u32
 {
-    var digits_0 : u32 = digit_totals_0[thread_6];
+    var digits_0 : u32 = digit_totals_0[thread_7];
     var mine_3 : u32;
     var earlier_0 : u32;
     if(group_0 < groups_0)
     {
-        var place_1 : u32 = thread_6 * groups_0 + group_0;
-        var earlier_1 : u32 = digit_counts_0[place_1];
+        var _S37 : u32 = thread_7 * groups_0 + group_0;
+        var earlier_1 : u32 = digit_counts_0[_S37];
         if((group_0 + u32(1)) < groups_0)
         {
-            mine_3 = digit_counts_0[place_1 + u32(1)];
+            mine_3 = digit_counts_0[_S37 + u32(1)];
         }
         else
         {
@@ -761,8 +837,8 @@ fn placeDigits_0( thread_6 : u32,  group_0 : u32,  groups_0 : u32) -> u32
         earlier_0 = u32(0);
     }
     var total_3 : u32;
-    var _S34 : u32 = exclusiveScan_1(thread_6, digits_0 - mine_3, &(total_3));
-    places_0[thread_6] = _S34 + earlier_0;
+    var _S38 : u32 = exclusiveScan_1(thread_7, digits_0 - mine_3, &(total_3));
+    scanned_0[scanPlace_0(thread_7)] = _S38 + earlier_0;
     workgroupBarrier();
     return total_3;
 }
@@ -780,48 +856,48 @@ fn writeArguments_0( total_4 : u32)
 fn sortedElement_0( word_0 : u32,  block_2 : u32) -> u32
 {
     var first_0 : u32 = (((((((word_0 >> (u32(11)))) & (u32(255)))) << (u32(24)))) | ((block_2 + ((word_0 & (u32(2047)))))));
-    var _S35 : u32;
+    var _S39 : u32;
     if((Constants_0.second_pass_0) != u32(0))
     {
-        _S35 = (word_0 & (u32(16777215)));
+        _S39 = (word_0 & (u32(16777215)));
     }
     else
     {
-        _S35 = first_0;
+        _S39 = first_0;
     }
-    return _S35;
+    return _S39;
 }
 
 @compute
 @workgroup_size(256, 1, 1)
-fn ScatterDigits(@builtin(local_invocation_index) thread_7 : u32, @builtin(workgroup_id) group_1 : vec3<u32>)
+fn ScatterDigits(@builtin(local_invocation_index) thread_8 : u32, @builtin(workgroup_id) group_1 : vec3<u32>)
 {
-    var _S36 : u32 = group_1.x;
-    var block_3 : u32 = _S36 * u32(2048);
-    var live_1 : u32 = orderBlock_0(thread_7, block_3);
-    var others_0 : u32 = placeDigits_0(thread_7, _S36, groupCount_0());
-    var _S37 : bool;
+    var _S40 : u32 = group_1.x;
+    var block_3 : u32 = _S40 * u32(2048);
+    var live_1 : u32 = orderBlock_0(thread_8, block_3);
+    var others_0 : u32 = placeDigits_0(thread_8, _S40, groupCount_0());
+    var _S41 : bool;
     if((Constants_0.second_pass_0) == u32(0))
     {
-        _S37 = _S36 == u32(0);
+        _S41 = _S40 == u32(0);
     }
     else
     {
-        _S37 = false;
+        _S41 = false;
     }
-    if(_S37)
+    if(_S41)
     {
-        _S37 = thread_7 == u32(0);
+        _S41 = thread_8 == u32(0);
     }
     else
     {
-        _S37 = false;
+        _S41 = false;
     }
-    if(_S37)
+    if(_S41)
     {
         writeArguments_0(others_0 + live_1);
     }
-    var i_6 : u32 = thread_7;
+    var i_6 : u32 = thread_8;
     for(;;)
     {
         if(i_6 < live_1)
@@ -831,7 +907,7 @@ fn ScatterDigits(@builtin(local_invocation_index) thread_7 : u32, @builtin(workg
         {
             break;
         }
-        sorted_0[places_0[((words_0[i_6]) >> (u32(24)))] + i_6] = sortedElement_0(words_0[i_6], block_3);
+        sorted_0[scanned_0[scanPlace_0(((words_0[i_6]) >> (u32(24))))] + i_6] = sortedElement_0(words_0[i_6], block_3);
         i_6 = i_6 + u32(256);
     }
     return;
