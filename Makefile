@@ -9,7 +9,7 @@ DEMO := build/demo
 WORKERS ?= 2
 PYTEST := $(BIN)/pytest --numprocesses $(WORKERS) --dist worksteal
 
-.PHONY: demo test test-long test-web test-wheel gallery mutants docs check package wheel setup clean
+.PHONY: demo test test-long test-web test-files test-wheel gallery mutants docs check package wheel setup clean
 
 demo: setup
 	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
@@ -25,6 +25,10 @@ test-long: setup
 test-web: setup
 	sh tools/setup_web.sh
 	$(PYTEST) -m web
+
+# 100,000 avatars that nobody wrote, plain and packed ones, through the readers in Python, C# and JavaScript.
+test-files: setup
+	$(PYTEST) -m long -k mutants tests/unity/test_mutants.py tests/web/test_modules.py
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
 test-wheel: demo

@@ -16,6 +16,8 @@ TABLES = 4000  # of the first bytes of a file are mostly tables
 BYTES = (0, 1, 4, 0x7F, 0x80, 0xFF)
 NUMBERS = (0.0, -0.0, 1e-38, -1e-7, 0.5, 1.0, -1.0, 88.0, 1e4, 65504.0, -65504.0, 65536.0, 1e30, np.inf, np.nan)
 INTEGERS = (0, 1, 2, 3, -1, 7, 255, 4096, 2**31 - 1)
+ZEROS = zlib.compress(bytes(1 << 24), 9, -15)  # a stream of 16 kB that gives 1,000 times as much
+CLAIMS = (0, 1, 2**10, 2**20, 2**24, 2**32 - 1)  # of one side of a packed tensor
 SIDES = (0, 1, 2, 3, 4, 7, 2**16, 2**32 - 1)
 UNCHANGED = ("_at", "crc32", "version_major", "version_minor")
 
@@ -29,6 +31,41 @@ def mutants(contents: list[bytes], rng: np.random.Generator, count: int) -> Iter
             yield _bytes(content, rng)
         else:
             yield malformed(content, lambda tree: (_numbers if kind < 0.8 else _arrangement)(tree, rng))  # noqa: B023
+
+
+def packed_mutants(contents: list[bytes], rng: np.random.Generator, count: int) -> Iterator[bytes]:
+    """Mutants of files for the network, two of three in their streams or in what these claim to give."""
+    others = mutants(contents, rng, count)
+    for k in range(count):
+        content = contents[k % len(contents)]
+        yield next(others) if rng.random() < 1 / 3 else malformed(content, lambda tree: _stream(tree, rng))
+
+
+def _stream(tree: Tree, rng: np.random.Generator) -> None:
+    """One or two streams are changed, cut off, longer, exchanged or others, or claim to give otherwise."""
+    tensors = [(part[0][part[1]], part) for part in _parts(tree)]
+    streams = [part for tensor, part in tensors if _is_tensor(tensor) and tensor.get("packing") == "Deflate"]
+    for table, name in (_one(streams, rng) for _ in range(rng.integers(1, 3))):
+        other, its = _one(streams, rng)
+        data, shape = table[name]["data"], np.array(table[name]["shape"], "<u4")
+        at = int(rng.integers(data.size + 1))
+        match rng.integers(7):
+            case 0:
+                data = _some(data, rng)
+            case 1:
+                data = data[:at]
+            case 2:
+                data = np.append(data, rng.integers(0, 256, 9).astype(np.uint8))
+            case 3:
+                data = np.append(data[:at], other[its]["data"][at:])
+            case 4:
+                data, other[its] = other[its]["data"], {**other[its], "data": data}
+            case 5:
+                data = np.frombuffer(ZEROS, np.uint8)
+            case 6:
+                shape[rng.integers(len(shape))] = rng.choice(CLAIMS)
+                data = np.frombuffer(ZEROS, np.uint8) if rng.random() < 0.5 else data
+        table[name] = {**table[name], "shape": shape, "data": data}
 
 
 def _bytes(content: bytes, rng: np.random.Generator) -> bytes:

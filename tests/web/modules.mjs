@@ -1,5 +1,6 @@
 // What the browser player's modules that need no graphics device make of files, for tests: modules.mjs WHAT FILE...
 //   answers        a line for each file: ok, or code, field and sentence as JSON
+//   mutants        the same of files that also arrive in steps; then the most bytes that this process has taken
 //   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   numbers        half floats, and numbers as sentences have them
@@ -23,6 +24,8 @@ import { surfaceMesh } from "../../python/mua/web/surface.js";
 const [what, ...given] = process.argv.slice(2);
 const say = (value) => process.stdout.write(`${JSON.stringify(value)}\n`);
 const list = (values) => Array.from(values);
+
+const ARRIVED = 5; // steps in which a mutant arrives
 
 function bytes(file) {
   const content = readFileSync(file);
@@ -116,6 +119,14 @@ async function stages(content, step) {
 
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));
+if (what === "mutants") {
+  for (const file of given) {
+    const content = bytes(file);
+    await stages(content, Math.ceil(content.byteLength / ARRIVED));
+    say(await answer(content));
+  }
+  say(1024 * process.resourceUsage().maxRSS);
+}
 if (what === "truncated") {
   const content = bytes(given[0]);
   for (let length = 0; length < content.byteLength; length += Number(given[1])) say(await answer(content.slice(0, length)));
