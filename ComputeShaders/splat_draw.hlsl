@@ -1,12 +1,12 @@
 // Splats as quads: what the desktop player's shader and Unity's share, and splat_project.compute with them.
 //
 //   alpha  = peak (1 - u^2) (1 - v^2)                                          inside the quad, 0 at its edges
-//   (u, v) = inverse(2 root) (pixel - middle),  root^2 = covariance + 5 / 48
-//   peak   = 9 pi / 32 opacity sqrt(|covariance|) / |root|
+//   (u, v) = inverse(REACH root) (pixel - middle),  root^2 = covariance + PIXEL_VARIANCE
+//   peak   = WEIGHT opacity sqrt(|covariance|) / |root|
 //   color = max(0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3), 0)     (x, y, z) from camera to splat, turned back by its texel
 //
 // In place of the Gaussian a window of the same integral is drawn, whose quad has a third of the area that lies within
-// alpha = 1/255, and which costs no exponential; it ends at 2 deviations, where its quad does. What it takes from one splat
+// alpha = 1/255, and which costs no exponential; it ends at REACH deviations, where its quad does. What it takes from one splat
 // it gives to the next: tens of splats lie over one another. A pixel's own variance, 1/12 along any line, is added whole.
 // The root is the symmetric one: it changes little where the covariance does, also of round ellipses, whose axes are any.
 //
@@ -23,7 +23,7 @@
 #endif
 
 static const float LEAST_OPACITY = 1.0 / 255.0; // below it a splat changes no 8-bit image
-static const float REACH = 2.0; // deviations from a splat's middle to its quad's edges
+static const float REACH = 2.015; // deviations from a splat's middle to its quad's edges
 static const float WEIGHT = 1.125 * 3.14159265358979 / (REACH * REACH); // the Gaussian's integral, 2 pi, over the window's
 static const float PIXEL_VARIANCE = 5.0 / 12.0 / (REACH * REACH); // px^2; the window's is REACH^2 / 5 of its deviation's
 static const uint COLOR_STEPS = 1023; // 10 bits
@@ -78,7 +78,7 @@ float splatShare(float2 deviations, float2 wide)
     return WEIGHT * (deviations.x / wide.x) * (deviations.y / wide.y);
 }
 
-// A corner of the quad from its middle, pixels: 2 root corner.
+// A corner of the quad from its middle, pixels: REACH root corner.
 float2 splatOffset(float2 axis, float2 wide, float2 corner)
 {
     return REACH * (wide.y * corner + (wide.x - wide.y) * dot(axis, corner) * axis);

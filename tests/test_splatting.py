@@ -19,7 +19,7 @@ from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, raste
 from mua.splatting.tiles import TILE, assign
 
 SCREEN = (53, 37)  # not whole tiles
-STEP = 1e-6  # of the finite differences
+STEP = 1e-8  # of the finite differences; a larger one reaches over the edges of windows
 DIFFERENTIATED = [field.name for field in fields(TorchSplats) if field.name != "normals"]
 
 

@@ -22,7 +22,7 @@ from mua.pose.resample import frames_at
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import largest_shares
 
-LARGEST_SHARE = 1 / 32  # of a pixel's colour
+LARGEST_SHARE = 1 / 29  # of a pixel's colour
 POSES, VIEWS = 8, 24  # views of each pose
 PIXEL = 1.0  # texels, in the middle of a picture
 FOV = np.radians(60)  # of the pictures; near enough for openings to be looked into
@@ -54,6 +54,16 @@ def one_sided(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Array:
     """Whether each texel is one-sided [N] in the poses of clips."""
+    return shares_behind(avatar, clips, progress=progress) < LARGEST_SHARE
+
+
+def shares_behind(
+    avatar: Model,
+    clips: Sequence[Clip],
+    *,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Array:
+    """The largest share of a pixel that each texel gives, [N], wherever splat_project may leave it out."""
     texels = replace(avatar.rig.texels, one_sided=None)
     whole = replace(avatar, rig=replace(avatar.rig, texels=texels))
     behind = np.zeros(len(texels.texels))
@@ -64,7 +74,7 @@ def one_sided(
         for camera in around(splats, texel_length(whole), first=number * VIEWS):
             np.maximum(behind, _shares_behind(splats, normals, camera), out=behind)
         progress(number + 1, len(poses))
-    return behind < LARGEST_SHARE
+    return behind
 
 
 def distinct_poses(

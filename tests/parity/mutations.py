@@ -354,7 +354,7 @@ FAULTS = {
         drawn("variance of the pixel alone", "PIXEL_VARIANCE = 5.0 / 12.0", "PIXEL_VARIANCE = 1.0 / 3.0"),
         drawn("peak not lowered", "color.a * splatShare(deviations, wide)", "color.a * WEIGHT"),
         drawn("integral of the window alone", "WEIGHT = 1.125 *", "WEIGHT = 1.27 *"),
-        drawn("wider than it is", "static const float REACH = 2.0", "static const float REACH = 2.2"),
+        drawn("wider than it is", "static const float REACH = 2.015", "static const float REACH = 2.2"),
         drawn("no window across", "window.x * window.y", "window.x"),
         drawn("window of a cone", "1 - varyings.offset * varyings.offset", "1 - abs(varyings.offset)"),
         drawn("not premultiplied", "float4(varyings.color.rgb * alpha, alpha)", "float4(varyings.color.rgb, alpha)"),

@@ -204,7 +204,7 @@ def _draw(
     decoding.submit()
     avatar.repose(commands, clip.rotations[0], clip.translations[0])
     skeleton = avatar.avatar.avatar.rig.skeleton
-    camera = _camera(avatar.bounds, front_of(skeleton, clip.rotations[0], clip.translations[0]), distance)
+    camera = eye_before(avatar.bounds, front_of(skeleton, clip.rotations[0], clip.translations[0]), distance)
     frame.sort(commands, [camera])
     commands.submit()
     visible = int(frame.arguments.read()[VISIBLE_WORD])
@@ -214,7 +214,7 @@ def _draw(
     return commands.bound, visible, drawn
 
 
-def _camera(
+def eye_before(
     bounds: Array,  # [2, 3]
     azimuth: float,
     distance: float,

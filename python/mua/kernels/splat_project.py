@@ -11,9 +11,9 @@ from mua.arrays import Array
 
 LEAST_OPACITY = 1 / 255  # below it a splat changes no 8-bit image
 LEAST_VARIANCE = 1e-4  # px^2; float32 rounding of the covariance of a 30 px splat, so that a thin axis stays positive
-REACH = 2  # standard deviations from a splat's middle to its quad's edges
+REACH = 2.015  # standard deviations from a splat's middle to its quad's edges
 PIXEL_VARIANCE = 5 / 12 / REACH**2  # px^2; of the window that splat_draw draws, it is a unit square's 1 / 12
-AWAY = 0.3  # sine of the angle by which a triangle is turned past edge-on where it is seen from behind
+AWAY = 0.25  # sine of the angle by which a triangle is turned past edge-on where it is seen from behind
 GUARD = 1.3  # the linearisation is held at this multiple of the screen's half size; beyond it, it diverges
 LAST_KEY = 0xFFFE
 HIDDEN = 0xFFFF  # in place of the key of a splat that no eye sees

@@ -55,7 +55,7 @@ fn unpackHalves_0( word_1 : u32) -> vec2<f32>
 
 fn splatWide_0( deviations_0 : vec2<f32>) -> vec2<f32>
 {
-    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.1041666641831398f));
+    return sqrt(deviations_0 * deviations_0 + vec2<f32>(0.10262155532836914f));
 }
 
 fn splatCorner_0( corner_0 : u32) -> vec2<f32>
@@ -118,12 +118,12 @@ fn splatCorner_0( corner_0 : u32) -> vec2<f32>
 fn splatOffset_0( axis_0 : vec2<f32>,  wide_0 : vec2<f32>,  corner_1 : vec2<f32>) -> vec2<f32>
 {
     var _S7 : f32 = wide_0.y;
-    return vec2<f32>(2.0f) * (vec2<f32>(_S7) * corner_1 + vec2<f32>(((wide_0.x - _S7) * dot(axis_0, corner_1))) * axis_0);
+    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S7) * corner_1 + vec2<f32>(((wide_0.x - _S7) * dot(axis_0, corner_1))) * axis_0);
 }
 
 fn splatShare_0( deviations_1 : vec2<f32>,  wide_1 : vec2<f32>) -> f32
 {
-    return 0.88357293605804443f * (deviations_1.x / wide_1.x) * (deviations_1.y / wide_1.y);
+    return 0.87046688795089722f * (deviations_1.x / wide_1.x) * (deviations_1.y / wide_1.y);
 }
 
 struct SplatVaryings_0

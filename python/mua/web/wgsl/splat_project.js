@@ -336,19 +336,19 @@ fn isBehind_0( gaussian_3 : Gaussian_0,  eye_2 : u32) -> bool
 {
     var place_2 : vec3<f32> = placeBefore_0(eye_2, gaussian_3);
     var normal_1 : vec3<f32> = (((vec4<f32>(gaussian_3.normal_0, 0.0f)) * (mat4x4<f32>(Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_2].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_2].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_2].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_2].data_0[i32(3)][i32(3)])))).xyz;
-    return (dot(normal_1, place_2)) > (0.30000001192092896f * length(normal_1) * length(place_2));
+    return (dot(normal_1, place_2)) > (0.25f * length(normal_1) * length(place_2));
 }
 
 fn splatWide_0( deviations_2 : vec2<f32>) -> vec2<f32>
 {
-    return sqrt(deviations_2 * deviations_2 + vec2<f32>(0.1041666641831398f));
+    return sqrt(deviations_2 * deviations_2 + vec2<f32>(0.10262155532836914f));
 }
 
 fn splatExtent_0( axis_2 : vec2<f32>,  wide_0 : vec2<f32>) -> vec2<f32>
 {
     var size_0 : vec2<f32> = abs(axis_2);
     var _S46 : f32 = wide_0.y;
-    return vec2<f32>(2.0f) * (vec2<f32>(_S46) + vec2<f32>(((wide_0.x - _S46) * (size_0.x + size_0.y))) * size_0);
+    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S46) + vec2<f32>(((wide_0.x - _S46) * (size_0.x + size_0.y))) * size_0);
 }
 
 fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
