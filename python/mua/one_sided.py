@@ -22,7 +22,7 @@ from mua.pose.resample import frames_at
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import largest_shares
 
-LARGEST_SHARE = 1 / 29  # of a pixel's colour
+LARGEST_SHARE = 1 / 28  # of a pixel's colour
 POSES, VIEWS = 8, 24  # views of each pose
 PIXEL = 1.0  # texels, in the middle of a picture
 FOV = np.radians(60)  # of the pictures; near enough for openings to be looked into

@@ -61,9 +61,7 @@ def pixel_integral(x: float, y: float, quad: int, ellipses: wp.array2d[wp.float3
 
 @wp.kernel(enable_backward=False)
 def exact_pixels(
-    columns: int,
-    width: int,
-    height: int,
+    places: wp.array2d[wp.int32],  # [T, 5] of mua.splatting.tiles.Tiles
     starts: wp.array[wp.int32],
     quads: wp.array[wp.int32],
     ellipses: wp.array2d[wp.float32],  # [M, 6] of mua.kernels.splat_project, front to back
@@ -74,12 +72,12 @@ def exact_pixels(
 ):
     tile = wp.tid() // (TILE * TILE)
     inner = wp.tid() % (TILE * TILE)
-    column = (tile % columns) * TILE + inner % TILE
-    row = (tile // columns) * TILE + inner // TILE
-    if column >= width or row >= height:
+    column = places[tile, 0] + inner % TILE
+    row = places[tile, 1] + inner // TILE
+    if column >= places[tile, 2] or row >= places[tile, 3]:
         return
     left = wp.float32(1.0)
-    at = row * width + column
+    at = row * places[tile, 2] + column
     for pair in range(starts[tile], starts[tile + 1]):
         quad = quads[pair]
         x = float(column) + 0.5 - ellipses[quad, 0]
@@ -164,10 +162,9 @@ def exact(splats: Splats, camera: Camera) -> Array:
     image = wp.zeros((width * height, 4), dtype=wp.float32, device="cpu")
     points = np.stack([nodes / 2, weights / 2], axis=1)
     values = [wp.array(v.astype(np.float32), device="cpu") for v in (ellipses, splats.opacities[order], colors, points)]
-    listed = [wp.from_torch(tensor) for tensor in (tiles.starts, tiles.quads)]
-    threads = tiles.columns * tiles.rows * TILE * TILE
-    inputs = [tiles.columns, width, height, *listed, *values, image]
-    wp.launch(exact_pixels, dim=threads, inputs=inputs, device="cpu")
+    listed = [wp.from_torch(tensor) for tensor in (tiles.places, tiles.starts, tiles.quads)]
+    threads = len(tiles.places) * TILE * TILE
+    wp.launch(exact_pixels, dim=threads, inputs=[*listed, *values, image], device="cpu")
     return np.asarray(image.numpy().reshape(height, width, 4))
 
 
