@@ -22,6 +22,13 @@
 #define LEAST_DEPTH 0.0 // of clip z / w; an includer for OpenGL says -1
 #endif
 
+#ifndef SHADE
+#define SHADE float // of what a fragment computes; an includer says half where that is enough, and faster on mobile devices
+#define SHADE2 float2
+#define SHADE3 float3
+#define SHADE4 float4
+#endif
+
 static const float LEAST_OPACITY = 1.0 / 255.0; // below it a splat changes no 8-bit image
 static const float REACH = 2.015; // deviations from a splat's middle to its quad's edges
 static const float WEIGHT = 1.125 * 3.14159265358979 / (REACH * REACH); // the Gaussian's integral, 2 pi, over the window's
@@ -36,8 +43,8 @@ static const float SMALLEST_DISTANCE = 1e-30; // metres; keeps the direction fin
 struct SplatVaryings
 {
     float4 position : SV_Position;
-    float2 offset : TEXCOORD0; // (u, v), -1 to 1 at the quad's edges
-    nointerpolation float4 color : TEXCOORD1; // sRGB, not premultiplied; the peak
+    SHADE2 offset : TEXCOORD0; // (u, v), -1 to 1 at the quad's edges
+    nointerpolation SHADE4 color : TEXCOORD1; // sRGB, not premultiplied; the peak
 };
 
 // Colour of a splat towards the camera. rotation = R_tex; sh = constant term, then y, z, x.
@@ -125,17 +132,17 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     varyings.position = float4(2, 2, 0, 1);
     if (seen)
         varyings.position = float4(place, depth, 1);
-    varyings.offset = corner;
-    varyings.color = float4(color.rgb, color.a * splatShare(deviations, wide));
+    varyings.offset = SHADE2(corner);
+    varyings.color = SHADE4(color.rgb, color.a * splatShare(deviations, wide));
     return varyings;
 }
 
 // Premultiplied sRGB and alpha of a splat at a pixel.
-float4 splatFragment(SplatVaryings varyings)
+SHADE4 splatFragment(SplatVaryings varyings)
 {
-    float2 window = saturate(1 - varyings.offset * varyings.offset); // several samples a pixel may lie outside the quad
-    float alpha = varyings.color.a * window.x * window.y;
-    return float4(varyings.color.rgb * alpha, alpha);
+    SHADE2 window = saturate(1 - varyings.offset * varyings.offset); // several samples a pixel may lie outside the quad
+    SHADE alpha = varyings.color.a * window.x * window.y;
+    return SHADE4(varyings.color.rgb * alpha, alpha);
 }
 
 #endif

@@ -121,6 +121,24 @@ def test_tells_a_broken_rule(tmp_path: Path, original: str, replacement: str, fa
     assert any(fault in line for line in found), found
 
 
+def test_only_what_a_fragment_of_a_shader_computes_is_in_halves(tmp_path: Path) -> None:
+    shader, header = tmp_path / "splat.shader", tmp_path / "splat.hlsl"
+    allowed = "  #define SHADE half // why\n  #define SHADE4 half4\nSHADE4 color;\n"
+    shader.write_text(allowed)
+    assert shader_rules.file_faults(shader) == []
+    for text in (
+        "#define SHADE3 half2",
+        "#define LIGHT half",
+        "#define SHADE half + 1",
+        "half4 color;",
+        "min16float x;",
+    ):
+        shader.write_text(allowed + text)
+        assert "is a 16-bit type" in shader_rules.file_faults(shader)[0], text
+    header.write_text(allowed)
+    assert shader_rules.file_faults(header) == ["splat.hlsl: half is a 16-bit type"]
+
+
 def test_a_return_after_the_last_barrier_is_no_fault(tmp_path: Path) -> None:
     text = GOOD.replace("    if (id.x < count)\n", "    if (id.x >= count)\n        return;\n    if (id.x < count)\n")
     assert shader_rules.kernel_faults(written(tmp_path, text)) == []

@@ -25,6 +25,7 @@ FORBIDDEN = (
     (r"\b(?:enum|using|namespace)\b", "a word that FXC does not know"),
     (r"#\s*pragma\s+use_dxc\b", "use_dxc"),
 )
+SHADES = re.compile(r"^[ \t]*#define SHADE([2-4]?) half\1[ \t]*$", re.MULTILINE)  # of a fragment, see splat_draw.hlsl
 SNAKE_CASE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 CAMEL_CASE = re.compile(r"[a-z][A-Za-z0-9]*")
 PASCAL_CASE = re.compile(r"[A-Z][A-Za-z0-9]*")
@@ -39,8 +40,13 @@ def kernel_faults(shader: Shader) -> list[str]:
 
 
 def file_faults(path: Path) -> list[str]:
-    """Words in one file, of any kind, that not every compiler takes."""
+    """Words in one file, of any kind, that not every compiler takes.
+
+    A .shader may say that what its fragment computes is of 16 bits; Unity makes these 32 wherever a device lacks them.
+    """
     text = COMMENT.sub("", path.read_text())
+    if path.suffix == ".shader":
+        text = SHADES.sub("", text)
     return [f"{path.name}: {found[0]} is {what}" for pattern, what in FORBIDDEN if (found := re.search(pattern, text))]
 
 

@@ -357,6 +357,6 @@ FAULTS = {
         drawn("wider than it is", "static const float REACH = 2.015", "static const float REACH = 2.2"),
         drawn("no window across", "window.x * window.y", "window.x"),
         drawn("window of a cone", "1 - varyings.offset * varyings.offset", "1 - abs(varyings.offset)"),
-        drawn("not premultiplied", "float4(varyings.color.rgb * alpha, alpha)", "float4(varyings.color.rgb, alpha)"),
+        drawn("not premultiplied", "SHADE4(varyings.color.rgb * alpha, alpha)", "SHADE4(varyings.color.rgb, alpha)"),
     ],
 }

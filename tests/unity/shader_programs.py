@@ -14,7 +14,13 @@ ENGINE = frozenset(  # what a program is given by Unity, or in its place by a te
     | {"replayed_layer", "replayed_view"}
 )
 KERNELS_PACKAGE = "Packages/com.mua.kernels/"  # whose files the compilers find by their names
-VARIANTS = {"mono": (), "instanced": ("STEREO_INSTANCING_ON",), "multiview": ("STEREO_MULTIVIEW_ON",)}
+HALVES = tuple(f"half{count} min16float{count}" for count in ("", 2, 3, 4))  # as Unity says it for mobile devices
+VARIANTS = {
+    "mono": (),
+    "instanced": ("STEREO_INSTANCING_ON",),
+    "multiview": ("STEREO_MULTIVIEW_ON",),
+    "mobile": ("STEREO_MULTIVIEW_ON", *HALVES),
+}
 
 COMMENT = re.compile(r"//[^\n]*")
 NAME = re.compile(r'^Shader\s+"([^"]+)"', re.MULTILINE)

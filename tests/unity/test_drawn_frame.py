@@ -199,9 +199,10 @@ def test_each_instance_draws_its_eye(painter: Painter, instanced: Scene, eye: in
     agree(painter.unity(doubled, variant="instanced", replayed_layer=eye), expected[eye])
 
 
+@pytest.mark.parametrize("variant", ["multiview", "mobile"])
 @pytest.mark.parametrize("eye", [0, 1])
-def test_each_view_of_a_multiview_pass_draws_its_eye(painter: Painter, both: Scene, eye: int) -> None:
-    found = painter.unity(both.drawn["indirect"], variant="multiview", replayed_view=eye)
+def test_each_view_of_a_multiview_pass_draws_its_eye(painter: Painter, both: Scene, eye: int, variant: str) -> None:
+    found = painter.unity(both.drawn["indirect"], variant=variant, replayed_view=eye)
     agree(found, painter.player(both)[eye])
 
 

@@ -13,6 +13,10 @@ Shader "Hidden/MUA/Splat"
 
         HLSLINCLUDE
         #include "target.hlsl"
+        #define SHADE half // 32 bits on a desktop, 16 on mobile devices, which are off by less than 1/255 by it
+        #define SHADE2 half2
+        #define SHADE3 half3
+        #define SHADE4 half4
         #include "Packages/com.mua.kernels/splat_draw.hlsl"
 
         StructuredBuffer<uint> order; // [M] splats, back to front
@@ -45,7 +49,7 @@ Shader "Hidden/MUA/Splat"
                 uint eye = boundEye(eye_count);
                 varyings.splat = splatVertex(attributes.vertex, eye, screen.xy, view_projection[eye], order, splats);
                 varyings.splat.position = targetPosition(varyings.splat.position);
-                varyings.splat.color.rgb = targetColor(varyings.splat.color.rgb);
+                varyings.splat.color.rgb = SHADE3(targetColor(varyings.splat.color.rgb));
             }
             UNITY_INITIALIZE_VERTEX_OUTPUT_STEREO(varyings);
             return varyings;
@@ -56,7 +60,7 @@ Shader "Hidden/MUA/Splat"
             return vertexOf(attributes, true);
         }
 
-        float4 SplatFrag(Varyings varyings) : SV_Target
+        SHADE4 SplatFrag(Varyings varyings) : SV_Target
         {
             UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(varyings);
             return splatFragment(varyings.splat);
