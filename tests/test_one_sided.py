@@ -113,3 +113,19 @@ def test_poses_that_differ_in_where_the_body_faces_alone_are_one() -> None:
     turned = still.copy()
     turned[:, 0] = clip.rotations[:, 0]
     assert len(one_sided.distinct_poses([replace(clip, rotations=turned)], clip.rate, root=0)) == 1
+
+
+def test_no_texel_near_an_open_edge_is_one_sided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The body of random numbers has a small hole at either end, and a seam, which is no opening."""
+    monkeypatch.setattr(one_sided, "OPEN", 0.08)
+    avatar = closed()
+    vertices, texels = avatar.rig.mesh.vertices, avatar.rig.texels
+    size = np.ptp(vertices, axis=0).max()
+    places = np.einsum("nk,nkx->nx", texels.barycentrics, vertices[avatar.rig.mesh.faces[texels.triangles]])
+    ends = [vertices[vertices[:, 1] == height] for height in (vertices[:, 1].min(), vertices[:, 1].max())]
+    away = np.min([np.linalg.norm(places[:, None] - end, axis=2).min(axis=1) for end in ends], axis=0)
+    near = one_sided.near_open_edges(avatar.rig)
+    certain = np.abs(away - one_sided.OPEN * size) > 0.001
+    np.testing.assert_array_equal(near[certain], (away < one_sided.OPEN * size)[certain])
+    assert near.any()
+    assert not measured(avatar)[near].any()

@@ -1,7 +1,8 @@
 """Which texels are one-sided: hidden by others wherever a camera sees their triangles from behind.
 
 That is measured on pictures of an avatar's most different poses, from all around: a texel is one-sided that nowhere
-gives a pixel LARGEST_SHARE or more of its colour while splat_project would leave it out.
+gives a pixel LARGEST_SHARE or more of its colour while splat_project would leave it out. None is that lies near an open
+edge of the mesh: tips of hair and hems are thin, and a pose that was not looked at shows them from within.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,6 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 import torch
+from scipy.spatial import cKDTree
 
 from mua.arrays import Array
 from mua.camera import Camera, orbit
@@ -19,16 +21,20 @@ from mua.kernels.splat_project import AWAY, facing
 from mua.model import Model
 from mua.pose.clip import Clip
 from mua.pose.resample import frames_at
+from mua.rig.rig import Rig
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import largest_shares
 
-LARGEST_SHARE = 1 / 28  # of a pixel's colour
+LARGEST_SHARE = 1 / 24  # of a pixel's colour
+OPEN = 0.01  # of the figure's largest side: texels so near to an open edge are not one-sided
+SAME_PLACE = 1e-6  # of the same: vertices so near to each other are one, as along the seams of a texture
 POSES, VIEWS = 8, 24  # views of each pose
 PIXEL = 1.0  # texels, in the middle of a picture
 FOV = np.radians(60)  # of the pictures; near enough for openings to be looked into
 LARGEST_SIDE = 4096  # pixels
 SAME = 1e-9  # squared sines, summed over joints, of poses that are one
 LOOKED_AT = 512  # frames, evenly over all clips, among which poses are chosen
+EDGE_POINTS = 9  # along an open edge, from which distances are taken
 GOLDEN = np.pi * (3 - np.sqrt(5))  # radians
 
 M = TypeVar("M", bound=Model)
@@ -54,7 +60,7 @@ def one_sided(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Array:
     """Whether each texel is one-sided [N] in the poses of clips."""
-    return shares_behind(avatar, clips, progress=progress) < LARGEST_SHARE
+    return (shares_behind(avatar, clips, progress=progress) < LARGEST_SHARE) & ~near_open_edges(avatar.rig)
 
 
 def shares_behind(
@@ -75,6 +81,22 @@ def shares_behind(
             np.maximum(behind, _shares_behind(splats, normals, camera), out=behind)
         progress(number + 1, len(poses))
     return behind
+
+
+def near_open_edges(rig: Rig) -> Array:
+    """Whether each texel [N] lies near an edge that only one triangle has."""
+    vertices, faces, texels = rig.mesh.vertices, rig.mesh.faces, rig.texels
+    size = float(np.ptp(vertices, axis=0).max())
+    welded = np.unique(np.round(vertices / (SAME_PLACE * size)), axis=0, return_inverse=True)[1].reshape(-1)
+    edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    _, first, count = np.unique(np.sort(welded[edges], axis=1), axis=0, return_index=True, return_counts=True)
+    ends = vertices[edges[first[count == 1]]]
+    if not len(ends):
+        return np.zeros(len(texels.texels), bool)
+    steps = np.linspace(0, 1, EDGE_POINTS)[:, None, None]
+    along = ((1 - steps) * ends[:, 0] + steps * ends[:, 1]).reshape(-1, 3)
+    places = np.einsum("ni,nix->nx", texels.barycentrics, vertices[faces[texels.triangles]])
+    return np.asarray(cKDTree(along).query(places, distance_upper_bound=OPEN * size)[0] < OPEN * size)
 
 
 def distinct_poses(

@@ -278,7 +278,7 @@ def behind(avatar: Tree, splats: Splats, view: Array) -> Array:
     normal = rotate(splats.dual[:, :4], np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     away = splats.centres + view[:3, :3].T @ view[:3, 3]
     sizes = np.linalg.norm(normal, axis=1) * np.linalg.norm(away, axis=1)
-    return np.asarray(one_sided(avatar["texels"]) & (np.sum(normal * away, axis=1) > 0.3 * sizes))
+    return np.asarray(one_sided(avatar["texels"]) & (np.sum(normal * away, axis=1) > 0.25 * sizes))
 
 
 def keys(avatar: Tree, splats: Splats, view: Array, near: float) -> Array:
