@@ -1,8 +1,13 @@
 """Tools that write files of the repository: they write what is stale, and --check names it and changes nothing."""
 
+import os
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 from types import ModuleType
 
+import checkout
 import gen_golden
 import gen_kernel_table
 import gen_meta
@@ -107,3 +112,15 @@ def test_a_compiler_that_refuses_ends_in_its_sentence(
     monkeypatch.setattr(compiles[0], "write", refuse)
     with pytest.raises(SystemExit, match="error: there is no compiler"):
         compiles[0].main()
+
+
+def test_a_generator_takes_the_package_of_its_own_checkout(tmp_path: Path) -> None:
+    for folder in ("tools", "python/mua", "elsewhere/mua"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "__init__.py").touch()
+    shutil.copy(checkout.__file__, tmp_path / "tools")
+    program = tmp_path / "tools" / "generator.py"
+    program.write_text("import checkout\nimport mua\nprint(mua.__file__)\n")
+    installed = os.environ | {"PYTHONPATH": str(tmp_path / "elsewhere")}
+    ran = subprocess.run([sys.executable, program], env=installed, capture_output=True, text=True, check=True)
+    assert ran.stdout.strip() == str(tmp_path / "python" / "mua" / "__init__.py")

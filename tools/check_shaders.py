@@ -8,6 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import checkout  # noqa: F401
 import shader_compilers
 import shader_rules
 import shader_source

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import checkout  # noqa: F401
 import shader_compilers
 from check_shaders import entry_points
 

@@ -13,6 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import checkout  # noqa: F401
 import shader_compilers
 from check_shaders import entry_points
 from wgsl_compile import OPTIONS, Shader, translate
