@@ -20,7 +20,7 @@ OPTIONS = {
     "capture": Annotated[Path, typer.Argument(metavar="CAPTURE", help="Folder of a capture; it holds a capture.json.")],
     "output": Annotated[Path, typer.Option("--output", "-o", help="Folder to write the teacher to.")],
     "preset": Annotated[
-        str, choice(tuple(PRESETS), "--preset", help="Size of the teacher; small and paper need a GPU.")
+        str, choice(tuple(PRESETS), "--preset", help="Size of the teacher; small and paper are meant for a GPU.")
     ],
     "steps": Annotated[int | None, typer.Option(help="Number of training steps.", show_default="set by the preset")],
     "texels": Annotated[
