@@ -16,6 +16,7 @@ from mua.camera import Camera
 
 Array = np.ndarray
 DILATION = 0.3  # square pixels, of the published renderers
+END = 2.015  # standard deviations
 C0, C1 = 0.28209479177387814, 0.4886025119029199
 
 
@@ -97,8 +98,9 @@ def gaussian(u: Array, v: Array) -> Array:
 
 
 def window(u: Array, v: Array) -> Array:
-    """What our players draw instead: a parabola along either that ends at 2, with the same integral."""
-    return 9 * np.pi / 32 * np.maximum(1 - u * u / 4, 0) * np.maximum(1 - v * v / 4, 0)
+    """What our players draw instead: a parabola along either that ends at END, with the same integral."""
+    along_u, along_v = (np.maximum(1 - (along / END) ** 2, 0) for along in (u, v))
+    return 9 * np.pi / (8 * END**2) * along_u * along_v
 
 
 def draw(

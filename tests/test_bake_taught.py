@@ -9,11 +9,10 @@ from commands import Commands
 from taught import FEW
 
 import mua
-from mua.baking.taught import _parts
 from mua.student.settings import PRESETS as STUDENTS
 from mua.student.settings import Ranks, Schedule
 from mua.teaching import settings as teaching
-from mua.teaching.folder import FILE, WEIGHTS
+from mua.teaching.folder import FILE, WEIGHTS, teacher_bytes
 
 
 @pytest.fixture(scope="module")
@@ -73,4 +72,4 @@ def test_a_wrong_option_is_a_sentence(
 def test_what_is_recorded_depends_on_settings_and_weights(tmp_path: Path) -> None:
     for name in (FILE, WEIGHTS):
         (tmp_path / name).write_bytes(name.encode())
-    assert list(_parts(tmp_path)) == [FILE.encode(), WEIGHTS.encode()]
+    assert list(teacher_bytes(tmp_path)) == [FILE.encode(), WEIGHTS.encode()]

@@ -70,7 +70,7 @@ def test_true_surfaces_are_those_of_the_poses(folder: Path) -> None:
 
 def test_true_tracks_follow_points_of_the_surface(folder: Path) -> None:
     capture = open_capture(folder)
-    mesh = capture.character(uv="auto").mesh
+    mesh = capture.character().mesh
     triangles, barycentrics = spread_points(mesh, TRACKED)
     for clip in capture.clips:
         (tracks,) = read_tracks(capture, clip.name)
