@@ -12,7 +12,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.camera import Camera
 
-LARGEST_TEXEL = 0.7  # pixels along a side, up to which a texel is hardly told from a smaller one
+LARGEST_TEXEL = 0.65  # pixels along a side, up to which a texel is hardly told from a smaller one
 HYSTERESIS = 1.15  # times: texels must look so much larger before a finer level comes back
 
 

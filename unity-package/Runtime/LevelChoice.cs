@@ -24,7 +24,7 @@ namespace Mua
     /// </summary>
     internal static class LevelChoice
     {
-        private const double LargestTexel = 0.7; // pixels, up to which a texel is hardly told from a smaller one
+        private const double LargestTexel = 0.65; // pixels, up to which a texel is hardly told from a smaller one
         private const double Hysteresis = 1.15; // times: texels must look so much larger before a finer level comes back
 
         /// <summary>The coarsest level with texels up to LargestTexel; one that is shown stays a little longer.</summary>
