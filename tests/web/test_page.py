@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from web.browser import DESKTOP, PHONE, TABLET, Browser, Page, Serve
+from web.browser import PHONE, Browser, Page, Serve
 from web.pages import ELEMENT, SENTENCE, SHADOW, avatar, fake_site
 
 LOADED = "globalThis.fake?.drawn > 0 && fake.avatars.length > 0"
@@ -60,14 +60,6 @@ def test_without_autoplay_it_waits(opened: Open) -> None:
     page.evaluate(f"{ELEMENT}.removeAttribute('autoplay')")
     page.evaluate(f"{ELEMENT}.reload()")
     assert page.evaluate("[fake.playing, fake.started, fake.drawn > 0]") == [False, False, True]
-
-
-def test_who_wants_less_motion_gets_none_unasked(opened: Open) -> None:
-    page = opened({"src": "hero.muaavatar", "orbit": "90"}, prefers_reduced_motion="reduce")
-    assert page.evaluate("[fake.playing, fake.camera.azimuth]") == [False, 0]
-    page.press(" ")
-    page.evaluate(SETTLED)
-    assert page.evaluate("[fake.playing, fake.camera.azimuth]") == [True, 0]
 
 
 def test_the_camera_orbits_where_that_is_asked_for(opened: Open) -> None:
@@ -331,78 +323,3 @@ def test_the_page_may_not_ask_for_anything_else(browser: Browser, serve: Serve) 
         assert directive in ("connect-src", "script-src-elem")
     assert page.evaluate("globalThis.foreign ?? null") is None
     page.close()
-
-
-def test_every_control_is_reached_by_the_keyboard_and_has_a_name(opened: Open) -> None:
-    page = opened(before="globalThis.fakeHeadset = 'willing'")
-    page.evaluate(f"{part('.settings')}.click()")
-    seen = set()
-    for _ in range(40):
-        page.press("Tab")
-        seen.add(page.evaluate(f"{SHADOW}.activeElement?.className || {SHADOW}.activeElement?.name || ''"))
-    bar = {"play", "scrub", "clips", "speed", "settings", "picture", "whole", "vr"}
-    assert bar | {"splats", "shadow", "stereo", "follow", "level", "reset"} <= seen
-    assert [node for node in _controls(page.do("tree")) if not node.get("name")] == []
-
-
-def _controls(node: dict[str, Any]) -> list[dict[str, Any]]:
-    """What of an accessibility tree can be used."""
-    roles = ("button", "checkbox", "slider", "combobox", "application", "textbox")
-    inner = [found for child in node.get("children", []) for found in _controls(child)]
-    return ([node] if node["role"] in roles else []) + inner
-
-
-def test_escape_closes_the_panel(opened: Open) -> None:
-    page = opened()
-    page.evaluate(f"{part('.settings')}.click()")
-    page.evaluate(f"{part('[type=checkbox]')}.focus()")
-    page.press("Escape")
-    assert page.evaluate(f"[{part('.panel')}.hidden, {SHADOW}.activeElement.className]") == [True, "settings"]
-
-
-def test_without_a_headset_there_is_no_button_for_it(opened: Open) -> None:
-    assert opened().evaluate(f"{part('.vr')}.checkVisibility()") is False
-
-
-def test_a_headset_is_entered_and_left_by_a_button(opened: Open) -> None:
-    page = opened(before="globalThis.fakeHeadset = 'willing'")
-    page.evaluate(f"{part('.vr')}.focus()")
-    page.press("Enter")
-    assert page.evaluate(f"[fake.vr, {part('.vr')}.getAttribute('aria-pressed')]") == [True, "true"]
-    page.evaluate(f"{part('.vr')}.click()")
-    assert page.evaluate(f"[fake.vr, {part('.vr')}.getAttribute('aria-pressed')]") == [False, "false"]
-    page.evaluate("fake.onvr(fake.vr = true)")  # by itself
-    assert page.evaluate(f"{part('.vr')}.getAttribute('aria-pressed')") == "true"
-
-
-def test_a_headset_that_is_refused_is_a_sentence_beside_the_avatar(opened: Open) -> None:
-    page = opened(before="globalThis.fakeHeadset = 'unwilling'")
-    page.evaluate(f"{part('.vr')}.click()")
-    page.wait(f"{SENTENCE} === 'The headset cannot show the avatar: denied'")
-    assert page.evaluate("[fake.vr, fake.playing, fake.avatars.length]") == [False, True, 1]
-
-
-@pytest.mark.parametrize("size", [DESKTOP, TABLET, PHONE], ids=["desktop", "tablet", "phone"])
-def test_nothing_is_cut_off_at_any_size(opened: Open, size: tuple[int, int]) -> None:
-    page = opened(size=size, touch=size == PHONE, before="globalThis.fakeHeadset = 'willing'")
-    page.evaluate(f"{part('.settings')}.click()")
-    code = f"""[...{SHADOW}.querySelectorAll("button, select, input, canvas, .panel")]
-      .filter((part) => part.checkVisibility() && !part.closest(".panel"))
-      .map((part) => [part.className, part.getBoundingClientRect()])
-      .filter(([, at]) => at.left < -0.5 || at.right > innerWidth + 0.5 || at.bottom > innerHeight + 0.5)
-      .map(([name]) => name)"""
-    assert page.evaluate(code) == []
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-
-
-def test_all_buttons_take_two_rows_of_a_phone(opened: Open) -> None:
-    page = opened(size=PHONE, touch=True, before="globalThis.fakeHeadset = 'willing'")
-    tops = f"[...{SHADOW}.querySelectorAll('.bar button, .bar select')].map((one) => one.getBoundingClientRect().top)"
-    assert len(set(page.evaluate(tops))) == 2
-
-
-@pytest.mark.parametrize(("scheme", "bright"), [("light", True), ("dark", False)])
-def test_the_page_follows_the_readers_light_or_dark(opened: Open, scheme: str, bright: bool) -> None:
-    page = opened(prefers_color_scheme=scheme)
-    code = "getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number)"
-    assert (sum(page.evaluate(code)) > 384) is bright

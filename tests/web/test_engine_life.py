@@ -1,0 +1,75 @@
+"""The engine in a browser from the first load to the last: memory, a lost device, files that are wrong."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from web.test_engine import Open, load, opened, screenshot, small
+
+__all__ = ["opened", "small"]  # fixtures
+LOADS = 50
+# A device whose loss a test can bring about.
+LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
+  globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
+  return new Promise((resolve) => { this.told = resolve; });
+} });"""
+
+
+def test_fifty_loads_leave_no_memory_behind(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    empty = page.evaluate("player.bytes")
+    held = set()
+    for _ in range(LOADS):
+        assert load(page) == ""
+        held.add(page.evaluate("player.bytes"))
+        page.evaluate("(avatar.remove(), avatar.remove())")
+    assert len(held) == 1
+    assert page.evaluate("player.bytes") == empty < min(held)
+
+
+def test_a_lost_device_comes_back_with_its_avatars(opened: Open, small: Path) -> None:
+    page = opened(before=LOSABLE, a=small.read_bytes())
+    assert load(page) == ""
+    before = screenshot(page)
+    page.evaluate("new Promise((resolve) => setTimeout(resolve, 2100))")  # a device lost at once is given up
+    page.evaluate('lose("unknown")')
+    page.wait("player.bytes > 0")
+    np.testing.assert_array_equal(screenshot(page), before)
+    assert page.evaluate("faults") == []
+
+
+def test_a_device_that_is_lost_again_at_once_is_given_up_in_a_sentence(opened: Open, small: Path) -> None:
+    page = opened(before=LOSABLE, a=small.read_bytes())
+    page.evaluate('lose("unknown")')
+    page.wait("faults.length > 0")
+    assert page.evaluate("faults") == ["The graphics device was lost twice at once; reload the page to try again."]
+    assert load(page) == "The graphics device is away; try again in a moment."
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ('"none.muaavatar"', "none.muaavatar cannot be fetched: the server answers 404 Not Found."),
+        ('"http://127.0.0.1:9/a.muaavatar"', "a.muaavatar cannot be fetched: the server is out of reach"),
+        ('"half.muaavatar"', "half.muaavatar: .*lie outside the file's"),
+        ('"damaged.muaavatar"', "damaged.muaavatar: crc32: .* the file is damaged"),
+        ('new TextEncoder().encode("not an avatar").buffer', "the file identifier is b'an a', expected b'MUAV'"),
+        ('new File(["no"], "b.muaavatar")', "b.muaavatar: the file has 2 bytes, too few for a .muaavatar"),
+    ],
+    ids=["absent", "out of reach", "half", "damaged", "bytes", "file"],
+)
+def test_a_file_that_is_wrong_is_a_sentence(opened: Open, small: Path, source: str, told: str) -> None:
+    content = small.read_bytes()
+    damaged = bytearray(content)
+    damaged[-1] ^= 1
+    page = opened(half=content[: len(content) // 2], damaged=bytes(damaged))
+    assert re.match(told, load(page, source))
+    assert page.evaluate("player.avatars.length") == 0
+
+
+def test_what_is_disposed_of_holds_nothing_and_may_be_disposed_of_again(opened: Open, small: Path) -> None:
+    page = opened(a=small.read_bytes())
+    assert load(page) == ""
+    page.evaluate("(player.start(), player.dispose(), player.dispose())")
+    assert page.evaluate("player.bytes") == 0
