@@ -12,6 +12,11 @@ CLIPS = [{"name": "walk", "seconds": 2.0, "frames": 60}, {"name": "wave", "secon
 ELEMENT = "document.querySelector('mua-avatar')"
 SHADOW = f"{ELEMENT}.shadowRoot"
 SENTENCE = f"({SHADOW}.querySelector('.says').hidden ? '' : {SHADOW}.querySelector('.says p').textContent)"
+# A device whose loss a test can bring about.
+LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
+  globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
+  return new Promise((resolve) => { this.told = resolve; });
+} });"""
 
 
 def avatar(name: str, clips: Sequence[object] = CLIPS) -> bytes:

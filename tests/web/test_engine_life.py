@@ -5,15 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from web.pages import LOSABLE
 from web.test_engine import Open, load, opened, screenshot, small
 
 __all__ = ["opened", "small"]  # fixtures
 LOADS = 50
-# A device whose loss a test can bring about.
-LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
-  globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
-  return new Promise((resolve) => { this.told = resolve; });
-} });"""
 
 
 def test_fifty_loads_leave_no_memory_behind(opened: Open, small: Path) -> None:

@@ -13,8 +13,7 @@ import pytest
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
 from web.browser import Browser, Page, Serve
-from web.pages import ELEMENT, SENTENCE
-from web.test_engine import LOSABLE
+from web.pages import ELEMENT, LOSABLE, SENTENCE
 
 from mua.arrays import Array
 from mua.asset.write import encode
