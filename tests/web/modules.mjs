@@ -3,6 +3,7 @@
 //   mutants        the same of files that also arrive in steps; then the most bytes that this process has taken
 //   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
+//   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
 //   numbers        half floats, and numbers as sentences have them
 
 import { readFileSync } from "node:fs";
@@ -15,10 +16,13 @@ import { general, scientific, shortest } from "../../python/mua/web/format/numbe
 import { read, readStage } from "../../python/mua/web/format/read.js";
 import { Stages } from "../../python/mua/web/format/stages.js";
 import { expanded, half } from "../../python/mua/web/format/tensors.js";
+import { handleOf } from "../../python/mua/web/handle.js";
 import { chooseLevels, texelPixels } from "../../python/mua/web/level_choice.js";
 import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
+import { Playback } from "../../python/mua/web/playback.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
+import { boxAround } from "../../python/mua/web/standing.js";
 import { surfaceMesh } from "../../python/mua/web/surface.js";
 
 const [what, ...given] = process.argv.slice(2);
@@ -66,6 +70,21 @@ function values(avatar, frames) {
     staticOffset: list(expanded(geometry.staticOffset)),
     surface: surface && Object.values(surfaceMesh(texels, surface)).map(list),
   };
+}
+
+/** What plays after each change. */
+function played(avatar, changes) {
+  const handle = handleOf(avatar, () => {});
+  handle.place = [10, 20, 30];
+  const playback = new Playback(() => handle.clips);
+  playback.begin(0);
+  return changes.map(([name, value]) => {
+    if (name === "advance") playback.advance(value);
+    else playback[name] = value;
+    const { clip, time } = playback;
+    const [frame, following] = [playback.frameOf(avatar), playback.followingOf(avatar)];
+    return { clip, time, frame, following, box: boxAround([{ avatar, handle }], playback) };
+  });
 }
 
 /** The coarser levels, one after the other. */
@@ -132,6 +151,7 @@ if (what === "truncated") {
   for (let length = 0; length < content.byteLength; length += Number(given[1])) say(await answer(content.slice(0, length)));
 }
 if (what === "values") say(values(await read(bytes(given[0])), given.slice(1).map(Number)));
+if (what === "played") say(played(await read(bytes(given[0])), JSON.parse(given[1])));
 if (what === "levels") say(levels(await read(bytes(given[0]))));
 if (what === "choices") say(JSON.parse(readFileSync(given[0])).map(({ avatars, budget }) => chooseLevels(avatars, budget)));
 if (what === "views") say(views(given.map(Number)));

@@ -295,14 +295,6 @@ def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:
     assert told["splats"] == len(avatar.rig.texels.texels)
 
 
-def test_time_goes_round_within_the_clip(opened: Open, small: Path) -> None:
-    page = opened(a=small.read_bytes())
-    assert load(page) == ""
-    seconds = page.evaluate("player.clips[0].seconds")
-    assert page.evaluate(f"(player.time = {1.25 * seconds}, player.time)") == pytest.approx(0.25 * seconds)
-    assert page.evaluate(f"(player.time = {-0.25 * seconds}, player.time)") == pytest.approx(0.75 * seconds)
-
-
 def test_playing_moves_the_time_and_the_picture(opened: Open, small: Path) -> None:
     page = opened(a=small.read_bytes())
     assert load(page) == ""

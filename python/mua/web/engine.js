@@ -1,26 +1,22 @@
-// State of a player, the loop that draws it, and what it does when the device is lost.
+// A player: its avatars and what is looked at, the loop that draws them, and what it does when the device is lost.
 
 import { Arrival } from "./arrival.js";
 import { camerasOf, framing, FOV } from "./camera.js";
-import { framesAt, sample } from "./clip.js";
 import { AvatarError } from "./error.js";
-import { sizesOf } from "./levels.js";
+import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
-import { groundHeight } from "./overlays.js";
+import { Playback } from "./playback.js";
 import { Renderer } from "./renderer.js";
-import { world } from "./skeleton.js";
+import { boxAround, gone, groundOf } from "./standing.js";
 import { VR } from "./vr.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
-/** @typedef {import("./player.js").ClipInfo} ClipInfo */
 /** @typedef {import("./player.js").PlayerOptions} PlayerOptions */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
-/** @typedef {import("./format/read.js").Clip} Clip */
 /** @typedef {{avatar: Avatar, handle: AvatarHandle, slot: import("./renderer.js").Slot, grounds: Map<string, number>}} Entry */
 
 const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
 const AWAY = "The graphics device is away; try again in a moment.";
-const LONGEST_STEP = 0.25; // seconds by which one picture may move the time: a hidden tab does not catch up
 
 export class Engine {
   /** @returns {Promise<Engine>} */
@@ -47,16 +43,10 @@ export class Engine {
     this.budget = null;
     this.follow = false;
     this.stereo = false;
-    this.playing = true;
-    this.speed = 1;
-    this.frameStep = 0; // seconds of the clip from one picture to the next, as it plays
+    this.playback = new Playback(() => this.entries[0]?.handle.clips ?? []);
     /** @type {((error: AvatarError) => void) | null} */
     this.onerror = null;
-    /** @type {string | null} */
-    this.chosen = null;
-    this.seconds = 0;
     this.request = 0; // of the next picture; 0 where the loop stands
-    this.before = 0; // time of the last step, milliseconds
     this.drawn = ""; // what the canvas shows
     this.room = new VR(this);
     /** @type {((vr: boolean) => void) | null} */
@@ -124,7 +114,7 @@ export class Engine {
     if (!renderer) throw new AvatarError(AWAY);
     const slot = await renderer.add(avatar);
     if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
-    const entry = part ?? { avatar, slot, grounds: new Map(), handle: this.handleOf(avatar) };
+    const entry = part ?? { avatar, slot, grounds: new Map(), handle: handleOf(avatar, (one) => this.remove(one)) };
     if (!part) this.entries.push(entry);
     else if (this.entries.includes(part)) renderer.replace(part.slot, slot);
     else renderer.remove(slot); // its part was taken away meanwhile
@@ -133,18 +123,6 @@ export class Engine {
     if (!part && this.entries.length === 1) this.frameAll();
     this.drawn = "";
     return entry;
-  }
-
-  /** @returns {AvatarHandle} */
-  handleOf(/** @type {Avatar} */ avatar) {
-    /** @type {AvatarHandle} */
-    const handle = {
-      ...described(avatar),
-      whole: false,
-      place: [0, 0, 0],
-      remove: () => this.remove(handle),
-    };
-    return handle;
   }
 
   remove(/** @type {AvatarHandle} */ handle) {
@@ -159,25 +137,39 @@ export class Engine {
   }
 
   get clips() {
-    return this.entries[0]?.handle.clips ?? [];
+    return this.playback.clips;
   }
 
   get clip() {
-    return this.clips.find(({ name }) => name === this.chosen)?.name ?? this.clips[0]?.name ?? null;
+    return this.playback.clip;
   }
 
   set clip(name) {
-    if (name !== this.clip) this.seconds = 0;
-    this.chosen = name;
+    this.playback.clip = name;
   }
 
   get time() {
-    return this.seconds;
+    return this.playback.time;
   }
 
   set time(seconds) {
-    const { seconds: length } = this.clips.find(({ name }) => name === this.clip) ?? { seconds: 0 };
-    this.seconds = length > 0 && Number.isFinite(seconds) ? ((seconds % length) + length) % length : 0;
+    this.playback.time = seconds;
+  }
+
+  get playing() {
+    return this.playback.playing;
+  }
+
+  set playing(playing) {
+    this.playback.playing = playing;
+  }
+
+  get speed() {
+    return this.playback.speed;
+  }
+
+  set speed(speed) {
+    this.playback.speed = speed;
   }
 
   get milliseconds() {
@@ -195,7 +187,7 @@ export class Engine {
   frameAll(/** @type {readonly AvatarHandle[] | undefined} */ chosen = undefined) {
     const shown = this.entries.filter(({ handle }) => chosen?.includes(handle) ?? true);
     if (!shown.length) return;
-    const box = this.box(shown);
+    const box = boxAround(shown, this.playback);
     Object.assign(this.camera, framing(box, this.camera, camerasOf(this.camera, this.stereo, this.screen)[0].screen));
     const followed = this.followed();
     this.camera.target = /** @type {[number, number, number]} */ (this.camera.target.map((at, i) => at - followed[i]));
@@ -204,13 +196,7 @@ export class Engine {
   /** How far the camera has gone with the first avatar since its clip began, metres; along the ground. */
   followed() {
     const [first] = this.entries;
-    const clip = first && this.clipOf(first.avatar);
-    if (!this.follow || !clip) return [0, 0, 0];
-    const { skeleton, encoding } = first.avatar;
-    const [now, start] = [this.frameOf(first.avatar, clip), 0].map((frame) =>
-      world(skeleton, sample(skeleton, clip, frame, encoding.rate)).places.subarray(3 * skeleton.root),
-    );
-    return [now[0] - start[0], 0, now[2] - start[2]];
+    return this.follow && first ? gone(first.avatar, this.playback) : [0, 0, 0];
   }
 
   /** @returns {import("./renderer.js").Look} */
@@ -226,57 +212,17 @@ export class Engine {
     return [Math.max(this.canvas.width, 1), Math.max(this.canvas.height, 1)];
   }
 
-  /** World box of avatars in the present frame: lowest then highest corner, metres. */
-  box(entries = this.entries) {
-    const boxes = entries.map((entry) => this.boxOf(entry));
-    return [0, 1, 2, 3, 4, 5].map((i) => (i < 3 ? Math.min : Math.max)(...boxes.map((one) => one[i])));
-  }
-
-  /** World box of an avatar in the present frame. */
-  boxOf(/** @type {Entry} */ { avatar, handle }) {
-    const { skeleton, encoding } = avatar;
-    const clip = this.clipOf(avatar);
-    const pose = clip
-      ? sample(skeleton, clip, this.frameOf(avatar, clip), encoding.rate)
-      : { rotations: skeleton.bindRotations, translations: skeleton.bindTranslations };
-    const { places } = world(skeleton, pose);
-    const root = 3 * skeleton.root;
-    return Array.from(avatar.bounds, (value, i) => value + places[root + (i % 3)] + handle.place[i % 3]);
-  }
-
-  /** What an avatar plays: the clip that was chosen, its first one where it has none of that name. */
-  clipOf(/** @type {Avatar} */ avatar) {
-    return avatar.clips.find(({ name }) => name === this.clip) ?? avatar.clips[0];
-  }
-
-  frameOf(/** @type {Avatar} */ { encoding }, /** @type {Clip} */ clip) {
-    return Math.floor(this.seconds * encoding.rate + 1e-6) % framesAt(clip, encoding.rate);
-  }
-
-  /** What a picture shows now; an avatar without clips stands in its bind pose. @returns {import("./renderer.js").Posed[]} */
+  /** What a picture shows now. @returns {import("./renderer.js").Posed[]} */
   posed() {
+    const { playback } = this;
+    const exact = this.show.geometry || !(this.request || this.vr); // else the next frame is decoded ahead
     return this.entries.map((entry) => {
       const { avatar, slot, handle } = entry;
-      const clip = this.clipOf(avatar) ?? stillClip(avatar);
-      const ground = this.show.shadow ? this.groundOf(entry) : 0;
-      const frame = this.frameOf(avatar, clip);
-      return { slot, clip, frame, following: this.followingOf(avatar, clip, frame), place: [...handle.place], ground };
+      const frame = playback.frameOf(avatar);
+      const following = exact ? frame : playback.followingOf(avatar);
+      const ground = this.show.shadow ? groundOf(entry, playback) : 0;
+      return { slot, clip: playback.clipOf(avatar), frame, following, place: [...handle.place], ground };
     });
-  }
-
-  /** Height on which an avatar stands in what it plays, metres. */
-  groundOf(/** @type {Entry} */ { avatar, grounds }) {
-    const clip = this.clipOf(avatar) ?? stillClip(avatar);
-    const ground = grounds.get(clip.name) ?? groundHeight(avatar, clip);
-    grounds.set(clip.name, ground);
-    return ground;
-  }
-
-  /** The frame to decode ahead; this one where the clip rests or skips frames, or what is shown must be exact. */
-  followingOf(/** @type {Avatar} */ { encoding }, /** @type {Clip} */ clip, /** @type {number} */ frame) {
-    const step = this.frameStep * encoding.rate;
-    const ahead = (this.request || this.vr) && this.playing && !this.show.geometry && step > 0 && step < 1;
-    return ahead ? (frame + 1) % framesAt(clip, encoding.rate) : frame;
   }
 
   async draw() {
@@ -296,7 +242,7 @@ export class Engine {
 
   start() {
     if (this.request || this.disposed) return;
-    this.before = performance.now();
+    this.playback.begin(performance.now());
     this.drawn = "";
     this.request = requestAnimationFrame((now) => this.step(now));
   }
@@ -310,10 +256,9 @@ export class Engine {
   step(/** @type {number} */ now) {
     this.request = requestAnimationFrame((next) => this.step(next));
     if (this.vr) return;
-    this.advance(now);
+    this.playback.advance(now);
     const frames = this.entries.map(({ avatar, handle }) => {
-      const clip = this.clipOf(avatar);
-      return [handle.name, clip?.name, clip && this.frameOf(avatar, clip), handle.place];
+      return [handle.name, this.playback.clipOf(avatar).name, this.playback.frameOf(avatar), handle.place];
     });
     const wanted = JSON.stringify([this.look, this.screen, frames]);
     if (!this.renderer) return;
@@ -330,14 +275,6 @@ export class Engine {
   fail(/** @type {unknown} */ error) {
     this.stop();
     this.tell(asAvatarError(error, "The avatar cannot be drawn"));
-  }
-
-  /** Play on until a time of the display or the headset, milliseconds. */
-  advance(/** @type {number} */ now) {
-    const passed = Math.min(Math.max(now - this.before, 0) / 1000, LONGEST_STEP);
-    this.before = now;
-    this.frameStep = passed * this.speed;
-    if (this.playing) this.time += this.frameStep;
   }
 
   get vr() {
@@ -361,35 +298,6 @@ export class Engine {
     this.renderer?.destroy();
     this.renderer = null;
   }
-}
-
-/** What a handle says of an avatar. */
-function described(/** @type {Avatar} */ avatar) {
-  const [low, high] = [avatar.bounds.slice(0, 3), avatar.bounds.slice(3)].map((corner) => Array.from(corner));
-  const bounds = /** @type {import("./player.js").Box} */ ([low, high]);
-  const { name, notes, texels } = avatar;
-  return { name, notes, clips: clipsOf(avatar), bounds, splats: texels.texels.length, levels: sizesOf(avatar) };
-}
-
-/** @returns {ClipInfo[]} */
-function clipsOf(/** @type {Avatar} */ { clips, encoding }) {
-  return clips.map((clip) => {
-    const frames = framesAt(clip, encoding.rate);
-    return { name: clip.name, frames, seconds: frames / encoding.rate };
-  });
-}
-
-/** One frame of the bind pose. @returns {Clip} */
-function stillClip(/** @type {Avatar} */ { skeleton, encoding }) {
-  const at = (/** @type {number} */ joint) => skeleton.bindTranslations.subarray(3 * joint, 3 * joint + 3);
-  return {
-    name: "",
-    rate: encoding.rate,
-    frames: 1,
-    rotations: Float32Array.from(skeleton.bindRotations),
-    translation: Float32Array.from(at(skeleton.root)),
-    translations: Float32Array.from(Array.from(skeleton.translated).flatMap((joint) => [...at(joint)])),
-  };
 }
 
 function asAvatarError(/** @type {unknown} */ error, /** @type {string} */ what) {

@@ -3,6 +3,7 @@
 import { roomOf } from "./camera.js";
 import { AvatarError } from "./error.js";
 import { Headset } from "./headset.js";
+import { boxAround, groundOf } from "./standing.js";
 
 const APART = 1.2; // metres between the reader and what is nearest
 
@@ -41,7 +42,7 @@ export class VR {
     return {
       room: this.standing(),
       draw: (now, picture, eyes) => {
-        engine.advance(now);
+        engine.playback.advance(now);
         engine.renderer?.submit(picture, engine.posed(), engine.look, eyes);
       },
       fail: (error) => engine.fail(error),
@@ -58,8 +59,9 @@ export class VR {
   /** How the avatars stand: on the floor before the reader, seen from the side from which the page shows them. */
   standing() {
     const { engine } = this;
-    const box = engine.box();
-    const lowest = Math.min(...engine.entries.map((entry) => engine.groundOf(entry) + entry.handle.place[1]));
+    const { entries, playback } = engine;
+    const box = boxAround(entries, playback);
+    const lowest = Math.min(...entries.map((entry) => groundOf(entry, playback) + entry.handle.place[1]));
     const foot = [(box[0] + box[3]) / 2, lowest, (box[2] + box[5]) / 2];
     const apart = APART + Math.hypot(box[3] - box[0], box[5] - box[2]) / 2;
     const { azimuth } = engine.camera;

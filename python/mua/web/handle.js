@@ -1,0 +1,31 @@
+// What a page is told of an avatar that was loaded, and may do with it.
+
+import { framesAt } from "./clip.js";
+import { sizesOf } from "./levels.js";
+
+/** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
+/** @typedef {import("./player.js").ClipInfo} ClipInfo */
+/** @typedef {import("./format/read.js").Avatar} Avatar */
+
+/** @param {Avatar} avatar @param {(handle: AvatarHandle) => void} remove @returns {AvatarHandle} */
+export function handleOf(avatar, remove) {
+  /** @type {AvatarHandle} */
+  const handle = { ...described(avatar), whole: false, place: [0, 0, 0], remove: () => remove(handle) };
+  return handle;
+}
+
+/** What a handle says of an avatar. */
+export function described(/** @type {Avatar} */ avatar) {
+  const [low, high] = [avatar.bounds.slice(0, 3), avatar.bounds.slice(3)].map((corner) => Array.from(corner));
+  const bounds = /** @type {import("./player.js").Box} */ ([low, high]);
+  const { name, notes, texels } = avatar;
+  return { name, notes, clips: clipsOf(avatar), bounds, splats: texels.texels.length, levels: sizesOf(avatar) };
+}
+
+/** @returns {ClipInfo[]} */
+function clipsOf(/** @type {Avatar} */ { clips, encoding }) {
+  return clips.map((clip) => {
+    const frames = framesAt(clip, encoding.rate);
+    return { name: clip.name, frames, seconds: frames / encoding.rate };
+  });
+}
