@@ -28,7 +28,7 @@ test-web: setup
 
 # 100,000 avatars that nobody wrote, plain and packed ones, through the readers in Python, C# and JavaScript.
 test-files: setup
-	$(PYTEST) -m long -k mutants tests/unity/test_mutants.py tests/web/test_modules.py
+	$(PYTEST) -m long -k mutants -rP tests/unity/test_mutants.py
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
 test-wheel: demo

@@ -1,14 +1,15 @@
 """Files that nobody wrote: sound ones with bytes, numbers, tensors or whole tables changed, and sealed again."""
 
+import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from malformed import malformed, seal_unread
 
-from mua.asset.flatbuffer import Tree
-from mua.asset.layout import ENUMS
+from mua.asset import layout
+from mua.asset.flatbuffer import Tree, build, parse
 from mua.asset.packing import packed
 from mua.asset.tensors import DTYPES
 
@@ -19,26 +20,59 @@ INTEGERS = (0, 1, 2, 3, -1, 7, 255, 4096, 2**31 - 1)
 ZEROS = zlib.compress(bytes(1 << 24), 9, -15)  # a stream of 16 kB that gives 1,000 times as much
 CLAIMS = (0, 1, 2**10, 2**20, 2**24, 2**32 - 1)  # of one side of a packed tensor
 SIDES = (0, 1, 2, 3, 4, 7, 2**16, 2**32 - 1)
+SLOT = 4 + 2 * [field.name for field in layout.TABLES[layout.ROOT]].index("crc32")  # bytes into what describes the root
 UNCHANGED = ("_at", "crc32", "version_major", "version_minor")
 
 
-def mutants(contents: list[bytes], rng: np.random.Generator, count: int) -> Iterator[bytes]:
-    """Mutants of sound files, by turns of their bytes, of what stands in them and of how it is arranged."""
-    for k in range(count):
-        content = contents[k % len(contents)]
-        kind = rng.random()
-        if kind < 0.4:
-            yield _bytes(content, rng)
-        else:
-            yield malformed(content, lambda tree: (_numbers if kind < 0.8 else _arrangement)(tree, rng))  # noqa: B023
+def mutant(contents: list[bytes], seed: int) -> bytes:
+    """A mutant of one of these sound files: of its bytes, of what stands in it or of how it is arranged."""
+    rng, content = np.random.default_rng(seed), contents[seed % len(contents)]
+    kind = rng.random()
+    if kind < 0.4:
+        return _bytes(content, rng)
+    return _edited(content, _numbers if kind < 0.8 else _arrangement, rng)
 
 
-def packed_mutants(contents: list[bytes], rng: np.random.Generator, count: int) -> Iterator[bytes]:
-    """Mutants of files for the network, two of three in their streams or in what these claim to give."""
-    others = mutants(contents, rng, count)
-    for k in range(count):
-        content = contents[k % len(contents)]
-        yield next(others) if rng.random() < 1 / 3 else malformed(content, lambda tree: _stream(tree, rng))
+def packed_mutant(contents: list[bytes], seed: int) -> bytes:
+    """A mutant of a file for the network, two of three in its streams or in what these claim to give."""
+    if seed % 3 == 0:
+        return mutant(contents, seed)
+    return _edited(contents[seed % len(contents)], _stream, np.random.default_rng(seed))
+
+
+def _edited(content: bytes, edit: Callable[[Tree, np.random.Generator], None], rng: np.random.Generator) -> bytes:
+    tree = _copied(_parsed(content))
+    edit(tree, rng)
+    return _sealed(build(tree))
+
+
+@lru_cache
+def _parsed(content: bytes) -> Tree:
+    tree = parse(content)
+    tree.pop("stages", None)  # of a file that ends elsewhere
+    return tree
+
+
+def _copied(tree: Any) -> Any:
+    """The same tables and lists, of which one may change without the other; arrays are never changed."""
+    if isinstance(tree, dict):
+        return {name: _copied(value) for name, value in tree.items()}
+    return [_copied(value) for value in tree] if isinstance(tree, list) else tree
+
+
+def _sealed(content: bytes) -> bytes:
+    """With its checksum, where the root's description still says where that stands: parsing all of it takes longer."""
+    try:
+        [root] = struct.unpack_from("<I", content)
+        [back] = struct.unpack_from("<i", content, root)
+        [offset] = struct.unpack_from("<H", content, root - back + SLOT)
+    except struct.error:
+        return content
+    at = root + offset
+    if not offset or at + 4 > len(content):
+        return content
+    checksum = zlib.crc32(content[at + 4 :], zlib.crc32(bytes(4), zlib.crc32(content[:at])))
+    return content[:at] + struct.pack("<I", checksum) + content[at + 4 :]
 
 
 def _stream(tree: Tree, rng: np.random.Generator) -> None:
@@ -73,7 +107,7 @@ def _bytes(content: bytes, rng: np.random.Generator) -> bytes:
     end = TABLES if rng.random() < 0.8 else len(content)
     for at in rng.integers(0, end, rng.integers(1, 4)):
         mutated[at] = rng.choice([*BYTES, rng.integers(256)])
-    return seal_unread(bytes(mutated))
+    return _sealed(bytes(mutated))
 
 
 def _numbers(tree: Tree, rng: np.random.Generator) -> None:
@@ -117,7 +151,7 @@ def _arrangement(tree: Tree, rng: np.random.Generator) -> None:
         case 5:
             table[name] = {**table[name], "type": str(rng.choice([*DTYPES]))}
         case 6:
-            table[name] = {**table[name], "packing": str(rng.choice(ENUMS["Packing"]))}
+            table[name] = {**table[name], "packing": str(rng.choice(layout.ENUMS["Packing"]))}
 
 
 def _places(tree: Any) -> Iterator[tuple[Any, Any]]:

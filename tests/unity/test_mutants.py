@@ -1,19 +1,22 @@
-"""Files that nobody wrote: both readers answer alike, in bounded memory; what they accept decodes to finite numbers."""
+"""Files that nobody wrote: all readers answer alike, in bounded memory; what they accept decodes to finite numbers."""
 
+import json
 import resource
 import zlib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from csharp import CSharp
-from mutants import mutants, packed_mutants
+from mutants import mutant, packed_mutant
+from readers import SECONDS, Reader, within
 from synthetic_avatar import synthetic_avatar, with_surface
-from test_format import program, values, write_all  # noqa: F401 program is a fixture
+from test_format import program, values  # noqa: F401 program is a fixture
+from web.test_modules import lacking
 
 from mua.asset.flatbuffer import FormatError, parse
 from mua.asset.packing import ROOM as UNPACKED
@@ -25,44 +28,79 @@ from mua.decode import decode_clip_frame
 from mua.pose.resample import resample
 
 STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32", "packed")
-Made = Callable[[list[bytes], np.random.Generator, int], Iterator[bytes]]
-BATCH = 500  # files on the disk at once
+Made = Callable[[list[bytes], int], bytes]
+MODULES = Path(__file__).parents[1] / "web" / "modules.mjs"
+FEW, ALL, BLOCK = 300, 100_000, 10_000
 ROOM = 1 << 29  # bytes that reading and decoding one of them may take here: 5,000 times its size
 CSHARP_ROOM = 3  # times the file's size that the C# reader may take: many small tables, beside the words of a refusal
 WORDS = 20_000
+WEB_ROOM = 1 << 29  # bytes that Node and its reading of all these files may take at once
 CLIPS = 3  # of a file that are decoded; a mutant may hold one many times
 
 
+@pytest.fixture
+def csharp_reader(csharp: CSharp, program: Path) -> Iterator[Reader]:  # noqa: F811
+    with Reader(["mono", program, "digests"]) as reader:
+        yield reader
+
+
+@pytest.fixture
+def web_reader() -> Iterator[Reader]:
+    with Reader(["node", "--no-warnings", MODULES, "mutants"]) as reader:
+        yield reader
+
+
+def blocks() -> list[Any]:
+    """The seeds of a short run, and those of a long one in parts that can be told apart."""
+    return [range(FEW), *(pytest.param(range(k, k + BLOCK), marks=pytest.mark.long) for k in range(0, ALL, BLOCK))]
+
+
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux, which bounds what a process may take")
-@pytest.mark.parametrize("made", [mutants, packed_mutants], ids=["all", "packed"])
-@pytest.mark.parametrize("count", [300, pytest.param(100_000, marks=pytest.mark.long)])
+@pytest.mark.skipif(lacking(), reason="needs Node 20.12 or later")
+@pytest.mark.parametrize("made", [mutant, packed_mutant], ids=["all", "packed"])
+@pytest.mark.parametrize("seeds", blocks(), ids=lambda seeds: f"{seeds.start}-{seeds.stop}")
 def test_readers_agree_on_mutants_and_what_they_accept_is_finite(
-    csharp: CSharp,
-    program: Path,  # noqa: F811
-    tmp_path: Path,
-    made: Made,
-    count: int,
+    csharp_reader: Reader, web_reader: Reader, made: Made, seeds: range
 ) -> None:
-    """The C# reader also gives the values of each file that is accepted."""
-    storages: tuple[Storage, ...] = ("packed",) if made is packed_mutants else STORAGES
-    contents = [encode(with_surface(synthetic_avatar()), storage=storage) for storage in storages]
-    files = made(contents, np.random.default_rng(count), count)
-    codes = Counter[str]()
-    while some := list(islice(files, BATCH)):
-        with room(ROOM):
-            expected = [answer(content) for content in some]
-        lines = csharp.run(program, "digests", *write_all(tmp_path, some)).splitlines()
-        found = [tuple(line.split("\t")[:3]) for line in lines]
-        first = sum(codes.values())
-        assert {first + k: line[1:] for k, line in enumerate(found)} == {
-            first + k: own for k, own in enumerate(expected)
-        }
-        for (allocated, *_), content in zip(found, some, strict=True):
-            assert int(allocated) < CSHARP_ROOM * len(content) + 2 * claimed(content) + WORDS
-        codes.update(code for code, _ in expected)
-    assert count / (10 if made is packed_mutants else 5) < codes["ok"] < count * 4 / 5
+    """In bounded memory and time. The C# reader also gives the values of each file that is accepted; the browser's also
+    reads each as one that arrives part by part."""
+    storages: tuple[Storage, ...] = ("packed",) if made is packed_mutant else STORAGES
+    sound, codes = [encode(with_surface(synthetic_avatar()), storage=storage) for storage in storages], Counter[str]()
+    for seed in seeds:
+        content, named = made(sound, seed), f"{made.__name__} {seed}"
+        csharp_reader.give(content)
+        web_reader.give(content)
+        with telling(f"Python: {named}"), within(SECONDS), room(ROOM):
+            expected = answer(content)
+        with telling(f"C#: {named}"):
+            allocated, *found = csharp_reader.answer().split("\t")[:3]
+        assert (named, *found) == (named, *expected)
+        with telling(f"JavaScript: {named}"):
+            *found, taken = json.loads(web_reader.answer())
+        assert (named, *found) == (named, *(expected if expected[0] != "ok" else ["ok"]))
+        assert int(allocated) < CSHARP_ROOM * len(content) + WORDS or int(allocated) < largest(content), named
+        assert taken < WEB_ROOM, named
+        codes[expected[0]] += 1
+    count = len(seeds)
+    print(f"{made.__name__} {seeds.start} to {seeds.stop - 1}: {codes['ok']} of {count} accepted, {dict(codes)}")
+    assert count / (10 if made is packed_mutant else 5) < codes["ok"] < count * 4 / 5
     assert len(codes) > 8
-    assert codes["packed"] > (count / 5 if made is packed_mutants else 0)
+    assert codes["packed"] > (count / 5 if made is packed_mutant else 0)
+
+
+@contextmanager
+def telling(named: str) -> Iterator[None]:
+    """Whatever ends the block is told with this name."""
+    try:
+        yield
+    except Exception as error:
+        error.add_note(named)
+        raise
+
+
+def largest(content: bytes) -> int:
+    """Bytes that the C# reader may take for a file whose packed tensors give as much as they may."""
+    return CSHARP_ROOM * len(content) + 2 * claimed(content) + WORDS
 
 
 def claimed(content: bytes) -> int:

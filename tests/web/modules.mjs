@@ -1,12 +1,13 @@
 // What the browser player's modules that need no graphics device make of files, for tests: modules.mjs WHAT FILE...
 //   answers        a line for each file: ok, or code, field and sentence as JSON
-//   mutants        the same of files that also arrive in steps; then the most bytes that this process has taken
+//   mutants        the same of files on the standard input, each after its length as four bytes, that also arrive in steps;
+//                  and the most bytes that this process has taken by then
 //   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
 //   numbers        half floats, and numbers as sentences have them
 
-import { readFileSync } from "node:fs";
+import { readFileSync, readSync } from "node:fs";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
@@ -35,6 +36,19 @@ function bytes(file) {
   const content = readFileSync(file);
   return content.buffer.slice(content.byteOffset, content.byteOffset + content.length);
 }
+
+/** So many bytes of the standard input; fewer at its end. */
+function came(count) {
+  const found = new Uint8Array(count);
+  for (let at = 0, got = 1; got && at < count; at += got) {
+    got = readSync(0, found, at, count - at);
+    if (!got) return found.subarray(0, at);
+  }
+  return found;
+}
+
+/** The most bytes that this process has taken; maxRSS counts the parent that forked it. */
+const peak = () => 1024 * Number(/VmHWM:\s*(\d+) kB/.exec(readFileSync("/proc/self/status", "utf8"))[1]);
 
 async function answer(content) {
   try {
@@ -139,12 +153,11 @@ async function stages(content, step) {
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));
 if (what === "mutants") {
-  for (const file of given) {
-    const content = bytes(file);
+  for (let head = came(4); head.length === 4; head = came(4)) {
+    const content = came(new DataView(head.buffer).getUint32(0, true)).buffer;
     await stages(content, Math.ceil(content.byteLength / ARRIVED));
-    say(await answer(content));
+    say([...(await answer(content)).slice(0, 2), peak()]);
   }
-  say(1024 * Number(/VmHWM:\s*(\d+) kB/.exec(readFileSync("/proc/self/status", "utf8"))[1])); // maxRSS counts the parent that forked this
 }
 if (what === "truncated") {
   const content = bytes(given[0]);

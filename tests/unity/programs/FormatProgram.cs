@@ -16,6 +16,11 @@ internal static class FormatProgram
     private static int Main(string[] arguments)
     {
         CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
+        if (arguments[0] == "digests")
+        {
+            DigestAll(Console.OpenStandardInput());
+            return 0;
+        }
         byte[] content = File.ReadAllBytes(arguments[1]);
         switch (arguments[0])
         {
@@ -26,12 +31,6 @@ internal static class FormatProgram
                 foreach (string path in arguments.Skip(1))
                 {
                     Console.WriteLine(Answer(File.ReadAllBytes(path)));
-                }
-                return 0;
-            case "digests":
-                foreach (string path in arguments.Skip(1))
-                {
-                    Console.WriteLine(Digest(File.ReadAllBytes(path)));
                 }
                 return 0;
             case "truncate":
@@ -70,6 +69,16 @@ internal static class FormatProgram
         catch (AvatarFormatException error)
         {
             return error.Code + "\t" + error.Field + "\t" + error.Message;
+        }
+    }
+
+    /// <summary>A line for each file that comes, after its length as four bytes.</summary>
+    private static void DigestAll(Stream input)
+    {
+        var reader = new BinaryReader(input);
+        for (byte[] length = reader.ReadBytes(4); length.Length == 4; length = reader.ReadBytes(4))
+        {
+            Console.WriteLine(Digest(reader.ReadBytes(BitConverter.ToInt32(length, 0))));
         }
     }
 
