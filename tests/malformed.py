@@ -238,6 +238,12 @@ def claim(path: str, shape: tuple[int, ...], planes: bytes) -> Callable[[Tree], 
     return put(path, {"shape": np.array(shape, np.uint32), "type": "I32", "data": stream(planes), "packing": "Deflate"})
 
 
+def claims_together(tree: Tree) -> None:
+    """Each of two tensors claims less than a file of its size may give, both claim more."""
+    for path in ("texels.texels", "texels.triangles"):
+        claim(path, (1 << 18,), b"")(tree)
+
+
 def listed(*texels: int) -> Callable[[Tree], None]:
     """The barycentrics of some texels alone are stored."""
 
@@ -263,6 +269,7 @@ UNPACKABLE = [  # of a file for the network
     ("packed", "skeleton.translated.data", claim("skeleton.translated", (0,), bytes(1))),
     ("value", "texels.texels.data", claim("texels.texels", (1 << 24,), bytes(1 << 26))),
     ("value", "surface.strips.data", claim("surface.strips", (1 << 16, 1 << 14), b"")),
+    ("value", "texels.triangles.data", claims_together),
     ("shape", "texels.texels.shape", claim("texels.texels", (1 << 16, 1 << 16), b"")),
     ("shape", "texels.texels.shape", claim("texels.texels", (), b"")),
     ("shape", "texels.texels.shape", claim("texels.texels", (TEXELS, 1), bytes(4 * TEXELS))),

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar, with_texels
+from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar, with_surface, with_texels
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
@@ -127,6 +127,10 @@ def test_a_level_that_is_not_there_is_a_sentence() -> None:
 def test_the_finest_level_is_the_avatar_itself() -> None:
     avatar = synthetic_avatar()
     assert avatar.at_level(0) is avatar
+
+
+def test_a_coarser_level_has_no_triangles_of_the_finest() -> None:
+    assert with_surface(synthetic_avatar()).at_level(1).surface is None
 
 
 def test_a_file_holds_the_finest_level_alone() -> None:

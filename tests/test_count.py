@@ -75,3 +75,4 @@ def test_flops_of_the_synthetic_avatar_match_a_count_by_hand() -> None:
     assert spent["detail blend"] == 2 * 23 * 3 * ((3 * 2 + 3 * 4) + (2 * 4 + 2 * 16))
     # 2 -> 4 -> 8 with four bands, 8 -> 16 -> 32 low-pass, 10 taps
     assert spent["inverse DWT"] == 2 * 23 * (20 * (16 + 64) + 10 * (256 + 1024) * 3 // 4)
+    assert spent["static offset"] == 23 * 676

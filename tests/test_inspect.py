@@ -9,6 +9,8 @@ from commands import Ended, process
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
+from mua.asset.read import load, read
+from mua.asset.summary import summary
 
 
 def inspect(*arguments: object, columns: str = "160") -> Ended:
@@ -32,6 +34,12 @@ def test_verify_refuses_a_damaged_file_in_one_sentence(avatar_file: Path) -> Non
     content[-9] ^= 1
     avatar_file.write_bytes(content)
     assert inspect("--verify", avatar_file).sentence.startswith(f"error: {avatar_file}: ")
+
+
+def test_the_root_is_the_one_that_the_skeleton_says(avatar_file: Path) -> None:
+    avatar = read(avatar_file)
+    rig = replace(avatar.rig, skeleton=replace(avatar.rig.skeleton, root=1))
+    assert summary(avatar_file, load(avatar_file), replace(avatar, rig=rig))["skeleton"]["root"] == "middle"
 
 
 def test_is_printed_whole_into_a_pipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

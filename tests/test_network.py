@@ -9,9 +9,9 @@ from synthetic_avatar import empty_avatar, synthetic_avatar, with_surface
 
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import Tree, parse
-from mua.asset.packing import tensors, unpack
+from mua.asset.packing import packed, tensors, unpack
 from mua.asset.read import decode_tree, parse_checked
-from mua.asset.tensors import Storage, pack, stored
+from mua.asset.tensors import Storage, pack, pack_indices, stored
 from mua.asset.write import encode
 from mua.decode import decode_clip_frame
 
@@ -117,6 +117,14 @@ def test_frames_are_those_of_the_rounded_avatar(content: bytes) -> None:
     ours, theirs = (decode_clip_frame(one, one.clips[0], frame=3) for one in (avatar, back))
     assert np.abs(ours.texture - theirs.texture).max() < 0.2  # random numbers, some of which are rounded coarsely
     assert np.isfinite(theirs.centres).all()
+
+
+@pytest.mark.parametrize(("values", "saves"), [(160, True), (210, False)])
+def test_a_tensor_that_a_stream_hardly_makes_smaller_stays_as_it_is(values: int, saves: bool) -> None:
+    """Bytes of so many equally frequent values take at least log2(values) / 8 of their size: 92 % and 96 %."""
+    tensor = pack_indices(np.zeros(5000, np.int32))
+    tensor["data"] = np.random.default_rng(0).integers(0, values, 20_000, np.uint8)
+    assert (packed(tensor) is not tensor) == saves
 
 
 def test_a_stage_decodes_before_the_rest_is_there(content: bytes) -> None:

@@ -10,6 +10,7 @@ from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.read import decode_tree, parse_checked, read
+from mua.asset.tensors import pack
 from mua.asset.write import encode, seal
 from mua.errors import InputError
 
@@ -88,6 +89,17 @@ def test_damaged_bytes_are_named(content: bytes, code: str, field: str, damage: 
     with pytest.raises(FormatError) as caught:
         decode(damage(content))
     assert (caught.value.code, caught.value.field) == (code, field)
+
+
+def test_a_third_barycentric_that_rounding_makes_negative_is_none(content: bytes) -> None:
+    def edit(tree: Tree) -> None:
+        stored = tree["texels"]["barycentrics"]["data"].view("<f4").copy().reshape(-1, 2)
+        stored[0] = 0.75, 0.25 + 2.0**-23
+        tree["texels"]["barycentrics"] = pack(stored)
+
+    found = decode_tree(parse_checked(malformed(content, edit))).rig.texels.barycentrics
+    assert found[0, 2] == 0
+    assert (found >= 0).all()
 
 
 def test_sentence_names_the_file(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Rounding for the network: steps are powers of two, and the demo's pictures lose less than a tenth of a decibel."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +56,34 @@ def test_a_row_that_moves_texels_little_is_rounded_coarsely() -> None:
     strong = avatar.geometry.mlp[-1].weight
     error = np.abs(faint - strong).max(axis=1)
     assert error[1] > 100 * error[0]
+
+
+def test_a_factor_is_rounded_as_finely_as_the_other_is_large() -> None:
+    """What one factor of a detail gives to the other changes no product."""
+    branch = synthetic_avatar().appearance
+    details = tuple(replace(band, h=band.h / 4, w=band.w * 4) for band in branch.details)
+    avatars = [replace(synthetic_avatar(), appearance=one) for one in (branch, replace(branch, details=details))]
+    even, uneven = (rounded(one).appearance.details for one in avatars)
+    for first, second in zip(even, uneven, strict=True):
+        np.testing.assert_array_equal(second.h * 4, first.h)
+        np.testing.assert_array_equal(second.w / 4, first.w)
+
+
+def test_weights_are_rounded_by_how_many_texels_their_coefficients_move() -> None:
+    """Of like bases, the steps for LL are twice as large as those for D3, which are twice as large as those for D2."""
+    branch = synthetic_avatar().appearance
+    like = tuple(
+        replace(band, h=np.full_like(band.h, 3**-0.25), w=np.full_like(band.w, 3**-0.25)) for band in branch.details
+    )
+    alike = replace(branch, ll_basis=np.full_like(branch.ll_basis, 1.1), details=like)
+    weights = rounded(replace(synthetic_avatar(), appearance=alike)).appearance.mlp[-1].weight
+    rows = np.cumsum([0, *(12 * rank for rank in branch.ranks)])
+    powers = 2.0 ** -np.arange(30)
+    steps = [
+        next(power for power in powers if (part % power == 0).all())
+        for part in (weights[first:end] for first, end in pairwise(rows))
+    ]
+    assert steps == [4 * steps[2], 2 * steps[2], steps[2]]
 
 
 @pytest.mark.skipif(not DEMO.exists(), reason="needs build/demo/avatar.muaavatar: run `make demo`")

@@ -193,6 +193,16 @@ def test_a_joint_that_one_clip_translates_is_stored_for_all(tmp_path: Path) -> N
         np.testing.assert_array_equal(found.translations, expected.translations.astype(np.float32))
 
 
+def test_a_joint_that_the_descriptor_alone_tells_of_is_stored_as_translated() -> None:
+    """As where the clips that moved it were left out."""
+    avatar = synthetic_avatar()
+    clip = avatar.clips[0]
+    still = np.broadcast_to(avatar.rig.skeleton.bind_translations, clip.translations.shape)
+    for clips in ((), (dataclasses.replace(clip, translations=still),)):
+        found = decode_tree(parse_checked(encode(dataclasses.replace(avatar, clips=clips))))
+        assert found.encoding.translated == (2,)
+
+
 def test_refused_avatar_leaves_the_earlier_file(tmp_path: Path) -> None:
     path = tmp_path / "a.muaavatar"
     write(path, synthetic_avatar())

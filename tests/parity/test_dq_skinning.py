@@ -111,6 +111,18 @@ def test_texels_blend_their_three_vertices_as_usd_would(count: int, dtype: type)
         np.testing.assert_allclose(moved, expected, rtol=0, atol=2 * position_bound(np.float32))
 
 
+def test_the_largest_barycentric_decides_on_the_signs_of_a_texel() -> None:
+    """Corners turned by 0, 100 and 200 degrees: beside the middle one both others lie nearer than half a turn."""
+    angles = np.radians([0.0, 100, 200])
+    turns = rotation.from_axis_angle(np.array([0.0, 1, 0]), angles)
+    vertex_dq = rotation.dual_from_rigid(turns, np.zeros((3, 3)))
+    for order in ([0, 1, 2], [1, 0, 2], [0, 2, 1]):
+        faces, weights = np.array([order], np.int32), np.array([[0.25, 0.5, 0.25][i] for i in order])
+        (found,) = blend_texels(vertex_dq, faces, np.zeros(1, np.int32), weights[None])
+        middle = turns[1] if found[0] * turns[1, 0] > 0 else -turns[1]
+        np.testing.assert_allclose(found[:4], middle, rtol=0, atol=8 * np.finfo(float).eps)
+
+
 def test_the_real_part_is_unit() -> None:
     rng = np.random.default_rng(4)
     vertex_dq = blend_vertices(random_joints(rng), *random_influences(rng, 30))
@@ -150,6 +162,15 @@ def test_splats_are_activated_then_posed(count: int, dtype: type) -> None:
     np.testing.assert_allclose(
         rotation.to_matrix(rotations.astype(float)), (turn * own).as_matrix(), rtol=0, atol=32 * eps
     )
+
+
+def test_scales_are_held_where_their_exponential_would_be_infinite() -> None:
+    texture = np.zeros((1, 23), np.float32)
+    texture[:, 3], texture[:, 7:10] = 1, [1000, 10, -1000]
+    places = np.zeros((1, 3), np.float32), np.zeros((1, 3), np.int32), np.zeros(1, np.int32)
+    still = np.eye(1, 8, dtype=np.float32)
+    scales = skin_splats(still, *places, np.full((1, 3), 1 / 3, np.float32), texture)[2]
+    np.testing.assert_allclose(scales, [[np.exp(10), np.exp(10), 0]], rtol=4 * ULP)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
