@@ -21,7 +21,7 @@ from mua.asset import read
 from mua.baking.distillation import Baked
 from mua.baking.order import Order
 from mua.baking.pipeline import bake, parts
-from mua.baking.plan import plan, split
+from mua.baking.plan import HeldOut, plan, split
 from mua.baking.recorded import recording_key
 from mua.baking.sources import RATE, load_character
 from mua.channels import ATTRIBUTES
@@ -129,6 +129,8 @@ def test_a_recording_of_other_motion_is_not_taken_for_this_one() -> None:
         dataclasses.replace(first, held_out=True),
         dataclasses.replace(first, wanted=frozenset({0, 1})),
         dataclasses.replace(first, whole=frozenset({0})),
+        dataclasses.replace(first, run_up=clip),
+        dataclasses.replace(first, run_up=dataclasses.replace(clip, translations=clip.translations + 1)),
         *(
             dataclasses.replace(first, clip=dataclasses.replace(clip, **changed))
             for changed in (
@@ -151,14 +153,14 @@ def clip(name: str, frames: int) -> Clip:
 
 
 def test_plan_spreads_frames_over_all_training_clips() -> None:
-    planned = plan([clip("a", 30), clip("b", 10)], [clip("c", 100)], frames=8)
+    planned = plan([clip("a", 30), clip("b", 10)], [HeldOut(clip("c", 100))], frames=8)
     assert [len(p.wanted) for p in planned] == [6, 2, 2]
     assert [p.held_out for p in planned] == [False, False, True]
 
 
 @pytest.mark.parametrize(("frames", "recorded"), [(1, [0, 0, 1]), (8, [0, 1, 1]), (40, [3, 3, 4]), (4000, [40, 40, 7])])
 def test_held_out_frames_are_at_most_a_quarter_of_the_training_frames(frames: int, recorded: list[int]) -> None:
-    held = [clip("b", 100), clip("c", 200), clip("d", 7)]
+    held = [HeldOut(clip("b", 100)), HeldOut(clip("c", 200)), HeldOut(clip("d", 7))]
     planned = plan([clip("a", 5000)], held, frames=frames)
     assert [len(p.wanted) for p in planned if p.held_out] == recorded
 
@@ -171,13 +173,23 @@ def test_plan_takes_every_frame_where_more_are_asked_for() -> None:
 def test_without_names_the_end_of_every_clip_is_held_out() -> None:
     training, held = split([clip("a", 50), clip("b", 3)], [])
     assert [(c.name, len(c)) for c in training] == [("a", 40), ("b", 3)]
-    assert [(c.name, len(c)) for c in held] == [("a (end)", 10)]
+    assert [(own.clip.name, len(own.clip)) for own in held] == [("a (end)", 10)]
 
 
 def test_an_end_takes_no_name_that_a_clip_has() -> None:
     training, held = split([clip("a", 50), clip("a (end)", 50)], [])
     assert [c.name for c in training] == ["a", "a (end)"]
-    assert [c.name for c in held] == ["a (end) (end)"]
+    assert [own.clip.name for own in held] == ["a (end) (end)"]
+
+
+def test_what_comes_before_a_held_out_end_is_played_first() -> None:
+    places = np.arange(200.0)[:, None, None] * np.ones(3)
+    long = dataclasses.replace(clip("a", 200), translations=places)
+    _, held = split([long, long.cut(slice(50))], [])
+    planned = plan([], held, frames=100)
+    assert [own.run_up.translations[[0, -1], 0, 0].tolist() for own in planned if own.run_up] == [[100, 159], [0, 39]]
+    _, (whole,) = split([long, dataclasses.replace(long, name="b")], ["b"])
+    assert whole.run_up is None
 
 
 def test_unknown_held_out_clip_is_named() -> None:

@@ -1,11 +1,13 @@
 """Which clips an avatar's file holds: what the user gave, however it was recorded."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mua.baking.playback import choose, held_out, held_out_sentence, typical_frame, whole_clips
 from mua.errors import InputError
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, Stretches
 from mua.recording import RecordedClip
 
 
@@ -93,3 +95,13 @@ def test_the_typical_frame_is_the_one_nearest_to_the_mean_pose() -> None:
     rotations[:, 0] = np.random.default_rng(0).standard_normal((5, 4))  # where the character faces counts for nothing
     bend = Clip("bend", 30.0, rotations, np.zeros((5, 2, 3)))
     assert typical_frame([bend], root=0)[1] == 3
+
+
+def test_clips_joined_keep_what_each_stretches() -> None:
+    matrices = np.random.default_rng(0).standard_normal((10, 1, 3, 3))
+    walk = replace(clip("walk", 10), stretches=Stretches(np.array([1]), matrices))
+    joined = walk.cut(slice(7)).then(replace(walk.cut(slice(7, None)), name="end"))
+    assert joined.name == "walk"
+    assert joined.stretches is not None
+    np.testing.assert_array_equal(joined.stretches.matrices, matrices)
+    np.testing.assert_array_equal(joined.translations, walk.translations)

@@ -14,7 +14,7 @@ from together import errors, start
 from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.recording import PlannedClip, Recording, TeacherWriter, parts, record
-from mua.recording.parts import divide, join_parts, part_directory, record_share, share
+from mua.recording.parts import divide, first_texture, join_parts, part_directory, record_share, share
 
 
 def record_parts(directory: Path, processes: int) -> None:
@@ -135,6 +135,14 @@ def test_refuses_another_reference(tmp_path: Path) -> None:
         writer.refer_to(first.texture)
         with pytest.raises(InputError, match=r"reference.npz: is another texture"):
             writer.refer_to(third.texture)
+
+
+def test_the_texture_that_all_parts_refer_to_comes_after_its_run_up() -> None:
+    rig = synthetic_rig()
+    whole = clip(rig, "walk", 10)
+    end = PlannedClip(whole.cut(slice(4, None)), held_out=True, wanted=frozenset({1}), run_up=whole.cut(slice(4)))
+    teacher = FormulaTeacher(rig)
+    np.testing.assert_array_equal(first_texture(teacher, [end]), teacher.frame(whole, 5).texture)
 
 
 def planned(lengths: list[int]) -> list[PlannedClip]:

@@ -70,6 +70,32 @@ def test_a_teacher_plays_a_clip_no_further_than_to_the_last_frame_that_is_wanted
     np.testing.assert_array_equal(Recording(tmp_path).clips[0].rotations, planned[0].clip.rotations)
 
 
+def test_a_run_up_is_played_and_not_recorded(tmp_path: Path) -> None:
+    rig = synthetic_rig()
+    whole = clip(rig, "walk", 10)
+    run_up, end = whole.cut(slice(4)), replace(whole.cut(slice(4, None)), name="end")
+
+    class Counting(FormulaTeacher):
+        """Moves its mesh further with every frame that it plays."""
+
+        def frames(self, clip, wanted):  # type: ignore[no-untyped-def]
+            for index, frame in enumerate(super().frames(clip, wanted)):
+                moved = rig.mesh.vertices.astype(np.float32) + np.float32(index / 1024)
+                yield replace(frame, mesh=moved) if index in wanted else frame
+
+    teacher = Counting(rig)
+    planned = [PlannedClip(end, held_out=False, wanted=frozenset({0, 3}), run_up=run_up)]
+    with TeacherWriter(tmp_path, rig, rate=RATE) as writer:
+        record(teacher, planned, writer)
+    assert teacher.computed == [("end", 4), ("end", 7)]
+    recording = Recording(tmp_path)
+    (recorded,) = recording.clips
+    np.testing.assert_array_equal(recorded.translations, end.translations)
+    assert recorded.recorded.tolist() == [0, 3]
+    moved = recording.meshes([0, 1]) - rig.mesh.vertices
+    np.testing.assert_allclose(moved.mean(axis=(1, 2)) * 1024, [4, 7], rtol=1e-3)  # single precision
+
+
 def test_memory_does_not_grow_with_the_number_of_frames(tmp_path: Path) -> None:
     rig = synthetic_rig()
     teacher = FormulaTeacher(rig)

@@ -7,10 +7,13 @@ import pytest
 from tube import still, swing, tube
 
 from mua import rotation
+from mua.baking.plan import split
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.kernels.dq_skinning import blend_texels, blend_vertices, skin_splats
 from mua.pose.clip import Clip, Stretches
 from mua.pose.skeleton import Pose
+from mua.recording import PlannedClip
+from mua.recording.record import played
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.teachers import texels
@@ -69,6 +72,19 @@ def test_frames_not_wanted_are_poses_and_change_nothing(teacher: SimulatedTeache
     assert isinstance(some[11], TeacherFrame)
     np.testing.assert_array_equal(some[11].texture, every[11].texture)
     np.testing.assert_array_equal(some[11].mesh, every[11].mesh)
+
+
+def test_a_held_out_end_goes_on_from_the_motion_before_it(teacher: SimulatedTeacher) -> None:
+    clip = swing(tube()).cut(slice(20))
+    _, (end,) = split([clip], [])
+    planned = PlannedClip(end.clip, held_out=True, wanted=frozenset({0, 3}), run_up=end.run_up)
+    whole = [frame for frame in teacher.frames(clip, {16, 19}) if isinstance(frame, TeacherFrame)]
+    after = [frame for frame in played(teacher, planned, planned.wanted) if isinstance(frame, TeacherFrame)]
+    unmoved = [frame for frame in teacher.frames(end.clip, {0, 3}) if isinstance(frame, TeacherFrame)]
+    for one, other, cold in zip(whole, after, unmoved, strict=True):
+        np.testing.assert_array_equal(one.mesh, other.mesh)
+        np.testing.assert_array_equal(one.texture, other.texture)
+        assert np.abs(cold.texture - one.texture).max() > 1e-3
 
 
 @pytest.mark.usefixtures("unsunk")

@@ -1,7 +1,7 @@
 """Which clips are held out and which frames are recorded."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,10 +14,19 @@ HELD_FRAMES = 40  # recorded of each held-out clip at most, all of them whole
 HELD_PART = 4  # all held-out clips together get at most a quarter as many frames as training
 WHOLE_FRAMES = 60  # of all training frames, kept whole to measure the error on
 SHORTEST = 2 * HELD_SHARE  # frames of a clip that is worth cutting
+RUN_UP = 2.0  # seconds before a held-out end that a teacher plays first, so that its cloth is in motion
 ENDING = " (end)"  # after a clip's name: its held-out end, recorded as a clip of its own
 
 
-def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip], list[Clip]]:
+@dataclass(frozen=True)
+class HeldOut:
+    """A clip that is held out, and what of a training clip comes before it."""
+
+    clip: Clip
+    run_up: Clip | None = None
+
+
+def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip], list[HeldOut]]:
     """Training and held-out clips: those named, or the end of every clip where none is.
 
     Errors: InputError for a name that no clip has, or where nothing is left to train on.
@@ -31,10 +40,10 @@ def split(clips: Sequence[Clip], hold_out: Collection[str]) -> tuple[list[Clip],
     training = [clip for clip in clips if clip.name not in hold_out]
     if not training:
         raise InputError(f"--hold-out {' '.join(hold_out)}: leaves no clip to train on")
-    return training, [clip for clip in clips if clip.name in hold_out]
+    return training, [HeldOut(clip) for clip in clips if clip.name in hold_out]
 
 
-def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[Clip]]:
+def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[HeldOut]]:
     names = {clip.name for clip in clips}
     training, held = [], []
     for clip in clips:
@@ -43,11 +52,12 @@ def _cut(clips: Sequence[Clip]) -> tuple[list[Clip], list[Clip]]:
             training.append(clip)
             continue
         training.append(clip.cut(slice(at)))
-        held.append(replace(clip.cut(slice(at, None)), name=end))
+        run_up = clip.cut(slice(max(at - round(RUN_UP * clip.rate), 0), at))
+        held.append(HeldOut(replace(clip.cut(slice(at, None)), name=end), run_up))
     return training, held
 
 
-def plan(training: Sequence[Clip], held: Sequence[Clip], *, frames: int) -> list[PlannedClip]:
+def plan(training: Sequence[Clip], held: Sequence[HeldOut], *, frames: int) -> list[PlannedClip]:
     """Record `frames` training frames, evenly over all training clips, and up to a quarter as many held-out ones.
 
     Every held-out clip gets its share of these; some get none where there are more clips than frames.
@@ -61,9 +71,9 @@ def plan(training: Sequence[Clip], held: Sequence[Clip], *, frames: int) -> list
     for clip, start, stop in zip(training, starts[:-1], starts[1:], strict=True):
         wanted, whole = (frozenset((f[(f >= start) & (f < stop)] - start).tolist()) for f in (chosen, kept))
         planned.append(PlannedClip(clip, held_out=False, wanted=wanted, whole=whole))
-    for clip, count in zip(held, _shares(max(frames // HELD_PART, 1), len(held)), strict=True):
-        wanted = frozenset(_evenly(len(clip), min(count, HELD_FRAMES)).tolist())
-        planned.append(PlannedClip(clip, held_out=True, wanted=wanted, whole=wanted))
+    for own, count in zip(held, _shares(max(frames // HELD_PART, 1), len(held)), strict=True):
+        wanted = frozenset(_evenly(len(own.clip), min(count, HELD_FRAMES)).tolist())
+        planned.append(PlannedClip(own.clip, held_out=True, wanted=wanted, whole=wanted, run_up=own.run_up))
     return planned
 
 

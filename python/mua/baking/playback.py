@@ -21,11 +21,8 @@ def whole_clips(recorded: Iterable[RecordedClip]) -> list[Clip]:
     clips = {clip.name: clip for clip in sorted(recorded, key=lambda clip: clip.held_out) if len(clip)}
     ends = {name: beginning for name, clip in clips.items() if (beginning := _beginning(clip, clips)) is not None}
     joined = {beginning.name: clips[name] for name, beginning in ends.items()}
-    return [
-        _together(clip, joined[name]) if name in joined else Clip(name, clip.rate, clip.rotations, clip.translations)
-        for name, clip in clips.items()
-        if name not in ends
-    ]
+    plain = [Clip(name, own.rate, own.rotations, own.translations) for name, own in clips.items() if name not in ends]
+    return [clip.then(joined[clip.name]) if clip.name in joined else clip for clip in plain]
 
 
 def choose(clips: Sequence[Clip], wanted: Sequence[str]) -> tuple[Clip, ...]:
@@ -85,9 +82,3 @@ def _beginning(clip: RecordedClip, clips: dict[str, RecordedClip]) -> RecordedCl
     name = clip.name.removesuffix(ENDING)
     beginning = clips.get(name) if name != clip.name and clip.held_out else None
     return None if beginning is None or beginning.held_out else beginning
-
-
-def _together(beginning: Clip, end: Clip) -> Clip:
-    rotations = np.concatenate([beginning.rotations, end.rotations])
-    translations = np.concatenate([beginning.translations, end.translations])
-    return Clip(beginning.name, beginning.rate, rotations, translations)

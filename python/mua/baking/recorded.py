@@ -7,6 +7,7 @@ from mua import __version__
 from mua.baking.listener import Listener
 from mua.baking.order import Order
 from mua.baking.sources import RATE
+from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.recording.workers import record_by_workers
 from mua.teachers.teacher import Teacher
@@ -38,7 +39,13 @@ def recording_key(teacher: Iterable[bytes], planned: list[PlannedClip]) -> str:
         digest.update(part)
     for clip in planned:
         digest.update(f"{clip.clip.name} {clip.held_out} {sorted(clip.wanted)} {sorted(clip.whole or ())}".encode())
-        digest.update(clip.clip.rotations.tobytes() + clip.clip.translations.tobytes())
-        if clip.clip.stretches is not None:
-            digest.update(clip.clip.stretches.joints.tobytes() + clip.clip.stretches.matrices.tobytes())
+        for motion in (clip.clip, clip.run_up):
+            digest.update(b"none" if motion is None else _motion(motion))
     return digest.hexdigest()[:12]
+
+
+def _motion(clip: Clip) -> bytes:
+    own = clip.rotations.tobytes() + clip.translations.tobytes()
+    if clip.stretches is None:
+        return own
+    return own + clip.stretches.joints.tobytes() + clip.stretches.matrices.tobytes()

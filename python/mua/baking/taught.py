@@ -11,7 +11,7 @@ from mua.baking.distillation import Baked, Distillation, finish, teach
 from mua.baking.lessons import carry_out
 from mua.baking.listener import Listener
 from mua.baking.order import Order
-from mua.baking.plan import plan, split
+from mua.baking.plan import HeldOut, plan, split
 from mua.baking.playback import choose
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import TAUGHT
@@ -40,7 +40,7 @@ def bake_taught(order: Order, device: torch.device, listener: Listener) -> Baked
     listener.stage("motion")
     name, training, held = _motion(order, folder, listener)
     planned = plan(training, held, frames=order.settings.frames)
-    clips = (*training, *held)
+    clips = (*training, *(own.clip for own in held))
     choose(clips, order.clips)  # before hours of work
     key = recording_key(teacher_bytes(folder), planned)
     recording = recorded(partial(TrainedTeacher, folder), key, order, planned, listener)
@@ -58,7 +58,7 @@ def bake_taught(order: Order, device: torch.device, listener: Listener) -> Baked
     return finish(distillation, teach(distillation, recording, listener), recording, listener)
 
 
-def _motion(order: Order, folder: Path, listener: Listener) -> tuple[str, list[Clip], list[Clip]]:
+def _motion(order: Order, folder: Path, listener: Listener) -> tuple[str, list[Clip], list[HeldOut]]:
     """The person's name, and the clips to record for training and to hold out: those given, or the capture's own."""
     model, description = load_teacher(folder)
     if order.character is not None and not order.motions:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field, replace
 from typing import Self
 
+import numpy as np
+
 from mua.arguments import whole_number
 from mua.arrays import Array
 from mua.errors import InputError
@@ -52,3 +54,13 @@ class Clip:
         return replace(
             self, rotations=self.rotations[frames], translations=self.translations[frames], stretches=stretches
         )
+
+    def then(self, other: "Clip") -> Self:
+        """This clip and `other`, of the same skeleton and with the same joints stretched, as one of this name."""
+        stretches = self.stretches
+        if stretches is not None and other.stretches is not None:
+            matrices = np.concatenate([stretches.matrices, other.stretches.matrices])
+            stretches = replace(stretches, matrices=matrices)
+        rotations = np.concatenate([self.rotations, other.rotations])
+        translations = np.concatenate([self.translations, other.translations])
+        return replace(self, rotations=rotations, translations=translations, stretches=stretches)

@@ -34,7 +34,7 @@ from mua.recording.layout import (
     shard_name,
     to_json,
 )
-from mua.recording.record import PlannedClip, record
+from mua.recording.record import PlannedClip, played, record
 from mua.recording.shard import sync
 from mua.recording.writer import TeacherWriter
 from mua.teachers.teacher import Teacher, TeacherFrame
@@ -163,7 +163,7 @@ def first_texture(teacher: Teacher, plan: Sequence[PlannedClip]) -> Array:
     """The texture [N, 23] that a single process would record first, hence refer all others to."""
     for planned in plan:
         if planned.wanted:
-            for frame in teacher.frames(planned.clip, frozenset({min(planned.wanted)})):
+            for frame in played(teacher, planned, frozenset({min(planned.wanted)})):
                 if isinstance(frame, TeacherFrame):
                     return frame.texture
     raise InputError("plan: no frame of any clip is wanted, expected at least one")

@@ -1,7 +1,8 @@
 """Recording a teacher of this package: the loop between `Teacher` and `TeacherWriter`."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import islice
 
 from mua.errors import InputError
 from mua.pose.clip import Clip
@@ -18,6 +19,7 @@ class PlannedClip:
     held_out: bool
     wanted: frozenset[int]  # frames with mesh and texture; of all others the pose alone is recorded
     whole: frozenset[int] | None = None  # those of `wanted` kept whole; None: every n-th, as the writer was told
+    run_up: Clip | None = None  # what comes before it: played, so that cloth is in motion when it begins, not recorded
 
 
 def record(
@@ -44,7 +46,7 @@ def record(
         writer.start_clip(name, held_out=planned.held_out)
         stored = writer.next_frame(name)
         wanted = frozenset(index for index in planned.wanted if index >= stored)
-        for index, frame in enumerate(_played(teacher, planned.clip, wanted)):
+        for index, frame in enumerate(played(teacher, planned, wanted)):
             if index < stored:
                 continue
             if isinstance(frame, TeacherFrame):
@@ -57,11 +59,15 @@ def record(
     writer.finish()
 
 
-def _played(teacher: Teacher, clip: Clip, wanted: frozenset[int]) -> Iterator[TeacherFrame | Pose]:
-    """All frames of a clip; the teacher plays it no further than to the last that is wanted."""
+def played(teacher: Teacher, planned: PlannedClip, wanted: frozenset[int]) -> Iterator[TeacherFrame | Pose]:
+    """All frames of a clip; the teacher plays it no further than to the last that is `wanted`, after its run-up."""
+    clip, run_up = planned.clip, planned.run_up
     until = max(wanted, default=-1) + 1
     if until:
-        yield from teacher.frames(clip.cut(slice(until)), wanted)
+        part, before = clip.cut(slice(until)), 0 if run_up is None else len(run_up)
+        with_run_up = part if run_up is None else replace(run_up, name=clip.name).then(part)
+        frames = teacher.frames(with_run_up, frozenset(index + before for index in wanted))
+        yield from islice(frames, before, None)
     yield from (clip.pose(index) for index in range(until, len(clip)))
 
 
