@@ -54,6 +54,16 @@ ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")
         (("upperleg.l", "lowerleg.l", "foot.l", "toes.l"), LEG),
         (("J_Bip_L_UpperLeg", "J_Bip_L_LowerLeg", "J_Bip_L_Foot", "J_Bip_L_ToeBase"), LEG),
         (("CC_Base_L_Thigh", "CC_Base_L_Calf", "CC_Base_L_Foot", "CC_Base_L_ToeBase"), LEG),
+        (("UpLeg_L", "LoLeg_L", "Foot_L", "Toe_L"), LEG),
+        (("Clavicle_L", "UpArm_L", "LoArm_L", "Hand_L"), ARM),
+        (("Skeleton_LThigh", "Skeleton_LShin", "Skeleton_LFoot", "Skeleton_LToe"), LEG),
+        (("Skeleton_LShoulder", "Skeleton_LUArm", "Skeleton_LFArm", "Skeleton_LHand"), ARM),
+        (("thigh_stretch.l", "leg_stretch.l", "foot.l", "toes_01.l"), LEG),
+        (("shoulder.l", "arm_stretch.l", "forearm_stretch.l", "hand.l"), ARM),
+        (("J_L_Clavicle", "J_L_Shoulder", "J_L_Elbow", "J_L_Hand"), ARM),
+        (("Armature_LeftUpLeg", "Armature_LeftLeg", "Armature_LeftFoot", "Armature_LeftToeBase"), LEG),
+        (("左足", "左ひざ", "左足首", "左つま先"), LEG),
+        (("左肩", "左腕", "左ひじ", "左手首"), ARM),
         (("L_legUpper0001_bind_JNT", "L_legLower0001_bind_JNT", "L_foot0001_bind_JNT", "L_foot0002_bind_JNT"), LEG),
         (("L_clavicle_bind_JNT", "L_armUpper0001_bind_JNT", "L_armLower0001_bind_JNT", "L_hand0001_bind_JNT"), ARM),
     ],
@@ -69,10 +79,30 @@ def test_knows_limbs_by_many_names(names: tuple[str, ...], expected: tuple[str, 
 
 
 @pytest.mark.parametrize(
-    "name", ["MCH-thigh.L", "upperarm_twist_l", "LeftToeEnd", "lhipjoint", "IK_foot.L", "L_R_arm", ""]
+    "name",
+    ["MCH-thigh.L", "upperarm_twist_l", "LeftToeEnd", "lhipjoint", "IK_foot.L", "L_R_arm", "左足ＩＫ", "左腕捩", ""],
 )
 def test_does_not_guess(name: str) -> None:
     assert set(roles(chain("Hips", name))) == {"hips"}
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("LowerTorso", "UpperTorso", "Head"),
+        ("下半身", "上半身２", "頭"),
+        ("pelvis", "stomach", "head"),
+        ("root.x", "spine_01.x", "head.x"),
+    ],
+)
+def test_knows_trunks_by_many_names(names: tuple[str, ...]) -> None:
+    assert roles(chain(*names)) | {"hips": (0,)} == {"hips": (0,), "spine": (1,), "head": (2,)}
+
+
+def test_takes_what_lies_between_hips_and_arms_for_the_spine_whatever_its_name() -> None:
+    names = ("Pelvis", "J_L_Hip", "J_R_Hip", "J_L5", "J_T1", "J_L_Shoulder", "J_R_Shoulder", "J_C7")
+    found = roles(upright(names, [-1, 0, 0, 0, 3, 4, 4, 4]))
+    assert (found["hips"], found["spine"], found["left upper_arm"]) == ((0,), (3, 4), (5,))
 
 
 def test_takes_the_root_for_hips_without_a_name() -> None:

@@ -95,7 +95,7 @@ def other_habit(skeleton: Skeleton) -> Skeleton:
     [
         ({"LeftUpLeg": "a", "RightUpLeg": "b"}, "left leg and right leg"),
         ({"RightForeArm": "c"}, "the right arm of"),
-        ({"Spine": "d"}, "the spine of"),
+        ({"Spine": "d", "LeftShoulder": "e", "LeftArm": "f", "LeftForeArm": "g"}, "the left arm and spine of"),
     ],
 )
 def test_refuses_where_a_limb_or_the_spine_is_missing_and_points_at_the_mapping(

@@ -5,6 +5,7 @@ may share a role (CMU's lowerneck and upperneck are the neck); they are listed f
 """
 
 import re
+import unicodedata
 from collections.abc import Mapping
 
 from mua.pose.skeleton import Skeleton
@@ -27,10 +28,21 @@ _FINGER_NAMES = {
 _SEGMENTS = ("", "proximal", "intermediate", "distal", "metacarpal")
 
 _CENTRAL = {
-    "hips": ("hips", "hip", "pelvis", "spinebase"),
+    "hips": ("hips", "hip", "pelvis", "spinebase", "lowerbody"),
     "spine": (
-        *("spine", "chest", "upperchest", "lowerchest", "thorax", "lowerback", "upperback", "back", "waist", "torso"),
-        *("abdomen", "lowerabdomen", "upperabdomen", "ab", "spinemid", "spinenavel", "spinechest", "spineshoulder"),
+        *("spine", "chest", "upperchest", "lowerchest", "thorax", "lowerback", "upperback", "back", "waist"),
+        *("torso", "lowertorso", "uppertorso", "upperbody"),
+        *(
+            "abdomen",
+            "lowerabdomen",
+            "upperabdomen",
+            "ab",
+            "stomach",
+            "spinemid",
+            "spinenavel",
+            "spinechest",
+            "spineshoulder",
+        ),
     ),
     "neck": ("neck", "lowerneck", "upperneck", "necktwist"),
     "head": ("head", "skull"),
@@ -38,12 +50,12 @@ _CENTRAL = {
 _SIDED = {
     "collar": ("collar", "clavicle", "scapula", "collarbone"),
     "shoulder": ("shoulder",),
-    "upper_arm": ("arm", "upperarm", "uparm", "humerus", "shldr", "bicep"),
-    "forearm": ("forearm", "lowerarm", "lowarm", "radius", "elbow"),
+    "upper_arm": ("arm", "upperarm", "uparm", "uarm", "humerus", "shldr", "bicep"),
+    "forearm": ("forearm", "lowerarm", "lowarm", "loarm", "farm", "radius", "elbow"),
     "hand": ("hand", "wrist", "fist"),
     "hip": ("hip",),
     "thigh": ("thigh", "upleg", "upperleg", "femur"),
-    "shin": ("shin", "leg", "lowerleg", "lowleg", "calf", "tibia", "knee"),
+    "shin": ("shin", "leg", "lowerleg", "lowleg", "loleg", "calf", "tibia", "knee"),
     "ankle": ("ankle",),
     "foot": ("foot",),
     "toe": ("toe", "toes", "toebase", "ball"),
@@ -54,12 +66,30 @@ _SIDED = {
 _CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names}
 _SIDED_PART = {name: part for part, names in _SIDED.items() for name in names}
 _SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
-_NO_PART = {"bind", "jnt", "joint", "bone", "bend", "m", "c"}  # words that say nothing about where a joint is
+_NO_PART = {
+    "bind",
+    "jnt",
+    "joint",
+    "bone",
+    "bend",
+    "stretch",
+    "m",
+    "c",
+    "x",
+}  # words that say nothing about where a joint is
 _BELOW = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}
+
+_JAPANESE_SIDE = {"左": "left", "右": "right"}
+_JAPANESE_CENTRAL = {"下半身": "hips", "上半身": "spine", "首": "neck", "頭": "head"}
+_JAPANESE_SIDED = {
+    **{"肩": "shoulder", "腕": "upper_arm", "ひじ": "forearm", "肘": "forearm", "手首": "hand"},
+    **{"足": "thigh", "ひざ": "shin", "膝": "shin", "足首": "foot", "つま先": "toe"},
+    **{"親指": "thumb", "人指": "index", "人差指": "index", "中指": "middle", "薬指": "ring", "小指": "pinky"},
+}
 
 NAMESPACE = re.compile(r"^.*[:|]")
 _RIG_PREFIX = re.compile(
-    r"^(valvebiped\.)?(mixamorig\d*|bip\d+|cc_base|def|j_bip(_c)?|b|jnt|joint|character\d*|skeleton)[\s_.\-]",
+    r"^(valvebiped\.)?(mixamorig\d*|bip\d+|cc_base|def|j_bip(_c)?|b|j|jnt|joint|character\d*|quickrigcharacter\d*|skeleton|armature)[\s_.\-]",
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
@@ -105,6 +135,8 @@ def _told(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
 
 
 def _role(name: str, first_finger: int) -> str | None:
+    if not name.isascii():
+        return _japanese_role(name)
     bare = _RIG_PREFIX.sub("", NAMESPACE.sub("", name))
     words = [word.lower() for word in _WORD.findall(bare)]
     sides = [_SIDE[word] for word in words if word in _SIDE]
@@ -122,6 +154,16 @@ def _role(name: str, first_finger: int) -> str | None:
         return f"{sides[0]} {FINGERS[finger]}" if 0 <= finger < len(FINGERS) else None
     found = _SIDED_PART.get(part, _SIDED_PART.get("".join(kept[::-1])))  # armUpper
     return None if found is None else f"{sides[0]} {found}"
+
+
+def _japanese_role(name: str) -> str | None:
+    """By the names of MikuMikuDance, whose digits may be wide ones; anything more in the name is a helper joint."""
+    part = unicodedata.normalize("NFKC", name).strip().rstrip("0123456789")
+    side = _JAPANESE_SIDE.get(part[:1])
+    if side is None:
+        return _JAPANESE_CENTRAL.get(part)
+    found = _JAPANESE_SIDED.get(part[1:])
+    return None if found is None else f"{side} {found}"
 
 
 def _first_finger(skeleton: Skeleton) -> int:
@@ -197,10 +239,20 @@ def _settle_trunk(skeleton: Skeleton, chains: Roles) -> None:
     if len(beyond) > 1 and "neck" not in chains and "head" not in chains:
         chains["neck"], chains["head"] = beyond[:-1], beyond[-1:]
         spine = tuple(joint for joint in spine if joint not in beyond)
+    spine = spine or _unnamed_spine(skeleton, chains, arms)
     if spine:
         chains["spine"] = spine
     else:
         chains.pop("spine", None)
+
+
+def _unnamed_spine(skeleton: Skeleton, chains: Roles, arms: list[int]) -> tuple[int, ...]:
+    """The joints from the hips to where both arms branch off, which are the spine whatever they are called."""
+    if len(arms) < 2:
+        return ()
+    carrying = set.intersection(*(set(skeleton.ancestors(joint)) for joint in arms))
+    known = {joint for joints in chains.values() for joint in joints}
+    return tuple(sorted(j for j in carrying - known if chains["hips"][-1] in skeleton.ancestors(j)))
 
 
 def _one_chain(skeleton: Skeleton, joints: list[int]) -> tuple[int, ...]:
