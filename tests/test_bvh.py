@@ -272,6 +272,20 @@ def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
     np.testing.assert_allclose(world_positions(found)[:, joints], world_positions(expected)[:, joints], atol=BOUND)
 
 
+def test_turns_a_camera_s_y_down_to_y_up(tmp_path: Path) -> None:
+    y_up = PERSON.replace("1 9.5 -2 10 -20 30 5 6 -7 45", "1 9.5 -2 0 0 0 0 0 0 0")
+    y_down = y_up.replace("0 9 0 0 0 0 0 0 0 0", "0 -9 0 0 180 0 0 0 0 0")
+    y_down = y_down.replace("1 9.5 -2 0 0 0 0 0 0 0", "1 -9.5 2 0 180 0 0 0 0 0")
+    found, expected = read_bvh(write(tmp_path, y_down), scale=1.0), read_bvh(write(tmp_path, y_up), scale=1.0)
+    assert found.notes == ("motion.bvh: Y is down; turned to Y up.",)
+    np.testing.assert_allclose(world_positions(found), world_positions(expected), atol=BOUND)
+
+
+def test_leaves_a_handstand_on_its_hands(tmp_path: Path) -> None:
+    handstand = PERSON.replace("1 9.5 -2 10 -20 30 5 6 -7 45", "1 9.5 -2 0 180 0 0 0 0 0")
+    assert read_bvh(write(tmp_path, handstand)).notes == ()
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

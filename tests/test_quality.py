@@ -110,6 +110,12 @@ def test_has_no_facing_for_a_clip_that_goes_nowhere_or_backwards() -> None:
     assert measured(skeleton, backwards, backwards).facing_degrees is None
 
 
+def test_has_no_facing_for_a_body_upside_down() -> None:
+    skeleton = person()
+    wheeling = turned(skeleton, walk(skeleton), "Hips", "x", 180)
+    assert measured(skeleton, wheeling, wheeling).facing_degrees is None
+
+
 @pytest.mark.parametrize(("lift", "words"), [(-0.3, "0.30 m below the floor"), (0.5, "0.50 m above the floor")])
 def test_measures_feet_off_the_floor(lift: float, words: str) -> None:
     skeleton = person()

@@ -171,6 +171,25 @@ def test_keeps_the_height_of_a_clip_that_never_stands_and_says_so() -> None:
     assert notes == ("still: its feet never come nearer to the floor than 3.00 m; the height is kept.",)
 
 
+@pytest.mark.parametrize("lift", [0.65, -0.08])
+def test_feet_that_step_on_one_level_are_put_on_the_floor(lift: float) -> None:
+    source = person()
+    clip = walk(source)
+    lifted = replace(clip, translations=clip.translations + lift * np.eye(len(source.names))[:, :1] * [0, 1, 0])
+    expected, _ = retarget(SourceMotion(source, clip), source)
+    found, notes = retarget(SourceMotion(source, lifted), source)
+    np.testing.assert_allclose(world(source, found)[1], world(source, expected)[1], atol=POSITION_BOUND)
+    assert any("put on the floor" in note for note in notes) == (lift > 0)
+
+
+def test_feet_that_climb_keep_their_height() -> None:
+    source = person()
+    clip = walk(source)
+    path = np.linspace(0.5, 2.0, len(clip))[:, None, None] * np.eye(len(source.names))[:, :1] * [0, 1, 0]
+    found, _ = retarget(SourceMotion(source, replace(clip, translations=clip.translations + path)), source)
+    assert world(source, found)[1][..., 1].min() > 0.4
+
+
 def test_joints_without_a_match_keep_their_bind_rotation() -> None:
     source, target = person(axes=1), person(axes=2)
     names = tuple("Wing" if name == "LeftForeArm" else name for name in target.names)
@@ -230,6 +249,29 @@ def test_a_rest_pose_that_is_a_frame_of_the_motion_is_not_taken_for_standing() -
     clip = walk(source)
     expected, _ = retarget(SourceMotion(source, clip), target)
     found, _ = retarget(SourceMotion(resting_in(source, clip, 10), clip), target)
+    assert median_apart(target, found, expected) < ESTIMATE_BOUND
+
+
+def turned_otherwise(skeleton: Skeleton, clip: Clip, joint: str, degrees: float) -> Clip:
+    """The clip with all joints where they are, and one of them turned about Y besides, as a solver may leave it."""
+    own = Rotation.from_euler("y", degrees, degrees=True).as_quat(scalar_first=True)
+    j = skeleton.names.index(joint)
+    rotations, translations = clip.rotations.copy(), clip.translations.copy()
+    rotations[:, j] = rotation.multiply(rotations[:, j], own)
+    for child in np.flatnonzero(skeleton.parents == j):
+        rotations[:, child] = rotation.multiply(rotation.conjugate(own), rotations[:, child])
+        translations[:, child] = rotation.rotate(rotation.conjugate(own), translations[:, child])
+    return replace(clip, rotations=rotations, translations=translations)
+
+
+@pytest.mark.parametrize("joint", ["Hips", "Spine2"])
+def test_a_trunk_that_frames_turn_otherwise_than_the_rest_pose_stands_faces_ahead(joint: str) -> None:
+    source, target = person(), person(size=1.1, axes=2)
+    clip = walk(source)
+    solved = turned_otherwise(source, clip, joint, 100)
+    np.testing.assert_allclose(world(source, solved)[1], world(source, clip)[1], atol=POSITION_BOUND)
+    expected, _ = retarget(SourceMotion(source, clip), target)
+    found, _ = retarget(SourceMotion(source, solved), target)
     assert median_apart(target, found, expected) < ESTIMATE_BOUND
 
 

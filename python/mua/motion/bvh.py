@@ -1,7 +1,8 @@
 """Read BVH motion: a hierarchy of offsets and Euler channels, then one row of numbers per frame.
 
 The format states neither units nor the up axis. Units are taken as the common one (metres, centimetres, millimetres,
-decimetres, inches) that give the skeleton a person's span; the up axis is Z where heads are above feet along Z.
+decimetres, inches) that give the skeleton a person's span; the up axis is Z where heads are above feet along Z, and Y
+points down, as cameras see it, where hardly a frame has the head above the feet.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +23,12 @@ PERSON_SPAN = (1.7, 3.2)  # metres along the bones from fingertip to toe, child 
 TYPICAL_SPAN = 2.35
 HELD = 1e-4  # of the span: a joint whose place in its parent changes by less keeps the mean
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
-Z_UP_TO_Y_UP = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0])  # a quarter turn about X
+MOST = 0.5  # of the frames
+ON_HEAD = 0.9  # of the frames that have heads below feet: more than any handstand is of its clip
+TO_Y_UP = {  # turns about X
+    "Z is up": np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0]),
+    "Y is down": np.array([0.0, 1, 0, 0]),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,9 +185,9 @@ def _assemble(path: Path, nodes: list[_Node], rate: float, values: Array, scale:
     skeleton = replace(skeleton, bind_translations=rest * scale, root=root)
     clip = Clip(path.stem, rate, rotations, np.where(moves[:, None], positions, rest) * scale)
     notes = []
-    if _is_z_up(skeleton, clip):
-        skeleton, clip = _turn(skeleton, clip, Z_UP_TO_Y_UP)
-        notes.append(f"{path.name}: Z is up; turned to Y up.")
+    if axis := _other_up(skeleton, clip):
+        skeleton, clip = _turn(skeleton, clip, TO_Y_UP[axis])
+        notes.append(f"{path.name}: {axis}; turned to Y up.")
     return SourceMotion(skeleton, clip, tuple(notes))
 
 
@@ -247,16 +253,18 @@ def _likely_unit(span: float) -> float:
     return min(UNITS, key=lambda unit: abs(np.log(span * unit / TYPICAL_SPAN)))
 
 
-def _is_z_up(skeleton: Skeleton, clip: Clip) -> bool:
-    """Whether heads (or hips) are above feet along Z rather than Y, on average over the clip."""
+def _other_up(skeleton: Skeleton, clip: Clip) -> str:
+    """What is up where it is not Y, a key of TO_Y_UP, by how heads (or hips) are above feet; empty where it is Y."""
     named = roles(skeleton)
     feet = [*named.get("left foot", ()), *named.get("right foot", ())]
     if not feet:
-        return False
+        return ""
     above = named.get("head", named["hips"])[0]
     _, positions = skeleton.world(clip.rotations, clip.translations)
-    up = (positions[:, above] - positions[:, feet].mean(axis=1)).mean(axis=0)
-    return bool(up[2] > abs(up[1]))
+    _, y, z = np.moveaxis(positions[:, above] - positions[:, feet].mean(axis=1), -1, 0)
+    if np.mean(z > abs(y)) > MOST:
+        return "Z is up"
+    return "Y is down" if np.mean(y < 0) > ON_HEAD and -y.mean() > abs(z.mean()) else ""
 
 
 def _turn(skeleton: Skeleton, clip: Clip, turn: Array) -> tuple[Skeleton, Clip]:

@@ -4,7 +4,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.contacts import floor_of, planted, standing
+from mua.motion.contacts import LOW, STANDING, floor_of, planted, standing
 from mua.motion.detached import detached_joints
 from mua.motion.rest import IDENTITY, Rest, Y
 from mua.pose.joint_names import SIDES
@@ -52,7 +52,7 @@ def placed(rest: Rest, rotations: Array, source_at: Array, *, rate: float, hones
 
     shift = path - at[:, hips].mean(axis=1)
     _, at = target.world(rotations, moved(shift))
-    lift, notes = _lift(rest, at, source_at if honest else None, scale, leg)
+    lift, notes = _lift(rest, at, source_at if honest else None, scale, leg, rate)
     return moved(shift + lift * Y), notes
 
 
@@ -129,17 +129,21 @@ def _all_bones(rest: Rest) -> Array:
     return total
 
 
-def _lift(rest: Rest, at: Array, source_at: Array | None, scale: float, leg: float) -> tuple[float, list[str]]:
+def _lift(
+    rest: Rest, at: Array, source_at: Array | None, scale: float, leg: float, rate: float
+) -> tuple[float, list[str]]:
     """Metres by which to raise the target so that standing feet are as high as the source's, and what to say of it.
 
     The height of a foot is that above its place in the rest pose. Where the source's rest pose does not stand on the
     floor (ASF skeletons rest about the hips) or shows no body (`source_at` is None), the clip's lower foot is taken to
-    stand, unless the whole clip is far above the floor.
+    stand, unless the whole clip is far above the floor. Feet that step on one level stand on the floor, whatever
+    height the motion gives it, and so do feet that stay below it.
     """
     soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
     if not soles:
         return 0.0, []
-    height = standing(at[:, soles, 1] - rest.target_at[soles, 1]) + floor_of(rest.target_at)
+    heights = at[:, soles, 1] - rest.target_at[soles, 1]
+    height = standing(heights) + floor_of(rest.target_at)
     expected = 0.0
     if source_at is not None and floor_of(rest.source_at) == 0:
         feet = [rest.matches.chains[joint][0] for joint in soles]
@@ -148,7 +152,22 @@ def _lift(rest: Rest, at: Array, source_at: Array | None, scale: float, leg: flo
             expected = 0.0
     elif height > LOWEST * leg:
         expected = height
+    if _level(heights, leg) and (expected < 0 or _steps(at[:, soles], rate, leg)):
+        told = f"its feet step {expected:.2f} m above the height 0; they are put on the floor."
+        return -height, [told] if expected > LOWEST * leg else []
     notes = []
     if expected > LOWEST * leg:
         notes.append(f"its feet never come nearer to the floor than {expected:.2f} m; the height is kept.")
     return expected - height, notes
+
+
+def _level(heights: Array, leg: float) -> bool:
+    """Whether the lower of the feet, at heights [F, P] in metres, is most of the time where it stands."""
+    lower = heights.min(axis=1)
+    return bool(np.median(lower) - np.quantile(lower, STANDING) < LOW * leg)
+
+
+def _steps(feet: Array, rate: float, leg: float) -> bool:
+    """Whether some foot [F, P, 3] stands at times and moves at others."""
+    stands = planted(feet, rate, leg)
+    return bool((stands.any(axis=0) & ~stands.all(axis=0)).any())

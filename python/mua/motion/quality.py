@@ -23,6 +23,7 @@ SEGMENTS = {  # limbs compared: where they begin and end
 Y = np.array([0.0, 1, 0])
 LIMB_BOUND = 10.0  # degrees of a limb's median from which a sentence says so
 FACING_BOUND = 10.0  # degrees between facing and travel, more than the source has, from which a sentence says so
+UPRIGHT = 60.0  # degrees from upright up to which a trunk faces anywhere
 FORWARD = 45.0  # degrees between the source's facing and travel up to which it counts as going forward
 MOVING = 0.5  # legs per second of the hips along the floor from which somebody travels
 TRAVEL_WINDOW = 0.5  # seconds over which the direction of travel is taken: hips sway from step to step
@@ -113,7 +114,8 @@ def _facing(pair: Pair) -> _Facing | None:
     ahead = {"hips": np.cross(trunk.hips, Y), "spine": np.cross(trunk.chest, Y)}
     away = _from_travel(ahead["hips"] + ahead["spine"], source_path, pair.rate)
     moving = np.linalg.norm(_travel(target_path, pair.rate), axis=-1) > MOVING * pair.target.leg
-    forward = (np.abs(away) < np.radians(FORWARD)) & moving
+    upright = trunk.up[:, 1] > np.cos(np.radians(UPRIGHT))
+    forward = (np.abs(away) < np.radians(FORWARD)) & moving & upright
     if np.count_nonzero(forward) < TRAVELS * pair.rate:
         return None
     bind = trunk_of(pair.target.rest())

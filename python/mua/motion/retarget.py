@@ -4,9 +4,9 @@ For a target joint t that follows source joint s:
 
     R_t(f) = W  R_s(f)  C_t  R_t(bind)
 
-C_t says how t's bind pose lies in the space of s: by both rest poses where the source's shows a body
-(mua.motion.rest), else by what the posed skeleton does (mua.motion.posed), or by the joints' axes where both rigs have
-them alike. W turns the result so that the source's rest faces where the
+C_t says how t's bind pose lies in the space of s: by both rest poses where the source's shows a body and its frames
+turn the trunk as that body stands (mua.motion.rest), else by what the posed skeleton does (mua.motion.posed), or by the
+joints' axes where both rigs have them alike. W turns the result so that the source's rest faces where the
 target's bind faces. The hips' path is scaled by the ratio of leg lengths and set so that standing feet keep the height
 that they have in the bind pose (mua.motion.floor).
 """
@@ -23,7 +23,7 @@ from mua.motion.match import Matches, missing_limbs
 from mua.motion.posed import posed_calibrations
 from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
 from mua.motion.source import SourceMotion
-from mua.motion.trunk import SIDES, stands, unit
+from mua.motion.trunk import SIDES, degrees, stands, trunk_of, unit
 from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of
 from mua.pose.resample import resample
@@ -31,6 +31,7 @@ from mua.pose.skeleton import Skeleton
 
 ALIKE = 30.0  # degrees within which an estimate agrees
 MOST = 0.75  # of the joints asked
+TURNED = 45.0  # degrees between where hips or chest are and where their joint's turn since rest would have them
 TELLING = (
     *("hips", "spine"),
     *(f"{side} {part}" for side in SIDES for part in ("upper_arm", "forearm", "thigh", "shin")),
@@ -62,13 +63,38 @@ def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[di
     """C_t by target joint, W [4], and whether they come from the source's rest pose, which then tells heights too."""
     upright = body_turn(rest)
     by_rest = rest_calibrations(rest, upright)
-    by_pose = {} if stands(rest.source_places()) else posed_calibrations(rest, turned, at, rate)
+    honest = stands(rest.source_places()) and not _turned_otherwise(rest, turned, at)
+    by_pose = {} if honest else posed_calibrations(rest, turned, at, rate)
     if not by_pose:
         return by_rest, rotation.conjugate(heading_of(upright)), True
     by_frames = {joint: rotation.conjugate(rest.target_turned[joint]) for joint in rest.matches.chains}
     if not _same_frames(rest, by_frames, by_pose):
         return by_pose, IDENTITY, False
     return by_frames | _along_bones(rest, by_frames, by_pose), IDENTITY, False
+
+
+def _turned_otherwise(rest: Rest, turned: Array, at: Array) -> bool:
+    """Whether hips or chest of the source do not turn with their joint from where the rest pose has them.
+
+    Rotations that a solver made up of joints' places are of that kind: a joint whose children all begin where it does
+    may be turned in any way.
+    """
+    ends = {role: pair[1] for role in rest.matches.roles if (pair := rest.matches.ends(role)) is not None}
+    rests = trunk_of({role: rest.source_at[joint] for role, joint in ends.items()})
+    moves = trunk_of({role: at[:, joint] for role, joint in ends.items()})
+    chest = rest.matches.roles.get("spine", ())[-1:]
+    if rests is None or moves is None:
+        return False
+    asked = [(ends.get("hips"), rests.hips, moves.hips)]
+    asked += [
+        (rest.matches.chains[joint][1], rests.chest, moves.chest) for joint in chest if joint in rest.matches.chains
+    ]
+    for joint, left, seen in asked:
+        if joint is not None:
+            since = rotation.multiply(turned[:, joint], rotation.conjugate(rest.source_turned[joint]))
+            if np.median(degrees(rotation.rotate(since, left), seen)) > TURNED:
+                return True
+    return False
 
 
 def _same_frames(rest: Rest, by_frames: dict[int, Array], by_pose: dict[int, Array]) -> bool:
