@@ -136,8 +136,7 @@ def _lift(
 
     The height of a foot is that above its place in the rest pose. Where the source's rest pose does not stand on the
     floor (ASF skeletons rest about the hips) or shows no body (`source_at` is None), the clip's lower foot is taken to
-    stand, unless the whole clip is far above the floor. Feet that step on one level stand on the floor, whatever
-    height the motion gives it, and so do feet that stay below it.
+    stand, unless the whole clip is far above the floor and its feet do not step on one level up there.
     """
     soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
     if not soles:
@@ -151,10 +150,9 @@ def _lift(
         if expected < -LOWEST * leg:  # a path that starts at the origin, not on the floor
             expected = 0.0
     elif height > LOWEST * leg:
+        if _level(heights, leg) and _steps(at[:, soles], rate, leg):
+            return -height, [f"its feet step {height:.2f} m above the height 0; they are put on the floor."]
         expected = height
-    if _level(heights, leg) and (expected < 0 or _steps(at[:, soles], rate, leg)):
-        told = f"its feet step {expected:.2f} m above the height 0; they are put on the floor."
-        return -height, [told] if expected > LOWEST * leg else []
     notes = []
     if expected > LOWEST * leg:
         notes.append(f"its feet never come nearer to the floor than {expected:.2f} m; the height is kept.")
