@@ -32,8 +32,8 @@ Made = Callable[[list[bytes], int], bytes]
 MODULES = Path(__file__).parents[1] / "web" / "modules.mjs"
 FEW, ALL, BLOCK = 300, 100_000, 10_000
 ROOM = 1 << 29  # bytes that reading and decoding one of them may take here: 5,000 times its size
-CSHARP_ROOM = 3  # times the file's size that the C# reader may take: many small tables, beside the words of a refusal
-WORDS = 20_000
+CSHARP_ROOM = 4  # times the file's size that the C# reader may take: 40 clips of 524 bytes take five times their own
+WORDS = 20_000  # bytes of a refusal's words
 WEB_ROOM = 1 << 29  # bytes that Node and its reading of all these files may take at once
 CLIPS = 3  # of a file that are decoded; a mutant may hold one many times
 
