@@ -4,14 +4,18 @@
 //                  and the most bytes that this process has taken by then
 //   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
+//   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
+//   shown STEPS    which avatars an engine is given while one arrives: "part 1", "ready" once it can draw, "whole", "fail"
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
 //   numbers        half floats, and numbers as sentences have them
 
 import { readFileSync, readSync } from "node:fs";
+import { Arrival } from "../../python/mua/web/arrival.js";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
 import { coarserTexture, coarsest, levelCounts, texelLength, textureOf } from "../../python/mua/web/coarser.js";
+import { Download } from "../../python/mua/web/download.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read, readStage } from "../../python/mua/web/format/read.js";
@@ -150,6 +154,46 @@ async function stages(content, step) {
   return found;
 }
 
+/** Whether the rest is expected soon, after each 100 ms. */
+function soon(total, bytes) {
+  const download = new Download("http://localhost/a.muaavatar");
+  download.begin(new Response(null, { headers: { "content-length": total } }), 0);
+  return bytes.map((count, i) => {
+    const now = 100 * (i + 1);
+    if (count) download.add(new Uint8Array(count), now);
+    return download.soon(now);
+  });
+}
+
+/** What is put into an engine, by the step that brought it, and the parts that the page is told of. */
+async function shown(steps) {
+  let resolve = () => {};
+  const promise = new Promise((done) => (resolve = done));
+  const [put, told, entries] = [[], [], []];
+  const entry = { handle: { remove: () => put.push("removed") } };
+  const engine = {
+    entries,
+    renderer: { compiled: promise },
+    put: async (avatar) => {
+      put.push(avatar);
+      entries[0] = entry;
+      return entry;
+    },
+  };
+  const arrival = new Arrival(engine, () => told.push(put.at(-1)));
+  const ended = [];
+  for (const step of steps) {
+    if (step === "ready") resolve();
+    else if (step.startsWith("part")) arrival.show(step);
+    else ended.push(step === "whole" ? arrival.complete(step) : arrival.fail());
+    await new Promise((next) => setTimeout(next));
+  }
+  await Promise.all(ended);
+  return { put, told };
+}
+
+if (what === "soon") say(soon(...given.slice(0, 1), given.slice(1).map(Number)));
+if (what === "shown") say(await shown(given));
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);
 if (what === "answers") for (const file of given) say(await answer(bytes(file)));
 if (what === "mutants") {

@@ -71,6 +71,45 @@ def test_a_file_that_arrives_at_once_is_only_shown_whole(tmp_path: Path, packed:
     assert stages(tmp_path, packed, len(packed)) == []
 
 
+MEGABYTE = 2**20
+
+
+@pytest.mark.parametrize(
+    ("total", "arriving", "soon"),
+    [
+        (10 * MEGABYTE, [MEGABYTE] * 3, [True, True, True]),
+        (100 * MEGABYTE, [MEGABYTE] * 3, [False, False, False]),
+        (4 * MEGABYTE, [MEGABYTE // 10] * 8 + [MEGABYTE], [False] * 8 + [True]),
+        (10 * MEGABYTE, [5 * MEGABYTE, 0, 0, 0, 0, 0, MEGABYTE], [True, True, True, True, True, False, True]),
+        (10 * MEGABYTE, [0, 0], [False, False]),
+    ],
+    ids=["fast", "slow", "slow at first", "still for a while", "nothing yet"],
+)
+def test_the_rest_is_expected_by_how_fast_bytes_come_and_whether_they_do(
+    total: int, arriving: list[int], soon: list[bool]
+) -> None:
+    assert node("soon", total, *arriving)[0] == soon
+
+
+@pytest.mark.parametrize(
+    ("steps", "put", "told"),
+    [
+        (["ready", "part 1", "whole"], ["part 1", "whole"], ["part 1"]),
+        (["ready", "part 1", "part 2", "whole"], ["part 1", "part 2", "whole"], ["part 1", "part 2"]),
+        (["part 1", "ready", "whole"], ["part 1", "whole"], ["part 1"]),
+        (["part 1", "part 2", "ready", "whole"], ["part 2", "whole"], ["part 2"]),
+        (["part 1", "whole", "ready"], ["whole"], []),
+        (["ready", "part 1", "fail"], ["part 1", "removed"], ["part 1"]),
+        (["part 1", "fail", "ready"], [], []),
+    ],
+    ids=["part", "parts", "while it compiles", "newest", "whole by then", "failed", "failed by then"],
+)
+def test_a_part_is_shown_unless_more_is_there_by_the_time_that_the_device_can_draw(
+    steps: list[str], put: list[str], told: list[str]
+) -> None:
+    assert node("shown", *steps) == [{"put": put, "told": told}]
+
+
 @pytest.mark.parametrize("storage", ["f16", "i8"])
 def test_a_plain_file_is_only_shown_whole(tmp_path: Path, storage: Any) -> None:
     assert stages(tmp_path, encode(synthetic_avatar(), storage=storage)) == []

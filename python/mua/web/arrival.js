@@ -21,13 +21,14 @@ export class Arrival {
     this.showing = Promise.resolve();
   }
 
-  /** Show a part after the one before, unless a newer one has come by then. */
+  /** Show a part after the one before, unless a newer one has come by the time that the device can draw. */
   show(/** @type {Avatar} */ part) {
     this.next = part;
     this.showing = this.showing.then(() => this.showNext());
   }
 
   async showNext() {
+    await this.engine.renderer?.compiled.catch(() => {}); // what fails is told where an avatar is put
     const part = this.next;
     if (!part) return;
     this.next = null;

@@ -7,6 +7,8 @@ import { Stages } from "./format/stages.js";
 /** @typedef {(fraction: number, sentence: string) => void} Progress */
 
 const LARGEST = 2 ** 28; // bytes of a file that is shown before all of it is there: memory is taken on the server's word
+const SOON = 2000; // milliseconds; within them a slow device has hardly prepared a part of a file
+const STILL = 500; // milliseconds without a byte, after which nobody knows when the rest comes
 const WAITS = [200, 1000]; // milliseconds before the rest is asked for again
 const MARKS = ["etag", "last-modified"]; // that another version of the file would change
 
@@ -17,6 +19,7 @@ export class Download {
     this.url = url;
     this.name = decodeURIComponent(new URL(url).pathname.split("/").pop() || url);
     this.got = 0;
+    this.since = this.last = 0; // when it began and when bytes came last, milliseconds
     this.total = 0; // 0 where the server does not say
     this.content = new Uint8Array(); // of that size
     this.stages = new Stages(this.content.buffer);
@@ -27,6 +30,12 @@ export class Download {
   /** The end of the newest stage that is there and was not told before; 0 where there is none. */
   reached() {
     return this.stages.reached(this.got);
+  }
+
+  /** Whether the rest is expected so soon that a part need not be shown before. */
+  soon(now = performance.now()) {
+    const left = ((this.total - this.got) * (now - this.since)) / this.got;
+    return left < SOON && now - this.last < STILL;
   }
 
   /** All of it. @throws {AvatarError} where the server does not give it @returns {Promise<ArrayBuffer>} */
@@ -46,7 +55,8 @@ export class Download {
     return joined([this.content.subarray(0, this.got), ...this.beyond], this.got);
   }
 
-  begin(/** @type {Response} */ { headers }) {
+  begin(/** @type {Response} */ { headers }, now = performance.now()) {
+    this.since = now;
     const total = headers.get("content-encoding") ? 0 : Number(headers.get("content-length") ?? 0);
     if (!this.url.startsWith("http") || total > LARGEST) return;
     this.total = total;
@@ -70,7 +80,8 @@ export class Download {
     return true;
   }
 
-  add(/** @type {Uint8Array} */ bytes) {
+  add(/** @type {Uint8Array} */ bytes, now = performance.now()) {
+    this.last = now;
     const at = Math.min(this.got, this.content.length);
     const room = this.content.length - at;
     this.content.set(bytes.subarray(0, room), at);

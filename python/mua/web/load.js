@@ -10,6 +10,7 @@ import { read, readStage } from "./format/read.js";
 /** @typedef {string | ArrayBuffer | Blob} Source */
 /** @typedef {{message: string, code: string, field: string}} Told what an AvatarError says, which a message can carry */
 
+const AGAIN = 250; // milliseconds after which a part that was not shown is thought of again: no byte may come meanwhile
 const FETCHED = 0.8; // of the progress, the rest is reading and upload
 
 /** The avatar of a source, by a worker; the page goes on meanwhile. @returns {Promise<Avatar>} */
@@ -78,7 +79,7 @@ async function bytesOf(/** @type {ArrayBuffer | Blob} */ source) {
   }
 }
 
-/** An avatar from a server; what has arrived of a file for the network is shown while the rest is on its way. @returns {Promise<Avatar>} */
+/** An avatar from a server; what has arrived of a file for the network is shown while the rest is far away. @returns {Promise<Avatar>} */
 async function loadFrom(
   /** @type {Download} */ download,
   /** @type {Progress} */ progress,
@@ -87,17 +88,19 @@ async function loadFrom(
   /** @type {Promise<void> | null} */
   let reading = null; // of a stage; no other one begins meanwhile
   const look = () => {
-    const end = reading ? 0 : download.reached();
+    const end = reading || download.soon() ? 0 : download.reached();
     if (!end) return;
     reading = shown(download.content.buffer, end, preview).finally(() => {
       reading = null;
       look(); // for what has arrived meanwhile
     });
   };
-  const content = await download.whole((share, sentence) => {
+  const looking = setInterval(look, AGAIN);
+  const fetched = download.whole((share, sentence) => {
     progress(FETCHED * share, sentence);
     look();
   });
+  const content = await fetched.finally(() => clearInterval(looking));
   while (reading) await reading;
   progress(FETCHED, "Reading the avatar");
   return named(download.name, read(content));
