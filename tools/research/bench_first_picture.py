@@ -64,7 +64,7 @@ def main() -> None:
     parser.add_argument("--rate", type=float, default=0, help="megabytes a second of the avatar; 0 is no limit")
     parser.add_argument("--runs", type=int, default=3)
     given = parser.parse_args()
-    print("file, first picture: seconds, MB read, splats, whole, processor seconds; all of it: seconds, processor seconds")
+    print("file, first picture: seconds, MB read, splats, whole, processor seconds; all: seconds, processor seconds")
     for _ in range(given.runs):
         for file in given.files:
             print(measure(file, 1e6 * given.rate))
