@@ -7,15 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from captures import FRAMES, SIDE, make_capture
+from captures import FRAMES, MIDDLE, SIDE, make_capture
 from commands import Commands
 from PIL import Image
+from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
-from mua.capture import Capture, write_capture
+from mua.capture import Capture, sheet, write_capture
+from mua.capture.camera import CaptureCamera
 from mua.capture.check import Checked, check_capture
-from mua.capture.fit import chosen_frames
-from mua.capture.outline import overlap, pixels, silhouette
+from mua.capture.fit import Seen, chosen_frames
+from mua.capture.outline import overlap, pixels, rough_overlap, silhouette
 from mua.capture.sheet import MASK, OUTLINE, check_sheet
 from mua.player.video import write_video
 
@@ -195,6 +197,34 @@ def test_what_lies_behind_a_camera_is_not_drawn(small_capture: Capture) -> None:
     camera = small_capture.cameras[0]
     behind = camera.position + np.array([[0, 0, 1.0], [1, 0, 1], [0, 1, 1]])
     assert not silhouette(behind, np.array([[0, 1, 2]]), camera).any()
+    behind[0], behind[1] = MIDDLE, np.add(MIDDLE, (0.1, 0.2, 0))
+    assert not silhouette(behind, np.array([[0, 1, 2]]), camera).any()
+
+
+def test_an_outline_lies_in_the_middle_of_what_it_covers() -> None:
+    """Rectangles that begin anywhere between pixels cover as much to the left of their middles as to the right."""
+    camera = CaptureCamera("plain", (48, 40), (50.0, 50.0), (24.0, 20.0), np.eye(4))
+    rng = np.random.default_rng(0)
+    off = []
+    for low, high in zip(rng.uniform(4, 14, (150, 2)), rng.uniform(24, 36, (150, 2)), strict=True):
+        edges = (np.array([low, high]) - camera.centre) / camera.focal * 2  # two metres away
+        corners = np.array([[edges[i, 0], edges[j, 1], 2] for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))])
+        rows, columns = np.nonzero(silhouette(corners, np.array([[0, 1, 2], [0, 2, 3]]), camera))
+        middle = [(side.min() + side.max() + 1) / 2 for side in (columns, rows)]
+        off.append(np.array(middle) - (low + high) / 2)
+    np.testing.assert_allclose(np.mean(off, axis=0), 0, atol=0.08)  # half a step of a third of a pixel is 0.17
+
+
+def test_what_a_camera_does_not_see_takes_its_share_off_a_rough_overlap() -> None:
+    camera = CaptureCamera("plain", (48, 48), (50.0, 50.0), (24.0, 24.0), np.eye(4))
+    rows, columns = np.mgrid[:48, :48] + 0.5
+    all_over = np.stack([(columns - 24) / 25, (rows - 24) / 25, np.full((48, 48), 2.0)], axis=-1).reshape(-1, 3)
+    mask = np.ones((48, 48), bool)
+    assert rough_overlap(all_over[:1400], camera, mask[: 1400 // 48]) == pytest.approx(1, abs=0.05)
+    for unseen in ([0, 0, -2.0], [9.0, 0, 2]):
+        half = np.stack([all_over[:700], np.tile(unseen, (700, 1))], axis=1).reshape(-1, 3)
+        whole = rough_overlap(all_over[:700], camera, mask)
+        assert rough_overlap(half, camera, mask) == pytest.approx(whole / 2, rel=1e-3)
 
 
 def test_overlap_is_what_both_cover_of_what_either_does() -> None:
@@ -205,9 +235,31 @@ def test_overlap_is_what_both_cover_of_what_either_does() -> None:
 
 def test_the_picture_shows_both_outlines_where_the_person_is(small_capture: Capture) -> None:
     checked = everything(small_capture)
-    sheet = np.asarray(check_sheet(checked))
-    for color in (OUTLINE, MASK):
-        assert np.count_nonzero((sheet == color).all(axis=-1)) > 2000
+    picture = np.asarray(check_sheet(checked))
+    outline, mask = ((picture == color).all(axis=-1) for color in (OUTLINE, MASK))
+    assert np.count_nonzero(outline) > 2000
+    assert np.count_nonzero(mask) > 2000
+    apart = distance_transform_edt(~outline)[mask]  # the masks' pixels are about 9 of the sheet's
+    assert np.median(apart) < 9
+
+
+def test_the_picture_begins_with_the_worst_views_and_has_two_of_each_camera(
+    small_capture: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checked = everything(small_capture)
+    shown: list[Seen] = []
+
+    def cell(_: Checked, view: Seen) -> Image.Image:
+        shown.append(view)
+        return Image.new("RGB", (4, 2), (20 * len(shown), 0, 0))
+
+    monkeypatch.setattr(sheet, "_cell", cell)
+    picture = np.asarray(check_sheet(checked))
+    assert picture[:4:2, ::4, 0].tolist() == [[20, 40, 60, 80], [100, 120, 140, 160]]
+    names = [view.camera.name for view in shown]
+    assert (names[:4], len(set(names))) == (names[4:], 4)
+    worst = min(checked.cameras, key=lambda camera: camera.mean or 0)
+    assert shown[0] is min(worst.views, key=lambda view: view.overlap)
 
 
 def test_the_command_prints_what_it_found(small_capture: Capture, command: Commands, tmp_path: Path) -> None:

@@ -37,6 +37,17 @@ def test_ignores_a_file_truncated_anywhere(tmp_path: Path) -> None:
         assert checkpoints.load("stage") is None, length
 
 
+@pytest.mark.parametrize("content", [b"no archive", b"\x80\x02K\x03.", bytes(100)])
+def test_ignores_what_is_no_checkpoint(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "stage.pt").write_bytes(content)
+    assert Checkpoints(tmp_path, "a").load("stage") is None
+
+
+def test_ignores_an_archive_of_something_else(tmp_path: Path) -> None:
+    torch.save(torch.arange(5), tmp_path / "stage.pt")
+    assert Checkpoints(tmp_path, "a").load("stage") is None
+
+
 def test_a_failed_save_leaves_the_old_state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     checkpoints = Checkpoints(tmp_path, "a")
     checkpoints.save("stage", {"step": 1})

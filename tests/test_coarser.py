@@ -92,6 +92,28 @@ def test_a_texel_takes_its_place_from_one_of_its_block() -> None:
         assert (int(triangle), point.tolist()) in held[int(texel)]
 
 
+def test_a_texel_lies_in_the_middle_of_its_block() -> None:
+    """Wherever on the mesh its place is taken from."""
+    avatar = block(synthetic_avatar(), [0, 1, 3])
+    barycentrics = np.array([[0.34, 0.33, 0.33], [0.36, 0.3, 0.34], [0.3, 0.36, 0.34]])
+    texels = replace(avatar.rig.texels, barycentrics=barycentrics)
+    avatar = with_static(replace(avatar, rig=replace(avatar.rig, texels=texels)), np.zeros((11, 3)))
+    coarse = at_level(avatar, 1)
+    corners = avatar.coarse.mean[avatar.rig.mesh.faces[0]].astype(float)
+    found = coarse.rig.texels.barycentrics @ corners + coarse.geometry.static[:3].T
+    np.testing.assert_allclose(found, [barycentrics.mean(axis=0) @ corners], rtol=0, atol=SINGLE)
+
+
+def test_the_length_of_a_texel_is_that_of_its_share_of_the_mesh() -> None:
+    """By Heron's formula."""
+    avatar = synthetic_avatar()
+    corners = avatar.coarse.mean[avatar.rig.mesh.faces].astype(float)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    half = sides.sum(axis=1) / 2
+    area = np.sqrt(half * np.prod(half[:, None] - sides, axis=1)).sum()
+    assert texel_length(avatar) == pytest.approx(np.sqrt(area / 676))
+
+
 def test_what_varies_with_the_frame_is_averaged_as_well() -> None:
     """Channels that neither grow nor move with the place are means of the block's at every frame."""
     avatar = synthetic_avatar()
@@ -115,6 +137,10 @@ def test_levels_end_where_details_vary_with_the_frame() -> None:
     avatar = synthetic_avatar()
     assert coarsest(avatar) == 2
     assert coarsest(replace(avatar, wavelet=replace(avatar.wavelet, levels=3))) == 1
+    assert coarsest(replace(avatar, wavelet=replace(avatar.wavelet, levels=8))) == 2
+    for name in ("geometry", "appearance"):  # one has no details, the other still has
+        plain = replace(avatar, **{name: replace(getattr(avatar, name), details=())})
+        assert coarsest(replace(plain, wavelet=replace(plain.wavelet, levels=3))) == 1
     long = np.zeros(34)
     assert coarsest(replace(avatar, wavelet=replace(avatar.wavelet, rec_lo=long, rec_hi=long))) == 0
 

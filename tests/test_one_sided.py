@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from synthetic_avatar import synthetic_avatar, with_one_sided
 
-from mua import one_sided
+from mua import one_sided, rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.bench.random_avatar import random_avatar
 from mua.decode import decode_clip_frame
+from mua.pose.clip import Clip
 from mua.rendering import projected, render_over
 from mua.student.settings import preset
 
@@ -88,6 +89,25 @@ def test_poses_of_a_clip_at_another_rate_are_within_the_decoded_frames() -> None
         decode_clip_frame(avatar, own, frame=frame)
 
 
+def raised(clip: Clip, first: int) -> Clip:
+    """A clip of one pose and, from a frame on, another."""
+    rotations = np.repeat(clip.rotations[:1], 8, axis=0)
+    rotations[first:, 1] = rotation.multiply(rotations[first:, 1], np.array([0.8, 0.6, 0, 0]))
+    return replace(clip, rotations=rotations, translations=np.repeat(clip.translations[:1], 8, axis=0))
+
+
+def test_poses_of_a_clip_at_another_rate_are_compared_as_they_are_decoded() -> None:
+    clip = raised(synthetic_avatar().clips[0], 6)
+    fast = replace(clip, rate=2 * clip.rate)
+    assert one_sided.distinct_poses([fast], clip.rate, root=0) == [(fast, 0), (fast, 3)]
+
+
+def test_poses_to_choose_from_are_spread_over_all_of_a_clip(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(one_sided, "LOOKED_AT", 4)
+    clip = raised(synthetic_avatar().clips[0], 5)
+    assert one_sided.distinct_poses([clip], clip.rate, root=0) == [(clip, 0), (clip, 6)]
+
+
 def test_without_clips_nothing_is_measured() -> None:
     avatar = synthetic_avatar()
     assert one_sided.with_one_sided(avatar, []) is avatar
@@ -95,8 +115,8 @@ def test_without_clips_nothing_is_measured() -> None:
 
 def test_what_was_marked_before_is_measured_anew() -> None:
     avatar = opened(closed())
-    marked = with_one_sided(avatar, np.ones(len(avatar.rig.texels.texels), bool))
-    np.testing.assert_array_equal(measured(marked), measured(avatar))
+    unmarked = with_one_sided(avatar, np.zeros(len(avatar.rig.texels.texels), bool))
+    np.testing.assert_array_equal(measured(unmarked), measured(avatar))
 
 
 def test_every_pose_is_seen_from_elsewhere() -> None:
@@ -129,3 +149,33 @@ def test_no_texel_near_an_open_edge_is_one_sided(monkeypatch: pytest.MonkeyPatch
     np.testing.assert_array_equal(near[certain], (away < one_sided.OPEN * size)[certain])
     assert near.any()
     assert not measured(avatar)[near].any()
+
+
+def test_vertices_at_one_place_make_no_opening(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As along the seams of a texture: here each triangle has corners of its own."""
+    monkeypatch.setattr(one_sided, "OPEN", 0.08)
+    rig = closed().rig
+    faces = np.arange(rig.mesh.faces.size, dtype=np.int32).reshape(-1, 3)
+    split = replace(rig.mesh, vertices=rig.mesh.vertices[rig.mesh.faces.ravel()], faces=faces)
+    near = one_sided.near_open_edges(rig)
+    assert 0 < near.sum() < len(near) / 2
+    np.testing.assert_array_equal(one_sided.near_open_edges(replace(rig, mesh=split)), near)
+
+
+def test_an_edge_of_many_triangles_is_no_opening() -> None:
+    rig = closed().rig
+    many = replace(rig.mesh, faces=np.concatenate([rig.mesh.faces] * 3))
+    assert not one_sided.near_open_edges(replace(rig, mesh=many)).any()
+
+
+def test_each_pose_has_views_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    firsts: list[int] = []
+    monkeypatch.setattr(one_sided, "around", lambda splats, texel, *, first: firsts.append(first) or [])
+    one_sided.shares_behind(closed(), closed().clips)
+    assert firsts == [0, 10]
+
+
+def test_pictures_are_of_a_size_that_can_be_drawn() -> None:
+    splats = decode_clip_frame(closed(), closed().clips[0], frame=0)
+    for texel, side in ((1e-9, one_sided.LARGEST_SIDE), (0.0, one_sided.LARGEST_SIDE), (1e9, 1)):
+        assert {camera.screen for camera in one_sided.around(splats, texel, first=0)} == {(side, side)}

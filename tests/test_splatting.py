@@ -68,6 +68,16 @@ def test_the_picture_is_the_reference_renderers(count: int) -> None:
     assert count == 0 or expected[..., 3].max() > 0.2
 
 
+def test_a_large_splat_beside_the_picture_is_drawn_as_by_the_reference_renderer() -> None:
+    """Whose middle lies so far out that its shape is that of a nearer one."""
+    splats = random_splats(40)
+    aside = splats.centres * [2.2, 1.5, 1]
+    splats = replace(splats, centres=aside, scales=np.full_like(splats.scales, 0.4) * [1, 0.3, 0.1])
+    expected = render_premultiplied(splats, camera())
+    np.testing.assert_allclose(drawn(splats, camera()), expected, rtol=0, atol=2e-5)
+    assert expected[..., 3].max() > 0.2
+
+
 def test_a_splat_that_changes_no_8_bit_picture_is_left_out() -> None:
     splats = in_torch(random_splats(3))
     opacities = torch.tensor([LEAST_OPACITY, np.nextafter(LEAST_OPACITY, 0), 0.5], dtype=torch.float64)

@@ -358,6 +358,7 @@ def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
     assert told["splats"] == [f"{first[i]} {second[j]}" for i, j in ((0, 0), (0, 1), (2, 2))]
     assert told["fixed"] == [f"{first[2]} {second[0]}"]
     assert told["alone"] == [str(first[0])]  # what is not in view takes nothing off
+    assert told["later"] == [f"{first[0]} {second[0]}", f"{first[2]} {second[2]}"]  # the budget that came last counts
     assert told["free"] == [f"{first[0]} {second[0]}"]
     assert told["allocated"] == ["0"]
     assert told["log"] == []

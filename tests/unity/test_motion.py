@@ -115,10 +115,20 @@ def test_numbers_are_those_of_the_reference(
         np.testing.assert_allclose(values, wanted, rtol=rounded, atol=BOUND, err_msg=name)
 
 
-def play(csharp: CSharp, program: Path, path: Path) -> dict[str, list]:
+def test_a_time_that_rounding_places_before_its_frame_is_within_it(
+    csharp: CSharp, program: Path, tmp_path: Path
+) -> None:
+    path, frames = tmp_path / "a.muaavatar", range(300)
+    write(path, CASES["no heading"][0])
+    rate, count = 30, 8
+    assert any(int(frame / rate * rate) != frame for frame in frames)
+    assert play(csharp, program, path, [frame / rate for frame in frames])["at"] == [n % count for n in frames]
+
+
+def play(csharp: CSharp, program: Path, path: Path, seconds: Sequence[float] = SECONDS) -> dict[str, list]:
     """What the program prints, by name: integers, or arrays."""
     found: dict[str, list] = defaultdict(list)
-    for line in csharp.run(program, path, *SECONDS).splitlines():
+    for line in csharp.run(program, path, *seconds).splitlines():
         name, value = line.split(" ")
         if name in ("frames", "at", "allocated"):
             found[name].append(int(value))

@@ -39,7 +39,7 @@ def silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
     seen = ((corners.max(axis=1) > 0) & (corners.min(axis=1) < camera.size)).all(axis=1)
     picture = Image.new("1", (FINER * width, FINER * height))
     draw = ImageDraw.Draw(picture)
-    for triangle in np.clip(corners[seen] * FINER - 0.5, -1e5, 1e5).reshape(-1, 6).tolist():
+    for triangle in np.clip(corners[seen] * FINER, -1e5, 1e5).reshape(-1, 6).tolist():
         draw.polygon(triangle, fill=1)
     return np.asarray(picture)[FINER // 2 :: FINER, FINER // 2 :: FINER]
 

@@ -44,7 +44,15 @@ namespace Mua
             second.transform.position = new Vector3(0, 0, -1000); // behind the camera
             Say("alone", Splats(first));
             second.transform.position = new Vector3(0, 0, 5);
+            AvatarBudget later = Make("later").AddComponent<AvatarBudget>();
+            later.Splats = 1 << 20;
+            second.Level = AvatarLevel.Automatic;
+            budget.Splats = 0;
+            Say("later", Splats(first) + " " + Splats(second));
+            later.Splats = 0;
             budget.enabled = false;
+            Say("later", Splats(first) + " " + Splats(second));
+            later.enabled = false;
             Say("free", Splats(first) + " " + Splats(second));
             long before = System.GC.GetAllocatedBytesForCurrentThread();
             Frames(30);
