@@ -1,5 +1,8 @@
 """Checkpoints are whole, belong to one run, and are nothing where they are damaged."""
 
+import errno
+import io
+import pickle
 from pathlib import Path
 from typing import BinaryIO
 
@@ -7,6 +10,7 @@ import pytest
 import torch
 
 from mua.checkpoint import Checkpoints, run_key
+from mua.errors import InputError
 
 
 def test_returns_what_was_saved(tmp_path: Path) -> None:
@@ -41,6 +45,55 @@ def test_ignores_a_file_truncated_anywhere(tmp_path: Path) -> None:
 def test_ignores_what_is_no_checkpoint(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "stage.pt").write_bytes(content)
     assert Checkpoints(tmp_path, "a").load("stage") is None
+
+
+class Hostile:
+    """What runs a function when it is unpickled without care."""
+
+    def __init__(self, made: Path) -> None:
+        self.made = made
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Path.mkdir, (self.made,)
+
+
+@pytest.mark.parametrize("archive", [False, True])
+def test_a_checkpoint_runs_no_code(tmp_path: Path, archive: bool) -> None:
+    checkpoints, made = Checkpoints(tmp_path, "a"), tmp_path / "made"
+    if archive:
+        torch.save({"key": "a", "state": Hostile(made)}, tmp_path / "stage.pt")
+    else:
+        (tmp_path / "stage.pt").write_bytes(pickle.dumps(Hostile(made), protocol=2))
+    assert checkpoints.load("stage") is None
+    assert not made.exists()
+
+
+def test_a_stage_is_finished_unless_it_says_otherwise(tmp_path: Path) -> None:
+    checkpoints = Checkpoints(tmp_path, "a")
+    assert not checkpoints.finished("stage")
+    for state, finished in (({"step": 3}, True), ({"finished": False}, False), ({"finished": True}, True)):
+        checkpoints.save("stage", state)
+        assert checkpoints.finished("stage") == finished
+
+
+class Full(io.RawIOBase):
+    """A file on a disk that is full."""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, _: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_a_disk_that_is_full_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though torch tells of its archive alone."""
+    checkpoints, save = Checkpoints(tmp_path, "a"), torch.save
+    checkpoints.save("stage", {"step": 1})
+    monkeypatch.setattr(torch, "save", lambda state, _: save(state, Full()))
+    with pytest.raises(InputError, match=r"stage\.pt.*No space left on device"):
+        checkpoints.save("stage", {"weight": torch.zeros(100_000)})
+    assert checkpoints.load("stage") == {"step": 1}
 
 
 def test_ignores_an_archive_of_something_else(tmp_path: Path) -> None:

@@ -20,6 +20,20 @@ def test_replaces_the_whole_content_and_leaves_nothing_else(tmp_path: Path) -> N
     assert list(path.parent.iterdir()) == [path]
 
 
+def test_the_whole_content_is_on_the_disk_before_it_replaces_the_old_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, synced = tmp_path / "a.txt", []
+
+    def fsync(number: int) -> None:
+        synced.append((os.fstat(number).st_ino, os.fstat(number).st_size, path.read_bytes()))
+
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, "fsync", fsync)
+    write_bytes(path, b"another")
+    assert synced == [(path.stat().st_ino, len(b"another"), b"old")]
+
+
 def write_half(path: Path, error: BaseException) -> None:
     with replacing(path) as temporary:
         temporary.write_bytes(b"half")

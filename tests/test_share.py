@@ -18,6 +18,7 @@ from commands import Commands
 from PIL import Image
 
 from mua.share import folder, single, site
+from mua.share.poster import front, opening
 from mua.share.server import serving
 from mua.share.single import in_order
 
@@ -261,7 +262,8 @@ def test_another_name_for_this_address_is_refused(port: int) -> None:
 def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
     code = "import sys; sys.argv[0] = 'mua-view'; from mua.cli.view import run; run()"
     line = [sys.executable, "-u", "-c", code, str(avatar_file), "--web", "--no-open"]
-    line += ["--show", "splats,template", "--stereo"]
+    line += ["--show", "splats,template", "--stereo", "--clip", "wave"]
+    line += ["--azimuth", "30", "--elevation", "10", "--orbit", "-5"]
     with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as ran:
         assert ran.stdout is not None
         assert ran.stderr is not None
@@ -270,6 +272,8 @@ def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
         assert found, (said, ran.stderr.read() if ran.poll() is not None else "")
         element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
         assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,mesh", "")
+        assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
+        assert float(element["azimuth"]) == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
         ran.send_signal(signal.SIGINT)
         assert ran.wait() == 0
         assert ran.stderr.read() == ""
