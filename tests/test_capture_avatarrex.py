@@ -141,6 +141,54 @@ def test_frames_that_a_camera_lacks_are_left_out(tmp_path: Path, command: Comman
     assert 255 * view.image[12, 12, 0] == pytest.approx(36, abs=4)  # frame 4, in JPEG
 
 
+def test_frames_without_a_mask_are_left_out(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    (source / "22010708" / "mask" / "pha" / "00000000.jpg").unlink()
+    capture = open_capture(described(source, command))
+    assert [(clip.name, clip.first_image, clip.frames) for clip in capture.clips] == [("frames_000001", 1, 4)]
+
+
+@pytest.mark.parametrize("begin", [0, 1])
+def test_pictures_may_have_other_names(tmp_path: Path, command: Commands, begin: int) -> None:
+    """Of fewer digits, masks as PNG, and counted from 1: the first picture then shows the first pose."""
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    for file in sorted(source.rglob("*.jpg"), reverse=True):
+        masked = "pha" in file.parts
+        with Image.open(file) as picture:
+            picture.save(file.with_name(f"{int(file.stem) + begin:06d}.{'png' if masked else 'jpg'}"))
+        file.unlink()
+    capture = open_capture(described(source, command))
+    (clip,) = capture.clips
+    assert (clip.first, clip.first_image, clip.frames) == (0, begin, FRAMES)
+    view = capture.view(clip.name, 3, "22053925")
+    assert 255 * view.image[12, 12, 0] == pytest.approx(27, abs=4)
+
+
+def test_a_first_picture_that_one_camera_lacks_does_not_shift_the_poses(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    for camera in ("22010708", "22053925"):
+        for folder in (source / camera, source / camera / "mask" / "pha"):
+            (folder / f"{FRAMES:08d}.jpg").write_bytes((folder / "00000004.jpg").read_bytes())  # it has no pose
+    (source / "22010708" / "00000000.jpg").unlink()
+    (clip,) = open_capture(described(source, command)).clips
+    assert (clip.first, clip.first_image, clip.frames) == (1, 1, FRAMES - 1)
+
+
+def test_what_a_set_lacks_is_named(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    asked = ("capture", "describe", source, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
+    for camera in ("22010708", "22053925"):
+        (source / camera / "mask" / "pha" / "00000002.jpg").unlink()
+        (source / camera / "00000001.jpg").unlink()
+        (source / camera / "00000003.jpg").unlink()
+    assert "no two frames in a row have pictures and masks of all 2 cameras" in command(*asked).sentence
+    for camera in ("22010708", "22053925"):
+        (source / camera / "mask" / "pha").rename(source / camera / "mask" / "fgr")
+    assert "22010708/mask/pha: found no masks; expected 00000000.jpg" in command(*asked).sentence
+    (source / "smpl_params.npz").unlink()
+    assert "holds calibration_full.json, but no smpl_params.npz" in command(*asked).sentence
+
+
 def test_the_full_calibration_is_the_one_that_is_read(tmp_path: Path, command: Commands) -> None:
     source = write_source(tmp_path / "set", WORLDS["y"])
     (source / "calibration.json").write_text("{}")

@@ -133,6 +133,12 @@ def test_masks_may_be_pictures(source: Path, person: Capture, command: Commands,
     masks = open_capture(tmp_path / "out").masks
     assert masks is not None
     assert masks.endswith("/foregroundSegmentation/{camera}/{frame:05d}.png")
+    first = source / "foregroundSegmentation" / "stream000"
+    (first / "00000.png").rename(first / "00001.png")
+    ended = command("capture", "describe", source, *given, "-o", tmp_path / "out")
+    assert (
+        "stream000/00001.png: is the first mask of stream000; expected masks that are counted from 0" in ended.sentence
+    )
 
 
 def test_what_is_missing_is_named(source: Path, person: Capture, command: Commands, tmp_path: Path) -> None:

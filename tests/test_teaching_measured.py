@@ -16,9 +16,9 @@ from mua.baking import lessons
 from mua.capture import open_capture
 from mua.errors import InputError
 from mua.student.settings import Schedule
-from mua.teaching import settings
+from mua.teaching import measured, settings
 from mua.teaching.folder import load_teacher
-from mua.teaching.measured import read_surface
+from mua.teaching.measured import MeasuredSurfaces, read_surface
 from mua.teaching.motion_deformation import MotionDeformation
 from mua.teaching.template_training import TemplateSettings
 from mua.teaching.trained import TrainedTeacher
@@ -63,6 +63,34 @@ def test_another_file_is_a_sentence(tmp_path: Path, content: bytes) -> None:
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"a\.ply: is no \.ply file"):
         read_surface(path)
+
+
+def surfaces_of(folder: Path, count: int) -> MeasuredSurfaces:
+    """Frames whose surfaces differ in size."""
+    files = tuple(write_ply(folder / f"{frame}.ply", CORNERS * (1 + frame)) for frame in range(count))
+    return MeasuredSurfaces(torch.zeros(count, 6), torch.zeros(count, 1, 8), files, 1.0)
+
+
+def test_a_surface_is_read_once_for_all_steps(tmp_path: Path) -> None:
+    surfaces, generator = surfaces_of(tmp_path, 2), torch.Generator()
+    first = [surfaces.observe(frame, generator).cloud for frame in range(2)]
+    for file in surfaces.files:
+        file.unlink()
+    assert [surfaces.observe(frame, generator).cloud for frame in range(2)] == first
+    sizes = [cloud.points.max() for cloud in first if cloud is not None]
+    assert sizes[1] > 1 > sizes[0] > 0.9
+
+
+def test_no_more_surfaces_are_held_than_there_is_room_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measured, "KEPT", 2)
+    surfaces, generator = surfaces_of(tmp_path, 3), torch.Generator()
+    for frame in range(3):
+        surfaces.observe(frame, generator)
+    for file in surfaces.files:
+        file.unlink()
+    surfaces.observe(2, generator)
+    with pytest.raises(InputError, match=r"0\.ply"):
+        surfaces.observe(0, generator)
 
 
 def test_a_capture_with_meshes_teaches_how_the_template_deforms(

@@ -23,6 +23,7 @@ from taught import (
 from together import errors as errors_of
 from together import start
 
+from mua import rotation
 from mua.processes import Processes
 from mua.student.optimise import Progress
 from mua.student.settings import Schedule
@@ -33,6 +34,7 @@ from mua.teaching.pose_refinement import PoseRefinement
 from mua.teaching.settings import LossWeights
 from mua.teaching.train import MEAN, TEXTURE, _loss, _rates, train_teacher
 from mua.teaching.views import Seen, Views
+from mua.teaching.windows import windows
 
 ROUNDING = 1e-3  # of losses: sums in another order, which steps of Adam let grow
 
@@ -191,6 +193,37 @@ def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
     with torch.no_grad():
         window = lesson.window(0)
         torch.testing.assert_close(window.root, motion()[0].root + left[0], rtol=0, atol=1e-5)
+
+
+def test_a_refined_window_is_that_of_the_refined_poses() -> None:
+    """The root's heading too: it is taken back by the networks that say of folds."""
+    clip, poses, own = synthetic_avatar().clips[0], refinement(3.0), subject()
+    skeleton = own.rig.skeleton
+    with torch.no_grad():
+        poses.turns[:, skeleton.root, 1] = 1.0
+        poses.moves.fill_(0.5)
+        turn = torch.tanh(torch.tensor(1.0, dtype=torch.float64)) * poses.most / 2
+        moved = torch.tanh(torch.tensor(0.5, dtype=torch.float64)) * poses.farthest
+    turned, translations = clip.rotations.copy(), clip.translations.copy()
+    half = np.array([1.0, 0, float(turn), 0]) / np.hypot(1, float(turn))
+    turned[:, skeleton.root] = rotation.multiply(clip.rotations[:, skeleton.root], half)
+    translations[:, skeleton.root] += float(moved)
+    wanted = windows(skeleton, own.encoding, replace(clip, rotations=turned, translations=translations))[4]
+    settings = replace(SETTINGS, code=0)
+    shown = replace(material(), poses=[[0] * 3, [2] * 3, [4, 3, 2]])
+    with torch.no_grad():
+        found = Lesson(teacher(settings), shown, settings, refinement=poses).window(2)
+    tolerance = 60 * np.finfo(np.float32).eps
+    for name in ("joints", "root", "back"):
+        torch.testing.assert_close(getattr(found, name), getattr(wanted, name), rtol=0, atol=tolerance)
+    assert (wanted.back - motion()[4].back).abs().max() > 0.01
+
+
+def test_who_is_upside_down_has_no_heading() -> None:
+    poses = refinement(3.0)
+    joints = poses([0])[0].detach()
+    joints[poses.root, :4] = torch.tensor([0.0, 0.6, 0, 0.8])
+    assert poses.back(joints).tolist() == [1, 0, 0, 0]
 
 
 def test_the_root_is_moved_no_farther_than_is_allowed() -> None:

@@ -23,19 +23,23 @@ from mua.motion.poses_file import write_poses
 
 CALIBRATIONS = ("calibration_full.json", "calibration.json")
 POSES = "smpl_params.npz"
-PATTERNS = (  # of pictures and masks
-    ("{camera}/{frame:08d}.jpg", "{camera}/mask/pha/{frame:08d}.jpg"),
-    ("images/{camera}/{frame:08d}.jpg", "masks/{camera}/{frame:08d}.jpg"),
-    ("imgs/{camera}/{frame:08d}.jpg", "masks/{camera}/{frame:08d}.jpg"),
+FOLDERS = (  # of pictures and masks
+    ("{camera}", "{camera}/mask/pha"),
+    ("images/{camera}", "masks/{camera}"),
+    ("imgs/{camera}", "masks/{camera}"),
 )
 RATE = 30.0
+PICTURES = (".jpg", ".jpeg", ".png")
 LEAST_FRAMES = 2  # of a clip
 Y_UP = np.array([0.0, 1, 0])
 
 
 def is_avatarrex(source: Path) -> bool:
-    """Whether a folder has this layout."""
-    return any((source / name).is_file() for name in CALIBRATIONS) and (source / POSES).is_file()
+    """Whether a folder has this layout; raises InputError where it has all but the poses."""
+    calibration = next((name for name in CALIBRATIONS if (source / name).is_file()), None)
+    if calibration is not None and not (source / POSES).is_file():
+        raise InputError(f"{source}: holds {calibration}, but no {POSES} with the poses of SMPL-X")
+    return calibration is not None
 
 
 def read_avatarrex(
@@ -49,8 +53,8 @@ def read_avatarrex(
 ) -> Capture:
     """The capture that a folder of this layout is; writes the poses on the template below `folder`.
 
-    Frames that a camera lacks are left out: each run of frames that all cameras have is a clip. The world is turned so
-    that Y is up. Errors: InputError with one sentence.
+    Frames of which a camera lacks picture or mask are left out: each run of frames that all have is a clip. The world
+    is turned so that Y is up. Errors: InputError with one sentence.
     """
     poses = read_smplx(source / POSES)
     turn = rotation.between(poses.up, Y_UP)
@@ -60,9 +64,14 @@ def read_avatarrex(
     skeleton = read_surfaces(template, size=FigureSize(height=height), leave_out=leave_out).skeleton
     clip = on_template(poses, skeleton, turn=turn, rate=rate, where=str(template))
     motion = folder / "motion" / "poses.npz"
-    runs = _complete(source, images, cameras, len(poses))
+    there = _complete(source, (images, masks), cameras, len(poses) + 1)
+    begin = int(there[-1] and not any(_has(source, images, camera, 0) for camera in cameras))  # counted from 1
+    runs = _runs(there[begin : begin + len(poses)])
     if not runs:
-        raise InputError(f"{source}: no two frames in a row are there for all {len(cameras)} cameras")
+        raise InputError(
+            f"{source}: no two frames in a row have pictures and masks of all {len(cameras)} cameras; "
+            f"looked for {images} and {masks}"
+        )
     write_poses(motion, skeleton, clip)
     return Capture(
         folder=folder,
@@ -71,7 +80,8 @@ def read_avatarrex(
         template=template,
         cameras=cameras,
         clips=tuple(
-            CaptureClip(f"frames_{first:06d}", motion, first, frames, first_image=first) for first, frames in runs
+            CaptureClip(f"frames_{first:06d}", motion, first, frames, first_image=begin + first)
+            for first, frames in runs
         ),
         images=below(source, images),
         masks=below(source, masks),
@@ -124,18 +134,41 @@ def _square(value: Any, where: str) -> Array:
 
 
 def _patterns(source: Path, cameras: Sequence[CaptureCamera]) -> tuple[str, str]:
-    for images, masks in PATTERNS:
-        if any((source / images.format(camera=camera.name, frame=0)).parent.is_dir() for camera in cameras):
-            return images, masks
-    tried = ", ".join(images for images, _ in PATTERNS)
+    """Of pictures and masks, both as a camera has them that has any."""
+    for folders in FOLDERS:
+        found = [_pattern(source, folder, cameras) for folder in folders]
+        if found[0] is not None and found[1] is None:
+            raise InputError(
+                f"{source / folders[1].format(camera=cameras[0].name)}: found no masks; expected 00000000.jpg"
+            )
+        if found[0] is not None and found[1] is not None:
+            return found[0], found[1]
+    tried = ", ".join(f"{images}/00000000.jpg" for images, _ in FOLDERS)
     raise InputError(f"{source}: found no pictures of camera {cameras[0].name}; looked for {tried}")
 
 
-def _complete(source: Path, images: str, cameras: Sequence[CaptureCamera], frames: int) -> list[tuple[int, int]]:
-    """First frame and number of frames of each run that all cameras have."""
-    there = [
-        all((source / images.format(camera=camera.name, frame=frame)).is_file() for camera in cameras)
+def _pattern(source: Path, folder: str, cameras: Sequence[CaptureCamera]) -> str | None:
+    """Of the pictures of a folder, by what the first of them is called."""
+    for camera in cameras:
+        for file in sorted((source / folder.format(camera=camera.name)).glob("[0-9]*")):
+            if file.stem.isdecimal() and file.suffix.lower() in PICTURES:
+                return f"{folder}/{{frame:0{len(file.stem)}d}}{file.suffix}"
+    return None
+
+
+def _complete(source: Path, patterns: Sequence[str], cameras: Sequence[CaptureCamera], frames: int) -> list[bool]:
+    """Of which frames all cameras have files of all patterns."""
+    return [
+        all(_has(source, pattern, camera, frame) for camera in cameras for pattern in patterns)
         for frame in range(frames)
     ]
+
+
+def _has(source: Path, pattern: str, camera: CaptureCamera, frame: int) -> bool:
+    return (source / pattern.format(camera=camera.name, frame=frame)).is_file()
+
+
+def _runs(there: Sequence[bool]) -> list[tuple[int, int]]:
+    """First frame and number of frames of each run that is there."""
     edges = np.flatnonzero(np.diff([False, *there, False]))
     return [(int(a), int(b - a)) for a, b in edges.reshape(-1, 2) if b - a >= LEAST_FRAMES]

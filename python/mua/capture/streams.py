@@ -74,7 +74,11 @@ def _masks(source: Path, videos: Sequence[Path]) -> str:
     for suffix in VIDEOS:
         if (folder / f"{name}{suffix}").is_file():
             return below(folder, f"{{camera}}{suffix}")
-    for file in sorted((folder / name).glob("0*")):
+    for file in sorted((folder / name).glob("[0-9]*")):
         if file.stem.isdecimal() and int(file.stem) == 0:
             return below(folder, f"{{camera}}/{{frame:0{len(file.stem)}d}}{file.suffix}")
+        if file.stem.isdecimal():
+            raise InputError(
+                f"{file}: is the first mask of {name}; expected masks that are counted from 0, as frames are"
+            )
     raise InputError(f"{folder}: found no masks of {name}; expected a video or a folder of that name")

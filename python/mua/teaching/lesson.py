@@ -67,12 +67,16 @@ class Lesson(nn.Module):
         return torch.stack(losses).sum() / len(rows)
 
     def window(self, frame: int) -> Window:
-        """The window of a frame, its poses refined where they are learnt."""
+        """The window of a frame, its poses refined where they are learnt.
+
+        Descriptors stay those of the given poses, on which the template was trained.
+        """
         window = self._material.windows[frame].to(self.looks.device)
         if self.refinement is None:
             return window
         joints = self.refinement(self._material.poses[frame])
-        return Window(joints, window.descriptors, self.refinement.place(joints[0]), window.back)
+        newest = joints[0]
+        return Window(joints, window.descriptors, self.refinement.place(newest), self.refinement.back(newest))
 
     @torch.no_grad()
     def keep_mean_look(self) -> None:

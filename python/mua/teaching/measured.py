@@ -1,6 +1,8 @@
 """The surfaces that a capture has of its frames, as what the drivable template is trained on."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,7 @@ from mua.teaching.mesh_losses import Cloud
 from mua.teaching.template_training import Observed
 
 POINTS = 20_000  # of a surface
+KEPT = 256  # surfaces in memory, 2 MB each with its tree; of longer captures, some are read anew
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +32,12 @@ class MeasuredSurfaces:
     size: float  # of the figure over that of a person
 
     def observe(self, frame: int, generator: torch.Generator) -> Observed:
-        return Observed(cloud=Cloud.of(read_surface(self.files[frame]), POINTS, size=self.size))
+        return Observed(cloud=self._cloud(frame))
+
+    @cached_property
+    def _cloud(self) -> Callable[[int], Cloud]:
+        """Of a frame; to read a surface takes longer than to compare the template with it."""
+        return lru_cache(KEPT)(lambda frame: Cloud.of(read_surface(self.files[frame]), POINTS, size=self.size))
 
 
 def measured_surfaces(filmed: Filmed) -> MeasuredSurfaces | None:

@@ -9,6 +9,7 @@ from mua.pose.skeleton import Skeleton
 from mua.splatting.posing import dual_transform, multiply, rotate
 
 MOVE = 0.01  # metres on a person along each axis that the root may be moved for each degree that joints may be turned
+VANISHES = 1e-4  # length of a twist that says of no heading: who is upside down faces nowhere
 
 
 class PoseRefinement(nn.Module):
@@ -56,6 +57,15 @@ class PoseRefinement(nn.Module):
     ) -> Tensor:
         """Where the root is, [3], metres."""
         return dual_transform(joints[self.root], self.rest)
+
+    def back(
+        self,
+        joints: Tensor,  # [J, 8] bind pose to world
+    ) -> Tensor:
+        """The turn that takes the heading back, [4], as `mua.pose.descriptor.heading_of` has it."""
+        twist = joints[self.root, :4] * joints.new_tensor([1.0, 0, -1, 0])
+        upright = joints.new_tensor([1.0, 0, 0, 0])
+        return nn.functional.normalize(torch.where(twist.norm() < VANISHES, upright, twist), dim=0)
 
     def size(self) -> Tensor:
         """The mean square of what is learnt."""
