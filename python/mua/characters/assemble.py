@@ -11,6 +11,7 @@ from mua.atlas.surfaces import Surfaces
 from mua.characters.bind_pose import Bind, bind_pose
 from mua.characters.correction import check_scales, corrected
 from mua.characters.messages import UNHELD, Messages
+from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.winding import inside_out
 from mua.errors import InputError
@@ -54,6 +55,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
     bind = bind_pose(scene)
     mesh = _merge(scene, bind)
+    scene, bind, mesh = _without_outlines(scene, bind, mesh)
     used = mesh.vertices[np.unique(mesh.faces)]
     if not np.ptp(used, axis=0).any():
         raise InputError(f"{path}: all vertices of the skinned meshes are at {used[0].tolist()}, expected a surface")
@@ -87,6 +89,29 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
         unit=change.unit,
         size_notes=size_notes,
     )
+
+
+def _without_outlines(scene: Scene, bind: Bind, mesh: _Mesh) -> tuple[Scene, Bind, _Mesh]:
+    """The same without parts of one colour that are shells of the others, wound inside out: splats would cover them."""
+    sizes = [len(part.faces) for part in scene.parts]
+    plain = [
+        p
+        for p, part in enumerate(scene.parts)
+        if part.colors is None and np.ptp(scene.materials[part.material].image, axis=(0, 1)).max() == 0
+    ]
+    found = outlines(mesh.vertices, mesh.faces, np.repeat(np.arange(len(sizes)), sizes), plain)
+    if not found:
+        return scene, bind, mesh
+    messages = Messages()
+    for p in found:
+        messages.add(
+            "Outlines, drawn as shells that are wound inside out, are left out: {}.",
+            scene.parts[p].node or scene.parts[p].name,
+        )
+    kept = tuple(part for p, part in enumerate(scene.parts) if p not in found)
+    scene = replace(scene, parts=kept, notes=(*scene.notes, *messages.notes()))
+    bind = bind_pose(scene)
+    return scene, bind, _merge(scene, bind)
 
 
 def _rigid_parts(scene: Scene) -> tuple[str, ...]:
