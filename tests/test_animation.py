@@ -92,14 +92,24 @@ def with_camera(glb: Glb) -> Glb:
     return glb
 
 
+def with_face(glb: Glb) -> Glb:
+    """The same with a face that hangs rigidly on the head, as files of motion keep it for its expressions."""
+    corners = np.array([[0, -8, 0], [5, -8, 0], [0, -8, 9]], float)
+    glb.json["meshes"] = [{"primitives": [{"attributes": {"POSITION": glb.accessor(corners)}}]}]
+    glb.json["nodes"].append({"mesh": 0, "name": "face"})
+    glb.json["nodes"][HIPS + 2].setdefault("children", []).append(len(glb.json["nodes"]) - 1)
+    return glb
+
+
 @pytest.mark.parametrize(
     "bare",
     [
         rig(skin=True, mesh=False),
+        with_face(rig(skin=True, mesh=False)),
         rig(skin=False, mesh=False),
         with_camera(rig(skin=False, mesh=False)),
     ],
-    ids=["skin", "nodes", "nodes beside a camera"],
+    ids=["skin", "skin of which a face is left", "nodes", "nodes beside a camera"],
 )
 def test_motion_without_a_mesh_is_the_identity_on_its_own_rig(tmp_path: Path, bare: Glb) -> None:
     character = read_surfaces(rig().save(tmp_path / "rig.glb"))

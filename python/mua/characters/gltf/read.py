@@ -22,6 +22,7 @@ from mua.pose.joint_names import limb_count
 from mua.scene import Part, Scene, Skin
 
 INSTANCES = "EXT_mesh_gpu_instancing"
+LIMBS = 8  # bones of arms and legs of a whole body, as `limb_count` counts them
 
 
 def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
@@ -39,7 +40,7 @@ def read_gltf(path: Path, *, leave_out: Sequence[str] = ()) -> Surfaces:
 def read_gltf_animation(path: Path) -> Animation:
     """Read the skeleton and clips of a .glb or .gltf: those of its skinned meshes, else of its skins or moved nodes.
 
-    Where the mesh is a part of the body alone, such as a face, the nodes that clips move are taken with all limbs.
+    Where the mesh is a part of the body alone, such as a face, that of all skins or moved nodes which names most limbs.
     Raises an InputError where `read_gltf` does, except that a mesh may be missing where there are joints.
     """
     document = load(path)
@@ -50,10 +51,12 @@ def read_gltf_animation(path: Path) -> Animation:
         return bare_animation(_scene(document, tree, _bare_skins(document, tree), vrm=vrm), path)
     rig = assemble(scene, path)
     meshed = Animation(rig.skeleton, rig.clips, (), rig.roles)
-    if set(moved_nodes(document)) <= {int(node) for skin in _skins(document) for node in skin.joints}:
-        return meshed
-    whole = bare_animation(_scene(document, tree, _moved_tree(document, tree), vrm=vrm), path)
-    return whole if limb_count(whole.skeleton) > limb_count(meshed.skeleton) else meshed
+    joints = {int(node) for skin in _skins(document) for node in skin.joints}
+    wholes = [_bare_skins(document, tree)] if joints and limb_count(meshed.skeleton) < LIMBS else []
+    if not set(moved_nodes(document)) <= joints:
+        wholes.append(_moved_tree(document, tree))
+    found = [bare_animation(_scene(document, tree, skins, vrm=vrm), path) for skins in wholes]
+    return max([meshed, *found], key=lambda animation: limb_count(animation.skeleton))
 
 
 def _meshes(document: Document, tree: Tree) -> Scene:
