@@ -55,3 +55,11 @@ def test_scene_of_another_program_is_refused_with_the_way_to_convert_it(tmp_path
     for read in (read_surfaces, read_motion):
         with pytest.raises(InputError, match=rf"open it in {tool} and export it as glTF 2\.0"):
             read(path)
+
+
+def test_a_text_fbx_file_is_refused_since_blender_does_not_open_it_either(tmp_path: Path) -> None:
+    path = tmp_path / "walk.fbx"
+    path.write_bytes(b"; FBX 7.3.0 project file\n; ----")
+    for read in (read_surfaces, read_motion):
+        with pytest.raises(InputError, match=r"walk\.fbx: is a text FBX file, .* save it as binary"):
+            read(path)

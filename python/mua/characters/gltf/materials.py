@@ -128,7 +128,8 @@ def _picture(document: Document, info: dict[str, Any], where: str) -> tuple[Arra
     source = (texture.extensions or {}).get(WEBP, {}).get("source", texture.source)
     if source is None and BASIS in (texture.extensions or {}):
         raise document.error(
-            f"textures[{info['index']}] is a KTX2 picture ({BASIS}), which is not read; export it with PNG or JPEG"
+            f"textures[{info['index']}] is a KTX2 picture ({BASIS}), which is not read; export it with PNG or JPEG, or "
+            "convert it by 'npx @gltf-transform/cli ktxdecompress IN.glb OUT.glb'"
         )
     image = document.item("images", source, field=f"textures[{info['index']}].source")
     field = f"images[{source}]"
