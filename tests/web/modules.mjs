@@ -2,6 +2,7 @@
 //   answers        a line for each file: ok, or code, field and sentence as JSON
 //   mutants        the same of files on the standard input, each after its length as four bytes, that also arrive in steps;
 //                  and the most bytes that this process has taken by then
+//   measured RUNS  of a file that is read so often: processor seconds of each, and the most bytes that the first took
 //   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
@@ -38,7 +39,8 @@ const ARRIVED = 5; // steps in which a mutant arrives
 
 function bytes(file) {
   const content = readFileSync(file);
-  return content.buffer.slice(content.byteOffset, content.byteOffset + content.length);
+  const { buffer, byteOffset, length } = content;
+  return length === buffer.byteLength ? buffer : buffer.slice(byteOffset, byteOffset + length); // small ones share memory
 }
 
 /** So many bytes of the standard input; fewer at its end. */
@@ -51,8 +53,9 @@ function came(count) {
   return found;
 }
 
-/** The most bytes that this process has taken; maxRSS counts the parent that forked it. */
-const peak = () => 1024 * Number(/VmHWM:\s*(\d+) kB/.exec(readFileSync("/proc/self/status", "utf8"))[1]);
+/** Bytes that this process takes, or at most has taken; maxRSS counts the parent that forked it. */
+const status = (name) => 1024 * Number(new RegExp(`${name}:\\s*(\\d+) kB`).exec(readFileSync("/proc/self/status", "utf8"))[1]);
+const peak = () => status("VmHWM");
 
 async function answer(content) {
   try {
@@ -154,6 +157,20 @@ async function stages(content, step) {
   return found;
 }
 
+/** What reading a file takes, so many times. */
+async function measured(file, runs) {
+  const [before, seconds] = [status("VmRSS"), []];
+  let taken = 0;
+  for (let run = 0; run < runs; run++) {
+    const start = process.cpuUsage();
+    await read(bytes(file));
+    const { user, system } = process.cpuUsage(start);
+    seconds.push((user + system) / 1e6);
+    taken ||= peak() - before;
+  }
+  return [seconds, taken];
+}
+
 /** Whether the rest is expected soon, after each 100 ms. */
 function soon(total, bytes) {
   const download = new Download("http://localhost/a.muaavatar");
@@ -192,6 +209,7 @@ async function shown(steps) {
   return { put, told };
 }
 
+if (what === "measured") say(await measured(given[0], Number(given[1])));
 if (what === "soon") say(soon(...given.slice(0, 1), given.slice(1).map(Number)));
 if (what === "shown") say(await shown(given));
 if (what === "stages") for (const one of await stages(bytes(given[0]), Number(given[1]))) say(one);

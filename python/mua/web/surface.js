@@ -8,8 +8,8 @@ const END = -1; // of a strip
 
 /** Corners [K, 4] of the 2 x 2 blocks of which at least three texels are valid: a, b over c, d, or -1. */
 export function blocks(/** @type {TexelGrid} */ { size, texels }) {
-  /** @type {number[]} */
-  const found = [];
+  const found = new Int32Array(8 * texels.length); // a texel begins at most two
+  let count = 0;
   let [below, belowLeft] = [0, 0]; // the first texel at or after the one below a block's left corner
   let last = -1;
   for (let i = 0; i < texels.length; i++) {
@@ -26,26 +26,29 @@ export function blocks(/** @type {TexelGrid} */ { size, texels }) {
       const c = texels[belowLeft] === start + size ? belowLeft : -1;
       const right = c < 0 ? belowLeft : belowLeft + 1;
       const d = texels[right] === start + size + 1 ? right : -1;
-      if ([a, b, c, d].filter((corner) => corner >= 0).length >= 3) found.push(a, b, c, d);
+      if (Number(a >= 0) + Number(b >= 0) + Number(c >= 0) + Number(d >= 0) < 3) continue;
+      found.set([a, b, c, d], count);
+      count += 4;
     }
   }
-  return Int32Array.from(found);
+  return found.slice(0, count);
 }
 
 /** Triangles [T, 3] of blocks, by the runs of their codes; -1 where one has a corner that is no valid texel. */
 export function blockTriangles(/** @type {Int32Array} */ corners, /** @type {Uint8Array} */ runs) {
-  /** @type {number[]} */
-  const found = [];
-  let at = 0;
+  const found = new Int32Array(1.5 * corners.length); // of two triangles a block
+  let [at, count] = [0, 0];
+  const add = (/** @type {number[]} */ triangle, /** @type {number} */ run) => {
+    found.set(run & TURNED ? triangle.reverse() : triangle, count);
+    count += 3;
+  };
   for (const run of runs)
     for (let end = at + 4 * ((run >> 4) + 1); at < end; at += 4) {
       const [a, b, c, d] = [corners[at], corners[at + 1], corners[at + 2], corners[at + 3]];
-      const first = [a, b, run & RISING ? c : d];
-      const second = [run & RISING ? b : a, d, c];
-      if (run & FIRST) found.push(...(run & TURNED ? first.reverse() : first));
-      if (run & SECOND) found.push(...(run & TURNED ? second.reverse() : second));
+      if (run & FIRST) add([a, b, run & RISING ? c : d], run);
+      if (run & SECOND) add([run & RISING ? b : a, d, c], run);
     }
-  return Int32Array.from(found);
+  return found.slice(0, count);
 }
 
 /** Triangles [T, 3] of strips: each corner after the first two makes one with the edge that the last one left. */

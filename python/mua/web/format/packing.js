@@ -28,9 +28,11 @@ export async function unpack(tree, size, end = size) {
       throw fault("value", `${path}.data`, sentence);
     }
   }
+  const room = new Uint8Array(Math.max(0, ...held.map(([path, tensor]) => claimed(tensor, path)))); // for one at a time
   for (const [path, tensor] of held) {
-    const count = claimed(tensor, path);
-    const planes = isThere(tensor, end) ? await inflated(tensor.data, count, path) : new Uint8Array(count);
+    const planes = room.subarray(0, claimed(tensor, path));
+    if (isThere(tensor, end)) await inflate(tensor.data, planes, path);
+    else planes.fill(0);
     tensor.data = interleaved(planes, SIZES[tensor.type]);
     tensor.packing = "Plain";
   }
@@ -56,13 +58,13 @@ function* tensors(/** @type {Tree} */ tree, /** @type {string} */ table, /** @ty
   }
 }
 
-/** The `count` bytes of a stream; not much more is made of it. */
-async function inflated(
+/** Make the bytes of `found` from a stream; not much more is made of it. */
+async function inflate(
   /** @type {Uint8Array<ArrayBuffer>} */ stream,
-  /** @type {number} */ count,
+  /** @type {Uint8Array} */ found,
   /** @type {string} */ path,
 ) {
-  const found = new Uint8Array(count);
+  const count = found.length;
   const reader = new Blob([stream]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
   let got = 0;
   try {
@@ -78,14 +80,14 @@ async function inflated(
     if (got < count) throw fault("packed", `${path}.data`, "the bytes are no deflate stream: the file is damaged");
   }
   reader.cancel().catch(() => {}); // what is left of it does not matter
-  if (got === count) return found;
+  if (got === count) return;
   const given = got > count ? `more than ${count}` : got;
   throw fault("packed", `${path}.data`, `the stream gives ${given} bytes, expected ${count}`);
 }
 
 /** Elements of so many bytes from planes of their first bytes, their second ones and so on. */
 function interleaved(/** @type {Uint8Array} */ planes, /** @type {number} */ width) {
-  if (width === 1) return planes;
+  if (width === 1) return planes.slice();
   const data = new Uint8Array(planes.length);
   const count = planes.length / width;
   for (let plane = 0; plane < width; plane++)

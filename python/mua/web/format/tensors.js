@@ -91,8 +91,9 @@ export function reals(tensor, path, shape) {
 /** The value of the largest magnitude; NaN where one is not finite. */
 function farthest(/** @type {Stored} */ found) {
   if (found.type === "F16") {
-    const halves = words(found, Uint16Array);
-    return halves.some((half) => (half & HALF_MAGNITUDE) >= HALF_INFINITY) ? NaN : 0; // no half is above LARGEST
+    let most = 0;
+    for (const half of words(found, Uint16Array)) most = Math.max(most, half & HALF_MAGNITUDE);
+    return most >= HALF_INFINITY ? NaN : 0; // no half is above LARGEST
   }
   if (found.type === "I8" && found.scale?.every((scale) => Math.abs(scale) <= LARGEST / 128)) return 0;
   const values = expanded(found);
