@@ -83,18 +83,23 @@ def _stages(
     parts, pose = [kernels_ms(device, part.kernels, end) for part in counts.decode], dict(counts.pose.kernels)
     project = pose["SplatProject"]
     pose["SplatProject"] = replace(project, flops=project.flops + (eyes - 1) * PROJECT_EYE * counts.splats)
-    drawn = avatars * eyes
-    triangles = seen.triangles * device.passes / (1e9 * device.clock * getattr(device.triangles, end))
-    computed = shaded(seen) * (instructions + FIXED) / (1e12 * device.peak / 2 * getattr(device.shading, end))
-    blended = seen.fragments / (1e9 * device.clock * getattr(device.pixels, end))
+    triangles, fragments = (avatars * eyes * each for each in drawing_ms(device, seen, instructions, end))
     return Stages(
         decode=avatars * sum(parts),
         part=avatars * max(parts),
         pose=avatars * kernels_ms(device, pose, end),
-        triangles=drawn * 1e3 * triangles,
-        fragments=drawn * 1e3 * max(computed, blended),
+        triangles=triangles,
+        fragments=fragments,
         rest=getattr(device.rest, end),
     )
+
+
+def drawing_ms(device: ModelDevice, seen: Drawn, instructions: int, end: str) -> tuple[float, float]:
+    """Milliseconds of triangles and of fragments, of one avatar for one eye."""
+    triangles = seen.triangles * device.passes / (1e9 * device.clock * getattr(device.triangles, end))
+    computed = shaded(seen) * (instructions + FIXED) / (1e12 * device.peak / 2 * getattr(device.shading, end))
+    blended = seen.fragments / (1e9 * device.clock * getattr(device.pixels, end))
+    return 1e3 * triangles, 1e3 * max(computed, blended)
 
 
 def kernels_ms(device: ModelDevice, work: Mapping[str, Work], end: str) -> float:
