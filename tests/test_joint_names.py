@@ -105,6 +105,18 @@ def test_takes_what_lies_between_hips_and_arms_for_the_spine_whatever_its_name()
     assert (found["hips"], found["spine"], found["left upper_arm"]) == ((0,), (3, 4), (5,))
 
 
+def test_takes_a_body_that_carries_arms_and_hips_for_the_spine() -> None:
+    names = ("Body", "Hips", "UpperLeg.L", "UpperLeg.R", "UpperArm.L", "UpperArm.R", "Head")
+    found = roles(upright(names, [-1, 0, 1, 1, 0, 0, 0]))
+    assert (found["hips"], found["spine"], found["head"]) == ((1,), (0,), (6,))
+
+
+def test_what_ik_aims_at_takes_no_part_in_limbs() -> None:
+    names = ("Hips", "Spine", "elbow.L", "upperarm.L", "lowerarm.L", "hand.L", "hand_L")
+    found = roles(upright(names, [-1, 0, 1, 1, 3, 4, 0]))
+    assert (found["left upper_arm"], found["left forearm"], found["left hand"]) == ((3,), (4,), (5,))
+
+
 def test_takes_the_root_for_hips_without_a_name() -> None:
     assert roles(chain("root", "thing"))["hips"] == (0,)
     assert roles(chain("root", "pelvis"))["hips"] == (1,)

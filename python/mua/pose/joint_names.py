@@ -109,6 +109,7 @@ def roles(
             found.setdefault(role, []).append(joint)
     for side in SIDES:
         _settle_side(found, side)
+        _leave_out_targets(skeleton, found, side)
     chains = {role: _one_chain(skeleton, joints) for role, joints in found.items()}
     told = _told(skeleton, said or {})
     taken = {joint for joints in told.values() for joint in joints}
@@ -191,6 +192,15 @@ def _settle_side(found: dict[str, list[int]], side: str) -> None:
     found.pop(f"{side} hip", None)
 
 
+def _leave_out_targets(skeleton: Skeleton, found: dict[str, list[int]], side: str) -> None:
+    """Where some joints of a name hang on the limb above and others do not, the others are what IK aims at."""
+    for upper, lower in _BELOW.items():
+        above = set(found.get(f"{side} {upper}", []))
+        hanging = [j for j in found.get(f"{side} {lower}", []) if above & set(skeleton.ancestors(j))]
+        if hanging:
+            found[f"{side} {lower}"] = hanging
+
+
 def _keep_to_limbs(skeleton: Skeleton, chains: Roles) -> None:
     """Leave twist joints, which share a limb's name beside the way to its end, out of the limb."""
     for role, joints in chains.items():
@@ -247,12 +257,19 @@ def _settle_trunk(skeleton: Skeleton, chains: Roles) -> None:
 
 
 def _unnamed_spine(skeleton: Skeleton, chains: Roles, arms: list[int]) -> tuple[int, ...]:
-    """The joints from the hips to where both arms branch off, which are the spine whatever they are called."""
+    """The joints from the hips to where both arms branch off, which are the spine whatever they are called.
+
+    So is a body that carries the arms and the hips.
+    """
     if len(arms) < 2:
         return ()
+    hips = chains["hips"][-1]
     carrying = set.intersection(*(set(skeleton.ancestors(joint)) for joint in arms))
     known = {joint for joints in chains.values() for joint in joints}
-    return tuple(sorted(j for j in carrying - known if chains["hips"][-1] in skeleton.ancestors(j)))
+    above = tuple(sorted(j for j in carrying - known if hips in skeleton.ancestors(j)))
+    if above or not carrying or max(carrying) not in skeleton.ancestors(hips):
+        return above
+    return (max(carrying),)
 
 
 def _one_chain(skeleton: Skeleton, joints: list[int]) -> tuple[int, ...]:
