@@ -70,6 +70,13 @@ def test_every_system_is_there_at_every_scale_and_at_equal_cost_once(smooth_fram
     assert len(set(costs)) == len(costs)
 
 
+def test_sizes_that_come_to_the_same_are_there_once_by_their_first_name(smooth_frames: TrainingFrames) -> None:
+    """Systems in the order in which they are asked for; ours at no other scale than those that are."""
+    found = sized(["pca-only", "ours", "linear"], [2.0, 2.0001], smooth_frames.sizes)
+    assert list(dict.fromkeys(one.system for one in found)) == ["pca-only", "ours", "linear"]
+    assert [one.name for one in found if one.system == "ours"] == ["ours x2"]
+
+
 def test_a_system_is_shown_as_it_learnt_and_one_that_fails_is_told(
     smooth_recording: Recording, smooth_frames: TrainingFrames, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,7 +1,10 @@
 """By how much pictures change with a sample of the subbands, against pictures of subbands that were changed."""
 
+from copy import copy
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -104,6 +107,31 @@ def test_the_channels_of_an_attribute_are_seen_at_the_same_samples(smooth_record
             torch.testing.assert_close(pattern, pattern[:1].expand_as(pattern))
 
 
+def test_a_level_counts_for_the_mean_of_its_bands_and_of_all_pictures(
+    smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """LL and the three bands of D3 are one level."""
+
+    def squares(*_: object, middle: Bands, **__: object) -> Bands:
+        threes = torch.tensor([3.0, 5, 7])[:, None, None, None]
+        return Bands(torch.full_like(middle.ll, 4), threes * torch.ones_like(middle.d3), threes + 0 * middle.d2)
+
+    monkeypatch.setattr(sensitivity, "_squares", squares)
+    measured = measure_sensitivities(smooth_recording, 2, run(tmp_path))
+    for band, mean in ((measured.ll, 19 / 4), (measured.d3, 19 / 4), (measured.d2, 5)):
+        torch.testing.assert_close(band, torch.full_like(band, np.sqrt(mean)))
+
+
+def test_clips_that_are_held_out_are_not_looked_at(smooth_recording: Recording, tmp_path: Path) -> None:
+    """Wherever they stand among the others."""
+    before = copy(smooth_recording)
+    before.clips = sorted(smooth_recording.clips, key=lambda clip: not clip.held_out)
+    assert [clip.name for clip in before.clips] != [clip.name for clip in smooth_recording.clips]
+    measured = [measure_sensitivities(one, 2, run(tmp_path)) for one in (smooth_recording, before)]
+    for one, other in zip(*measured, strict=True):
+        assert torch.equal(one, other)
+
+
 def test_what_no_picture_shows_counts_a_little() -> None:
     squares = torch.rand(CHANNELS, 4, 4, generator=torch.Generator().manual_seed(0))
     squares[:, 2, 1] = 0
@@ -170,7 +198,12 @@ def test_bases_learn_from_pictures_at_a_rate_of_their_own(
         assert not torch.equal(still.ll_basis, moved.ll_basis)
 
 
-def test_every_picture_is_reported(smooth_recording: Recording, tmp_path: Path) -> None:
+def test_every_picture_is_reported(
+    smooth_recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And how many there are in a second: here each takes four."""
     told: list[Progress] = []
+    monkeypatch.setattr(sensitivity, "time", SimpleNamespace(monotonic=count(0, 4).__next__))
     measure_sensitivities(smooth_recording, 3, replace(run(tmp_path), report=told.append))
     assert [(one.step, one.steps) for one in told] == [(1, 3), (2, 3), (3, 3)]
+    assert [one.rate for one in told] == [0.25] * 3

@@ -348,6 +348,7 @@ def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None
     told, levels = story("ChangesLevel", "first"), counts(1)
     assert told["distance"] == [str(levels[level]) for level in (0, 2, 0)]
     assert told["asked"] == [str(levels[level]) for level in (1, 2, 0)]
+    assert told["nearest"] == [str(levels[level]) for level in (0, 2, 0)]  # of two cameras, then one
     assert told["still"] == [str(len(FRAME_ORDER))]
     assert told["geometry"] == [str(levels[0])]
     assert told["log"] == []
@@ -356,6 +357,8 @@ def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None
 def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
     told, first, second = story("SharesBudget", "first", "second"), counts(1), counts(2)
     assert told["splats"] == [f"{first[i]} {second[j]}" for i, j in ((0, 0), (0, 1), (2, 2))]
+    assert told["one camera"] == [f"{first[0]} {second[1]}"]
+    assert told["two cameras"] == [f"{first[1]} {second[0]}"]  # of which another one is nearer to the second
     assert told["fixed"] == [f"{first[2]} {second[0]}"]
     assert told["alone"] == [str(first[0])]  # what is not in view takes nothing off
     assert told["later"] == [f"{first[0]} {second[0]}", f"{first[2]} {second[2]}"]  # the budget that came last counts

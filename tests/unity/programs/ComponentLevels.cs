@@ -21,6 +21,14 @@ namespace Mua
                 shown.Level = level;
                 Say("asked", Splats(shown));
             }
+            shown.Level = AvatarLevel.Automatic;
+            Stand(Far);
+            Camera beside = Beside(new Vector3(0, 0, -Near));
+            Say("nearest", Splats(shown));
+            beside.enabled = false;
+            Say("nearest", Splats(shown));
+            Stand(Near);
+            Say("nearest", Splats(shown));
             shown.Level = AvatarLevel.Quarter;
             Say("still", Dispatches(2) - Dispatches(1)); // a decode goes before the pose once
             shown.Views = AvatarViews.Splats | AvatarViews.Geometry;
@@ -38,6 +46,13 @@ namespace Mua
                 budget.Splats = splats;
                 Say("splats", Splats(first) + " " + Splats(second));
             }
+            budget.Splats = Full(first) + Full(second) - 1;
+            Stand(3);
+            Say("one camera", Splats(first) + " " + Splats(second));
+            Camera beside = Beside(new Vector3(0, 0, 3.5f));
+            Say("two cameras", Splats(first) + " " + Splats(second));
+            beside.enabled = false;
+            Stand(Near);
             budget.Splats = Full(second);
             second.Level = AvatarLevel.Full;
             Say("fixed", Splats(first) + " " + Splats(second));
@@ -78,6 +93,14 @@ namespace Mua
         {
             Frames(9); // where it plays, another level comes with the next decode
             return avatar.SplatCount;
+        }
+
+        /// <summary>A second camera.</summary>
+        private static Camera Beside(Vector3 place)
+        {
+            GameObject made = Make("beside");
+            made.transform.position = place;
+            return made.AddComponent<Camera>();
         }
 
         private static void Stand(float distance)
