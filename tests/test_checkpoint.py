@@ -4,7 +4,7 @@ import errno
 import io
 import pickle
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import pytest
 import torch
@@ -77,13 +77,15 @@ def test_a_stage_is_finished_unless_it_says_otherwise(tmp_path: Path) -> None:
 
 
 class Full(io.RawIOBase):
-    """A file on a disk that is full."""
+    """A file on a disk with little room, after which torch complains about where the file stands."""
 
     def writable(self) -> bool:
         return True
 
-    def write(self, _: object) -> int:
-        raise OSError(errno.ENOSPC, "No space left on device")
+    def write(self, content: Any) -> int:
+        if memoryview(content).nbytes > 1000:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return memoryview(content).nbytes
 
 
 def test_a_disk_that_is_full_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -91,6 +93,8 @@ def test_a_disk_that_is_full_is_a_sentence(tmp_path: Path, monkeypatch: pytest.M
     checkpoints, save = Checkpoints(tmp_path, "a"), torch.save
     checkpoints.save("stage", {"step": 1})
     monkeypatch.setattr(torch, "save", lambda state, _: save(state, Full()))
+    with pytest.raises(RuntimeError, match="unexpected pos"):
+        save({"weight": torch.zeros(100_000)}, Full())
     with pytest.raises(InputError, match=r"stage\.pt.*No space left on device"):
         checkpoints.save("stage", {"weight": torch.zeros(100_000)})
     assert checkpoints.load("stage") == {"step": 1}

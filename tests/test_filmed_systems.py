@@ -11,6 +11,7 @@ from compared import few
 from PIL import Image
 from test_eval_capture import nothing
 
+from mua.checkpoint import Checkpoints
 from mua.compare import filmed_systems
 from mua.compare.cost import Cost, learnt_cost
 from mua.compare.curve import COSTS, curve, points
@@ -21,6 +22,7 @@ from mua.compare.network import Forgetful
 from mua.compare.standing import best, sentences, standings
 from mua.compare.system import Budget, Sizes, TrainingFrames
 from mua.compare.systems import SYSTEMS
+from mua.decode import pose_splats
 from mua.recording import Recording
 
 
@@ -75,6 +77,8 @@ def test_sizes_that_come_to_the_same_are_there_once_by_their_first_name(smooth_f
     found = sized(["pca-only", "ours", "linear"], [2.0, 2.0001], smooth_frames.sizes)
     assert list(dict.fromkeys(one.system for one in found)) == ["pca-only", "ours", "linear"]
     assert [one.name for one in found if one.system == "ours"] == ["ours x2"]
+    scales = [one.scale for one in found]
+    assert (2.0 in scales, 2.0001 in scales) == (True, False)
 
 
 def test_a_system_is_shown_as_it_learnt_and_one_that_fails_is_told(
@@ -107,6 +111,29 @@ def test_a_system_is_shown_as_it_learnt_and_one_that_fails_is_told(
     mean = frames.mean_texture.numpy()
     assert np.square(shown.texture - recorded.texture).sum() < 0.5 * np.square(mean - recorded.texture).sum()
     assert np.abs(shown.canonical - recorded.mesh).max() < 0.2 * np.ptp(recorded.mesh)
+    now, first = (
+        pose_splats(frames.rig, recorded.mesh, texture=recorded.texture, pose=clip.pose(frame)).centres
+        for frame in (recorded.index, 0)
+    )
+    assert np.abs(shown.centres - now).mean() < 0.5 * np.abs(first - now).mean()
+
+
+def test_each_size_of_a_system_is_taken_up_where_it_was_left(smooth_frames: TrainingFrames, tmp_path: Path) -> None:
+    frames = few(smooth_frames)
+    wanted, failed, steps = [Sized("linear", 1.0), Sized("linear", 2.0)], list[str](), list[int]()
+    for _ in range(2):
+        entries = trained_entries(
+            wanted,
+            frames,
+            budget=Budget(steps=1),
+            checkpoints=Checkpoints(tmp_path, "key"),
+            begin=lambda _: steps.append(0),
+            report=lambda progress: steps.append(progress.step),
+            failed=failed.append,
+        )
+        assert [one.cost for one in entries] == [cost_of(one, frames.sizes) for one in wanted]
+    assert failed == []
+    assert steps == [0, 1, 0, 1, 0, 0]  # the second time nothing is trained
 
 
 def entry(name: str, cost: Cost, *, system: str = "", scale: float = 1.0) -> FilmedEntry:
