@@ -107,6 +107,7 @@ def test_motion_of_another_file_is_exported_too(command: Commands, avatar_file: 
     more = ("--motion", tmp_path / "m.bvh", "--mapping", tmp_path / "map.json", "--axes", "y-up")
     ended = command("export", avatar_file, "-o", tmp_path / "b.ply", *more)
     assert ended.status == 0, ended.err
+    assert "joints" in ended.err  # what retargeting has to tell
     moved = read_ply(tmp_path / "b.ply").centres
     assert np.abs(moved - avatar.decode("wave", 0).centres).max() > 0.01
 

@@ -180,6 +180,7 @@ def test_hides_splats_behind_the_surface(stage: Stage) -> None:
     np.testing.assert_allclose(both[covered][:, 3], 1, atol=2 * HALF)
     assert np.abs(both - alone)[covered].max() > 0.01  # the surface shines through between splats
     assert np.abs(both - surface)[covered].max() > 0.01  # splats on the near wall still cover it
+    assert np.abs(both - alone)[covered].max(axis=1).mean() < 0.01  # also those that lie a few millimetres in it
 
 
 def test_gives_each_eye_its_own_picture(stage: Stage) -> None:

@@ -265,18 +265,25 @@ def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
     line += ["--show", "splats,template", "--stereo", "--clip", "wave"]
     line += ["--azimuth", "30", "--elevation", "10", "--orbit", "-5"]
     with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as ran:
-        assert ran.stdout is not None
-        assert ran.stderr is not None
-        said = ran.stdout.readline()
-        found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", said)
-        assert found, (said, ran.stderr.read() if ran.poll() is not None else "")
-        element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
-        assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,mesh", "")
-        assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
-        assert float(element["azimuth"]) == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
-        ran.send_signal(signal.SIGINT)
-        assert ran.wait() == 0
-        assert ran.stderr.read() == ""
+        try:
+            _assert_served(ran, avatar_file)
+        finally:
+            ran.kill()  # where it is not as it should be, it would serve for ever
+
+
+def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
+    assert ran.stdout is not None
+    assert ran.stderr is not None
+    said = ran.stdout.readline()
+    found = re.fullmatch(r"a: http://127\.0\.0\.1:(\d+)/ \(Ctrl-C ends\)\n", said)
+    assert found, (said, ran.stderr.read() if ran.poll() is not None else "")
+    element = Tags(ask(int(found[1]), "/")[2].decode()).one("mua-avatar")
+    assert (element["src"], element["show"], element["stereo"]) == ("a.muaavatar", "splats,mesh", "")
+    assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
+    assert float(element["azimuth"]) == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
+    ran.send_signal(signal.SIGINT)
+    assert ran.wait() == 0
+    assert ran.stderr.read() == ""
 
 
 @pytest.mark.parametrize("option", ["-o=a.png", "--ipd=0.06", "--motion=a.bvh", "--frame=3"])
