@@ -261,6 +261,28 @@ def test_an_unknown_layout_is_refused(tmp_path: Path, command: Commands) -> None
     assert "its layout is not known" in ended.sentence
 
 
+def test_a_calibration_without_poses_is_no_such_set(source: Path, command: Commands, tmp_path: Path) -> None:
+    (tmp_path / "calibration_full.json").write_bytes((source / "calibration_full.json").read_bytes())
+    (tmp_path / "template.glb").write_bytes(b"glTF")
+    ended = command("capture", "describe", tmp_path, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
+    assert "its layout is not known" in ended.sentence
+
+
+@pytest.mark.parametrize("count", [1, 3, 6])
+def test_a_lens_of_another_model_is_refused(tmp_path: Path, command: Commands, count: int) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    cameras = json.loads((source / "calibration_full.json").read_text())
+    cameras["22010708"]["distCoeff"] = [0.1] * count
+    (source / "calibration_full.json").write_text(json.dumps(cameras))
+    ended = command("capture", "describe", source, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
+    assert f"22010708: distCoeff has {count} numbers; expected OpenCV's k1, k2, p1, p2, k3" in ended.sentence
+
+
+def test_braces_in_the_name_of_the_folder_are_no_fields(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "{clip} of {me}", WORLDS["y"])
+    assert open_capture(described(source, command)).view("frames_000000", 1, "22010708").image.shape[0] == SIDE
+
+
 def test_poses_are_read_as_they_were_written(tmp_path: Path) -> None:
     skeleton, rng = template(), np.random.default_rng(1)
     turns = rng.normal(size=(4, 55, 4))

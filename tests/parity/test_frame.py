@@ -181,7 +181,7 @@ def test_planes_that_are_not_whole_words_agree(device: Device, tmp_path: Path) -
     assert errors.color < COLOR_BOUND
 
 
-@pytest.mark.parametrize("levels", [1, 3])
+@pytest.mark.parametrize("levels", [1, 2, 3])
 def test_branches_of_fewer_levels_agree(device: Device, tmp_path: Path, levels: int) -> None:
     avatar = synthetic_avatar()
     geometry, appearance = (

@@ -102,7 +102,8 @@ def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: D
     """What the teacher shows of the capture's training poses, at most so many."""
     planned = plan([capture.motion(clip.name) for clip in capture.clips if not clip.held_out], [], frames=frames)
     planned = [replace(clip, whole=frozenset()) for clip in planned]
-    directory = work / f"recording-{recording_key(teacher_bytes(teacher), planned)}"
+    key = recording_key([*teacher_bytes(teacher), str(capture.rate).encode()], planned)
+    directory = work / f"recording-{key}"
     total = sum(len(clip.wanted) for clip in planned)
     display.stage("recording")
     record_by_workers(

@@ -1,0 +1,96 @@
+"""A bake's recording: by as many processes as asked for, told of frame by frame, and another where anything differs."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from synthetic_avatar import synthetic_avatar
+
+from mua.baking import recorded as recordings
+from mua.baking.order import Order
+from mua.baking.recorded import recorded, recording_key
+from mua.cli import filmed_evaluation
+from mua.pose.clip import Stretches
+from mua.recording import PlannedClip
+from mua.student.settings import preset
+
+CLIP = synthetic_avatar().clips[0]
+PLANNED = PlannedClip(CLIP, held_out=False, wanted=frozenset({0, 2, 3}), whole=None)
+
+
+class Told:
+    """What a listener hears."""
+
+    def __init__(self) -> None:
+        self.heard: list[tuple[Any, ...]] = []
+
+    def stage(self, name: str) -> None:
+        self.heard.append((name,))
+
+    def step(self, done: int, total: int, *, detail: str = "") -> None:
+        self.heard.append((done, total, detail))
+
+    def note(self, sentence: str) -> None:
+        self.heard.append((sentence,))
+
+
+def test_it_is_made_by_as_many_processes_as_asked_for_and_told_by_frames(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: dict[str, Any] = {}
+
+    def by_workers(
+        make: object, planned: object, directory: Path, *, progress: Callable[[int, int], None], **others: Any
+    ) -> None:
+        asked.update(others, directory=directory)
+        progress(4, 3)
+
+    monkeypatch.setattr(recordings, "record_by_workers", by_workers)
+    monkeypatch.setattr(recordings, "Recording", lambda directory: directory)
+    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", preset("tiny"), jobs=3)
+    told = Told()
+    made = recorded(lambda: None, "key", order, [PLANNED, PLANNED], told)  # type: ignore[arg-type, return-value]
+    assert made == asked["directory"] == tmp_path / "work" / "recording-key"
+    assert asked["jobs"] == 3
+    assert told.heard == [("recording",), (4, 6, "3 at work")]
+
+
+OTHERS: dict[str, PlannedClip] = {
+    "name": replace(PLANNED, clip=replace(CLIP, name="other")),
+    "held out": replace(PLANNED, held_out=True),
+    "wanted frames": replace(PLANNED, wanted=frozenset({0, 2})),
+    "whole frames": replace(PLANNED, whole=frozenset({0})),
+    "rotations": replace(PLANNED, clip=replace(CLIP, rotations=-CLIP.rotations)),
+    "translations": replace(PLANNED, clip=replace(CLIP, translations=CLIP.translations + 1)),
+    "run-up": replace(PLANNED, run_up=CLIP),
+    "stretches": replace(PLANNED, clip=replace(CLIP, stretches=Stretches(np.arange(3), np.ones((len(CLIP), 3, 3, 3))))),
+    "other stretches": replace(
+        PLANNED, clip=replace(CLIP, stretches=Stretches(np.arange(3), np.zeros((len(CLIP), 3, 3, 3))))
+    ),
+}
+
+
+def test_whatever_else_it_would_be_made_of_has_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    keys = [recording_key([b"teacher"], [planned]) for planned in (PLANNED, *OTHERS.values())]
+    keys += [recording_key([b"another"], [PLANNED]), recording_key([b"teacher"], [PLANNED, PLANNED])]
+    assert len(set(keys)) == len(keys)
+    assert recording_key([b"teacher"], [replace(PLANNED)]) == keys[0]
+    monkeypatch.setattr(recordings, "__version__", "another")
+    assert recording_key([b"teacher"], [PLANNED]) not in keys
+
+
+def test_a_capture_at_another_rate_is_recorded_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its poses may be the same."""
+    monkeypatch.setattr(filmed_evaluation, "record_by_workers", lambda *_, **__: None)
+    monkeypatch.setattr(filmed_evaluation, "Recording", lambda directory: directory)
+    monkeypatch.setattr(filmed_evaluation, "teacher_bytes", lambda _: [b"teacher"])
+    monkeypatch.setattr(filmed_evaluation, "plan", lambda *_, **__: [PLANNED])
+    made = {
+        filmed_evaluation._record(tmp_path, SimpleNamespace(clips=(), rate=rate), 9, tmp_path, Told())  # type: ignore[arg-type]
+        for rate in (25.0, 30.0, 25.0)
+    }
+    assert len(made) == 2
