@@ -16,7 +16,7 @@ LISTS = re.compile(r"const \[([A-Z_, ]+)\] = \[([\d, ]+)\];")
 def defined(stem: str, name: str) -> int:
     """A number of a shader, or a product of numbers."""
     text = (ROOT / "ComputeShaders" / f"{stem}.compute").read_text()
-    (value,) = re.findall(rf"^#define {name} (\(\w+ \* \w+\)|\d+)\b?", text, re.MULTILINE)
+    (value,) = re.findall(rf"^#define {name} (\(\w+ \* \w+\)|\d+)", text, re.MULTILINE)
     if value.isdigit():
         return int(value)
     first, second = re.findall(r"\w+", value)
