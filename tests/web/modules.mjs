@@ -132,7 +132,10 @@ function views(box) {
   const camera = cameraOf({ ...state, target, distance }, [96, 128]);
   const eyes = camerasOf({ ...state, target, distance }, true, [193, 128]); // an odd pixel is no eye's
   const texel = texelPixels(0.01, box, [camera]).texel;
-  return { target, distance, ...camera, texel, seen: seen(camera), eyes, texelOfEyes: texelPixels(0.01, box, eyes).texel };
+  const around = [-0.1, 0.1].flatMap((aside) => camera.position.map((at) => at + aside)); // a box that the camera is in
+  const { distance: within, texel: texelWithin } = texelPixels(0.01, around, [camera]);
+  const near = { within, texelWithin };
+  return { target, distance, ...camera, texel, ...near, seen: seen(camera), eyes, texelOfEyes: texelPixels(0.01, box, eyes).texel };
 }
 
 /** What a file that arrives in steps shows before all of it is there. */

@@ -249,6 +249,8 @@ def test_cameras_are_those_of_python() -> None:
     }
     eyes = stereo(camera, EYE_DISTANCE)
     expected["texelOfEyes"] = texel_pixels(0.01, box, eyes)[1]
+    around = np.array([camera.position - 0.1, camera.position + 0.1])
+    expected["within"], expected["texelWithin"] = texel_pixels(0.01, around, [camera])
     for eye, theirs in zip(found["eyes"], eyes, strict=True):
         assert eye["screen"] == list(theirs.screen)
         for name, value in {"view": theirs.view, "viewProjection": view_projection(theirs)}.items():
