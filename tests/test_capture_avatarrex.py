@@ -261,13 +261,6 @@ def test_an_unknown_layout_is_refused(tmp_path: Path, command: Commands) -> None
     assert "its layout is not known" in ended.sentence
 
 
-def test_a_calibration_without_poses_is_no_such_set(source: Path, command: Commands, tmp_path: Path) -> None:
-    (tmp_path / "calibration_full.json").write_bytes((source / "calibration_full.json").read_bytes())
-    (tmp_path / "template.glb").write_bytes(b"glTF")
-    ended = command("capture", "describe", tmp_path, "--template", tmp_path / "template.glb", "-o", tmp_path / "out")
-    assert "its layout is not known" in ended.sentence
-
-
 @pytest.mark.parametrize("count", [1, 3, 6])
 def test_a_lens_of_another_model_is_refused(tmp_path: Path, command: Commands, count: int) -> None:
     source = write_source(tmp_path / "set", WORLDS["y"])
