@@ -6,18 +6,20 @@ import http.client
 import json
 import re
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
 from threading import Thread
+from typing import Any, BinaryIO
 
 import pytest
 from commands import Commands
 from PIL import Image
 
-from mua.share import folder, single, site
+from mua.share import folder, server, single, site
 from mua.share.poster import front, opening
 from mua.share.server import serving
 from mua.share.single import in_order
@@ -202,6 +204,18 @@ def ask(port: int, path: str, method: str = "GET", **headers: str) -> tuple[int,
     found = answer.status, dict(answer.getheaders()), answer.read()
     connection.close()
     return found
+
+
+def test_a_body_does_not_wait_until_its_header_is_confirmed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    undelayed = []
+
+    def copy(source: BinaryIO, target: Any, first: int, end: int) -> None:
+        undelayed.append(target._sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+        target.write(source.read(end))
+
+    monkeypatch.setattr(server, "_copy", copy)
+    assert ask(port, "/a.js")[2] == b"1"
+    assert undelayed == [1]
 
 
 @pytest.mark.parametrize(

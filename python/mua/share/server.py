@@ -52,6 +52,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "mua", ""
+    disable_nagle_algorithm = True  # a body would wait until the browser has confirmed the header before it
     site: Site
 
     def do_GET(self) -> None:

@@ -77,6 +77,7 @@ export class Engine {
         throw new AvatarError("The graphics device was lost twice at once; reload the page to try again.");
       const renderer = await this.opened();
       for (const entry of this.entries) entry.slot = await renderer.add(entry.avatar);
+      await renderer.drawing;
       this.renderer = renderer;
       this.drawNow();
     } catch (error) {
@@ -226,6 +227,8 @@ export class Engine {
   }
 
   async draw() {
+    const { renderer } = this;
+    if (renderer && !renderer.ready) await renderer.prepare(this.posed(), this.look);
     this.drawNow();
     await this.renderer?.device.gpu.queue.onSubmittedWorkDone();
   }
@@ -261,7 +264,7 @@ export class Engine {
       return [handle.name, this.playback.clipOf(avatar).name, this.playback.frameOf(avatar), handle.place];
     });
     const wanted = JSON.stringify([this.look, this.screen, frames]);
-    if (!this.renderer) return;
+    if (!this.renderer?.ready) return;
     try {
       if (wanted !== this.drawn) this.drawNow();
       else if (this.playing) this.renderer.lookAhead(this.posed());

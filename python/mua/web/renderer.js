@@ -53,18 +53,34 @@ export class Renderer {
     this.scene = new Scene(device, options.background ?? [0, 0, 0, 0]);
     this.timing = new Timing(device);
     this.shared = new Memory(device); // the splats of all avatars
-    this.compiled = compiled(device, this.scene.splats);
-    this.compiled.catch(() => {}); // whoever adds an avatar is told
+    this.decoding = compiled(Object.values(kernelsOf(device, { ...DECODING, BlendVertices })));
+    // What decodes comes first: the first frame is decoded while the rest is still being compiled.
+    this.drawing = this.decoding.then(() => compiled([...Object.values(kernelsOf(device, SORTING)), this.scene.splats]));
+    this.ready = false; // to draw without waiting
+    this.drawing.then(() => (this.ready = true), () => {}); // whoever adds an avatar or draws it is told
     /** @type {Slot[]} */
     this.slots = [];
     /** @type {SplatFrame | null} */
     this.splats = null;
   }
 
-  /** Upload an avatar. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
+  /** Upload an avatar, so that it can be decoded. @returns {Promise<Slot>} @throws {AvatarError} where the device cannot hold it */
   async add(/** @type {Avatar} */ avatar) {
+    const kernels = Promise.all([this.decoding, compiled(kernelsFor(this.device, avatar))]);
+    kernels.catch(() => {}); // where the device cannot hold it
+    const slot = await this.upload(avatar);
+    try {
+      await kernels;
+    } catch (error) {
+      this.remove(slot);
+      throw error;
+    }
+    return slot;
+  }
+
+  /** @returns {Promise<Slot>} */
+  async upload(/** @type {Avatar} */ avatar) {
     const { gpu } = this.device;
-    await Promise.all([this.compiled, ...kernelsFor(this.device, avatar).map((one) => one.compile())]);
     const memory = new Memory(this.device);
     gpu.pushErrorScope("out-of-memory");
     /** @type {Slot | null} */
@@ -110,6 +126,18 @@ export class Renderer {
     }
   }
 
+  /** Decode what a picture needs, and wait until it can be drawn. @param {Posed[]} posed @param {Look} look */
+  async prepare(posed, look) {
+    const { width, height } = this.canvas;
+    const encoder = this.device.gpu.createCommandEncoder();
+    const pass = encoder.beginComputePass({ label: "first" });
+    this.pose(pass, posed, look, camerasOf(look.camera, look.stereo, [width, height]));
+    pass.end();
+    this.device.uniforms.upload();
+    this.device.gpu.queue.submit([encoder.finish()]);
+    await this.drawing;
+  }
+
   /** Draw on to the canvas. */
   draw(/** @type {Posed[]} */ posed, /** @type {Look} */ look) {
     this.submit(this.context.getCurrentTexture(), posed, look);
@@ -133,7 +161,9 @@ export class Renderer {
     const { device, timing, splats } = this;
     const cameras = eyes ?? camerasOf(look.camera, look.stereo, [target.width, target.height]);
     const encoder = device.gpu.createCommandEncoder();
-    this.pose(encoder, posed, look, cameras);
+    const decode = encoder.beginComputePass({ label: "decode", timestampWrites: timing.of("decode") });
+    this.pose(decode, posed, look, cameras);
+    decode.end();
     if (splats) {
       const pass = encoder.beginComputePass({ label: "sort", timestampWrites: timing.of("sort") });
       splats.sort(pass, cameras);
@@ -161,9 +191,8 @@ export class Renderer {
     this.device.gpu.queue.submit([encoder.finish()]);
   }
 
-  /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUCommandEncoder} encoder @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera[]} cameras */
-  pose(encoder, posed, look, cameras) {
-    const pass = encoder.beginComputePass({ label: "decode", timestampWrites: this.timing.of("decode") });
+  /** Bring what is due to the pose in which it is shown, and decode a part of what comes next. @param {GPUComputePassEncoder} pass @param {Posed[]} posed @param {Look} look @param {import("./camera.js").Camera[]} cameras */
+  pose(pass, posed, look, cameras) {
     const windows = posed.map(windowOf);
     const poses = posed.map((one, i) => windows[i]({ clip: one.clip.name, frame: one.frame })[0]);
     const standing = posed.map(({ slot, place }, i) => ({ levels: slot.levels, pose: poses[i], place }));
@@ -176,7 +205,6 @@ export class Renderer {
       frame.repose(pass, poses[i], one.place);
       overlays.pose(one.ground + one.place[1]);
     }
-    pass.end();
   }
 
   /** Bytes of buffers that the device holds. */
@@ -191,10 +219,8 @@ export class Renderer {
   }
 }
 
-/** Compiles what the pictures of all avatars need at once, while one is still being fetched; first what takes longest. @param {Device} device @param {import("./kernel.js").Pipeline} splats */
-function compiled(device, splats) {
-  const kernels = kernelsOf(device, { ...SORTING, ...DECODING, BlendVertices });
-  return Promise.all([...Object.values(kernels), splats].map((one) => one.compile()));
+function compiled(/** @type {{compile: () => Promise<void>}[]} */ parts) {
+  return Promise.all(parts.map((one) => one.compile()));
 }
 
 function asked(/** @type {Posed} */ { clip, frame, following }, /** @type {number} */ level) {
