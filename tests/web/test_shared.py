@@ -67,8 +67,8 @@ def test_a_shared_folder_plays(opened: Open, folder: dict[str, Content]) -> None
 
 def test_the_first_picture_is_drawn_once(opened: Open, folder: dict[str, Content]) -> None:
     before = """globalThis.drawn = 0;
-    const submit = GPUQueue.prototype.submit;
-    GPUQueue.prototype.submit = function (...given) { globalThis.drawn += 1; return submit.apply(this, given); };
+    const draw = GPUCanvasContext.prototype.getCurrentTexture;
+    GPUCanvasContext.prototype.getCurrentTexture = function () { globalThis.drawn += 1; return draw.apply(this); };
     document.addEventListener("DOMContentLoaded", () => document.querySelector("mua-avatar")
       .addEventListener("picture", () => (globalThis.first = globalThis.drawn)));"""
     page = opened(folder, before=before)
