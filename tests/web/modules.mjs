@@ -8,6 +8,7 @@
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
 //   shown STEPS    which avatars an engine is given while one arrives: "part 1", "ready" once it can draw, "whole", "fail"
 //   played CHANGES of a file: clip, time, frame, next frame and box after each change, such as ["speed", 2] or ["advance", 40]
+//   order KEYS     of splats
 //   numbers        half floats, and numbers as sentences have them
 
 import { readFileSync, readSync } from "node:fs";
@@ -18,6 +19,7 @@ import { framesAt, sample, window } from "../../python/mua/web/clip.js";
 import { coarserTexture, coarsest, levelCounts, texelLength, textureOf } from "../../python/mua/web/coarser.js";
 import { Download } from "../../python/mua/web/download.js";
 import { describe } from "../../python/mua/web/descriptor.js";
+import { orderOf } from "../../python/mua/web/early.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
 import { read, readStage } from "../../python/mua/web/format/read.js";
 import { Stages } from "../../python/mua/web/format/stages.js";
@@ -233,5 +235,6 @@ if (what === "played") say(played(await read(bytes(given[0])), JSON.parse(given[
 if (what === "levels") say(levels(await read(bytes(given[0]))));
 if (what === "choices") say(JSON.parse(readFileSync(given[0])).map(({ avatars, budget }) => chooseLevels(avatars, budget)));
 if (what === "views") say(views(given.map(Number)));
+if (what === "order") say(list(orderOf(Uint16Array.from(JSON.parse(readFileSync(given[0]))))));
 if (what === "halves") say(Array.from({ length: 0x7c00 }, (_, bits) => half(bits)));
 if (what === "numbers") say(given.map(Number).map((n) => [...(Number.isFinite(n) ? [general(n, 4), general(n, 6), scientific(n)] : ["", "", ""]), shortest(n)]));

@@ -10,21 +10,6 @@ from web.test_engine import Open, load, opened, screenshot, small
 
 __all__ = ["opened", "small"]  # fixtures
 LOADS = 50
-# ScatterDigits is compiled when a test says so, and nothing while the page waits for it.
-HELD = """const create = GPUDevice.prototype.createComputePipelineAsync;
-GPUDevice.prototype.createComputePipelineAsync = async function (described) {
-  const made = await create.call(this, described);
-  if (described.label === "ScatterDigits") await new Promise((resolve) => (globalThis.release = resolve));
-  return made;
-};
-globalThis.waitedFor = [];
-for (const kind of ["createComputePipeline", "createRenderPipeline"]) {
-  const create = GPUDevice.prototype[kind];
-  GPUDevice.prototype[kind] = function (described) {
-    waitedFor.push(described.label);
-    return create.call(this, described);
-  };
-}"""
 
 
 def test_fifty_loads_leave_no_memory_behind(opened: Open, small: Path) -> None:
@@ -37,19 +22,6 @@ def test_fifty_loads_leave_no_memory_behind(opened: Open, small: Path) -> None:
         page.evaluate("(avatar.remove(), avatar.remove())")
     assert len(held) == 1
     assert page.evaluate("player.bytes") == empty < min(held)
-
-
-def test_the_first_frame_is_decoded_while_what_draws_it_is_compiled(opened: Open, small: Path) -> None:
-    page = opened(before=HELD, a=small.read_bytes())
-    assert load(page) == ""
-    page.evaluate("void player.draw().then(() => { globalThis.drawn = true; })")
-    page.evaluate("player.start()")
-    page.wait("player.renderer.slots[0].schedule.shown !== null && globalThis.release")
-    page.evaluate("new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)))")
-    assert page.evaluate("[globalThis.drawn ?? false, player.drawn, waitedFor]") == [False, "", []]
-    page.evaluate("release()")
-    page.wait("globalThis.drawn && player.drawn")
-    assert not {"ScatterDigits", "SplatVert"} & set(page.evaluate("waitedFor"))
 
 
 def test_a_lost_device_comes_back_with_its_avatars(opened: Open, small: Path) -> None:

@@ -48,6 +48,8 @@ export class Engine {
     this.onerror = null;
     this.request = 0; // of the next picture; 0 where the loop stands
     this.drawn = ""; // what the canvas shows
+    /** @type {Promise<void> | null} */
+    this.early = null; // a picture that is being drawn while kernels are still being compiled
     this.room = new VR(this);
     /** @type {((vr: boolean) => void) | null} */
     this.onvr = null;
@@ -77,7 +79,7 @@ export class Engine {
         throw new AvatarError("The graphics device was lost twice at once; reload the page to try again.");
       const renderer = await this.opened();
       for (const entry of this.entries) entry.slot = await renderer.add(entry.avatar);
-      await renderer.drawing;
+      await renderer.compile();
       this.renderer = renderer;
       this.drawNow();
     } catch (error) {
@@ -227,9 +229,9 @@ export class Engine {
   }
 
   async draw() {
-    const { renderer } = this;
-    if (renderer && !renderer.ready) await renderer.prepare(this.posed(), this.look);
-    this.drawNow();
+    while (this.early) await this.early;
+    if (this.renderer?.ready) this.drawNow();
+    else await this.drawEarly();
     await this.renderer?.device.gpu.queue.onSubmittedWorkDone();
   }
 
@@ -238,7 +240,16 @@ export class Engine {
     if (this.renderer && this.canvas.width && this.canvas.height) this.renderer.draw(this.posed(), this.look);
   }
 
+  /** A picture that takes its time, while kernels are still being compiled; one after the other. */
+  async drawEarly() {
+    const { renderer, canvas } = this;
+    if (this.vr || !renderer || !canvas.width || !canvas.height) return;
+    this.early = renderer.drawEarly(this.posed(), this.look).finally(() => (this.early = null));
+    await this.early;
+  }
+
   async screenshot() {
+    await this.renderer?.compile();
     if (!this.renderer) throw new AvatarError(AWAY);
     return this.renderer.picture(this.posed(), this.look);
   }
@@ -264,9 +275,10 @@ export class Engine {
       return [handle.name, this.playback.clipOf(avatar).name, this.playback.frameOf(avatar), handle.place];
     });
     const wanted = JSON.stringify([this.look, this.screen, frames]);
-    if (!this.renderer?.ready) return;
+    if (!this.renderer || this.early) return;
     try {
-      if (wanted !== this.drawn) this.drawNow();
+      if (wanted !== this.drawn && this.renderer.ready) this.drawNow();
+      else if (wanted !== this.drawn) this.drawEarly().catch((error) => this.fail(error));
       else if (this.playing) this.renderer.lookAhead(this.posed());
       this.drawn = wanted;
     } catch (error) {

@@ -6,6 +6,7 @@ import { AvatarBuffers } from "./buffers.js";
 import { KERNELS as DECODING, kernelsFor } from "./channels.js";
 import { window } from "./clip.js";
 import { Device, Memory } from "./device.js";
+import { readOrder, writeOrder } from "./early.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
 import { kernelsOf } from "./kernel.js";
@@ -14,7 +15,7 @@ import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
 import { DecodeSchedule } from "./schedule.js";
-import { KERNELS as SORTING, SplatFrame } from "./splats.js";
+import { PROJECTING, SORTING, SplatFrame } from "./splats.js";
 import { Timing } from "./timing.js";
 import { BlendVertices } from "./wgsl/dq_skinning.js";
 
@@ -22,6 +23,7 @@ import { BlendVertices } from "./wgsl/dq_skinning.js";
 /** @typedef {import("./format/read.js").Clip} Clip */
 /** @typedef {{memory: Memory, frame: AvatarFrame, overlays: Overlays, schedule: DecodeSchedule, levels: Levels, standing: string}} Slot an avatar on the device, and where it stands */
 /** @typedef {{slot: Slot, clip: Clip, frame: number, following: number, place: number[], ground: number}} Posed what a picture shows of one */
+/** @typedef {{compile: () => Promise<void>}} Compiled */
 /** @typedef {{camera: import("./player.js").CameraState, stereo: boolean, show: import("./player.js").Show, level: import("./player.js").Level, budget: number | null}} Look */
 
 export class Renderer {
@@ -53,11 +55,13 @@ export class Renderer {
     this.scene = new Scene(device, options.background ?? [0, 0, 0, 0]);
     this.timing = new Timing(device);
     this.shared = new Memory(device); // the splats of all avatars
-    this.decoding = compiled(Object.values(kernelsOf(device, { ...DECODING, BlendVertices })));
-    // What decodes comes first: the first frame is decoded while the rest is still being compiled.
-    this.drawing = this.decoding.then(() => compiled([...Object.values(kernelsOf(device, SORTING)), this.scene.splats]));
-    this.ready = false; // to draw without waiting
-    this.drawing.then(() => (this.ready = true), () => {}); // whoever adds an avatar or draws it is told
+    this.decoding = compiled(kernelsOf(device, { ...DECODING, BlendVertices }));
+    // What comes later is compiled later: the first frame is decoded meanwhile.
+    this.projecting = this.decoding.then(() => compiled({ ...kernelsOf(device, PROJECTING), splats: this.scene.splats }));
+    this.projecting.catch(() => {}); // whoever adds an avatar or draws it is told
+    /** @type {Promise<unknown> | null} */
+    this.sorting = null; // once the first picture is there
+    this.ready = false; // to draw at once
     /** @type {Slot[]} */
     this.slots = [];
     /** @type {SplatFrame | null} */
@@ -126,16 +130,34 @@ export class Renderer {
     }
   }
 
-  /** Decode what a picture needs, and wait until it can be drawn. @param {Posed[]} posed @param {Look} look */
-  async prepare(posed, look) {
-    const { width, height } = this.canvas;
-    const encoder = this.device.gpu.createCommandEncoder();
-    const pass = encoder.beginComputePass({ label: "first" });
-    this.pose(pass, posed, look, camerasOf(look.camera, look.stereo, [width, height]));
-    pass.end();
-    this.device.uniforms.upload();
-    this.device.gpu.queue.submit([encoder.finish()]);
-    await this.drawing;
+  /** Compile what was left for after the first picture. */
+  async compile() {
+    await this.projecting;
+    this.sorting ??= compiled(kernelsOf(this.device, SORTING));
+    await this.sorting;
+    this.ready = true;
+  }
+
+  /** Draw on to the canvas what takes no more kernels than are compiled first. @param {Posed[]} posed @param {Look} look */
+  async drawEarly(posed, look) {
+    const { device, canvas } = this;
+    const { width, height } = canvas;
+    const cameras = camerasOf(look.camera, look.stereo, [width, height]);
+    this.compute((pass) => this.pose(pass, posed, look, cameras));
+    await this.projecting;
+    const { splats } = this;
+    if (!splats) return this.draw(posed, look);
+    this.compute((pass) => splats.projectAll(pass, cameras));
+    const order = await readOrder(device, splats);
+    // What has changed meanwhile is drawn again by whoever changed it.
+    if (!order || this.splats !== splats || canvas.width !== width || canvas.height !== height) return;
+    writeOrder(device, splats, order);
+    const encoder = device.gpu.createCommandEncoder();
+    const overlays = posed.map(({ slot }) => slot.overlays);
+    this.scene.draw(encoder, this.context.getCurrentTexture(), { frame: splats, overlays, cameras, show: look.show });
+    this.send(encoder);
+    await device.gpu.queue.onSubmittedWorkDone();
+    void this.compile().catch(() => {}); // the processor goes on sorting
   }
 
   /** Draw on to the canvas. */
@@ -172,21 +194,31 @@ export class Renderer {
     const overlays = posed.map(({ slot }) => slot.overlays);
     this.scene.draw(encoder, target, { frame: splats, overlays, cameras, show: look.show }, timing.of("draw"));
     const then = timing.end(encoder);
-    device.uniforms.upload();
-    device.gpu.queue.submit([encoder.finish()]);
+    this.send(encoder);
     then();
   }
 
   /** Decode a part of what comes next, where the picture stays. */
   lookAhead(/** @type {Posed[]} */ posed) {
+    this.compute((pass) => {
+      for (const one of posed) {
+        const { schedule, levels } = one.slot;
+        if (schedule.shown && schedule.shown.frame === one.frame)
+          schedule.record(pass, asked(one, levels.shown), windowOf(one));
+      }
+    });
+  }
+
+  /** Submit a pass of its own. */
+  compute(/** @type {(pass: GPUComputePassEncoder) => void} */ record) {
     const encoder = this.device.gpu.createCommandEncoder();
-    const pass = encoder.beginComputePass({ label: "ahead" });
-    for (const one of posed) {
-      const { schedule, levels } = one.slot;
-      if (schedule.shown && schedule.shown.frame === one.frame)
-        schedule.record(pass, asked(one, levels.shown), windowOf(one));
-    }
+    const pass = encoder.beginComputePass();
+    record(pass);
     pass.end();
+    this.send(encoder);
+  }
+
+  send(/** @type {GPUCommandEncoder} */ encoder) {
     this.device.uniforms.upload();
     this.device.gpu.queue.submit([encoder.finish()]);
   }
@@ -219,8 +251,8 @@ export class Renderer {
   }
 }
 
-function compiled(/** @type {{compile: () => Promise<void>}[]} */ parts) {
-  return Promise.all(parts.map((one) => one.compile()));
+function compiled(/** @type {Record<string, Compiled> | Compiled[]} */ parts) {
+  return Promise.all(Object.values(parts).map((one) => one.compile()));
 }
 
 function asked(/** @type {Posed} */ { clip, frame, following }, /** @type {number} */ level) {

@@ -18,7 +18,8 @@ const SORTED = 2048; // keys of a group of the sort
 const DIGITS = 256; // values of 8 bits
 const SCANNED = 16; // digits of a group of ScanDigits
 const ARGUMENTS = 5; // words: of the draw, and how many splats are seen
-export const KERNELS = { ScatterDigits, SplatProject, CountDigits, ScanDigits };
+export const PROJECTING = { SplatProject };
+export const SORTING = { ScatterDigits, CountDigits, ScanDigits };
 
 const even = (/** @type {number} */ count) => count + (count % 2);
 
@@ -39,7 +40,7 @@ export class SplatFrame {
     const finest = avatars.map((avatar) => even(avatar.buffers.level(0).splatCount));
     const count = finest.reduce((all, one) => all + one, 0);
     if (count > MOST_SPLATS) throw new AvatarError(`${count} splats of all avatars; expected at most ${MOST_SPLATS}`);
-    this.kernels = kernelsOf(memory.device, KERNELS);
+    this.kernels = kernelsOf(memory.device, { ...PROJECTING, ...SORTING });
     this.splats = memory.buffer(4 * SPLAT_WORDS * count, "splats");
     this.keys = memory.buffer((FLOAT * count) / 2, "keys");
     this.digitCounts = memory.buffer(FLOAT * DIGITS * groups(count, SORTED), "digit_counts");
@@ -69,6 +70,13 @@ export class SplatFrame {
 
   /** Append the dispatches from posed texels to `order`, the splats that one or two eyes see, back to front. */
   sort(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera[]} */ cameras) {
+    this.projectAll(pass, cameras);
+    this.sortDigit(pass, this.keys, this.halfSorted, 0);
+    this.sortDigit(pass, this.halfSorted, this.order, 1);
+  }
+
+  /** Append those from posed texels to splats and `keys`. */
+  projectAll(/** @type {GPUComputePassEncoder} */ pass, /** @type {Camera[]} */ cameras) {
     this.seen = this.avatars.map(
       ({ places, bounds }) => places.length > 0 && cameras.some((camera) => sees(camera, reach(bounds))),
     );
@@ -76,8 +84,6 @@ export class SplatFrame {
     this.avatars.forEach((avatar, i) => {
       if (this.seen[i]) this.project(pass, avatar, starts[i], cameras);
     });
-    this.sortDigit(pass, this.keys, this.halfSorted, 0);
-    this.sortDigit(pass, this.halfSorted, this.order, 1);
   }
 
   /** World box of what was posed last, of the avatars in view: lowest then highest corner, metres. */
