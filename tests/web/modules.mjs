@@ -195,7 +195,7 @@ async function shown(steps) {
   const entry = { handle: { remove: () => put.push("removed") } };
   const engine = {
     entries,
-    renderer: { compiled: promise },
+    renderer: { projecting: promise },
     put: async (avatar) => {
       put.push(avatar);
       entries[0] = entry;

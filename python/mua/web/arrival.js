@@ -28,7 +28,7 @@ export class Arrival {
   }
 
   async showNext() {
-    await this.engine.renderer?.compiled.catch(() => {}); // what fails is told where an avatar is put
+    await this.engine.renderer?.projecting.catch(() => {}); // what fails is told where an avatar is put
     const part = this.next;
     if (!part) return;
     this.next = null;
