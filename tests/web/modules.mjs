@@ -121,10 +121,12 @@ function levels(avatar) {
   });
 }
 
-/** Whether a camera sees small boxes all around it. */
+/** Whether a camera sees small boxes all around it, and one before its near plane. */
 function seen(camera) {
   const places = [-12, -3, -0.5, 0, 0.5, 3, 12];
   const boxes = places.flatMap((x) => places.flatMap((y) => places.map((z) => [x, y, z, x + 0.5, y + 0.5, z + 0.5])));
+  const before = camera.position.map((at, axis) => at - (camera.near / 2) * camera.view[8 + axis]);
+  boxes.push([-1, 1].flatMap((side) => before.map((at) => at + (side * camera.near) / 8)));
   return boxes.map((box) => sees(camera, box));
 }
 

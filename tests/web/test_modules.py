@@ -233,8 +233,10 @@ def test_levels_are_chosen_as_everywhere() -> None:
     assert node("choices", table)[0] == [case["levels"] for case in json.loads(table.read_text())]
 
 
-def test_cameras_are_those_of_python() -> None:
-    box = np.array([[-0.8, -0.1, -0.3], [0.7, 1.8, 0.5]])
+@pytest.mark.parametrize("scale", [1, 0.1])
+def test_cameras_are_those_of_python(scale: float) -> None:
+    """Of people, and of figures so small that the near plane comes nearer."""
+    box = scale * np.array([[-0.8, -0.1, -0.3], [0.7, 1.8, 0.5]])
     [found] = node("views", *box.ravel())
     camera = orbit(box, screen=(96, 128), azimuth=0.4, elevation=0.2, fov=0.6)
     expected = {
@@ -258,7 +260,10 @@ def test_cameras_are_those_of_python() -> None:
         np.testing.assert_allclose(eye["position"], theirs.position, atol=EXACT)
     places = [-12, -3, -0.5, 0, 0.5, 3, 12]
     boxes = [np.array([[x, y, z], [x + 0.5, y + 0.5, z + 0.5]]) for x in places for y in places for z in places]
+    before = camera.position - camera.near / 2 * camera.view[2, :3]
+    boxes.append(np.array([before - camera.near / 8, before + camera.near / 8]))
     assert found["seen"] == [bool(sees(camera, one)) for one in boxes]
+    assert not found["seen"][-1]
     assert len(set(found["seen"])) == 2
     for name, value in expected.items():
         np.testing.assert_allclose(found[name], np.ravel(value) if np.ndim(value) else value, atol=EXACT, err_msg=name)
