@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from tube import tube
 
 from mua.rig.character import Mesh
@@ -33,13 +34,16 @@ def test_head_and_hands_are_firmer_than_the_trunk() -> None:
     assert np.all(np.diff(looseness.reshape(101, -1)[:, 0]) < 1e-3)
 
 
-def test_small_separate_pieces_are_rigid() -> None:
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("size", [1.0, 0.05, 20.0])
+def test_small_separate_pieces_are_rigid(side: int, size: float) -> None:
+    """On either side, and small beside the figure."""
     character = tube()
     mesh = character.mesh
     count = len(mesh.vertices)
-    button = 0.01 * np.eye(3) + [0, 1, 0.13]
+    button = 0.01 * np.eye(3) + [0.3 * side, 1, 0.13 * side]
     joined = Mesh(
-        np.concatenate([mesh.vertices, button]),
+        size * np.concatenate([mesh.vertices, button]),
         np.concatenate([mesh.faces, [[count, count + 1, count + 2]]]),
         mesh.uv,
         np.concatenate([mesh.uv_faces, [[0, 1, 2]]]),
