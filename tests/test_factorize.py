@@ -35,9 +35,16 @@ def smooth_bands(frames: int, side: int, seed: int = 0) -> torch.Tensor:
     return torch.einsum("fk,ksij->fsij", weights, modes)
 
 
-def squared_error(x: torch.Tensor, factors: Factors) -> float:
+def squared_error(x: torch.Tensor, factors: Factors, worth: torch.Tensor | None = None) -> float:
     residual = x.flatten(1).double() - factors.coefficients.double() @ factors.basis().double()
+    if worth is not None:
+        residual = residual.unflatten(1, x.shape[1:]) * worth
     return float(residual.square().sum())
+
+
+def seen(side: int) -> torch.Tensor:
+    """What samples [n, n] count for: some hundredfold, as it is no outer product of lines."""
+    return 10 ** (random(side, side, seed=9) - 1)
 
 
 @pytest.mark.parametrize("shape", [(40, 23), (23, 40), (7, 1), (1, 7)])
@@ -68,14 +75,39 @@ def test_blendshapes_beyond_the_number_of_frames_are_zero_and_the_rest_is_exact(
     assert torch.allclose(shapes.coefficients @ shapes.basis, x, atol=100 * FLOAT32)
 
 
-def test_sweeps_never_raise_the_error() -> None:
+def test_blendshapes_are_the_best_where_samples_differ_in_worth() -> None:
+    x, worth = random(50, 12), 10 ** random(12, seed=1)
+    shapes = blendshapes(x, 4, generator=generator(), worth=worth)
+    left = float(((x - shapes.coefficients @ shapes.basis) * worth).double().square().sum())
+    values = np.linalg.svd((x * worth).double().numpy(), compute_uv=False)
+    assert left == pytest.approx(np.square(values[4:]).sum(), rel=1e-3)
+    assert torch.allclose(shapes.coefficients.square().mean(0), torch.ones(4), atol=50 * FLOAT32)
+
+
+def test_separable_blendshapes_are_better_where_samples_count_for_more() -> None:
+    x, worth = smooth_bands(37, 11), seen(11)
+    found = separable_blendshapes(x, 6, sweeps=10, generator=generator(), worth=worth)
+    alike = separable_blendshapes(x, 6, sweeps=10, generator=generator())
+    assert squared_error(x, found, worth) < 0.9 * squared_error(x, alike, worth)
+    assert squared_error(x, alike) < squared_error(x, found)
+
+
+def test_samples_that_count_alike_change_nothing() -> None:
+    x = smooth_bands(37, 11)
+    found = separable_blendshapes(x, 6, sweeps=3, generator=generator(), worth=torch.full((11, 11), 2.0))
+    alike = separable_blendshapes(x, 6, sweeps=3, generator=generator())
+    assert squared_error(x, found) == pytest.approx(squared_error(x, alike), rel=1e-3)
+
+
+@pytest.mark.parametrize("worth", [None, seen(11)])
+def test_sweeps_never_raise_the_error(worth: torch.Tensor | None) -> None:
     x = smooth_bands(37, 11)
     factors = start_from_modes(x, 9)
-    factors = Factors(fit_coefficients(x, factors), factors.h, factors.w)
-    errors = [squared_error(x, factors)]
+    factors = Factors(fit_coefficients(x, factors, worth), factors.h, factors.w)
+    errors = [squared_error(x, factors, worth)]
     for _ in range(12):
-        factors = sweep(x, factors)
-        errors.append(squared_error(x, factors))
+        factors = sweep(x, factors, worth)
+        errors.append(squared_error(x, factors, worth))
     rounding = 100 * FLOAT32 * errors[0]
     assert all(after <= before + rounding for before, after in pairwise(errors))
 

@@ -14,7 +14,7 @@ from synthetic_student import quick, same
 
 from mua.arrays import Array
 from mua.camera import orbit
-from mua.channels import ATTRIBUTES, CHANNELS
+from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS
 from mua.checkpoint import Checkpoints
 from mua.decode import box_of
 from mua.recording import Recording
@@ -29,12 +29,15 @@ from mua.student.finetune import picture_loss, relative
 from mua.student.model import Student, lowpass_texels
 from mua.student.optimise import Progress, Run
 from mua.student.sensitivity import GOLDEN, LEAST, measure_sensitivities, shared_pattern
+from mua.student.settings import Ranks
+from mua.student.train import worth_of
 from mua.wavelets import Bands
 
 CPU = torch.device("cpu")
 SIDE = 40  # pixels
 DRAWS = 150  # of random signs
 SAMPLING = 0.25  # four standard errors of their mean square, over a channel's samples
+ROUNDING = 32 * float(np.finfo(np.float32).eps)  # of squares that a closed form in single precision leaves
 STEP = {10: 1e-2, 11: 1e-2, 0: 1e-5}  # of the channels that are changed: opacity, red, an offset
 
 
@@ -157,8 +160,10 @@ def test_sensitivities_to_weighted_subbands_have_a_mean_square_of_one() -> None:
     torch.testing.assert_close(ratio, ratio[:1, :1, :1, :1].expand_as(ratio))
 
 
-def distilled(recording: Recording, directory: Path, *, pictures: int, heard: Quiet | None = None) -> Student:
-    settings = replace(quick(SETTINGS), pictures=pictures)
+def distilled(
+    recording: Recording, directory: Path, *, pictures: int, heard: Quiet | None = None, **sizes: Ranks
+) -> Student:
+    settings = replace(quick(SETTINGS), pictures=pictures, **sizes)
     return distil(recording, settings, device=CPU, directory=directory, report=heard or Quiet())
 
 
@@ -185,6 +190,35 @@ def test_pictures_change_what_fine_tuning_ends_in(smooth_recording: Recording, t
     without = distilled(smooth_recording, tmp_path / "b", pictures=0)
     for one, other in zip(measured.branches, without.branches, strict=True):
         assert not torch.equal(one.ll_basis, other.ll_basis)
+
+
+def test_bases_are_solved_for_what_pictures_show(smooth_recording: Recording, tmp_path: Path) -> None:
+    kept = []
+    for pictures in (2, 0):
+        distilled(smooth_recording, tmp_path / str(pictures), pictures=pictures, appearance=Ranks(1, 1, 1))
+        kept.append(torch.load(tmp_path / str(pictures) / "appearance bases.pt", weights_only=True)["state"]["branch"])
+    seen = Bands(**torch.load(tmp_path / "2" / f"{sensitivity.STAGE}.pt", weights_only=True)["state"]["tensors"])
+    rows = torch.arange(smooth_recording.count())
+    for channel in range(3):
+        samples = smooth_recording.subbands(APPEARANCE, rows).ll[:, channel]
+        worth = seen.of(APPEARANCE).ll[0, channel]
+        left = [_left((samples - own["ll_mean"][channel]) * worth, own["ll_basis"][channel] * worth) for own in kept]
+        assert left[0] < (1 - ROUNDING) * left[1]
+
+
+def _left(
+    x: torch.Tensor,  # [F, n, n]
+    basis: torch.Tensor,  # [R, n, n]
+) -> float:
+    """The squares that the best coefficients leave."""
+    fit = torch.linalg.lstsq(basis.flatten(1).double().T, x.flatten(1).double().T, driver="gelsd")
+    return float((x.flatten(1).double().T - basis.flatten(1).double().T @ fit.solution).square().sum())
+
+
+def test_a_channel_that_no_picture_shows_counts_alike() -> None:
+    dark = Bands(torch.zeros(1, 1, 2, 2), torch.zeros(1, 1, 1, 2, 2), torch.zeros(1, 1, 1, 4, 4))
+    for own in worth_of(dark, 0):
+        assert torch.equal(own, torch.ones_like(own))
 
 
 def test_bases_learn_from_pictures_at_a_rate_of_their_own(

@@ -57,12 +57,16 @@ def blendshapes(
     rank: int,
     *,
     generator: torch.Generator,
+    worth: Tensor | None = None,  # [P], above zero: what an error of each sample is multiplied by; None: all alike
 ) -> Blendshapes:
     """The best linear blendshapes of a channel; with fewer frames or samples than `rank`, the rest is zero."""
-    u, s, v = truncated_svd(x, rank, generator=generator)
+    u, s, v = truncated_svd(x if worth is None else x * worth, rank, generator=generator)
     spread = len(x) ** 0.5
+    basis = v * (s / spread)[:, None]
+    if worth is not None:
+        basis = basis / worth
     coefficients = torch.nn.functional.pad(u * spread, (0, rank - len(s)))
-    return Blendshapes(coefficients, torch.nn.functional.pad(v * (s / spread)[:, None], (0, 0, 0, rank - len(s))))
+    return Blendshapes(coefficients, torch.nn.functional.pad(basis, (0, 0, 0, rank - len(s))))
 
 
 def separable_blendshapes(
@@ -71,17 +75,19 @@ def separable_blendshapes(
     *,
     sweeps: int,
     generator: torch.Generator,
+    worth: Tensor | None = None,  # [n, n], above zero: what an error of each sample is multiplied by; None: all alike
 ) -> Factors:
     """Separable blendshapes of the three bands of a channel by `sweeps` rounds of alternating least squares.
 
     A model of rank R spans at most R directions over frames, so the sweeps run on the leading 2 R of them, which is
     several times cheaper.
     """
-    u, s, v = truncated_svd(x.flatten(1), 2 * rank, generator=generator)
-    compressed = (s[:, None] * v).unflatten(1, x.shape[1:])
+    u, s, v = truncated_svd((x if worth is None else x * worth).flatten(1), 2 * rank, generator=generator)
+    compressed = s[:, None] * v if worth is None else u.T @ x.flatten(1)
+    compressed = compressed.unflatten(1, x.shape[1:])
     factors = start_from_modes(compressed, rank)
     for _ in range(sweeps):
-        factors = sweep(compressed, factors)
+        factors = sweep(compressed, factors, worth)
     coefficients = u @ factors.coefficients
     return _balance(Factors(coefficients, factors.h, factors.w))
 
@@ -109,23 +115,45 @@ def start_from_modes(
 def sweep(
     x: Tensor,  # [F, 3, n, n]
     factors: Factors,
+    worth: Tensor | None = None,  # [n, n]
 ) -> Factors:
     """One round of alternating least squares: coefficients, then rows, then columns; the error never rises."""
-    a = fit_coefficients(x, factors)
+    a = fit_coefficients(x, factors, worth)
     y = torch.einsum("fr,fp->rp", a, x.flatten(1)).unflatten(1, x.shape[1:])
     gram = _gram(a.T)
-    h = _update(torch.einsum("rsij,srj->sri", y, factors.w), gram * _gram(factors.w), factors.h)
-    w = _update(torch.einsum("rsij,sri->srj", y, h), gram * _gram(h), factors.w)
+    h = _fit_lines(y, factors.w, factors.h, gram=gram, worth=worth)
+    w = _fit_lines(y.mT, h, factors.w, gram=gram, worth=None if worth is None else worth.T)
     return _balance(Factors(a, h, w))
 
 
 def fit_coefficients(
     x: Tensor,  # [F, 3, n, n]
     factors: Factors,
+    worth: Tensor | None = None,  # [n, n]
 ) -> Tensor:
     """The coefficients [F, R] that fit `x` best for given rows and columns."""
-    right = factors.basis() @ x.flatten(1).T
-    return _update(right, (_gram(factors.h) * _gram(factors.w)).sum(0), factors.coefficients.T).T
+    if worth is None:
+        right = factors.basis() @ x.flatten(1).T
+        return _update(right, (_gram(factors.h) * _gram(factors.w)).sum(0), factors.coefficients.T).T
+    basis = (factors.basis().unflatten(1, x.shape[1:]) * worth).flatten(1)
+    return _update(basis @ (x * worth).flatten(1).T, _gram(basis), factors.coefficients.T).T
+
+
+def _fit_lines(
+    y: Tensor,  # [R, 3, n, n] samples times coefficients, summed over frames
+    across: Tensor,  # [3, R, n] the factors along the last axis of `y`
+    previous: Tensor,  # [3, R, n]
+    *,
+    gram: Tensor,  # [R, R] of the coefficients
+    worth: Tensor | None,  # [n, n]
+) -> Tensor:
+    """The factors [3, R, n] along the last axis of `y` but one. Where samples differ in worth, so do lines."""
+    if worth is None:
+        return _update(torch.einsum("rsij,srj->sri", y, across), gram * _gram(across), previous)
+    squares = worth.double().square()
+    right = torch.einsum("rsij,srj->sir", y * squares.to(y), across)[..., None]
+    grams = gram * torch.einsum("ij,srj,sqj->sirq", squares, across.double(), across.double())
+    return _update(right, grams, previous.mT[..., None])[..., 0].mT
 
 
 def _gram(rows: Tensor) -> Tensor:

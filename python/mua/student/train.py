@@ -84,7 +84,7 @@ def train(
     release_memory()
     if only == "coarse":
         return
-    seen = None if random or only not in (None, "fine-tuning") else _sensitivities(samples, run.alone(SENSITIVITIES))
+    seen = None if random else _sensitivities(samples, run.alone(SENSITIVITIES))
     learn = partial(fit_branch, parts=samples.parts, until=only, sensitivities=seen)
     fit = fit_branch_from_noise if random else learn
 
@@ -131,7 +131,7 @@ def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
         "fine-tuning": ("fine-tuning",),
     }
     kept = {stage: tuple(f"{name} {end}" for end in ends for name in BRANCHES) for stage, ends in endings.items()}
-    kept["fine-tuning"] = (SENSITIVITIES, *kept["fine-tuning"])
+    kept["bases"] = (SENSITIVITIES, *kept["bases"])
     return {"coarse": ("coarse components", "coarse mesh whitening", "coarse mesh"), **kept}
 
 
@@ -144,7 +144,8 @@ def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoint
         if stage == only:
             return
         for name in names:
-            if stage != "coarse" and not checkpoints.finished(name):  # nothing that follows starts from the coarse mesh
+            # nothing that follows starts from the coarse mesh; sensitivities are measured again where they are missing
+            if stage != "coarse" and name != SENSITIVITIES and not checkpoints.finished(name):
                 raise InputError(
                     f"--stage {only}: {checkpoints.directory} holds no finished {name!r}; run --stage {stage} first"
                 )
@@ -168,7 +169,16 @@ def fit_branch(
     Stops after the stage `until`.
     """
     weights = start_branch(
-        branch, inputs, source, channels=channels, settings=settings, name=name, run=run, parts=parts, until=until
+        branch,
+        inputs,
+        source,
+        channels=channels,
+        settings=settings,
+        name=name,
+        run=run,
+        parts=parts,
+        until=until,
+        sensitivities=sensitivities,
     )
     if until in ("bases", "regression"):
         return
@@ -204,6 +214,7 @@ def start_branch(
     run: Run,
     parts: Parts | None = None,
     until: StageName | None = None,
+    sensitivities: Bands | None = None,  # of pictures to the samples of all 23 channels, of one frame
 ) -> Tensor:
     """Closed-form bases, and an MLP taught their coefficients, conditioned for what follows; not if `until` "bases".
 
@@ -211,7 +222,13 @@ def start_branch(
     """
     stage = f"{name} bases"
     flat, variance = factorize_branch(
-        branch, source, frames=len(inputs), settings=settings, stage=stage, run=run.alone(stage)
+        branch,
+        source,
+        frames=len(inputs),
+        settings=settings,
+        stage=stage,
+        run=run.alone(stage),
+        sensitivities=None if sensitivities is None else sensitivities.of(channels),
     )
     release_memory()
     weights = channel_weights(variance, channels, size=run.size)
@@ -254,8 +271,12 @@ def factorize_branch(
     settings: Settings,
     stage: str,
     run: Run,
+    sensitivities: Bands | None = None,  # of pictures to the samples of the branch's channels, of one frame
 ) -> tuple[Tensor, Tensor]:
-    """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C]."""
+    """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C].
+
+    Bases are the best for pictures where sensitivities to its samples are given.
+    """
     kept = run.checkpoints.load(stage)
     if kept is not None:
         branch.load_state_dict(kept["branch"])
@@ -267,7 +288,10 @@ def factorize_branch(
     for done, channel in enumerate(owned, start=1):
         bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
         generator = run.alone(f"{stage} {channel}").generator  # whoever solves for it draws the same numbers
-        solved, energy[channel] = factorize_channel(branch, channel, bands, sweeps=settings.sweeps, generator=generator)
+        worth = None if sensitivities is None else worth_of(sensitivities, channel)
+        solved, energy[channel] = factorize_channel(
+            branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth
+        )
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
         run.report(Progress(stage, done, len(owned), None, done / (time.monotonic() - started)))
@@ -286,23 +310,36 @@ def factorize_channel(
     *,
     sweeps: int,
     generator: torch.Generator,
+    worth: tuple[Tensor, ...] | None = None,  # of `worth_of`; None: errors of all samples count alike
 ) -> tuple[Alphas, Tensor]:
     """Set means and bases of one channel; returns its coefficients [F, R] and the sum of squares about the mean."""
     ll, d3, d2 = bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]
+    coarse, *fine = (None, None, None) if worth is None else worth
     branch.ll_mean[channel] = ll.mean(0)
     ll = ll - branch.ll_mean[channel]
-    shapes = blendshapes(ll.flatten(1), branch.ranks.ll, generator=generator)
+    coarse = None if coarse is None else coarse.flatten()
+    shapes = blendshapes(ll.flatten(1), branch.ranks.ll, generator=generator, worth=coarse)
     branch.ll_basis[channel] = shapes.basis.unflatten(1, ll.shape[1:])
     energy = ll.square().sum()
     coefficients = [shapes.coefficients]
-    for detail, rank, band in ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2)):
+    levels = ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2))
+    for (detail, rank, band), own in zip(levels, fine, strict=True):
         detail.mean[:, channel] = band.mean(0)
         band = band - detail.mean[:, channel]
-        factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator)
+        factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator, worth=own)
         detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
         coefficients.append(factors.coefficients)
         energy = energy + band.square().sum()
     return Alphas(*coefficients), energy
+
+
+def worth_of(
+    sensitivities: Bands,  # of pictures to the samples of C channels, of one frame
+    channel: int,
+) -> tuple[Tensor, ...]:
+    """What the samples [n, n] of LL, D3 and D2 of a channel count for; alike where pictures show none of them."""
+    levels = sensitivities.ll[0, channel], sensitivities.d3[0, 0, channel], sensitivities.d2[0, 0, channel]
+    return tuple(own / own.mean() if own.any() else torch.ones_like(own) for own in levels)
 
 
 class BestCoefficients:
