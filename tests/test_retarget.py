@@ -183,6 +183,18 @@ def test_feet_that_step_on_one_level_are_put_on_the_floor() -> None:
     assert any("put on the floor" in note for note in notes)
 
 
+def test_legs_without_feet_end_on_the_floor() -> None:
+    source = person()
+    clip = walk(source)
+    names = tuple(name.replace("Foot", "Wheel").replace("Toe", "Cap") for name in source.names)
+    target = replace(person(size=0.4), names=names)
+    lifted = replace(clip, translations=clip.translations + np.eye(len(source.names))[:, :1] * [0, 0.65, 0])
+    found, _ = retarget(SourceMotion(source, lifted), target)
+    wheels = [names.index(f"{side}Wheel") for side in ("Left", "Right")]
+    lowest = world(target, found)[1][:, wheels, 1].min(axis=1)
+    assert np.abs(lowest - target.world(target.bind_rotations, target.bind_translations)[1][wheels[0], 1]).max() < 0.03
+
+
 def test_feet_that_climb_keep_their_height() -> None:
     source = person()
     clip = walk(source)

@@ -51,7 +51,9 @@ def placed(rest: Rest, rotations: Array, source_at: Array, *, rate: float, hones
         return attached(rest, rotations, led)
 
     shift = path - at[:, hips].mean(axis=1)
-    _, at = target.world(rotations, moved(shift))
+    turned, at = target.world(rotations, moved(shift))
+    if all(rest.joint(f"{side} {part}") is None for side in SIDES for part in SOLES):
+        return moved(shift + _lift_of_legs(rest, turned, at) * Y), []
     lift, notes = _lift(rest, at, source_at if honest else None, scale, leg, rate)
     return moved(shift + lift * Y), notes
 
@@ -139,8 +141,6 @@ def _lift(
     stand, unless the whole clip is far above the floor and its feet do not step on one level up there.
     """
     soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
-    if not soles:
-        return 0.0, []
     heights = at[:, soles, 1] - rest.target_at[soles, 1]
     height = standing(heights) + floor_of(rest.target_at)
     expected = 0.0
@@ -157,6 +157,19 @@ def _lift(
     if expected > LOWEST * leg:
         notes.append(f"its feet never come nearer to the floor than {expected:.2f} m; the height is kept.")
     return expected - height, notes
+
+
+def _lift_of_legs(rest: Rest, turned: Array, at: Array) -> float:
+    """Metres by which to raise a target without feet so that its legs end on the floor: straight below them at rest."""
+    floor = min(floor_of(rest.target_at), 0.0)
+    heights = []
+    for side in SIDES:
+        joint = next((j for part in ("shin", "thigh") if (j := rest.joint(f"{side} {part}")) is not None), None)
+        if joint is not None:
+            since = rotation.multiply(turned[:, joint], rotation.conjugate(rest.target_turned[joint]))
+            down = (floor - rest.target_at[joint, 1]) * Y
+            heights.append(at[:, joint, 1] + rotation.rotate(since, np.broadcast_to(down, at[:, joint].shape))[:, 1])
+    return floor - standing(np.stack(heights, axis=1)) if heights else 0.0
 
 
 def _level(heights: Array, leg: float) -> bool:
