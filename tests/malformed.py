@@ -238,6 +238,12 @@ def claim(path: str, shape: tuple[int, ...], planes: bytes) -> Callable[[Tree], 
     return put(path, {"shape": np.array(shape, np.uint32), "type": "I32", "data": stream(planes), "packing": "Deflate"})
 
 
+def nothing_of_a_damaged_stream(tree: Tree) -> None:
+    """A tensor without elements, whose stream is damaged before it gives any."""
+    claim("skeleton.translated", (0,), b"")(tree)
+    tree["skeleton"]["translated"]["data"] = np.full(50, 0xFF, np.uint8)
+
+
 def claims_together(tree: Tree) -> None:
     """Each of two tensors claims less than a file of its size may give, both claim more."""
     for path in ("texels.texels", "texels.triangles"):
@@ -267,6 +273,7 @@ UNPACKABLE = [  # of a file for the network
     ("packed", "texels.texels.data", claim("texels.texels", (TEXELS,), bytes(4 * TEXELS - 1))),
     ("packed", "texels.texels.data", claim("texels.texels", (TEXELS,), bytes(4 * TEXELS + 1))),
     ("packed", "skeleton.translated.data", claim("skeleton.translated", (0,), bytes(1))),
+    ("packed", "skeleton.translated.data", nothing_of_a_damaged_stream),
     ("value", "texels.texels.data", claim("texels.texels", (1 << 24,), bytes(1 << 26))),
     ("value", "surface.strips.data", claim("surface.strips", (1 << 16, 1 << 14), b"")),
     ("value", "texels.triangles.data", claims_together),

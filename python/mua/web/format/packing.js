@@ -77,7 +77,7 @@ async function inflate(
       got += part.value.length;
     }
   } catch {
-    if (got < count) throw fault("packed", `${path}.data`, "the bytes are no deflate stream: the file is damaged");
+    if (got < count || !count) throw fault("packed", `${path}.data`, "the bytes are no deflate stream: the file is damaged");
   }
   reader.cancel().catch(() => {}); // what is left of it does not matter
   if (got === count) return;
