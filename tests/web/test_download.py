@@ -1,5 +1,6 @@
 """A file whose connection breaks: the rest is asked for by range, and what cannot be had is a sentence."""
 
+import gzip
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -22,9 +23,10 @@ class Answer:
     """What is sent after the connection has broken."""
 
     status: int
-    length: int  # that is claimed
+    length: int  # that is claimed; negative where none is
     body: bytes
     etag: str = "one"
+    headers: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Breaking:
     address: str
     asked: list[str | None]  # the range of each request
     answers: list[Answer]  # to the requests after the first
+    first: list[Answer]  # to the first one, where it is not the beginning of the file
     arrived: Event  # of what was sent before the connection breaks
 
 
@@ -46,18 +49,22 @@ def content() -> bytes:
 def breaking(content: bytes) -> Iterator[Breaking]:
     asked: list[str | None] = []
     answers: list[Answer] = []
+    firsts: list[Answer] = []
     arrived = Event()
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            first = Answer(200, len(content), content[:BREAK])
+            first = firsts[0] if firsts else Answer(200, len(content), content[:BREAK])
             answer = answers[min(len(asked) - 1, len(answers) - 1)] if asked else first
             asked.append(self.headers.get("Range"))
             self.send_response(answer.status)
-            self.send_header("Content-Length", str(answer.length))
+            if answer.length >= 0:
+                self.send_header("Content-Length", str(answer.length))
             self.send_header("ETag", answer.etag)
             self.send_header("Access-Control-Allow-Origin", "*")
-            self.send_header("Access-Control-Expose-Headers", "ETag")
+            self.send_header("Access-Control-Expose-Headers", "ETag, Content-Range")
+            for name, value in answer.headers:
+                self.send_header(name, value)
             self.end_headers()
             self.wfile.write(answer.body)
             self.wfile.flush()
@@ -69,7 +76,7 @@ def breaking(content: bytes) -> Iterator[Breaking]:
     with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
         thread = Thread(target=server.serve_forever, args=(0.02,))
         thread.start()
-        yield Breaking(f"http://127.0.0.1:{server.server_port}/a.muaavatar", asked, answers, arrived)
+        yield Breaking(f"http://127.0.0.1:{server.server_port}/a.muaavatar", asked, answers, firsts, arrived)
         arrived.set()
         server.shutdown()
         thread.join()
@@ -94,6 +101,49 @@ def test_what_is_not_there_when_the_connection_breaks_is_asked_for_by_range(
 def test_a_server_that_refuses_ranges_sends_the_file_again(page: Page, breaking: Breaking, content: bytes) -> None:
     load(page, breaking, Answer(200, len(content), content), until=LOADED)
     assert breaking.asked == [None, f"bytes={BREAK}-"]
+
+
+@pytest.mark.parametrize(("begin", "told"), [(BREAK, ""), (BREAK - 8, "another part of it than was asked for")])
+def test_a_part_that_is_not_the_one_that_was_asked_for_is_a_sentence(
+    page: Page, breaking: Breaking, content: bytes, begin: int, told: str
+) -> None:
+    rest = content[begin : begin + len(content) - BREAK]
+    place = f"bytes {begin}-{begin + len(rest) - 1}/{len(content)}"
+    answer = Answer(206, len(rest), rest, headers=(("Content-Range", place),))
+    load(page, breaking, answer, until=f"{SENTENCE}.includes('{told}')" if told else LOADED)
+    assert not told or page.evaluate(f"{ELEMENT}.avatars.length") == 0
+
+
+@pytest.mark.parametrize("exposed", [True, False])
+def test_a_proxy_that_compresses_a_file_gives_it_whole(
+    page: Page, breaking: Breaking, content: bytes, exposed: bool
+) -> None:
+    """Whose length is that of the compressed bytes; a page of another address may know of the compression or not."""
+    headers = [("Content-Encoding", "gzip")]
+    if exposed:
+        headers.append(("Access-Control-Expose-Headers", "Content-Encoding"))
+    compressed = gzip.compress(content)
+    breaking.first.append(Answer(200, len(compressed), compressed, headers=tuple(headers)))
+    breaking.arrived.set()
+    page.evaluate(f"{ELEMENT}.setAttribute('src', '{breaking.address}')")
+    page.wait(LOADED)
+    assert breaking.asked == [None]
+
+
+def test_a_compressed_file_that_breaks_off_is_a_sentence(page: Page, breaking: Breaking, content: bytes) -> None:
+    """Nobody knows where in the file as it stands on the server to go on."""
+    compressed = gzip.compress(content)
+    headers = (("Content-Encoding", "gzip"), ("Access-Control-Expose-Headers", "Content-Encoding"))
+    breaking.first.append(Answer(200, len(compressed), compressed[:BREAK], headers=headers))
+    load(page, breaking, until=f"{SENTENCE}.includes('was not fetched whole')")
+    assert breaking.asked == [None]
+
+
+def test_a_file_that_ends_early_where_no_length_was_told_is_a_sentence(
+    page: Page, breaking: Breaking, content: bytes
+) -> None:
+    breaking.first.append(Answer(200, -1, content[:BREAK]))
+    load(page, breaking, until=f"{SENTENCE}.includes('outside the file')")
 
 
 CHANGED: dict[str, Callable[[int], Answer]] = {

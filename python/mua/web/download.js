@@ -100,6 +100,9 @@ export class Download {
     const total = Number(answer.headers.get("content-length")) + (part ? this.got : 0);
     if (!marked || !answer.ok || total !== this.total)
       throw new AvatarError(`${this.name} has changed on the server while it was fetched; load it again.`);
+    const range = answer.headers.get("content-range"); // of another address only where the server lets the page read it
+    if (part && range && !range.startsWith(`bytes ${this.got}-`))
+      throw this.broken("; then the server sends another part of it than was asked for");
     if (!part) [this.got, this.beyond] = [0, []];
     return this.take(answer, progress);
   }
