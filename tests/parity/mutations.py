@@ -120,8 +120,8 @@ FAULTS = {
         ),
         Fault(
             "low-pass filter on the rows' high-pass part",
-            "filterColumns(HIGH, rec_hi, thread.xy)",
-            "filterColumns(HIGH, rec_lo, thread.xy)",
+            "low + filterColumns(rec_hi, thread.xy)",
+            "low + filterColumns(rec_lo, thread.xy)",
         ),
         Fault(
             "rows and columns of a square swapped",
@@ -130,9 +130,19 @@ FAULTS = {
         ),
         Fault("write past the side", "if (coarse.x >= size || coarse.y >= size)", "if (coarse.y >= size)"),
         Fault(
-            "dropped barrier",
-            "GroupMemoryBarrierWithGroupSync();\n    writeSquare(id, filterColumns(LOW, rec_lo, thread.xy) +",
-            "writeSquare(id, filterColumns(LOW, rec_lo, thread.xy) +",
+            "dropped barrier before the low-pass part's columns",
+            "GroupMemoryBarrierWithGroupSync();\n    float4 low",
+            "float4 low",
+        ),
+        Fault(
+            "high-pass part over the low-pass one that is still read",
+            "filterColumns(rec_lo, thread.xy);\n    GroupMemoryBarrierWithGroupSync();",
+            "filterColumns(rec_lo, thread.xy);",
+        ),
+        Fault(
+            "dropped barrier before the high-pass part's columns",
+            "GroupMemoryBarrierWithGroupSync();\n    writeSquare",
+            "writeSquare",
         ),
         Fault(
             "dropped barrier before the texels",

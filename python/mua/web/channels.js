@@ -43,7 +43,7 @@ const planeBytes = (/** @type {number} */ size) => FLOAT * size * groups(size, 2
 /** InverseDwt, whose groups share the rows of ll that filters of so many taps need, low- and high-pass. @param {Device} device @param {number} taps */
 export function synthesis(device, taps) {
   const rows = COARSE_TILE + taps / 2 - 1;
-  return kernelWithRoom(device, InverseDwt, "filtered", 2 * rows * COARSE_TILE);
+  return kernelWithRoom(device, InverseDwt, "filtered", rows * COARSE_TILE);
 }
 
 /** UpsampleTexels, whose groups share the samples of ll that a tile of texels needs. @param {Device} device @param {{factor: number, reach: number}} upsampling */

@@ -38,7 +38,7 @@ fn coarseRow_0( tile_0 : u32,  i_0 : u32) -> u32
     return _S1;
 }
 
-var<workgroup> filtered_0 : array<vec2<f32>, i32(1152)>;
+var<workgroup> filtered_0 : array<vec2<f32>, i32(576)>;
 
 fn rowWords_0( size_1 : u32) -> u32
 {
@@ -171,13 +171,12 @@ fn filterRow_1( _S19 : u32,  _S20 : u32,  _S21 : u32) -> vec2<f32>
     return pair_2;
 }
 
-fn filterRow_2( _S26 : u32,  _S27 : u32,  _S28 : u32) -> vec2<f32>
+fn filterColumns_0( _S26 : vec2<u32>) -> vec4<f32>
 {
-    var _S29 : u32 = (_S26 * Constants_0.size_0 + _S27) * rowWords_0(Constants_0.size_0);
-    var _S30 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
-    var older_2 : u32 = min(_S28, Constants_0.size_0 - u32(1));
+    var _S27 : u32 = _S26.y + Constants_0.taps_0 / u32(2) - u32(1);
+    var _S28 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
     var j_2 : u32 = u32(0);
-    var pair_4 : vec2<f32> = _S30;
+    var square_1 : vec4<f32> = _S28;
     for(;;)
     {
         if(j_2 < (Constants_0.taps_0 / u32(2)))
@@ -187,22 +186,20 @@ fn filterRow_2( _S26 : u32,  _S27 : u32,  _S28 : u32) -> vec2<f32>
         {
             break;
         }
-        var pair_5 : vec2<f32> = pair_4 + tapPair_0(j_2) * vec2<f32>(sampleAt_1(_S29, older_2));
-        var _S31 : u32 = olderSample_0(older_2);
-        var _S32 : u32 = j_2 + u32(1);
-        older_2 = _S31;
-        j_2 = _S32;
-        pair_4 = pair_5;
+        var square_2 : vec4<f32> = square_1 + tapPair_0(j_2).xxyy * filtered_0[(_S27 - j_2) * u32(16) + _S26.x].xyxy;
+        j_2 = j_2 + u32(1);
+        square_1 = square_2;
     }
-    return pair_4;
+    return square_1;
 }
 
-fn filterColumns_0( _S33 : u32,  _S34 : vec2<u32>) -> vec4<f32>
+fn filterRow_2( _S29 : u32,  _S30 : u32,  _S31 : u32) -> vec2<f32>
 {
-    var _S35 : u32 = _S34.y + Constants_0.taps_0 / u32(2) - u32(1);
-    var _S36 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var _S32 : u32 = (_S29 * Constants_0.size_0 + _S30) * rowWords_0(Constants_0.size_0);
+    var _S33 : vec2<f32> = vec2<f32>(vec2<i32>(i32(0)));
+    var older_2 : u32 = min(_S31, Constants_0.size_0 - u32(1));
     var j_3 : u32 = u32(0);
-    var square_1 : vec4<f32> = _S36;
+    var pair_4 : vec2<f32> = _S33;
     for(;;)
     {
         if(j_3 < (Constants_0.taps_0 / u32(2)))
@@ -212,19 +209,22 @@ fn filterColumns_0( _S33 : u32,  _S34 : vec2<u32>) -> vec4<f32>
         {
             break;
         }
-        var square_2 : vec4<f32> = square_1 + tapPair_0(j_3).xxyy * filtered_0[(_S35 - j_3) * u32(2) * u32(16) + _S33 + _S34.x].xyxy;
-        j_3 = j_3 + u32(1);
-        square_1 = square_2;
+        var pair_5 : vec2<f32> = pair_4 + tapPair_0(j_3) * vec2<f32>(sampleAt_1(_S32, older_2));
+        var _S34 : u32 = olderSample_0(older_2);
+        var _S35 : u32 = j_3 + u32(1);
+        older_2 = _S34;
+        j_3 = _S35;
+        pair_4 = pair_5;
     }
-    return square_1;
+    return pair_4;
 }
 
-fn filterColumns_1( _S37 : u32,  _S38 : vec2<u32>) -> vec4<f32>
+fn filterColumns_1( _S36 : vec2<u32>) -> vec4<f32>
 {
-    var _S39 : u32 = _S38.y + Constants_0.taps_0 / u32(2) - u32(1);
-    var _S40 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
+    var _S37 : u32 = _S36.y + Constants_0.taps_0 / u32(2) - u32(1);
+    var _S38 : vec4<f32> = vec4<f32>(vec4<i32>(i32(0)));
     var j_4 : u32 = u32(0);
-    var square_3 : vec4<f32> = _S40;
+    var square_3 : vec4<f32> = _S38;
     for(;;)
     {
         if(j_4 < (Constants_0.taps_0 / u32(2)))
@@ -234,7 +234,7 @@ fn filterColumns_1( _S37 : u32,  _S38 : vec2<u32>) -> vec4<f32>
         {
             break;
         }
-        var square_4 : vec4<f32> = square_3 + tapPair_1(j_4).xxyy * filtered_0[(_S39 - j_4) * u32(2) * u32(16) + _S37 + _S38.x].xyxy;
+        var square_4 : vec4<f32> = square_3 + tapPair_1(j_4).xxyy * filtered_0[(_S37 - j_4) * u32(16) + _S36.x].xyxy;
         j_4 = j_4 + u32(1);
         square_3 = square_4;
     }
@@ -245,10 +245,14 @@ fn filterColumns_1( _S37 : u32,  _S38 : vec2<u32>) -> vec4<f32>
 @workgroup_size(16, 16, 1)
 fn InverseDwt(@builtin(global_invocation_id) id_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_id) thread_0 : vec3<u32>)
 {
-    var i_1 : u32 = thread_0.y;
+    var _S39 : u32;
+    var _S40 : u32 = thread_0.y;
+    var i_1 : u32 = _S40;
     for(;;)
     {
-        if(i_1 < (rowCount_0()))
+        var _S41 : u32 = rowCount_0();
+        _S39 = _S41;
+        if(i_1 < _S41)
         {
         }
         else
@@ -256,16 +260,33 @@ fn InverseDwt(@builtin(global_invocation_id) id_0 : vec3<u32>, @builtin(workgrou
             break;
         }
         var row_0 : u32 = coarseRow_0(group_0.y, i_1);
-        var at_0 : u32 = i_1 * u32(2) * u32(16) + thread_0.x;
-        var _S41 : u32 = id_0.z;
-        var _S42 : u32 = id_0.x;
-        filtered_0[at_0] = filterRow_0(_S41, row_0, _S42) + filterRow_1(Constants_0.channels_0 + _S41, row_0, _S42);
-        filtered_0[u32(16) + at_0] = filterRow_2(_S41, row_0, _S42) + filterRow_1(u32(2) * Constants_0.channels_0 + _S41, row_0, _S42);
+        var _S42 : u32 = id_0.z;
+        var _S43 : u32 = id_0.x;
+        filtered_0[i_1 * u32(16) + thread_0.x] = filterRow_0(_S42, row_0, _S43) + filterRow_1(Constants_0.channels_0 + _S42, row_0, _S43);
         i_1 = i_1 + u32(16);
     }
     workgroupBarrier();
-    var _S43 : vec2<u32> = thread_0.xy;
-    writeSquare_0(id_0, filterColumns_0(u32(0), _S43) + filterColumns_1(u32(16), _S43));
+    var _S44 : vec2<u32> = thread_0.xy;
+    var _S45 : vec4<f32> = filterColumns_0(_S44);
+    workgroupBarrier();
+    i_1 = _S40;
+    for(;;)
+    {
+        if(i_1 < _S39)
+        {
+        }
+        else
+        {
+            break;
+        }
+        var row_1 : u32 = coarseRow_0(group_0.y, i_1);
+        var _S46 : u32 = id_0.z;
+        var _S47 : u32 = id_0.x;
+        filtered_0[i_1 * u32(16) + thread_0.x] = filterRow_2(_S46, row_1, _S47) + filterRow_1(u32(2) * Constants_0.channels_0 + _S46, row_1, _S47);
+        i_1 = i_1 + u32(16);
+    }
+    workgroupBarrier();
+    writeSquare_0(id_0, _S45 + filterColumns_1(_S44));
     return;
 }
 
