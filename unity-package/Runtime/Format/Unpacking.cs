@@ -115,6 +115,10 @@ namespace Mua.Format
         /// <summary>The `count` bytes of a stream, and not one more.</summary>
         private void Inflate(Block packed, byte[] inflated, int count, string path)
         {
+            if (count == 0)
+            {
+                return; // not every language tells a damaged stream of nothing from a whole one
+            }
             int found = 0;
             bool ends;
             try

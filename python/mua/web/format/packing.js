@@ -65,6 +65,7 @@ async function inflate(
   /** @type {string} */ path,
 ) {
   const count = found.length;
+  if (!count) return; // not every language tells a damaged stream of nothing from a whole one
   const reader = new Blob([stream]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
   let got = 0;
   try {
@@ -77,7 +78,7 @@ async function inflate(
       got += part.value.length;
     }
   } catch {
-    if (got < count || !count) throw fault("packed", `${path}.data`, "the bytes are no deflate stream: the file is damaged");
+    if (got < count) throw fault("packed", `${path}.data`, "the bytes are no deflate stream: the file is damaged");
   }
   reader.cancel().catch(() => {}); // what is left of it does not matter
   if (got === count) return;
