@@ -10,6 +10,7 @@ from mua.characters.animation import Animation
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.characters.gltf.read import read_gltf, read_gltf_animation
 from mua.characters.resize import resized
+from mua.characters.skeletool.read import read_skeletool, read_skeletool_motion
 from mua.errors import InputError
 from mua.rig.character import Character
 from mua.signature import refuse_foreign, require_kind
@@ -17,6 +18,7 @@ from mua.signature import refuse_foreign, require_kind
 GLTF = (".glb", ".gltf", ".vrm")
 GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh
 USD = (".usd", ".usda", ".usdc", ".usdz")
+SKELETOOL, SKELETOOL_MOTION = ".character", ".motion"  # of DDC, ASH, TriHuman and UMA
 
 
 def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequence[str] = ()) -> Surfaces:
@@ -24,8 +26,11 @@ def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequenc
 
     Raises an InputError where the suffix is unknown, the file is missing or nothing has such a name.
     """
-    if _checked_suffix(path, (*GLTF, *USD)) in GLTF:
+    suffix = _checked_suffix(path, (*GLTF, *USD, SKELETOOL))
+    if suffix in GLTF:
         return resized(read_gltf(path, leave_out=leave_out), size, path)
+    if suffix == SKELETOOL:
+        return resized(read_skeletool(path, leave_out=leave_out), size, path)
     from mua.characters.usd.read import read_usd  # with USD's library, which takes long to load
 
     return resized(read_usd(path, leave_out=leave_out), size, path)
@@ -33,7 +38,9 @@ def read_surfaces(path: Path, *, size: FigureSize = AS_FOUND, leave_out: Sequenc
 
 def read_animation(path: Path) -> Animation:
     """Read a file's skeleton and clips by its suffix, with or without a mesh; raises as `read_surfaces` does."""
-    suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, *USD))
+    suffix = _checked_suffix(path, (*GLTF, *GLTF_MOTION, *USD, SKELETOOL_MOTION))
+    if suffix == SKELETOOL_MOTION:
+        return read_skeletool_motion(path)
     if suffix not in USD:
         return read_gltf_animation(path)
     from mua.characters.usd.read import read_usd_animation
@@ -51,7 +58,7 @@ def _checked_suffix(path: Path, known: Sequence[str]) -> str:
     if suffix in USD:
         kinds = ("a ZIP archive",) if suffix == ".usdz" else ("a USD file", "a ZIP archive")
         require_kind(path, "a USD stage", kinds=kinds)
-    else:
+    elif suffix in (*GLTF, *GLTF_MOTION):
         require_kind(path, "a glTF file", kinds=("a glTF binary", "JSON"))
     return suffix
 

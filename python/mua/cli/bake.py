@@ -20,7 +20,8 @@ OPTIONS = {
     "character": Annotated[
         Path | None,
         typer.Argument(
-            help="Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc or .usdz; or the folder of a capture.",
+            help="Rigged character: .glb, .gltf, .vrm, .usd, .usda, .usdc, .usdz or .character; "
+            "or the folder of a capture.",
             show_default="a built-in procedural character",
         ),
     ],

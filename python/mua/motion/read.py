@@ -9,12 +9,12 @@ from mua.motion.poses_file import holds_poses, read_poses
 from mua.motion.source import SourceMotion
 from mua.signature import refuse_foreign, require_kind
 
-RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".usdz")
+RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".usdz", ".motion")
 SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
 
 
 def read_motion(path: Path) -> list[SourceMotion]:
-    """Read every motion of `path`: a .bvh, AMASS or pose .npz, glTF or USD file, or a directory of such files, by name.
+    """Read every motion of `path`: one file of `SUFFIXES`, or those of a directory by name.
 
     Errors: InputError for a path that does not exist, a suffix that is not known, a file or directory without motion.
     """
