@@ -87,8 +87,8 @@ PRESETS = {
     "tiny": Settings(
         texels=192,
         frames=240,
-        geometry=Ranks(32, 24, 24),
-        appearance=Ranks(24, 24, 24),
+        geometry=Ranks(24, 96, 80),
+        appearance=Ranks(24, 96, 80),
         components=24,
         hidden=128,
         sweeps=10,
