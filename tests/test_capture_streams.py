@@ -144,7 +144,10 @@ def test_masks_may_be_pictures(source: Path, person: Capture, command: Commands,
 def test_what_is_missing_is_named(source: Path, person: Capture, command: Commands, tmp_path: Path) -> None:
     given = ("--template", person.template, "-o", tmp_path / "out")
     motion = ("--motion", person.clips[0].motion)
-    assert "are not read; give the same with --motion" in command("capture", "describe", source, *given).sentence
+    assert (
+        "found no .character of the person; give --template and --motion"
+        in command("capture", "describe", source, *given).sentence
+    )
     (source / "foregroundSegmentation" / "stream000.mp4").unlink()
     ended = command("capture", "describe", source, *given, *motion)
     assert "foregroundSegmentation: found no masks of stream000" in ended.sentence

@@ -1,6 +1,5 @@
 """mua-capture: whether a capture is what it should be, before a teacher is trained on it."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -61,12 +60,17 @@ def check(
 
 def describe(
     source: Annotated[Path, typer.Argument(help="Folder with pictures in the layout of AvatarReX, THuman4 or UMA.")],
-    template: Annotated[
-        Path, typer.Option(help="The person as a rigged character (.glb, .vrm, USD); AvatarReX, THuman4: on SMPL-X.")
-    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write capture.json and the poses to.")],
+    template: Annotated[
+        Path | None,
+        typer.Option(
+            help="The person as a rigged character, for AvatarReX and THuman4 on SMPL-X.",
+            show_default="UMA: the .character with the videos",
+        ),
+    ] = None,
     motion: Annotated[
-        Path | None, typer.Option(help="Poses for videos in UMA's layout, one for each frame; others bring their own.")
+        Path | None,
+        typer.Option(help="Poses in UMA's layout, one for each frame.", show_default="those with the .character"),
     ] = None,
     rate: Annotated[
         float | None, typer.Option(min=1, max=1000, help="Frames per second.", show_default="the videos', or 30")
@@ -80,7 +84,9 @@ def describe(
 ) -> None:
     """Write the capture.json of pictures that lie in another layout; the pictures stay where they are."""
     require_folder(source)
-    require_file(template)
+    for given in (template, motion):
+        if given is not None:
+            require_file(given)
     require_writable(output / CAPTURE)
 
     from mua.capture import open_capture, write_capture
@@ -99,7 +105,7 @@ def run() -> None:
 
 def _described(
     source: Path,
-    template: Path,
+    template: Path | None,
     folder: Path,
     motion: Path | None,
     rate: float | None,
@@ -113,17 +119,15 @@ def _described(
     if is_avatarrex(source):
         if motion is not None:
             raise InputError(f"--motion {motion}: {source} has poses of its own; leave the option out")
+        if template is None:
+            raise InputError(f"{source}: holds no rigged character; give one on SMPL-X with --template")
         return read_avatarrex(source, folder, template=template, rate=rate or RATE, height=height, leave_out=leave_out)
     if not is_streams(source):
         raise InputError(
             f"{source}: its layout is not known; expected calibration_full.json or calibration.json with "
             "smpl_params.npz, or videos stream*.mp4 with cameras.calib or a .calibration file"
         )
-    if motion is None:
-        raise InputError(f"{source}: the poses of this layout (.motion) are not read; give the same with --motion")
-    require_file(motion)
-    found = read_streams(source, folder, template=template, motion=motion, height=height, leave_out=leave_out)
-    return replace(found, rate=rate or found.rate)
+    return read_streams(source, folder, template=template, motion=motion, rate=rate, height=height, leave_out=leave_out)
 
 
 def _require_picture(output: Path) -> None:

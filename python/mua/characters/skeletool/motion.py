@@ -28,3 +28,8 @@ def read_dofs(path: Path, names: tuple[str, ...]) -> tuple[int, Array]:
         raise InputError(f"{path}: holds no frame")
     found = np.array(rows)
     return int(found[0, 0]), found[:, 1:]
+
+
+def first_frame(path: Path) -> int:
+    """The number of the first frame of a .motion; raises InputError where it has none."""
+    return Lines(path, MOTION).next("a frame").whole(0)
