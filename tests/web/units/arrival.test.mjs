@@ -1,0 +1,114 @@
+// An avatar on its way into an engine, part by part.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Arrival } from "../../../python/mua/web/arrival.js";
+import { AvatarError } from "../../../python/mua/web/error.js";
+
+const settled = () => new Promise((done) => setTimeout(done));
+
+/** An engine that notes what is put into it, and an arrival of which parts are told. */
+function arriving({ projecting = Promise.resolve(), put = async () => {} } = {}) {
+  const noted = [];
+  const engine = {
+    entries: [],
+    renderer: { projecting },
+    async put(avatar, entry, whole) {
+      noted.push([avatar, whole]);
+      await put(avatar);
+      const shown = entry ?? { handle: { remove: () => noted.push("removed") } };
+      if (!entry) engine.entries.push(shown);
+      return shown;
+    },
+  };
+  const told = [];
+  const arrival = new Arrival(engine, (handle) => told.push(handle));
+  return { arrival, engine, noted, told };
+}
+
+test("each part takes the place of the one before, the whole one the last", async () => {
+  const { arrival, engine, noted, told } = arriving();
+  for (const part of ["mesh", "coarse"]) {
+    arrival.show(part);
+    await settled();
+  }
+  const handle = await arrival.complete("all");
+  assert.deepEqual(noted, [["mesh", false], ["coarse", false], ["all", true]]);
+  assert.deepEqual([engine.entries.length, told], [1, [handle, handle]]);
+});
+
+test("of parts that came before the device can draw, the newest is shown", async () => {
+  let ready;
+  const { arrival, noted } = arriving({ projecting: new Promise((done) => (ready = done)) });
+  for (const part of ["mesh", "coarse", "fine"]) arrival.show(part);
+  await settled();
+  assert.deepEqual(noted, []);
+  ready();
+  await settled();
+  assert.deepEqual(noted, [["fine", false]]);
+});
+
+test("a part that waits is left out once all of it is there", async () => {
+  let ready;
+  const { arrival, noted } = arriving({ projecting: new Promise((done) => (ready = done)) });
+  arrival.show("mesh");
+  const whole = arrival.complete("all");
+  ready();
+  await whole;
+  assert.deepEqual(noted, [["all", true]]);
+});
+
+test("the whole avatar waits for the part that is being shown, and takes its place", async () => {
+  let shown;
+  const { arrival, engine, noted } = arriving({ put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)) });
+  arrival.show("mesh");
+  await settled();
+  const whole = arrival.complete("all");
+  await settled();
+  assert.deepEqual(noted, [["mesh", false]]);
+  shown();
+  await whole;
+  assert.deepEqual([noted.at(-1), engine.entries.length], [["all", true], 1]);
+});
+
+test("a download that fails takes away what was shown of it, also where a part is on its way", async () => {
+  const { arrival, noted } = arriving();
+  arrival.show("mesh");
+  await settled();
+  arrival.show("coarse");
+  await arrival.fail();
+  assert.deepEqual(noted, [["mesh", false], "removed"]);
+  const early = arriving();
+  await early.arrival.fail();
+  assert.deepEqual(early.noted, []);
+});
+
+test("a part that was removed meanwhile is not told", async () => {
+  const { arrival, engine, told } = arriving({ put: async () => void (engine.removing = true) });
+  engine.entries.push = () => {};
+  arrival.show("mesh");
+  await settled();
+  assert.deepEqual(told, []);
+});
+
+test("kernels that do not compile are told by the whole avatar, not by its parts", async () => {
+  const refused = async () => {
+    throw new AvatarError("The graphics device refused.");
+  };
+  const { arrival, told } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
+  arrival.show("mesh");
+  await settled();
+  await assert.rejects(arrival.complete("all"), /refused/);
+  assert.deepEqual(told, []);
+});
+
+test("a part that breaks for another reason fails the whole", async () => {
+  const { arrival } = arriving({
+    put: async () => {
+      throw new TypeError("a fault of ours");
+    },
+  });
+  arrival.show("mesh");
+  await assert.rejects(arrival.complete("all"), /a fault of ours/);
+  await arrival.fail(); // and takes nothing away
+});

@@ -1,0 +1,64 @@
+// What an element's attributes ask of its player.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { adopt, ASKABLE, levelNamed, numberOf } from "../../../python/mua/web/attributes.js";
+import { fakePlayer, FakeElement } from "./page.mjs";
+
+const ALL = { splats: false, geometry: false, mesh: false, skeleton: false, shadow: false };
+
+/** The player after an attribute with this value, or without it. */
+function asked(name, value, player = fakePlayer()) {
+  adopt(player, new FakeElement(value === null ? {} : { [name]: value }), name);
+  return player;
+}
+
+for (const [name, value, wanted] of [
+  ["clip", "wave", "wave"],
+  ["clip", "nobody's", "walk"],
+  ["clip", null, "walk"],
+  ["speed", "0.5", 0.5],
+  ["speed", "0", 0],
+  ["speed", "fast", 1],
+  ["speed", null, 1],
+  ["level", "full", "full"],
+  ["level", "384", 384],
+  ["level", "auto", "auto"],
+  ["level", null, "auto"],
+  ["budget", "20000", 20000],
+  ["budget", "many", Infinity],
+  ["budget", null, null],
+  ["stereo", "", true],
+  ["stereo", null, false],
+  ["follow", "", true],
+  ["follow", null, false],
+  ["show", "mesh, shadow", { ...ALL, mesh: true, shadow: true }],
+  ["show", "", ALL],
+])
+  test(`${name}=${value === null ? "(none)" : `"${value}"`} asks for ${JSON.stringify(wanted)}`, () => {
+    assert.ok(ASKABLE.includes(name));
+    assert.deepEqual(asked(name, value)[name], wanted);
+  });
+
+test("without show, what is shown stays", () => {
+  const player = { ...fakePlayer(), show: { splats: true, mesh: true } };
+  assert.deepEqual(asked("show", null, player).show, { splats: true, mesh: true });
+});
+
+test("an attribute that asks nothing of a player changes nothing", () => {
+  const player = fakePlayer();
+  const before = structuredClone({ ...player, frameAll: null });
+  assert.deepEqual({ ...asked("controls", "", player), frameAll: null }, before);
+});
+
+test("a number that is left out or none is the other one", () => {
+  const element = new FakeElement({ orbit: "-3.5", azimuth: "left", elevation: "0" });
+  assert.equal(numberOf(element, "orbit", 7), -3.5);
+  assert.equal(numberOf(element, "azimuth", 7), 7);
+  assert.equal(numberOf(element, "elevation", 7), 0);
+  assert.equal(numberOf(element, "speed", 7), 7);
+});
+
+test("a level is a number of texels, the finest, or by the distance", () => {
+  assert.deepEqual(["full", "192", "auto", "", null].map(levelNamed), ["full", 192, "auto", "auto", "auto"]);
+});
