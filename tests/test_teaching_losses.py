@@ -10,6 +10,7 @@ from scipy import ndimage
 from scipy.spatial.distance import cdist
 from tube import HEIGHT, RADIUS, tube
 
+from mua import rotation
 from mua.camera import Camera, orbit
 from mua.rig.character import Mesh
 from mua.splatting.projection import Eye
@@ -126,6 +127,22 @@ def test_tracks_count_where_they_were_seen(mesh: Mesh) -> None:
     check_gradient(lambda vertices: track_error(vertices, tracks), moved(mesh, seed=1))
 
 
+def test_errors_of_a_figure_of_another_size_are_those_of_a_person_in_its_measure(mesh: Mesh) -> None:
+    """With what is out of reach, and with a shell inside another one that faces the other way."""
+    samples, posed, size = Samples.of(mesh, 150), moved(mesh, by=0.03), 8.0
+    inner = Cloud.of(replace(mesh, vertices=mesh.vertices * [0.83, 1, 0.83], faces=mesh.faces[:, ::-1]), 300)
+    outer = Cloud.of(mesh, 300)
+    points = np.concatenate([outer.points, inner.points, [[0.0, 0.5, 1.2 * REACH + RADIUS]]])
+    normals = np.concatenate([outer.normals, inner.normals, [[0.0, 0, 1]]])
+    large = Cloud(size * points, normals, size)
+    expected = size**2 * chamfer(posed, samples, Cloud(points, normals))
+    torch.testing.assert_close(chamfer(size * posed, samples, large), expected, rtol=1e-9, atol=0)
+    tracks = tracks_at(mesh, posed, by=2 * REACH)
+    grown = replace(tracks, points=size * tracks.points)
+    expected = size**2 * track_error(posed, tracks)
+    torch.testing.assert_close(track_error(size * posed, grown, size=size), expected, rtol=1e-9, atol=0)
+
+
 def test_a_point_that_one_camera_saw_counts_its_distance_from_the_ray(mesh: Mesh) -> None:
     posed = moved(mesh)
     tracks = replace(tracks_at(mesh, posed, by=0.0), points=torch.tensor([[0.0, 5, 0]], dtype=torch.float64))
@@ -206,6 +223,23 @@ def test_a_silhouette_counts_by_what_the_mask_covers(mesh: Mesh) -> None:
     wide = (outlines(posed, samples, [eye])[0] - mask).square().sum() / mask.sum()
     torch.testing.assert_close(silhouette_error(posed, samples, [Outline(eye, mask)]), wide)
     assert torch.isfinite(silhouette_error(posed, samples, [Outline(eye, torch.zeros_like(mask))]))
+
+
+def test_silhouettes_of_several_cameras_count_their_mean(mesh: Mesh) -> None:
+    posed, samples = torch.tensor(mesh.vertices), Samples.of(mesh, 500)
+    eye = Eye.of(camera(), posed)
+    masks = [outlines(posed * scale, samples, [eye])[0] for scale in (1.1, 1.2)]
+    errors = [silhouette_error(posed, samples, [Outline(eye, mask)]) for mask in masks]
+    both = silhouette_error(posed, samples, [Outline(eye, mask) for mask in masks])
+    torch.testing.assert_close(both, torch.stack(errors).mean())
+
+
+def test_discs_face_as_the_surface_does() -> None:
+    normals = np.random.default_rng(0).normal(size=(20, 3))
+    normals = np.concatenate([normals / np.linalg.norm(normals, axis=1, keepdims=True), [[0, 0, 1], [0, 0, -1]]])
+    turns = silhouette.facing(torch.tensor(normals)).numpy()
+    np.testing.assert_allclose(np.linalg.norm(turns, axis=1), 1, rtol=1e-12)
+    np.testing.assert_allclose(rotation.rotate(turns, np.tile([0.0, 0, 1], (22, 1))), normals, atol=1e-12)
 
 
 def test_a_triangle_without_area_is_a_finite_disc() -> None:

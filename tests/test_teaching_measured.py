@@ -46,11 +46,12 @@ def test_a_surface_is_what_the_file_holds(tmp_path: Path, text: bool) -> None:
 @pytest.mark.parametrize(
     ("vertices", "faces", "sentence"),
     [
-        (CORNERS, [(0, 1, 9)], "names vertex 9; there are 4"),
+        (CORNERS, [(0, 1, 4)], "names vertex 4; there are 4"),
+        (CORNERS, [(0, 1, 2), (0, -1, 3)], "names vertex -1; there are 4"),
         (CORNERS, [(0, 1, 2, 3)], "expected triangles"),
         (np.full((4, 3), np.nan), TRIANGLES, "expected triangles between finite vertices"),
     ],
-    ids=["no such vertex", "squares", "nan"],
+    ids=["no such vertex", "negative", "squares", "nan"],
 )
 def test_a_wrong_surface_is_a_sentence(tmp_path: Path, vertices: Array, faces: object, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):

@@ -63,8 +63,10 @@ def test_points_in_pictures_are_what_their_ray_meets_first() -> None:
     outward = face_normals(mesh)[wanted.triangles]
     points = places(wanted, *template())
     origins = points + 0.01 * outward
-    rays = PointTracks(Path(), origins[None], np.ones((1, POINTS)), directions=-outward[None])
-    same(anchors_of(rays, mesh, posed[:1], size=1.0), wanted)
+    order = np.tile(np.arange(POINTS), 3)  # more rays than are cut with all triangles at once
+    rays = PointTracks(Path(), origins[None, order], np.ones((1, 3 * POINTS)), directions=-outward[None, order])
+    found = places(anchors_of(rays, mesh, posed[:1], size=1.0), *template())
+    np.testing.assert_allclose(found, points[order], atol=1e-9)
     upward, away = np.array([[0.0, 1, 0]]), np.array([[0.0, 10, 0]])
     assert not first_hits(*template(), away, upward).found.any()
 
@@ -76,6 +78,26 @@ def test_what_is_far_from_the_template_is_no_point_of_it() -> None:
     found = anchors_of(PointTracks(Path(), points, np.ones((3, POINTS))), synthetic_avatar().rig.mesh, posed, size=1.0)
     assert not found.found[:5].any()
     assert found.found[5:].all()
+
+
+def test_a_ray_meets_triangles_alone_and_only_ahead_of_its_camera() -> None:
+    vertices = np.array([[0.0, 0, 1], [1, 0, 1], [0, 1, 1], [0, 0, -1], [1, 0, -1], [0, 1, -1]])
+    faces, ahead = np.array([[0, 1, 2], [3, 4, 5]]), np.array([0.0, 0, 1])
+    beside = [(0.2, 0.3, 0), (0.7, 0.7, 0), (-0.1, 0.3, 0), (0.3, -0.1, 0), (0.2, 0.3, 2), (0.2, 0.3, -2)]
+    hits = first_hits(vertices, faces, np.array(beside, float), np.tile(ahead, (len(beside), 1)))
+    np.testing.assert_array_equal(hits.found, [True, False, False, False, False, True])
+    np.testing.assert_array_equal(hits.triangles[[0, 5]], [0, 1])
+    np.testing.assert_allclose(hits.barycentrics[[0, 5]], [[0.5, 0.2, 0.3]] * 2, atol=1e-12)
+
+
+def test_how_far_is_too_far_grows_with_the_figure() -> None:
+    wanted, posed = spread()
+    mesh = synthetic_avatar().rig.mesh
+    large = replace(mesh, vertices=8 * mesh.vertices)
+    points = 8 * followed(posed, wanted) + [0.3, 0, 0]  # 3 cm on a person
+    for bind in (None, points[0]):
+        tracks = PointTracks(Path(), points, np.ones((3, POINTS)), bind=bind)
+        assert anchors_of(tracks, large, 8 * posed, size=8.0).found.all()
 
 
 def of_texels(*, shift: float) -> TexelTracks:

@@ -50,7 +50,7 @@ class Lesson(nn.Module):
         self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
         self.refinement = refinement
         self._material, self._weights = material, settings.weights
-        self._unit = (UNIT * figure_scale(teacher.rig.mesh.vertices)) ** 2
+        self._size = figure_scale(teacher.rig.mesh.vertices)
 
     def forward(
         self,
@@ -111,11 +111,9 @@ class Lesson(nn.Module):
         """How far texels are from where their points were followed to (the paper's L_cor-tex)."""
         if not self._material.tracks:
             return splats.centres.new_zeros(())
-        return (
-            self._weights.tracks
-            / self._unit
-            * self._material.tracks[index].error(frame.posed, splats, frame.texture[:, ATTRIBUTES["offset"]])
-        )
+        offsets = frame.texture[:, ATTRIBUTES["offset"]]
+        error = self._material.tracks[index].error(frame.posed, splats, offsets, size=self._size)
+        return self._weights.tracks / (UNIT * self._size) ** 2 * error
 
     def _restraint(self, frame: Frame, index: int) -> Tensor:
         """Keeps what pictures do not decide near nothing."""

@@ -71,6 +71,7 @@ def read_surface(file: Path) -> Mesh:
         raise InputError(f"{file}: is no .ply file with vertices and triangles ({error})") from error
     if faces.ndim != 2 or faces.shape[1] != 3 or not np.isfinite(vertices).all():
         raise InputError(f"{file}: expected triangles between finite vertices")
-    if faces.min(initial=0) < 0 or faces.max(initial=-1) >= len(vertices):
-        raise InputError(f"{file}: a face names vertex {faces.max()}; there are {len(vertices)}")
+    wrong = faces[(faces < 0) | (faces >= len(vertices))]
+    if wrong.size:
+        raise InputError(f"{file}: a face names vertex {wrong[0]}; there are {len(vertices)}")
     return Mesh(vertices, faces, np.zeros((1, 2)), np.zeros_like(faces))

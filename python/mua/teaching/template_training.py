@@ -177,7 +177,7 @@ class _Lesson(nn.Module):
         if observed.cloud is not None:
             loss = loss + weights.surface / self._unit * chamfer(posed, self._samples, observed.cloud)
         if observed.tracks is not None:
-            loss = loss + weights.tracks / self._unit * track_error(posed, observed.tracks)
+            loss = loss + weights.tracks / self._unit * track_error(posed, observed.tracks, size=self._size)
         if observed.outlines:
             loss = loss + weights.silhouette * silhouette_error(posed, self._samples, observed.outlines)
         return loss

@@ -33,27 +33,29 @@ class TexelTracks:
         posed: Tensor,  # [V, 3] the template, world, metres
         splats: TorchSplats,
         offsets: Tensor,  # [N, 3] of the splats from the template, bind pose, metres
+        *,
+        size: float = 1.0,  # of the figure over that of a person
     ) -> Tensor:
         """Mean squared distance of the points from where they were seen, metres^2: each is offset as its splat is."""
         turns, own = (values.index_select(0, self.texels) for values in (splats.turns, offsets))
-        return missed(_on(posed, self.tracks) + rotate(turns, own), self.tracks)
+        return missed(_on(posed, self.tracks) + rotate(turns, own), self.tracks, reach=REACH * size)
 
 
 def track_error(
     posed: Tensor,  # [V, 3] world, metres
     tracks: Tracks,
     *,
-    reach: float = REACH,
+    size: float = 1.0,  # of the figure over that of a person
 ) -> Tensor:
-    """Mean squared distance of tracked points from where they were seen, metres^2; beyond `reach` it grows linearly."""
-    return missed(_on(posed, tracks), tracks, reach=reach)
+    """Mean squared distance of tracked points from where they were seen, metres^2; beyond REACH it grows linearly."""
+    return missed(_on(posed, tracks), tracks, reach=REACH * size)
 
 
 def missed(
     points: Tensor,  # [P, 3] world, metres
     tracks: Tracks,
     *,
-    reach: float = REACH,
+    reach: float,  # metres
 ) -> Tensor:
     """The same of points wherever they are; of those seen by one camera, from the ray."""
     tiny = torch.finfo(points.dtype).tiny
