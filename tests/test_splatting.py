@@ -12,7 +12,9 @@ from synthetic_avatar import synthetic_avatar
 from mua import rotation
 from mua.camera import Camera, orbit, perspective
 from mua.decode import Splats, decode_clip_frame
-from mua.kernels.splat_project import LEAST_OPACITY, REACH
+from mua.kernels.splat_project import LEAST_OPACITY, REACH, splat_project
+from mua.kernels.splat_project import half_extents as extents_of
+from mua.kernels.splat_sort import splat_sort
 from mua.rendering import render_premultiplied
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import draw_quads, largest_shares, rasterise, rasterise_views
@@ -76,6 +78,32 @@ def test_a_large_splat_beside_the_picture_is_drawn_as_by_the_reference_renderer(
     expected = render_premultiplied(splats, camera())
     np.testing.assert_allclose(drawn(splats, camera()), expected, rtol=0, atol=2e-5)
     assert expected[..., 3].max() > 0.2
+
+
+def test_splats_are_seen_shaped_and_ordered_as_by_the_reference_kernels() -> None:
+    """By a camera whose middle is off its picture's, with splats thinner than a pixel, far aside, and in one place."""
+    splats = random_splats(400)
+    centres = splats.centres * np.where(np.arange(400) % 3 == 0, 2.0, 1.0)[:, None]
+    centres[200:300] = centres[:100]  # of which the later lies before the earlier
+    scales = splats.scales * np.where(np.arange(400) % 2, 1, 1e-3)[:, None] * [1, 1, 1e-3]
+    scales[::7] *= 20
+    splats = replace(splats, centres=centres, scales=scales)
+    projection = camera().projection.copy()
+    projection[:2, 2] = 0.6, -0.3
+    eye, near = replace(camera(), projection=projection), -projection[2, 3] / 2
+    axes = rotation.to_matrix(splats.rotations) * scales[:, None]
+    covariance = (axes @ axes.swapaxes(1, 2))[:, *np.triu_indices(3)]
+    views = eye.view[None], projection[None]
+    seen, keys, ellipses = splat_project(
+        centres, covariance, splats.opacities, *views, screen=SCREEN, near=near, bounds=splats.bounds
+    )
+    front = splat_sort(keys)[::-1]
+    tensors = in_torch(splats)
+    quads = project(tensors, Eye.of(eye, tensors.centres), torch.tensor(splats.bounds))
+    assert len(np.unique(keys)) < len(keys) > 200
+    np.testing.assert_array_equal(quads.splats, seen[front])
+    np.testing.assert_allclose(quads.shapes[:, :2], ellipses[0, front, :2], rtol=1e-9)
+    np.testing.assert_allclose(half_extents(quads.shapes), extents_of(ellipses[0, front]), rtol=1e-6)
 
 
 def test_a_splat_that_changes_no_8_bit_picture_is_left_out() -> None:

@@ -1,16 +1,18 @@
 """Posing in torch against the reference kernels and finite differences."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 import torch
 from synthetic_avatar import synthetic_avatar
 
+from mua import rotation
 from mua.decode import Splats, decode_clip_frame
+from mua.kernels import dq_skinning as kernel
 from mua.kernels.dq_skinning import LARGEST_LOG_SCALE
 from mua.model import Model
-from mua.splatting.posing import TorchRig, pose_splats
+from mua.splatting.posing import TorchRig, blend_texels, blend_vertices, pose_splats
 from mua.splatting.projection import TorchSplats
 
 FRAME = 3
@@ -55,6 +57,23 @@ def test_terms_on_the_other_hemisphere_change_nothing(avatar: Model, decoded: Sp
     joints[::2] *= -1
     turned = pose_splats(rig, joints, canonical, texture)
     torch.testing.assert_close(turned.centres, straight.centres, rtol=0, atol=1e-12)
+
+
+def test_terms_far_apart_are_blended_about_that_of_the_largest_weight(avatar: Model) -> None:
+    """As by the reference: with turns all over, which term others are turned to decides what comes out."""
+    rng = np.random.default_rng(3)
+    rig, mesh = avatar.rig, avatar.rig.mesh
+    indices = rng.permuted(np.tile(np.arange(len(rig.skeleton.names)), (len(mesh.vertices), 1)), axis=1)
+    weights = -np.sort(-rng.dirichlet(np.ones(indices.shape[1]), len(mesh.vertices)), axis=1)
+    joints = rotation.normalize(rng.normal(size=(indices.shape[1], 8)))
+    own = replace(
+        TorchRig.of(rig, torch.tensor(joints)), skin_indices=torch.tensor(indices), skin_weights=torch.tensor(weights)
+    )
+    vertices = blend_vertices(own.skin_indices, own.skin_weights, torch.tensor(joints))
+    expected = kernel.blend_vertices(joints, indices, weights)
+    np.testing.assert_allclose(vertices, expected, rtol=1e-9, atol=1e-12)
+    texels = kernel.blend_texels(expected, mesh.faces, rig.texels.triangles, rig.texels.barycentrics)
+    np.testing.assert_allclose(blend_texels(own, vertices), texels, rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("of", [0, 1, 2], ids=["joints", "mesh", "texture"])

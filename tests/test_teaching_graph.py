@@ -81,6 +81,30 @@ def test_pieces_are_linked_and_every_vertex_has_a_node_of_its_own_piece(rig: Rig
     assert ((graph.nodes >= count)[graph.indices[:, 0]] == (np.arange(2 * count) >= count)).all()
 
 
+def test_steps_are_as_long_as_edges_and_longer_where_the_skin_changes(rig: Rig) -> None:
+    vertices, faces = rig.mesh.vertices, rig.mesh.faces
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges = np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1)
+    plain, skinned = (
+        np.asarray(surface_steps(rig, skin_length=length)[ends[:, 0], ends[:, 1]])[0] for length in (0, 0.5)
+    )
+    np.testing.assert_allclose(plain, edges, rtol=0, atol=1e-5)
+    weights = np.zeros((len(vertices), len(rig.skeleton.names)))
+    np.add.at(weights, (np.arange(len(weights))[:, None], rig.skin_indices), rig.skin_weights)
+    apart = np.linalg.norm(weights[ends[:, 0]] - weights[ends[:, 1]], axis=1) / np.sqrt(2)
+    whole = np.hypot(edges, 0.5 * np.ptp(vertices, axis=0).max() * apart)
+    np.testing.assert_allclose(skinned, whole, rtol=0, atol=1e-5)
+
+
+def test_vertices_in_one_place_are_neighbours(rig: Rig) -> None:
+    mesh = rig.mesh
+    first = mesh.faces[0]
+    vertices = mesh.vertices.copy()
+    vertices[first[1]] = vertices[first[0]]
+    steps = surface_steps(replace(rig, mesh=replace(mesh, vertices=vertices)), skin_length=0)
+    assert 0 < steps[first[0], first[1]] < 1e-5
+
+
 def test_vertices_follow_nodes_that_move_as_they_do(rig: Rig) -> None:
     """The upper half of a tube hangs on one joint, the lower on another."""
     upper = rig.mesh.vertices[:, 1] > HEIGHT / 2

@@ -58,6 +58,38 @@ def test_a_node_sees_distant_joints_less(rig: Rig) -> None:
     np.testing.assert_allclose(hangs.sum(axis=1), 1, atol=ROUNDING)
 
 
+def test_a_part_sees_a_joint_less_with_every_joint_between_and_the_root_from_one_step(rig: Rig) -> None:
+    """A chain: root, spine, chest; of every pose of the window its place, then the turns of all three."""
+    reach = NodeFeatures(rig, ENCODING, build_graph(rig, nodes=9), features=5, fade=0.5).parts.reach
+    rows = [[0, 1, 2], [1, 0, 1], [1, 1, 0]]  # joints from root, spine and chest to each
+    expected = [([root] * (ENCODING.width // 3 - 12) + [spine] * 6 + [chest] * 6) * 3 for root, spine, chest in rows]
+    torch.testing.assert_close(reach, 0.5 ** torch.tensor(expected, dtype=torch.float32))
+
+
+def test_blocks_add_to_what_a_node_knows(rig: Rig) -> None:
+    features = NodeFeatures(rig, ENCODING, build_graph(rig, nodes=20), features=5, fade=0.5)
+    features.seed(torch.Generator().manual_seed(0))
+    inputs = torch.randn(2, ENCODING.width, generator=torch.Generator().manual_seed(1))
+    own = torch.relu(features.mix @ features.parts(inputs) + features.code)
+    with torch.no_grad():
+        for block in features.blocks:
+            block.weight.zero_()
+    torch.testing.assert_close(features(inputs), own)
+
+
+def test_networks_start_from_small_weights(rig: Rig) -> None:
+    features = NodeFeatures(rig, ENCODING, build_graph(rig, nodes=20), features=64, fade=0.5)
+    features.seed(torch.Generator().manual_seed(0))
+    first, code = features.parts.layer.weight.detach(), features.code.detach()
+    assert float(first.std()) == pytest.approx(0.3 * ENCODING.width**-0.5, rel=0.1)
+    assert float(code.std()) == pytest.approx(0.1, rel=0.1)
+
+
+def test_a_graph_of_one_node_has_no_neighbours_to_ask(rig: Rig) -> None:
+    features = NodeFeatures(rig, ENCODING, build_graph(rig, nodes=1), features=5, fade=0.5)
+    assert torch.isfinite(features(torch.ones(1, ENCODING.width))).all()
+
+
 def test_what_fades_to_nothing_changes_nothing(rig: Rig) -> None:
     """With a fade of 0, a part is moved by its own joint and the root alone."""
     graph = build_graph(rig, nodes=20)

@@ -14,7 +14,10 @@ from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.coarser import coarsest, texel_length
+from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
+from mua.kernels.splat_project import pack_texels
 
+STAND_INS = Path(__file__).parent / "stand_ins"
 CASES = json.loads((ROOT / "tests" / "golden" / "level_choice.json").read_text())
 TYPES = {"texels": "<i4", "triangles": "<i4", "barycentrics": "<f4", "geometry": "<f4", "appearance": "<f4"}
 TYPES["one_sided"] = "?"
@@ -23,9 +26,11 @@ ROUNDING = 4 * np.finfo(np.float32).eps  # of means, in double precision, of num
 
 @pytest.fixture(scope="module")
 def program(csharp: CSharp) -> Path:
-    file = csharp.build([RUNTIME / "Format"], library=True)
-    sources = [RUNTIME / "DetailLevel.cs", RUNTIME / "LevelChoice.cs", PROGRAMS / "LevelProgram.cs"]
-    return csharp.build(sources, references=[file])
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "LevelProgram.cs"]
+    return csharp.build(sources, references=[engine, file, motion])
 
 
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
@@ -77,7 +82,27 @@ def assert_levels_alike(csharp: CSharp, program: Path, path: Path, avatar: Avata
             assert word == name
             numbers = np.frombuffer(bytes.fromhex(found), TYPES[name]).reshape(values.shape)
             np.testing.assert_allclose(numbers, values, rtol=ROUNDING, atol=ROUNDING, err_msg=f"{number} {name}")
+        tiles, packed = (np.frombuffer(bytes.fromhex(next(said).split(" ")[1]), "<u4") for _ in range(2))
+        np.testing.assert_array_equal(tiles, texel_tiles(texels.texels, texels.size)[0])
+        places = pack_texels(texels.triangles, texels.barycentrics, texels.one_sided).ravel().astype(np.int64)
+        apart = np.abs(packed - places)  # means of barycentrics may round to another step
+        assert number or not apart.any()
+        assert ((apart == 0) | (np.arange(len(apart)) % 2 == 1) & np.isin(apart, [1, 1 << 16, (1 << 16) + 1])).all()
     assert list(said) == []
+
+
+@pytest.mark.parametrize("coarser", [0, 1, 2])
+@pytest.mark.parametrize("before", [0, 1, 3, 8])
+def test_levels_without_details_are_the_filter_of_python(
+    csharp: CSharp, program: Path, before: int, coarser: int
+) -> None:
+    """Also where zeros begin or end the taps of a level."""
+    taps = np.concatenate([np.zeros(before), np.arange(1.0, 5) / 7, np.zeros(2 - before % 2)])
+    said = csharp.run(program, "upsampling", "2", str(coarser), ",".join(map(repr, taps.tolist()))).splitlines()
+    expected, delay = upsampling_taps(taps, 2, coarser)
+    assert said[0].split()[1:] == [str(delay), *map(str, expected.shape)]
+    found = np.frombuffer(bytes.fromhex(said[1].split()[1]), "<f4")
+    np.testing.assert_allclose(found, expected.ravel(), rtol=1e-6)
 
 
 def test_the_table_that_both_players_choose_by(csharp: CSharp, program: Path, tmp_path: Path) -> None:

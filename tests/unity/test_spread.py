@@ -150,3 +150,5 @@ def test_a_rig_that_nobody_saw_for_a_while_shows_its_pose_of_now(watched: Watche
     spread, at_once = watched.play("SpreadsRigThatIsNotSeen")
     assert alike(spread.kept[10], at_once.kept[10])
     assert not alike(spread.kept[10], spread.kept[9])
+    late = zip(spread.kept[11:], at_once.kept[10:], strict=False)
+    assert [alike(*pair) for pair in late] == [True] * (FRAMES - 11)

@@ -61,7 +61,7 @@ namespace Mua
             Watch(Fast, FollowRig, (shown, i) =>
             {
                 TurnRig(shown, i);
-                camera.enabled = i < 5 || i > 9;
+                camera.enabled = i < 4 || i > 9; // a decode has begun in frame 3
             });
         }
 

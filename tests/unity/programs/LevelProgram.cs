@@ -1,9 +1,11 @@
-// Prints the levels of detail of a file, and those that are chosen for avatars, for tests/unity/test_levels.py.
+// Prints the levels of detail of a file and what is uploaded of them, the filters of levels without details, and the levels
+// that are chosen for avatars, for tests/unity/test_levels.py.
 
 using System;
 using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
+using System.Reflection;
 using Mua;
 using Mua.Format;
 
@@ -20,6 +22,14 @@ internal static class LevelProgram
             }
             return;
         }
+        if (arguments[0] == "upsampling")
+        {
+            double[] taps = Array.ConvertAll(arguments[3].Split(','), double.Parse);
+            var filter = new Upsampling(taps, int.Parse(arguments[1]), int.Parse(arguments[2]));
+            Console.WriteLine("filter " + filter.Delay + " " + filter.Reach + " " + filter.Factor);
+            Print("taps", Elements(filter.Taps));
+            return;
+        }
         AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(arguments[0]));
         Console.WriteLine("texel " + DetailLevel.TexelLength(avatar).ToString("R"));
         foreach (DetailLevel level in DetailLevel.All(avatar))
@@ -31,6 +41,15 @@ internal static class LevelProgram
             Print("geometry", level.Geometry);
             Print("appearance", level.Appearance);
             Print("one_sided", level.OneSided);
+            new LevelBuffers(level, upload =>
+            {
+                Array elements = Elements(upload);
+                if (!(elements is TexelTiles.Row[])) // which a frame is made with
+                {
+                    Print("uploaded", elements);
+                }
+                return upload;
+            });
         }
     }
 
@@ -58,6 +77,12 @@ internal static class LevelProgram
         AvatarSeen[] chosen = avatars.ToArray();
         LevelChoice.Choose(chosen, new int[chosen.Length], long.Parse(numbers[0]));
         return "levels " + string.Join(" ", Array.ConvertAll(chosen, seen => seen.Level.ToString()));
+    }
+
+    private static Array Elements(Upload upload)
+    {
+        FieldInfo field = typeof(Upload).GetField("elements", BindingFlags.Instance | BindingFlags.NonPublic);
+        return (Array)field.GetValue(upload);
     }
 
     private static void Print(string name, Array values)

@@ -20,6 +20,8 @@ namespace UnityEngine.Networking
     {
         public enum Result { InProgress, Success, ConnectionError, ProtocolError, DataProcessingError }
 
+        private const string Scheme = "jar:file://"; // of what lies in an Android package
+
         private readonly int asked = Time.frameCount;
         private bool done;
         private Result outcome;
@@ -54,7 +56,7 @@ namespace UnityEngine.Networking
         private void Finish()
         {
             done = true;
-            string path = url.Substring(url.IndexOf("://", StringComparison.Ordinal) + 3);
+            string path = url.StartsWith(Scheme, StringComparison.Ordinal) ? url.Substring(Scheme.Length) : "";
             bool there = File.Exists(path);
             outcome = there ? Result.Success : Result.ProtocolError;
             error = there ? null : "HTTP/1.1 404 Not Found";
