@@ -1,6 +1,8 @@
 """Commands answer before they load what takes seconds, and all have --version and --quiet."""
 
 import importlib.metadata
+import runpy
+import sys
 from pathlib import Path
 
 import pytest
@@ -83,6 +85,16 @@ def test_absent_motion_is_told_likewise(name: str, tmp_path: Path, avatar_file: 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_says_its_version_without_its_arguments(name: str) -> None:
     assert started(name, "--version").out == f"mua-{name} {mua.__version__}\n"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_runs_as_a_module(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.delitem(sys.modules, f"mua.cli.{name}", raising=False)  # runpy warns of one that is imported
+    monkeypatch.setattr(sys, "argv", [f"mua-{name}", "--version"])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_module(f"mua.cli.{name}", run_name="__main__")
+    assert not ended.value.code
+    assert mua.__version__ in capsys.readouterr().out
 
 
 def test_the_version_is_that_of_the_installation() -> None:

@@ -134,3 +134,7 @@ def main(
 def run() -> None:
     """Entry point of the command."""
     run_command(main)
+
+
+if __name__ == "__main__":
+    run()

@@ -190,3 +190,7 @@ def _figures(milliseconds: float, spread: str, work: "Work", copy_bandwidth: flo
 
 def _spread(timing: "Timing") -> str:
     return f"{timing.high - timing.low:.3f}"
+
+
+if __name__ == "__main__":
+    run()

@@ -160,3 +160,7 @@ def _row(fit: "CameraFit") -> tuple[str, ...]:
         "" if least is None else f"{least.overlap:.0%} ({least.clip}, frame {least.frame})",
         "held out" if camera.held_out else "",
     )
+
+
+if __name__ == "__main__":
+    run()

@@ -199,3 +199,7 @@ def _examine(
     wrong = [one.name for one in checks if one.state != "ok"]
     if wrong:
         raise InputError(f"{len(wrong)} of {len(checks)} checks are not ok: {', '.join(wrong)}")
+
+
+if __name__ == "__main__":
+    run()

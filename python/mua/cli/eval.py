@@ -113,3 +113,7 @@ def _check_filmed(order: EvaluationOrder) -> None:
 def run() -> None:
     """Entry point of the command."""
     run_command(evaluate)
+
+
+if __name__ == "__main__":
+    run()

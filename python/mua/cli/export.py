@@ -78,3 +78,7 @@ def export(
 def run() -> None:
     """Entry point of the command."""
     run_command(export)
+
+
+if __name__ == "__main__":
+    run()

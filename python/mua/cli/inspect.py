@@ -103,3 +103,7 @@ def _clips(held: dict[str, Any]) -> Table | str:
     for clip in held["clips"]:
         table.add_row(escape(clip["name"]), str(clip["frames"]), f"{clip['rate']:g}", f"{clip['seconds']:.1f}")
     return table
+
+
+if __name__ == "__main__":
+    run()

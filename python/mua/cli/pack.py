@@ -41,3 +41,7 @@ def pack(
 def run() -> None:
     """Entry point of the command."""
     run_command(pack)
+
+
+if __name__ == "__main__":
+    run()

@@ -72,3 +72,7 @@ def _write(
 def run() -> None:
     """Entry point of the command."""
     run_command(share)
+
+
+if __name__ == "__main__":
+    run()

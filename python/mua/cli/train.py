@@ -70,5 +70,5 @@ def run() -> None:
     run_command(main)
 
 
-if __name__ == "__main__":  # for torchrun -m
+if __name__ == "__main__":
     run()

@@ -169,3 +169,7 @@ def view(
 def run() -> None:
     """Entry point of the command."""
     run_command(view)
+
+
+if __name__ == "__main__":
+    run()
