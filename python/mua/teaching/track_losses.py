@@ -37,8 +37,12 @@ class TexelTracks:
         size: float = 1.0,  # of the figure over that of a person
     ) -> Tensor:
         """Mean squared distance of the points from where they were seen, metres^2: each is offset as its splat is."""
+        return missed(self.places(posed, splats, offsets), self.tracks, reach=REACH * size)
+
+    def places(self, posed: Tensor, splats: TorchSplats, offsets: Tensor) -> Tensor:
+        """Where the texels have the points [P, 3], world, metres; arguments as above."""
         turns, own = (values.index_select(0, self.texels) for values in (splats.turns, offsets))
-        return missed(_on(posed, self.tracks) + rotate(turns, own), self.tracks, reach=REACH * size)
+        return _on(posed, self.tracks) + rotate(turns, own)
 
 
 def track_error(

@@ -47,10 +47,11 @@ def tracks_of(filmed: Filmed) -> list[TexelTracks]:
     """Those of all training frames; empty where the capture has none. Raises InputError where a file is wrong."""
     if filmed.capture.tracks is None and filmed.capture.tracks_2d is None:
         return []
-    return [frame for clip in filmed.clips for frame in _of_clip(filmed, clip)]
+    return [frame for clip in filmed.clips for frame in tracks_of_clip(filmed, clip)]
 
 
-def _of_clip(filmed: Filmed, clip: Clip) -> list[TexelTracks]:
+def tracks_of_clip(filmed: Filmed, clip: Clip) -> list[TexelTracks]:
+    """Those of a clip's frames."""
     rig, read = filmed.subject.rig, read_tracks(filmed.capture, clip.name)
     joints = rig.skeleton.skinning(clip.rotations, clip.translations)
     skinning = Skinning(rig.skin_indices, rig.skin_weights)
