@@ -38,19 +38,22 @@ BONES = ("Chest", "Hips", "Spine")
 REST = np.array([0.3, 0.02, -0.2, 0.4, 0.1, -0.3, 0.2, 0.7, 0.1, 0.05])  # the pose that the mesh is in
 
 
-def write_character(folder: Path) -> Path:
-    """Write the files of a tube on three bones, which stands where its rest pose has it; returns the .character."""
+def write_character(folder: Path, *, millimetre: float = 1.0) -> Path:
+    """Write the files of a tube on three bones, which stands where its rest pose has it; returns the .character.
+
+    Lengths are as if `millimetre` were the unit of 1 mm: in metres with 0.001.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     character = tube()
     mesh, uv = character.mesh, character.mesh.uv * [1, -1] + [0, 1]
-    moved = 1000 * (mesh.vertices + np.array([REST[0], 0, REST[2]]))
+    moved = 1000 * millimetre * (mesh.vertices + np.array([REST[0], 0, REST[2]]))
     corners = np.stack([mesh.faces, mesh.uv_faces], axis=-1) + 1
     names = [character.skeleton.names.index(bone) for bone in BONES]
     at = {joint: bone for bone, joint in enumerate(names)}
     files = {
         "tube.character": "skeletool character file v1.0\n"
         + "".join(f"{label}\n  tube.{end}\n" for label, end in zip(LABELS, ENDS, strict=True)),
-        "tube.skeleton": skeleton_text(),
+        "tube.skeleton": skeleton_text(millimetre),
         "tube.obj": "mtllib ./tube.mtl\n"
         + "".join(f"v {x!r} {y!r} {z!r} 0.5 0.5 0.5\n" for x, y, z in moved.tolist())
         + "".join(f"vt {u!r} {v!r}\n" for u, v in uv.tolist())
@@ -76,13 +79,18 @@ LABELS = ("skeleton", "mesh", "skin", "pose")
 ENDS = ("skeleton", "obj", "skin", "motion")
 
 
-def skeleton_text() -> str:
-    lines = ["Skeletool Skeleton Definition V1.0", f"joints: {len(JOINTS.split()) // 10}", JOINTS.strip("\n")]
+def skeleton_text(millimetre: float) -> str:
+    joints = [line.split() for line in JOINTS.strip("\n").splitlines()]
+    slides = {name for name, kind, *_ in joints if kind == "prismatic"}
+    for row in joints:
+        row[3:6] = [f"{millimetre * float(word):g}" for word in row[3:6]]
+    lines = ["Skeletool Skeleton Definition V1.0", f"joints: {len(joints)}"]
+    lines += [f"  {row[0]:9} {row[1]:9} {row[2]:9} {' '.join(row[3:])}" for row in joints]
     lines += ["markers: 1", "  Back Chest point 1 2 3", "scaling joints: 1", "  all 2", "  Hips", "  Chest"]
     lines += [f"dofs: {len(DOFS)}"]
     for dof, moved in DOFS.items():
         lines += [f"  {dof} {len(moved)}", "    nolimits" if len(moved) % 2 else "    limits -0.1 0.1"]
-        lines += [f"    {joint} {weight}" for joint, weight in moved.items()]
+        lines += [f"    {joint} {weight * (millimetre if joint in slides else 1):g}" for joint, weight in moved.items()]
     return "\n".join([*lines, "textureEntries: 0", ""])
 
 

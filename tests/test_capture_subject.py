@@ -11,6 +11,7 @@ from subjects import FIRST, FRAMES, write_subject
 
 from mua.capture import open_capture
 from mua.capture.outline import posed_template
+from mua.capture.streams import MASKS
 
 CORNER_BOUND = 5e-6  # metres: float32 weights, and vertices of one place that are welded
 
@@ -76,6 +77,19 @@ def test_one_take_may_be_described_alone(subject: Path, command: Commands, tmp_p
     assert found.view("training", 3, "stream003").mask.any()
 
 
+def test_poses_and_template_may_lie_elsewhere(subject: Path, command: Commands, tmp_path: Path) -> None:
+    """Each take is described with its own; the poses are then those of the template that is given."""
+    metadata = subject.parent / "Subject_0_metadata"
+    elsewhere = (metadata / "ddc_character").rename(tmp_path / "character")
+    poses = (elsewhere / "skeletoolToGTPose" / "poseAngles.motion").rename(tmp_path.parent / "poses.motion")
+    (metadata / "cameras.calib").rename(subject / "training" / "cameras.calib")
+    given = ("--template", elsewhere / "tube.character", "--motion", poses)
+    ended = command("capture", "describe", subject / "training", *given, "-o", tmp_path / "out")
+    assert "4 cameras, 4 frames in 1 clips" in ended.out, ended
+    assert open_capture(tmp_path / "out").template == elsewhere / "tube.character"
+    poses.unlink()
+
+
 def test_what_a_subject_lacks_is_named(subject: Path, command: Commands, tmp_path: Path) -> None:
     asked = ("capture", "describe", subject, "-o", tmp_path / "out")
     characters = subject.parent / "Subject_0_metadata" / "ddc_character"
@@ -86,6 +100,13 @@ def test_what_a_subject_lacks_is_named(subject: Path, command: Commands, tmp_pat
         assert not list((tmp_path / "out").iterdir())
         return sentence
 
+    for camera in range(4):
+        (subject / "testing" / MASKS / f"stream{camera:03d}.mp4").rename(tmp_path / f"{camera}.mp4")
+        (subject / "testing" / MASKS / f"stream{camera:03d}").mkdir()
+        (subject / "testing" / MASKS / f"stream{camera:03d}" / "0000.png").touch()
+    assert "masks are called {camera}/{frame:04d}.png, those of training {camera}.mp4" in refused()
+    for camera in range(4):
+        (tmp_path / f"{camera}.mp4").rename(subject / "testing" / MASKS / f"stream{camera:03d}.mp4")
     assert "holds training and testing, which cannot share it" in refused("--motion", poses)
     text = poses.read_text()
     poses.write_text(text.replace("\n0 ", "\n7 ", 1).split("\n1 ")[0])
@@ -96,6 +117,6 @@ def test_what_a_subject_lacks_is_named(subject: Path, command: Commands, tmp_pat
     assert "skeletoolToGTPose_test/poseAngles.motion: there is no such file with the poses" in refused()
     poses.write_text(text)
     (characters / "other.character").write_text("")
-    assert "other.character and" in refused()
+    assert "tube.character; give one of them with --template" in refused()
     shutil.rmtree(characters)
     assert "found no .character of the person; give --template and --motion" in refused()

@@ -56,6 +56,21 @@ def test_joints_and_skin_follow_random_dofs_as_matrices_say(character: Path) -> 
     assert_follows(character, motion, said_of(character), dofs_of(character.with_suffix(".motion"))[0], dofs)
 
 
+def test_files_in_another_unit_become_a_person_and_a_path_in_metres(character: Path, tmp_path: Path) -> None:
+    """In metres, 1.75 stands for 1.75 mm: it is taken for what a person measures, and so is the path of the motion."""
+    other = write_character(tmp_path / "metres", millimetre=0.001)
+    found = []
+    for one in (character, other):
+        motion = one.parent / "walk.motion"
+        motion.write_text(motion_text(sway(5)))
+        surfaces = read_surfaces(one)
+        (loaded,) = load_motions(motion, surfaces.skeleton, mapping=None, rate=25)
+        scale = surfaces.skeleton.size
+        found.append((loaded.clip.translations / scale, len(surfaces.notes)))
+    np.testing.assert_allclose(found[1][0], found[0][0], atol=1e-9)
+    assert [notes for _, notes in found] == [0, 1]
+
+
 def test_the_familys_own_sample_follows_its_matrices(shared_data: SharedData) -> None:
     files = [shared_data.path(f"ddc/ddc.{end}") for end in ("character", "skeleton", "obj", "skin", "motion")]
     motion = shared_data.path("ddc/poseAngles.motion")
@@ -101,11 +116,11 @@ def test_an_obj_may_have_large_faces_several_materials_and_no_texture(character:
 SKELETON = {
     "another format": ("Definition V1.0", "v0.9", "the first line is 'Skeletool Skeleton v0.9', expected 'Skeletool"),
     "another kind": ("Hips      revolute", "Hips      scale", "line 7: joint Hips is 'scale', expected revolute or"),
-    "a column": (" 0 0 -2       1.0", " 0 0 -2", "line 7: has 9 columns, expected the 10 of a joint"),
+    "a column": (" 0 0 -2 1.0", " 0 0 -2", "line 7: has 9 columns, expected the 10 of a joint"),
     "no axis": ("0 0 -2", "0 0 0", "line 7: the axis is 0 0 0"),
-    "no number": ("0   50", "0 tall", "line 3: number 2 is 'tall', expected a finite number"),
-    "not finite": ("0   50", "0 nan", "line 3: number 2 is 'nan', expected a finite number"),
-    "no parent": ("HipsScale     0", "Belly     0", "line 10: the parent of Spine_ry is 'Belly', which is no joint"),
+    "no number": ("0 50", "0 tall", "line 3: number 2 is 'tall', expected a finite number"),
+    "not finite": ("0 50", "0 nan", "line 3: number 2 is 'nan', expected a finite number"),
+    "no parent": ("HipsScale 0", "Belly 0", "line 10: the parent of Spine_ry is 'Belly', which is no joint"),
     "a circle": ("prismatic none", "prismatic Chest", "joints are their own parents: "),
     "twice": ("  Spine_rx  rev", "  Spine_ry  rev", "line 11: a second joint is called 'Spine_ry'"),
     "other joints": ("Root_ty 1000", "Belly 1000", "'Belly 1000', expected a joint that DoF move_y moves"),
