@@ -13,10 +13,13 @@ from test_capture_avatarrex import WORLDS, write_source
 
 import mua
 from mua.arrays import Array
+from mua.baking import lessons
 from mua.capture import Capture, open_capture
 from mua.capture.outline import posed_template
+from mua.student.settings import Schedule
 from mua.teachers.teacher import TeacherFrame
 from mua.teaching import settings
+from mua.teaching.template_training import TemplateSettings
 from mua.teaching.trained import TrainedTeacher
 
 
@@ -33,11 +36,13 @@ def film_set(folder: Path, capture: Capture) -> None:
                 mask.save(place / "mask" / "pha" / f"{clip.first_image + frame:08d}.jpg")
 
 
-def assert_teaches(capture: Path, output: Path, clip: str, height: float) -> None:
+def assert_teaches(capture: Path, output: Path, clip: str, height: float, *, drivable: bool = False) -> None:
     """A teacher of three steps has frames of a clip that are as tall as the person."""
+    few = Schedule(steps=2, batch=1, lr=1e-3)
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(settings.PRESETS, "tiny", FEW)
-        teacher = TrainedTeacher(mua.teach(capture, output=output, steps=3, texels=64))
+        patch.setattr(lessons, "TEMPLATE", TemplateSettings(nodes=few, offsets=few, samples=300))
+        teacher = TrainedTeacher(mua.teach(capture, output=output, steps=3, texels=64, drivable=drivable))
     frames = teacher.frames(open_capture(capture).motion(clip), {2})
     (frame,) = (one for one in frames if isinstance(one, TeacherFrame))
     assert np.isfinite(frame.texture).all()
@@ -53,7 +58,8 @@ def test_umas_layout_becomes_a_teacher(command: Commands, tmp_path: Path) -> Non
     source, folder = write_subject(tmp_path / "Subject_0"), tmp_path / "capture"
     assert command("capture", "describe", source, "-o", folder).status == 0
     assert command("capture", "check", folder).status == 0
-    assert_teaches(folder, tmp_path / "teacher", "testing", height_of(open_capture(folder).surfaces.vertices))
+    height = height_of(open_capture(folder).surfaces.vertices)
+    assert_teaches(folder, tmp_path / "teacher", "testing", height, drivable=True)  # on its surfaces in millimetres
 
 
 @pytest.mark.long

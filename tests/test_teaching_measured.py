@@ -18,7 +18,7 @@ from mua.errors import InputError
 from mua.student.settings import Schedule
 from mua.teaching import measured, settings
 from mua.teaching.folder import load_teacher
-from mua.teaching.measured import MeasuredSurfaces, read_surface
+from mua.teaching.measured import MeasuredSurfaces, read_surface, unit_of
 from mua.teaching.motion_deformation import MotionDeformation
 from mua.teaching.template_training import TemplateSettings
 from mua.teaching.trained import TrainedTeacher
@@ -64,6 +64,23 @@ def test_another_file_is_a_sentence(tmp_path: Path, content: bytes) -> None:
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"a\.ply: is no \.ply file"):
         read_surface(path)
+
+
+@pytest.mark.parametrize("unit", [1.0, 0.001])
+def test_surfaces_may_be_in_millimetres(tmp_path: Path, unit: float) -> None:
+    template = CORNERS * 1.7 + [0.4, 0, -0.3]
+    file = write_ply(tmp_path / "a.ply", (template + 0.02) / unit)
+    assert unit_of(file, template) == unit
+    surfaces = MeasuredSurfaces(torch.zeros(1, 6), torch.zeros(1, 1, 8), (file,), 1.0, unit)
+    cloud = surfaces.observe(0, torch.Generator()).cloud
+    assert cloud is not None
+    np.testing.assert_allclose(cloud.points.max(axis=0), (template + 0.02).max(axis=0), atol=0.1)
+
+
+@pytest.mark.parametrize("vertices", [CORNERS * 0.5, CORNERS * 170, CORNERS * 1.7 + [0, 3.0, 0]])
+def test_surfaces_of_another_world_are_a_sentence(tmp_path: Path, vertices: Array) -> None:
+    with pytest.raises(InputError, match="expected metres or millimetres in the world of the cameras"):
+        unit_of(write_ply(tmp_path / "a.ply", vertices), CORNERS * 1.7)
 
 
 def surfaces_of(folder: Path, count: int) -> MeasuredSurfaces:

@@ -1,7 +1,7 @@
 """The surfaces that a capture has of its frames, as what the drivable template is trained on."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
@@ -10,7 +10,10 @@ import torch
 from plyfile import PlyData, PlyParseError
 from torch import Tensor
 
+from mua import rotation
+from mua.arrays import Array
 from mua.errors import InputError
+from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.descriptor import describe
 from mua.rig.character import Mesh
 from mua.teachers.bones import figure_scale
@@ -19,6 +22,8 @@ from mua.teaching.mesh_losses import Cloud
 from mua.teaching.template_training import Observed
 
 POINTS = 20_000  # of a surface
+UNITS = (1.0, 1e-3)  # metres: surfaces of a capture may be in millimetres
+ALIKE = 2.0  # times as large or small as the posed template a surface may be
 KEPT = 256  # surfaces in memory, 2 MB each with its tree; of longer captures, some are read anew
 
 
@@ -30,6 +35,7 @@ class MeasuredSurfaces:
     joints: Tensor  # [F, J, 8]
     files: tuple[Path, ...]  # [F]
     size: float  # of the figure over that of a person
+    unit: float = 1.0  # metres, of the files
 
     def observe(self, frame: int, generator: torch.Generator) -> Observed:
         return Observed(cloud=self._cloud(frame))
@@ -37,7 +43,11 @@ class MeasuredSurfaces:
     @cached_property
     def _cloud(self) -> Callable[[int], Cloud]:
         """Of a frame; to read a surface takes longer than to compare the template with it."""
-        return lru_cache(KEPT)(lambda frame: Cloud.of(read_surface(self.files[frame]), POINTS, size=self.size))
+        return lru_cache(KEPT)(lambda frame: Cloud.of(self._surface(frame), POINTS, size=self.size))
+
+    def _surface(self, frame: int) -> Mesh:
+        surface = read_surface(self.files[frame])
+        return replace(surface, vertices=self.unit * surface.vertices)
 
 
 def measured_surfaces(filmed: Filmed) -> MeasuredSurfaces | None:
@@ -53,11 +63,36 @@ def measured_surfaces(filmed: Filmed) -> MeasuredSurfaces | None:
     skeleton, encoding = rig.skeleton, filmed.subject.encoding
     described = [describe(skeleton, encoding, clip.rotations, clip.translations) for clip in filmed.clips]
     joints = [skeleton.skinning(clip.rotations, clip.translations) for clip in filmed.clips]
+    duals = blend_vertices(joints[0][0], rig.skin_indices, rig.skin_weights)
     return MeasuredSurfaces(
         torch.from_numpy(np.concatenate(described)).float(),
         torch.from_numpy(np.concatenate(joints)).float(),
         files,
         figure_scale(rig.mesh.vertices),
+        unit_of(files[0], rotation.dual_transform(duals, rig.mesh.vertices)),
+    )
+
+
+def unit_of(
+    file: Path,
+    template: Array,  # [V, 3] posed as in the same frame, metres
+) -> float:
+    """The unit of a surface in metres: it is about as large as the template and lies where that does.
+
+    Raises InputError where that holds neither in metres nor in millimetres.
+    """
+    (low, high), (first, last) = (
+        (points.min(axis=0), points.max(axis=0)) for points in (read_surface(file).vertices, template)
+    )
+    size, wanted = float((high - low).max()), float((last - first).max())
+    for unit in UNITS:
+        apart = np.linalg.norm(unit * (low + high) - (first + last)) / 2
+        if wanted / ALIKE < unit * size < ALIKE * wanted and apart < wanted:
+            return unit
+    raise InputError(
+        f"{file}: the surface is {size:.3g} long, its middle is at {np.round((low + high) / 2, 2).tolist()}; the posed "
+        f"template is {wanted:.3g} m, at {np.round((first + last) / 2, 2).tolist()}: expected metres or millimetres in "
+        "the world of the cameras"
     )
 
 
