@@ -77,7 +77,7 @@ def test_surfaces_may_be_in_millimetres(tmp_path: Path, unit: float) -> None:
     np.testing.assert_allclose(cloud.points.max(axis=0), (template + 0.02).max(axis=0), atol=0.1)
 
 
-@pytest.mark.parametrize("vertices", [CORNERS * 0.5, CORNERS * 170, CORNERS * 1.7 + [0, 3.0, 0]])
+@pytest.mark.parametrize("vertices", [CORNERS * 0.5, CORNERS * 8.5 - 3.4, CORNERS * 1.7 + [0, 3.0, 0]])
 def test_surfaces_of_another_world_are_a_sentence(tmp_path: Path, vertices: Array) -> None:
     with pytest.raises(InputError, match="expected metres or millimetres in the world of the cameras"):
         unit_of(write_ply(tmp_path / "a.ply", vertices), CORNERS * 1.7)
