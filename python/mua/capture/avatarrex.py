@@ -15,6 +15,7 @@ from mua.arguments import finite_array
 from mua.arrays import Array
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.capture import Capture, CaptureClip
+from mua.capture.numbered import complete_frames, is_there, numbered_pattern, whole_runs
 from mua.capture.smplx import on_template, read_smplx
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_surfaces
@@ -29,8 +30,6 @@ FOLDERS = (  # of pictures and masks
     ("imgs/{camera}", "masks/{camera}"),
 )
 RATE = 30.0
-PICTURES = (".jpg", ".jpeg", ".png")
-LEAST_FRAMES = 2  # of a clip
 Y_UP = np.array([0.0, 1, 0])
 
 
@@ -60,13 +59,14 @@ def read_avatarrex(
     turn = rotation.between(poses.up, Y_UP)
     calibration = next(source / name for name in CALIBRATIONS if (source / name).is_file())
     cameras = tuple(_camera(name, said, calibration, turn) for name, said in _cameras(calibration).items())
-    images, masks = _patterns(source, cameras)
+    names = [camera.name for camera in cameras]
+    images, masks = _patterns(source, names)
     skeleton = read_surfaces(template, size=FigureSize(height=height), leave_out=leave_out).skeleton
     clip = on_template(poses, skeleton, turn=turn, rate=rate, where=str(template))
     motion = folder / "motion" / "poses.npz"
-    there = _complete(source, (images, masks), cameras, len(poses) + 1)
-    begin = int(there[-1] and not any(_has(source, images, camera, 0) for camera in cameras))  # counted from 1
-    runs = _runs(there[begin : begin + len(poses)])
+    there = complete_frames(source, (images, masks), names, range(len(poses) + 1))
+    begin = int(there[-1] and not any(is_there(source, images, name, 0) for name in names))  # counted from 1
+    runs = whole_runs(there[begin : begin + len(poses)])
     if not runs:
         raise InputError(
             f"{source}: no two frames in a row have pictures and masks of all {len(cameras)} cameras; "
@@ -133,42 +133,13 @@ def _square(value: Any, where: str) -> Array:
     return finite_array(np.ravel(value), where, (9,)).reshape(3, 3)
 
 
-def _patterns(source: Path, cameras: Sequence[CaptureCamera]) -> tuple[str, str]:
+def _patterns(source: Path, names: Sequence[str]) -> tuple[str, str]:
     """Of pictures and masks, both as a camera has them that has any."""
     for folders in FOLDERS:
-        found = [_pattern(source, folder, cameras) for folder in folders]
+        found = [numbered_pattern(source, folder, names) for folder in folders]
         if found[0] is not None and found[1] is None:
-            raise InputError(
-                f"{source / folders[1].format(camera=cameras[0].name)}: found no masks; expected 00000000.jpg"
-            )
+            raise InputError(f"{source / folders[1].format(camera=names[0])}: found no masks; expected 00000000.jpg")
         if found[0] is not None and found[1] is not None:
             return found[0], found[1]
     tried = ", ".join(f"{images}/00000000.jpg" for images, _ in FOLDERS)
-    raise InputError(f"{source}: found no pictures of camera {cameras[0].name}; looked for {tried}")
-
-
-def _pattern(source: Path, folder: str, cameras: Sequence[CaptureCamera]) -> str | None:
-    """Of the pictures of a folder, by what the first of them is called."""
-    for camera in cameras:
-        for file in sorted((source / folder.format(camera=camera.name)).glob("[0-9]*")):
-            if file.stem.isdecimal() and file.suffix.lower() in PICTURES:
-                return f"{folder}/{{frame:0{len(file.stem)}d}}{file.suffix}"
-    return None
-
-
-def _complete(source: Path, patterns: Sequence[str], cameras: Sequence[CaptureCamera], frames: int) -> list[bool]:
-    """Of which frames all cameras have files of all patterns."""
-    return [
-        all(_has(source, pattern, camera, frame) for camera in cameras for pattern in patterns)
-        for frame in range(frames)
-    ]
-
-
-def _has(source: Path, pattern: str, camera: CaptureCamera, frame: int) -> bool:
-    return (source / pattern.format(camera=camera.name, frame=frame)).is_file()
-
-
-def _runs(there: Sequence[bool]) -> list[tuple[int, int]]:
-    """First frame and number of frames of each run that is there."""
-    edges = np.flatnonzero(np.diff([False, *there, False]))
-    return [(int(a), int(b - a)) for a, b in edges.reshape(-1, 2) if b - a >= LEAST_FRAMES]
+    raise InputError(f"{source}: found no pictures of camera {names[0]}; looked for {tried}")

@@ -10,6 +10,7 @@ from mua.arrays import Array
 from mua.capture.camera import CaptureCamera
 from mua.capture.fit import Posed, Seen, mean_overlap
 from mua.capture.outline import overlap, rough_overlap
+from mua.errors import InputError
 
 TRIED = 8  # views that every convention is tried on
 KEPT = 4  # conventions that are tried by outlines, after all were tried by points
@@ -48,6 +49,21 @@ class Convention:
             rows = [f"{'-' if row.sum() < 0 else ''}{LETTERS[int(np.abs(row).argmax())]}" for row in self.world]
             told.append(f"the calibration's world has other axes: its X, Y, Z are our {', '.join(rows)}")
         return " and ".join([*told, *([LENGTHS[self.length]] if self.length != 1 else [])])
+
+
+def read_axes(text: str) -> Array:
+    """The matrix [3, 3] from our world to another, of what its X, Y and Z are in ours, such as "X,-Z,Y"."""
+    words = [word.strip().upper() for word in text.split(",")]
+    matrix = np.array(
+        [[(word[-1:] == letter) * (-1.0 if word[:1] == "-" else 1.0) for letter in LETTERS] for word in words]
+    )
+    plain = all(word.removeprefix("-") in tuple(LETTERS) for word in words)
+    if not plain or matrix.shape != (3, 3) or not np.isclose(np.linalg.det(matrix), 1):
+        raise InputError(
+            f"--axes {text}: expected what X, Y and Z of the calibration are in a right-handed world with Y up, "
+            "such as X,-Z,Y for one with Z up"
+        )
+    return matrix
 
 
 def better_convention(posed: Posed, views: Sequence[Seen]) -> tuple[Convention, float, float] | None:

@@ -59,7 +59,13 @@ def check(
 
 
 def describe(
-    source: Annotated[Path, typer.Argument(help="Folder with pictures in the layout of AvatarReX, THuman4 or UMA.")],
+    source: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder with pictures: in the layout of AvatarReX, THuman4 or UMA, or with --calibration in images/ "
+            "or videos/ and masks/."
+        ),
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write capture.json and the poses to.")],
     template: Annotated[
         Path | None,
@@ -70,8 +76,22 @@ def describe(
     ] = None,
     motion: Annotated[
         Path | None,
-        typer.Option(help="Poses in UMA's layout, one for each frame.", show_default="those with the .character"),
+        typer.Option(help="Poses, one for each frame.", show_default="UMA: those with the .character"),
     ] = None,
+    calibration: Annotated[
+        Path | None,
+        typer.Option(
+            help="Cameras: a .toml of Pose2Sim, Caliscope or anipose, or a folder with EasyMocap's intri.yml and "
+            "extri.yml or with COLMAP's cameras and images."
+        ),
+    ] = None,
+    axes: Annotated[
+        str,
+        typer.Option(help="What X, Y and Z of the calibration are in a world with Y up; X,-Z,Y where its Z is up."),
+    ] = "X,Y,Z",
+    scale: Annotated[
+        float, typer.Option(min=1e-9, help="Metres in one unit of the calibration; 0.001 for millimetres.")
+    ] = 1.0,
     rate: Annotated[
         float | None, typer.Option(min=1, max=1000, help="Frames per second.", show_default="the videos', or 30")
     ] = None,
@@ -87,11 +107,17 @@ def describe(
     for given in (template, motion):
         if given is not None:
             require_file(given)
+    if calibration is None and (axes != "X,Y,Z" or scale != 1):
+        raise InputError("--axes and --scale are of a --calibration; give one, or leave them out")
     require_writable(output / CAPTURE)
 
     from mua.capture import open_capture, write_capture
 
-    capture = _described(source, template, output, motion, rate, height, tuple(leave_out or ()))
+    left_out = tuple(leave_out or ())
+    if calibration is None:
+        capture = _described(source, template, output, motion, rate, height, left_out)
+    else:
+        capture = _calibrated(source, calibration, template, output, motion, rate, height, left_out, axes, scale)
     written = write_capture(capture)
     open_capture(output)  # which refuses what cannot be
     frames = sum(clip.frames for clip in capture.clips)
@@ -128,6 +154,38 @@ def _described(
             "smpl_params.npz, or videos stream*.mp4 with cameras.calib or a .calibration file"
         )
     return read_streams(source, folder, template=template, motion=motion, rate=rate, height=height, leave_out=leave_out)
+
+
+def _calibrated(
+    source: Path,
+    calibration: Path,
+    template: Path | None,
+    folder: Path,
+    motion: Path | None,
+    rate: float | None,
+    height: float | None,
+    leave_out: tuple[str, ...],
+    axes: str,
+    scale: float,
+) -> "Capture":
+    """The capture of a folder whose cameras a public tool calibrated."""
+    from mua.capture.calibrated_folder import read_calibrated
+    from mua.capture.conventions import read_axes
+
+    if template is None or motion is None:
+        raise InputError(f"--calibration {calibration}: expected --template and --motion with it")
+    return read_calibrated(
+        source,
+        folder,
+        calibration=calibration,
+        template=template,
+        motion=motion,
+        rate=rate,
+        scale=scale,
+        axes=read_axes(axes),
+        height=height,
+        leave_out=leave_out,
+    )
 
 
 def _require_picture(output: Path) -> None:
