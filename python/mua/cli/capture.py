@@ -8,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from mua.cli.capture_poses import poses
 from mua.cli.console import printer, say
 from mua.cli.failure import run_commands
 from mua.errors import InputError
@@ -126,7 +127,7 @@ def describe(
 
 def run() -> None:
     """Entry point of the command."""
-    run_commands("Captures: pictures of a person by calibrated cameras.", check, describe)
+    run_commands("Captures: pictures of a person by calibrated cameras.", check, describe, poses)
 
 
 def _described(

@@ -1,0 +1,57 @@
+"""mua-capture poses: poses of a template from 3D keypoints."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from mua.cli.console import printer, say
+from mua.errors import InputError
+from mua.files import require_writable
+from mua.inputs import require_file
+
+if TYPE_CHECKING:  # takes long to load
+    from mua.capture.keypoint_fit import Fitted
+
+NOTED = 0.1  # of the length of limbs, by which the template may be of another size than the person
+
+
+def poses(
+    keypoints: Annotated[Path, typer.Argument(help="3D keypoints as .trc, of Pose2Sim, OpenCap or OpenSim.")],
+    template: Annotated[Path, typer.Option(help="The person as a rigged character.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="File of poses to write (.npz).")],
+    height: Annotated[
+        float | None, typer.Option(help="Height of the template in metres.", show_default="as its file says")
+    ] = None,
+) -> None:
+    """Pose a template by 3D keypoints, for `describe --motion`; its limbs become as long as the person's."""
+    require_file(keypoints)
+    require_file(template)
+    if output.suffix.lower() != ".npz":
+        raise InputError(f"--output {output}: the suffix is {output.suffix or 'missing'}, expected .npz")
+    require_writable(output)
+
+    from mua.capture.keypoint_fit import fit_keypoints
+    from mua.capture.keypoints import read_trc
+    from mua.characters.figure_size import FigureSize
+    from mua.characters.read import read_surfaces
+    from mua.motion.poses_file import write_poses
+
+    console, surfaces = printer(), read_surfaces(template, size=FigureSize(height=height))
+    fitted = fit_keypoints(read_trc(keypoints), surfaces)
+    write_poses(output, surfaces.skeleton, fitted.clip)
+    _show(console, fitted)
+    say(console, f"{output}: {len(fitted.clip)} poses at {fitted.clip.rate:g} frames per second")
+
+
+def _show(console: Console, fitted: "Fitted") -> None:
+    """How far the poses are from the keypoints."""
+    table = Table("keypoint", "joint", "median", "largest", box=SIMPLE_HEAD)
+    for target, (median, largest) in zip(fitted.targets, fitted.spread(), strict=True):
+        table.add_row(target.name, target.role, f"{100 * median:.1f} cm", f"{100 * largest:.1f} cm")
+    console.print(table)
+    if abs(fitted.limbs - 1) > NOTED:
+        say(console, f"The person's limbs are {fitted.limbs:.2f} times as long as the template's: look at its height.")
