@@ -18,9 +18,16 @@ def decode_image(content: bytes) -> Array:
     """Decode a PNG, JPEG or WebP to [h, w, 4] uint8; raises ValueError where Pillow cannot."""
     try:
         with Image.open(io.BytesIO(content)) as image:
-            return np.asarray(image.convert("RGBA"))
+            return np.asarray(in_8_bits(image).convert("RGBA"))
     except (OSError, SyntaxError, Image.DecompressionBombError) as broken:
         raise ValueError(str(broken)) from broken
+
+
+def in_8_bits(image: Image.Image) -> Image.Image:
+    """The picture with 8 bits a value; Pillow would hold greys of 16 bits at 255 in place of scaling them."""
+    if not image.mode.startswith("I;16"):
+        return image
+    return Image.fromarray(np.rint(np.asarray(image) / 257).astype(np.uint8))
 
 
 def blocky(image: Array) -> Array:

@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from mua.arrays import Array
+from mua.atlas.pictures import in_8_bits
 from mua.capture.video import VIDEOS, video_frame
 from mua.errors import InputError
 
@@ -27,7 +28,7 @@ def read_picture(
         with Image.open(path) as opened:
             require_size(path, opened.size, size)
             clear = "A" in opened.getbands() or "transparency" in opened.info
-            return np.asarray(opened.convert("RGBA" if clear else "RGB"))
+            return np.asarray(in_8_bits(opened).convert("RGBA" if clear else "RGB"))
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
         if isinstance(error, InputError):
             raise

@@ -1,0 +1,50 @@
+"""Pictures of a camera: every kind of file gives the same colours, and one of another size is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mua.atlas.pictures import decode_image
+from mua.capture.pictures import as_mask, read_mask, read_picture
+from mua.errors import InputError
+
+GREY = np.array([[0, 1, 100], [128, 254, 255]], np.uint8)
+SIZE = (3, 2)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_greys_of_any_depth_are_the_same(tmp_path: Path, dtype: type) -> None:
+    file = tmp_path / "mask.png"
+    Image.fromarray(GREY.astype(dtype) * dtype(1 if dtype == np.uint8 else 257)).save(file)
+    np.testing.assert_array_equal(read_mask(file, number=0, size=SIZE)[..., 0], GREY)
+    np.testing.assert_array_equal(decode_image(file.read_bytes())[..., 0], GREY)
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "P"])
+def test_colours_are_read_with_the_alpha_that_the_file_has(tmp_path: Path, mode: str) -> None:
+    file, colours = tmp_path / "a.png", np.stack([GREY, GREY[:, ::-1], GREY // 2], axis=2)
+    image = Image.fromarray(colours)
+    image.putalpha(Image.fromarray(GREY)) if mode == "RGBA" else None
+    image = image.quantize(8) if mode == "P" else image
+    image.save(file, **({"transparency": 0} if mode == "P" else {}))
+    found = read_picture(file, number=0, size=SIZE)
+    assert found.shape == (2, 3, 3 if mode == "RGB" else 4)
+    if mode != "P":
+        np.testing.assert_array_equal(found[..., :3], colours)
+        np.testing.assert_array_equal(found[..., 3:], GREY[..., None] if mode == "RGBA" else np.zeros((2, 3, 0)))
+
+
+def test_a_mask_covers_where_any_colour_is_and_may_hold_ones() -> None:
+    picture = np.zeros((2, 3, 3), np.uint8)
+    picture[0, 1, 2], picture[1, 0, 1] = 200, 90
+    assert as_mask(picture)[..., 0].tolist() == [[0, 200, 0], [90, 0, 0]]
+    assert as_mask((picture > 0).astype(np.uint8))[..., 0].tolist() == [[0, 255, 0], [255, 0, 0]]
+
+
+def test_a_picture_that_lies_on_its_side_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "a.png"
+    Image.fromarray(GREY).save(file)
+    with pytest.raises(InputError, match=r"the picture is 3 x 2 pixels; capture\.json gives its camera 2 x 3"):
+        read_picture(file, number=0, size=(2, 3))
