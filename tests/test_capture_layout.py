@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from captures import looking
 from mua.arrays import Array
 from mua.camera import Camera
 from mua.capture import Capture, CaptureCamera, CaptureClip, open_capture, write_capture
+from mua.capture.view import smaller
 from mua.errors import InputError
 from mua.kernels.splat_project import eye_ellipses
 
@@ -56,6 +57,24 @@ def test_what_is_written_is_read_back(capture: Capture) -> None:
         same = replace(other, world_to_camera=mine.world_to_camera)
         assert vars(same) == vars(mine)
     assert vars(replace(found, cameras=capture.cameras)) == vars(capture)
+
+
+def test_every_field_is_written(capture: Capture) -> None:
+    patterns = {"backgrounds": "b/{camera}.png", "meshes": "m/{clip}/{frame}.ply", "tracks": "{clip}.npz"}
+    whole = replace(capture, **patterns, tracks_2d="t/{clip}/{camera}.npz")
+    write_capture(whole)
+    found = open_capture(capture.folder)
+    assert not [field.name for field in fields(Capture) if getattr(found, field.name) == field.default]
+    assert vars(replace(found, cameras=whole.cameras)) == vars(whole)
+
+
+def test_a_smaller_picture_keeps_its_shape_to_half_a_pixel() -> None:
+    assert [smaller(tilted_camera(), rows).size for rows in (100, 101, 1, None)] == [
+        (133, 100),
+        (135, 101),
+        (1, 1),
+        (320, 240),
+    ]
 
 
 def test_a_folder_that_was_moved_is_read_where_it_is(capture: Capture, tmp_path: Path) -> None:
@@ -135,6 +154,23 @@ FAULTS: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
     "two clips of a name": (lambda s: s["clips"][1].update(name="walk"), "clips: two are called 'walk'"),
     "two cameras of a name": (lambda s: s["cameras"][1].update(name="cam00"), "cameras: two are called 'cam00'"),
     "no frames": (lambda s: s["clips"][0].update(frames=0), r"clips\[0\] \(walk\): frames is 0 \(int\); .* at least 1"),
+    "frames that are a flag": (
+        lambda s: s["clips"][0].update(frames=True),
+        r"frames is True \(bool\); expected a whole",
+    ),
+    "a pixel and a half": (
+        lambda s: s["cameras"][0].update(size=[320.5, 240]),
+        r"size is \[320.5, 240\]; expected width",
+    ),
+    "three coefficients": (
+        lambda s: s["cameras"][0].update(distortion=[0.1] * 3),
+        "has 3 coefficients; expected OpenCV",
+    ),
+    "a clip that is the folder": (
+        lambda s: s["clips"][0].update(name=".."),
+        r"name is '\.\.'; expected a name that can",
+    ),
+    "a path that no file has": (lambda s: s.update(template="a\0b"), "template is .*; expected a text"),
     "half a frame": (lambda s: s["clips"][0].update(first=0.5), r"\(walk\): first is 0.5"),
     "held out by a text": (lambda s: s["clips"][0].update(held_out="no"), "held_out is 'no'; expected true or false"),
     "images of one camera": (

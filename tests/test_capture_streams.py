@@ -123,6 +123,18 @@ def test_videos_become_a_capture(source: Path, person: Capture, command: Command
     assert 255 * view.image.mean() == pytest.approx(90, abs=3)
 
 
+def test_what_is_said_of_a_capture_is_in_its_description(
+    source: Path, person: Capture, command: Commands, tmp_path: Path
+) -> None:
+    (source / "stream000.json").touch()  # which is no video
+    (source / "metadata" / "cameras.calib").write_text(captury())  # which does not say how large pictures are
+    given = ("--template", person.template, "--motion", person.clips[0].motion, "--rate", 12, "--height", 1.5)
+    command("capture", "describe", source, *given, "--leave-out", "hat", "--leave-out", "shoes", "-o", tmp_path / "out")
+    capture = open_capture(tmp_path / "out")
+    assert (capture.rate, capture.template_height, capture.leave_out) == (12, 1.5, ("hat", "shoes"))
+    assert [camera.size for camera in capture.cameras] == [SIZE] * 3
+
+
 def test_masks_may_be_pictures(source: Path, person: Capture, command: Commands, tmp_path: Path) -> None:
     for number in range(3):
         (source / "foregroundSegmentation" / f"stream{number:03d}.mp4").unlink()

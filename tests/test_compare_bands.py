@@ -4,12 +4,14 @@ from copy import deepcopy
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+import pytest
 import torch
 from compared import trained
 
 from mua.asset import count
 from mua.channels import APPEARANCE, GEOMETRY
-from mua.compare.bands import BandNetwork, scale_branch
+from mua.compare.bands import BandNetwork, Convolutions, Lines, scale_branch, start_convolutions, texture_encoding
 from mua.compare.network import NetworkSystem
 from mua.compare.system import Budget, TrainingFrames
 from mua.student.export import export_branches, export_coarse, export_wavelet
@@ -34,6 +36,38 @@ def test_ours_costs_what_its_file_says(smooth_frames: TrainingFrames) -> None:
     )
     assert system.parameters == sum(count.parameters(avatar).values())
     assert system.flops == sum(count.flops(avatar).values())
+
+
+def test_texture_coordinates_are_told_by_waves_of_the_texels_middles() -> None:
+    middles = (np.arange(4) + 0.5) / 4
+    angles = np.pi * 2.0 ** np.arange(6)[:, None] * middles
+    waves = np.concatenate([np.sin(angles), np.cos(angles)])
+    found = texture_encoding(4).numpy()
+    np.testing.assert_allclose(found[:12], np.repeat(waves[:, :, None], 4, axis=2), atol=1e-4)
+    np.testing.assert_allclose(found[12:], np.repeat(waves[:, None], 4, axis=1), atol=1e-4)
+
+
+def test_what_does_not_vary_along_an_axis_is_pooled_to_itself(smooth_frames: TrainingFrames) -> None:
+    torch.manual_seed(0)
+    lines = Lines(8, smooth_frames.sizes)
+    lines.encoding.zero_()
+    with torch.no_grad():
+        for axis, along in ((0, (1, 1, 8, 1)), (1, (1, 1, 1, 8))):
+            lines.pool.zero_()
+            maps = torch.randn(along).expand(1, 6, 8, 8)
+            even = lines(maps)
+            lines.pool[axis].normal_()
+            torch.testing.assert_close(lines(maps), even)
+
+
+def test_convolutions_start_from_he_and_their_decoders_from_nothing(smooth_frames: TrainingFrames) -> None:
+    network = Convolutions(5, smooth_frames.sizes)
+    start_convolutions(network, torch.Generator().manual_seed(0))
+    for layer in network.features[::2]:
+        assert isinstance(layer, torch.nn.Conv2d)
+        drawn = layer.weight.detach()
+        assert float(drawn.std()) == pytest.approx((2 / drawn[0].numel()) ** 0.5, rel=0.1)
+    assert not any(tensor.any() for tensor in network.decode.state_dict().values())
 
 
 def as_student(system: NetworkSystem, frames: TrainingFrames) -> Student:

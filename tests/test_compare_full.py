@@ -9,7 +9,7 @@ from compared import SETTINGS, explained, few, trained
 from torch import Tensor
 
 from mua.compare import full
-from mua.compare.full import Basis, finer, lines_to_full
+from mua.compare.full import Basis, LinearMap, finer, lines_to_full
 from mua.compare.system import Budget, TrainingFrames
 from mua.student.conditioned import Conditioned
 from mua.student.local import Locality
@@ -61,6 +61,25 @@ def test_what_the_regression_teaches_is_most_of_the_frames_before_any_step(
     name: str, smooth_frames: TrainingFrames
 ) -> None:
     assert explained(trained(name, smooth_frames, Budget(steps=0)), smooth_frames) > 0.95
+
+
+def test_a_linear_map_explains_what_its_cells_can_hold(smooth_frames: TrainingFrames) -> None:
+    """The share before any step, and a change of all texels at once, which is one of all cells too."""
+    system = trained("linear", smooth_frames, Budget(steps=0))
+    assert explained(system, smooth_frames) > 0.5
+    network = system.network
+    assert isinstance(network, LinearMap)
+    shift = torch.arange(23.0)[None, :, None].expand(2, -1, len(network.texels))
+    cells = network._cell_means(shift).unflatten(1, (23, -1))
+    torch.testing.assert_close(cells[..., network.cells], shift)
+
+
+def test_closed_forms_look_at_frames_from_all_over(
+    smooth_frames: TrainingFrames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(full, "SAMPLED", 4)
+    assert full.sampled(smooth_frames).tolist() == [0, 10, 20, 30]
+    assert len(smooth_frames) == 40
 
 
 @pytest.mark.parametrize("wavelet", ["bior1.1", "bior4.4"])

@@ -7,12 +7,15 @@ from compared import HELD_OUT, SETTINGS, STEPS, trained
 from synthetic_avatar import synthetic_rig
 
 from mua import rotation
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.compare.maps import SurfaceMaps
-from mua.compare.motion import motion_of
+from mua.compare.motion import band_statistics, motion_of, pose_about_root
 from mua.compare.system import Budget, TrainingFrames
 from mua.pose.clip import Clip
 from mua.recording import Recording
 from mua.student.distil import prepare
+from mua.student.targets import channel_weights
+from mua.teachers.bones import figure_scale
 
 
 @pytest.mark.parametrize("size", [2, 7, 16])
@@ -56,6 +59,33 @@ def test_posed_meshes_forget_where_the_body_stands_and_looks(
     )
     torch.testing.assert_close(one.posed, other.posed, rtol=0, atol=1e-4)
     assert float((one.posed[5] - one.posed[0]).abs().max()) > 0.01
+
+
+def test_posed_meshes_keep_where_the_body_looks_where_descriptors_do(smooth_recording: Recording) -> None:
+    rig, clip = smooth_recording.rig, smooth_recording.clips[0]
+    root, turn = rig.skeleton.root, rotation.from_axis_angle(np.array([0.0, 1, 0]), 1.1)
+    rotations = clip.rotations.copy()
+    rotations[:, root] = rotation.multiply(turn, rotations[:, root])
+    turned = Clip("turned", clip.rate, rotations, clip.translations)
+    one, other = (pose_about_root(rig, rig.mesh.vertices, c, 3, heading=False) for c in (clip, turned))
+    np.testing.assert_allclose(other, rotation.rotate(np.broadcast_to(turn, (len(one), 4)), one), atol=1e-9)
+
+
+def test_a_variance_is_that_of_a_texel_and_the_weights_are_those_of_the_figure(
+    smooth_recording: Recording, smooth_frames: TrainingFrames
+) -> None:
+    size = smooth_frames.sizes.settings.texels
+    mean, variance = band_statistics(smooth_frames.bands, frames=len(smooth_frames), texels=size)
+    rows = torch.arange(len(smooth_frames))
+    energy = torch.zeros(23)
+    for band, middle in zip(smooth_frames.bands(slice(0, 23), rows), mean, strict=True):
+        away = (band - middle).square()
+        energy += away.movedim(1 if band.dim() == 4 else 2, 0).flatten(1).sum(1)
+    torch.testing.assert_close(variance, energy / (len(rows) * size**2), rtol=1e-4, atol=0)
+    figure = figure_scale(smooth_recording.rig.mesh.vertices)
+    assert abs(figure - 1) > 0.1
+    parts = [channel_weights(variance[part], part, size=figure) for part in (GEOMETRY, APPEARANCE)]
+    torch.testing.assert_close(smooth_frames.weights, torch.cat(parts))
 
 
 def test_systems_see_the_teachers_mesh(smooth_recording: Recording, smooth_frames: TrainingFrames) -> None:

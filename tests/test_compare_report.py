@@ -4,11 +4,14 @@ import io
 import math
 from dataclasses import replace
 
+import pytest
 from rich.console import Console
 
-from mua.compare import entries, report
+from mua.compare import entries, filmed_report, report
 from mua.compare.cost import Cost
+from mua.compare.curve import COSTS
 from mua.compare.entries import Entry, Picture
+from mua.compare.filmed import FilmedEntry
 from mua.compare.metrics import Scores
 from mua.compare.scores import Result, Sample
 from mua.recording import WholeFrame
@@ -51,6 +54,21 @@ def row(entry: Entry, failure: str = "") -> Result:
     scores = Scores(48.12, 0.9934, 0.9991, 0.0123, math.nan)
     samples = [] if failure else [Sample("walk", 0, held, 0, 0.08, scores) for held in (False, True)]
     return Result(entry, samples, failure)
+
+
+def test_costs_are_printed_in_the_units_of_their_headings() -> None:
+    costs = Cost(parameters=2_500_000, flops=1_234_000_000, bytes=4_200_000, fps=31.3)
+    shown = dict(zip(report.COSTS, report.costs_of(result("a", 40.0, costs)), strict=True))
+    assert shown == {"GFLOPs": "1.234", "Param (M)": "2.50", "MB": "4.2", "FPS": "31.3"}
+    entry = FilmedEntry("a", lambda clip, frame: pytest.fail("nothing is drawn"), costs)
+    assert dict(zip(filmed_report.COSTS, filmed_report.rows([], [entry])[0][-2:], strict=True)) == {
+        "M parameters": "2.500",
+        "MFLOP": "1234.00",
+    }
+    assert {name: cost(entry) for name, cost in COSTS.items()} == {
+        "million parameters": 2.5,
+        "million operations a frame": 1234.0,
+    }
 
 
 SETTING = report.Setting("rec", "a device", {"training": 1, "held out": 1}, 1, 512, 60.0, None, "tiny", None, 0.08)

@@ -138,6 +138,19 @@ def test_the_shares_of_a_pixel_add_up_to_what_is_covered(screen: tuple[int, int]
     assert float(covered.max()) > 0.5
 
 
+def test_a_share_is_the_largest_of_all_pixels() -> None:
+    drawn_splats = random_splats(30)
+    splats = in_torch(drawn_splats)
+    eye, bounds = Eye.of(camera(), splats.centres), torch.tensor(drawn_splats.bounds)
+    quads, expected = project(splats, eye, bounds), torch.zeros(30, dtype=torch.float64)
+    for place, splat in enumerate(quads.splats.tolist()):
+        alone = torch.zeros_like(quads.colors)
+        alone[place] = 1
+        expected[splat] = draw_quads([(quads.shapes, alone)], [SCREEN])[0][..., 0].max()
+    torch.testing.assert_close(largest_shares(splats, eye, bounds), expected)
+    assert 0 < len(quads.splats) < 30
+
+
 def test_an_avatar_is_drawn_as_by_the_reference_renderer_in_single_precision() -> None:
     avatar = synthetic_avatar()
     splats = decode_clip_frame(avatar, avatar.clips[0], frame=3, dtype=np.float64)

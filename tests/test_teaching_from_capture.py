@@ -12,11 +12,14 @@ from captures import FRAMES, make_capture
 from PIL import Image
 from taught import FEW, SETTINGS, material, motion, teacher
 
+from mua.arrays import Array
 from mua.capture import Capture
 from mua.errors import InputError
 from mua.teaching.from_capture import OUTLINES, Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
 from mua.teaching.lesson import Lesson
 from mua.teaching.preview import Preview, picture_of, psnr
+from mua.teaching.track_losses import TexelTracks
+from mua.teaching.tracked import tracks_of
 
 CPU = torch.device("cpu")
 ROWS = 32
@@ -75,6 +78,22 @@ def test_each_frame_has_the_poses_of_its_own_clip(both: Filmed) -> None:
     assert refinement is not None
     for window, poses in zip(own.windows, own.poses, strict=True):
         torch.testing.assert_close(refinement(poses).detach(), window.joints, atol=1e-5, rtol=0)
+
+
+def test_points_beside_the_person_change_nothing_for_the_others(filmed: Filmed, tmp_path: Path) -> None:
+    capture = replace(filmed.capture, tracks=f"{tmp_path}/{{clip}}.npz")
+
+    def read(bind: Array) -> list[TexelTracks]:
+        np.savez(tmp_path / "walk.npz", points=np.zeros((FRAMES["walk"], len(bind), 3)), bind=bind)
+        return tracks_of(replace(filmed, capture=capture))
+
+    bind = filmed.subject.rig.mesh.vertices[::9]
+    among = np.full((2 * len(bind), 3), 9.0)
+    among[1::2] = bind
+    for one, other in zip(read(among), read(bind), strict=True):
+        assert torch.equal(one.texels, other.texels)
+        assert torch.equal(one.tracks.corners, other.tracks.corners)
+    assert len(torch.unique(other.texels)) > 10
 
 
 def test_poses_are_refined_only_where_that_is_asked_for(both: Filmed) -> None:
