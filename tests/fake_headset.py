@@ -59,6 +59,7 @@ class FakeHeadset:
     gone_after_cut: bool = False
     refuses_push: str | None = None  # the reason it gives
     loses_tail: bool = False  # of each pushed file, and says nothing
+    renames: bool = True  # else mv does nothing, and says nothing
     frozen: frozenset[str] = frozenset()  # properties that cannot be set
     asked: list[str] = field(default_factory=list)  # every shell command
     started: list[list[str]] = field(default_factory=list)  # command line of each start of the player
@@ -98,7 +99,8 @@ class FakeHeadset:
             case ["mv", "-f", old, new]:
                 if old not in self.files:
                     return 1, f"mv: bad '{old}': No such file or directory\n"
-                self.files[new] = self.files.pop(old)
+                if self.renames:
+                    self.files[new] = self.files.pop(old)
             case ["rm", "-f", *paths]:
                 for path in paths:
                     self.files.pop(path, None)

@@ -8,6 +8,8 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from commands import Commands, Ended, process
@@ -16,7 +18,8 @@ from fake_headset import PACKAGE, VRAPI, FakeHeadset, unity, vrapi
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
-from mua.deploy import player
+from mua.deploy import bench, player
+from mua.errors import InputError
 
 # adbutils leaves a socket open where a device refuses.
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning")
@@ -184,6 +187,7 @@ def test_says_why_the_headset_refuses_an_apk(deploy: Deploy, apk: Path) -> None:
         (FakeHeadset(cut_after=1), "failed with"),
         (FakeHeadset(refuses_push="couldn't write: No space left on device"), "No space left on device"),
         (FakeHeadset(loses_tail=True), "is its storage full?"),
+        (FakeHeadset(renames=False), "hero.muaavatar has 14 bytes, expected"),
     ],
 )
 def test_leaves_nothing_half_pushed(deploy: Deploy, hero: Path, headset: FakeHeadset, sentence: str) -> None:
@@ -272,6 +276,27 @@ def test_bench_measures_at_steady_clocks_and_puts_them_back(deploy: Deploy, hero
     assert benched["warnings"] == []
     assert "hero on Quest 3, 5 of 5 seconds at 72 Hz" in shown
     assert "app ms" in shown
+
+
+def test_bench_asks_for_the_rate_and_waits_as_long_as_it_plays(monkeypatch: pytest.MonkeyPatch) -> None:
+    waits: list[float] = []
+    settings: dict[str, str] = {}
+
+    def follow(*_: object, patience: float) -> Iterator[str]:
+        waits.append(patience)
+        yield from ()
+
+    def tell(verb: str, name: str, value: str = "", *_: str, seconds: float = 0) -> str:
+        if verb == "setprop" and value:
+            settings[name] = value
+        return settings.get(name, "")
+
+    monkeypatch.setattr(bench, "follow", follow)
+    headset: Any = SimpleNamespace(serial="2G0YC1", tell=tell)
+    with pytest.raises(InputError, match="the player's log ended"):
+        bench.bench(headset, "hero", seconds=4000, rate=90)
+    assert waits[0] > 4000
+    assert settings["debug.oculus.refreshRate"] == "90"
 
 
 def test_bench_puts_the_headset_back_after_an_error(deploy: Deploy, hero: Path, tmp_path: Path) -> None:

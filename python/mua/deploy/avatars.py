@@ -54,11 +54,11 @@ def push(headset: Headset, avatar: Checked) -> int:
         headset.send(content, partial)
         _require_size(headset, partial, len(content))
         headset.tell("mv", "-f", partial, target)
+        _require_size(headset, target, len(content))
     except BaseException:
         with suppress(InputError):  # the first failure is the one to tell
             headset.tell("rm", "-f", partial)
         raise
-    _require_size(headset, target, len(content))
     return len(content)
 
 
