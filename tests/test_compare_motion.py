@@ -7,15 +7,12 @@ from compared import HELD_OUT, SETTINGS, STEPS, trained
 from synthetic_avatar import synthetic_rig
 
 from mua import rotation
-from mua.channels import APPEARANCE, GEOMETRY
 from mua.compare.maps import SurfaceMaps
 from mua.compare.motion import band_statistics, motion_of, pose_about_root
 from mua.compare.system import Budget, TrainingFrames
 from mua.pose.clip import Clip
 from mua.recording import Recording
 from mua.student.distil import prepare
-from mua.student.targets import channel_weights
-from mua.teachers.bones import figure_scale
 
 
 @pytest.mark.parametrize("size", [2, 7, 16])
@@ -71,9 +68,7 @@ def test_posed_meshes_keep_where_the_body_looks_where_descriptors_do(smooth_reco
     np.testing.assert_allclose(other, rotation.rotate(np.broadcast_to(turn, (len(one), 4)), one), atol=1e-9)
 
 
-def test_a_variance_is_that_of_a_texel_and_the_weights_are_those_of_the_figure(
-    smooth_recording: Recording, smooth_frames: TrainingFrames
-) -> None:
+def test_a_variance_is_that_of_a_texel(smooth_frames: TrainingFrames) -> None:
     size = smooth_frames.sizes.settings.texels
     mean, variance = band_statistics(smooth_frames.bands, frames=len(smooth_frames), texels=size)
     rows = torch.arange(len(smooth_frames))
@@ -82,10 +77,6 @@ def test_a_variance_is_that_of_a_texel_and_the_weights_are_those_of_the_figure(
         away = (band - middle).square()
         energy += away.movedim(1 if band.dim() == 4 else 2, 0).flatten(1).sum(1)
     torch.testing.assert_close(variance, energy / (len(rows) * size**2), rtol=1e-4, atol=0)
-    figure = figure_scale(smooth_recording.rig.mesh.vertices)
-    assert abs(figure - 1) > 0.1
-    parts = [channel_weights(variance[part], part, size=figure) for part in (GEOMETRY, APPEARANCE)]
-    torch.testing.assert_close(smooth_frames.weights, torch.cat(parts))
 
 
 def test_systems_see_the_teachers_mesh(smooth_recording: Recording, smooth_frames: TrainingFrames) -> None:

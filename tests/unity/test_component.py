@@ -98,15 +98,20 @@ def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path)
     avatar = synthetic_avatar(1)
     [clip] = avatar.clips
     shorter = replace(clip, name="shorter", rotations=clip.rotations[:4], translations=clip.translations[:4])
-    write(folder / "clips.muaavatar", replace(avatar, clips=(clip, shorter)))
+    later = replace(clip, name="later", rotations=clip.rotations[4:], translations=clip.translations[4:])
+    write(folder / "clips.muaavatar", replace(avatar, clips=(clip, shorter, later)))
     told = story("Steers", "clips")
-    counts = [len(resample(each, avatar.encoding.rate)) for each in (clip, shorter)]
+    counts = [len(resample(each, avatar.encoding.rate)) for each in (clip, shorter, later)]
     assert (told["name"], told["progress"], told["frames"]) == ([avatar.name], ["1"], [str(counts[0])])
-    assert told["clip"] == [f"{index} 0 {counts[index]}" for index in (0, 1, 1, 0)]
+    assert told["clip"] == [f"{index} 0 {counts[index]}" for index in (0, 2, 1, 0)]
     assert told["still"] == ["0.25"]
     assert float(told["half"][0]) == pytest.approx(36 / SECOND)
     assert float(told["slow"][0]) == pytest.approx(0.5)
     assert float(told["back"][0]) == pytest.approx(0.5)
+    assert told["posed"][0] != told["posed"][1]  # the first poses of two clips, one after the other
+    missing = f"the avatar has no clip nobody's; its clips are {clip.name}, shorter, later."
+    assert told["picked"] == [f"0 {missing}", "2 "]
+    assert [line.rpartition(": ")[2] for line in told["log"]] == [missing]
 
 
 def test_a_load_asks_once_for_the_packages_resources(story: Story) -> None:
@@ -359,7 +364,7 @@ def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
     assert told["splats"] == [f"{first[i]} {second[j]}" for i, j in ((0, 0), (0, 1), (2, 2))]
     assert told["one camera"] == [f"{first[0]} {second[1]}"]
     assert told["two cameras"] == [f"{first[1]} {second[0]}"]  # of which another one is nearer to the second
-    assert told["fixed"] == [f"{first[2]} {second[0]}"]
+    assert told["fixed"] == [f"{first[2]} {second[0]}"] * 2
     assert told["alone"] == [str(first[0])]  # what is not in view takes nothing off
     assert told["later"] == [f"{first[0]} {second[0]}", f"{first[2]} {second[2]}"]  # the budget that came last counts
     assert told["free"] == [f"{first[0]} {second[0]}"]

@@ -56,6 +56,9 @@ namespace Mua
             budget.Splats = Full(second);
             second.Level = AvatarLevel.Full;
             Say("fixed", Splats(first) + " " + Splats(second));
+            budget.Splats = 1; // which the fixed level alone is beyond
+            Say("fixed", Splats(first) + " " + Splats(second));
+            budget.Splats = Full(second);
             second.transform.position = new Vector3(0, 0, -1000); // behind the camera
             Say("alone", Splats(first));
             second.transform.position = new Vector3(0, 0, 5);

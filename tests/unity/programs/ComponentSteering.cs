@@ -1,4 +1,5 @@
 // Stories of ComponentProgram.cs: what an application reads of an AvatarRenderer, and what it sets.
+using System.Reflection;
 using UnityEngine;
 
 namespace Mua
@@ -50,6 +51,22 @@ namespace Mua
             shown.Speed = -0.5f;
             Frames(36);
             Say("back", (1 - shown.Seconds) / half);
+            shown.IsPlaying = false;
+            foreach (int index in new[] { 0, 2 })
+            {
+                shown.ClipIndex = index;
+                Frames(1);
+                Vector3 middle = shown.Bounds.center;
+                Say("posed", middle.x + " " + middle.y + " " + middle.z);
+            }
+            FieldInfo clip = typeof(AvatarRenderer).GetField("clip", BindingFlags.Instance | BindingFlags.NonPublic);
+            foreach (string name in new[] { "nobody's", "later" })
+            {
+                clip.SetValue(shown, name);
+                StandIns.Messages.Send(shown, "OnValidate");
+                Frames(1);
+                Say("picked", shown.ClipIndex + " " + shown.Message);
+            }
         }
     }
 }
