@@ -173,8 +173,15 @@ def test_takes_a_given_scale(tmp_path: Path) -> None:
         PERSON.replace("\n  {", " {").replace("\n{", " {"),
         "\ufeff" + PERSON,
         PERSON.rstrip(),
+        PERSON.replace(".", ","),
+        PERSON.replace("0.04", "0,04"),
+        PERSON.replace("1 9.5 -2 10", "1, 9.5, -2, 10"),
+        "# exported today\n" + PERSON.replace("  JOINT Head", "  // the skull\n  JOINT Head"),
     ],
-    ids=["crlf", "tabs", "lower case", "blank lines", "braces on the line", "byte order mark", "no last newline"],
+    ids=[
+        *("crlf", "tabs", "lower case", "blank lines", "braces on the line", "byte order mark", "no last newline"),
+        *("decimal commas", "a decimal comma in the header", "commas between numbers", "comments"),
+    ],
 )
 def test_reads_the_same_from_other_layouts(tmp_path: Path, variant: str) -> None:
     expected = read_bvh(write(tmp_path, PERSON))
@@ -246,10 +253,22 @@ def test_takes_positions_for_the_offset_that_starts_far_along_the_path(tmp_path:
         np.testing.assert_array_equal(world_positions(motion)[:, 1], [[0, 1, far], [0, 1, 3]])
 
 
-def test_reads_the_frame_that_a_writer_forgot_to_count_and_says_so(tmp_path: Path) -> None:
-    motion = read_bvh(write(tmp_path, PERSON.replace("Frames: 2", "Frames: 1")))
+def test_reads_utf_16(tmp_path: Path) -> None:
+    path = write(tmp_path, PERSON)
+    path.write_bytes(PERSON.replace("Head", "頭").encode("utf-16"))
+    assert read_bvh(path).skeleton.names[3] == "頭"
+
+
+@pytest.mark.parametrize("stated", [1, 3, 9999])
+def test_reads_all_frames_where_the_file_miscounts_them_and_says_so(tmp_path: Path, stated: int) -> None:
+    motion = read_bvh(write(tmp_path, PERSON.replace("Frames: 2", f"Frames: {stated}")))
     assert len(motion.clip) == 2
-    assert "holds 2 frames, though it says 1" in motion.notes[0]
+    assert f"holds 2 frames, though it says {stated}" in motion.notes[0]
+
+
+def test_reads_frames_over_several_lines(tmp_path: Path) -> None:
+    motion = read_bvh(write(tmp_path, PERSON.replace(" -20 30", "\n-20 30")))
+    np.testing.assert_array_equal(motion.clip.rotations, read_bvh(write(tmp_path, PERSON)).clip.rotations)
 
 
 def test_reads_headers_however_they_are_spaced(tmp_path: Path) -> None:
@@ -300,10 +319,10 @@ def test_leaves_a_handstand_on_its_hands(tmp_path: Path) -> None:
         ("ROOT Hips\n{", "ROOT Hips", "found 'OFFSET 0 0 0'"),
         ("ROOT Hips", "JOINT Hips", "ROOT"),
         ("  JOINT Head", "  ROOT Head", "one ROOT"),
+        ("}\nMOTION", "}\nROOT Other\n{\nOFFSET 0 0 0\n}\nMOTION", "save every person to a file"),
         ("}\nMOTION", "MOTION", "not closed"),
         ("}\nMOTION", "}\n}\nMOTION", "found '}'"),
         ("{\n  OFFSET 0 0 0", "{\n{\n  OFFSET 0 0 0", "found '{'"),
-        ("Frames: 2", "Frames: 3", "3 frames of 10 values, found 20 values"),
         ("0 9 0 0 0 0 0 0 0 0", "0 9 0 0 0 0 0 0 0", "2 frames of 10 values, found 19 values"),
         ("5 6 -7 45", "5 6 -7 45\n" + "0 " * 20, "2 frames of 10 values, found 40 values"),
         ("Frames: 2", "Frames: 0", "at least 1 frame"),
@@ -338,4 +357,5 @@ def test_survives_truncation_at_every_offset(tmp_path: Path) -> None:
             read = read_bvh(write(tmp_path, PERSON[:end]))
         except InputError:
             continue
-        assert read.clip.rotations.shape == whole.clip.rotations.shape  # only digits of the last number were lost
+        # Digits of the last number were lost, or whole frames, which a note tells.
+        assert read.clip.rotations.shape == whole.clip.rotations.shape or "holds 1 frames" in read.notes[0]

@@ -25,6 +25,8 @@ HELD = 1e-4  # of the span: a joint whose place in its parent changes by less ke
 WHOLE_RATE = 1e-3  # relative: 0.033333 s means 30 frames per second
 MOST = 0.5  # of the frames
 ON_HEAD = 0.9  # of the frames that have heads below feet: more than any handstand is of its clip
+COMMENTS = ("#", "//", ";")  # the format has none, editors and scripts write them nevertheless
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 TO_Y_UP = {  # turns about X
     "Z is up": np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0]),
     "Y is down": np.array([0.0, 1, 0, 0]),
@@ -46,9 +48,11 @@ def read_bvh(path: Path, *, scale: float | None = None) -> SourceMotion:
     Errors: InputError for a broken hierarchy, an unknown channel, a wrong number of values, no frames, NaN or infinity.
     """
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").lstrip("\ufeff").splitlines()
+        content = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    text = content.decode("utf-16" if content[:2] in UTF_16 else "utf-8", errors="replace").lstrip("\ufeff")
+    lines = [line for line in text.splitlines() if not line.lstrip().startswith(COMMENTS)]
     motion = next((i for i, line in enumerate(lines) if line.strip().lower() == "motion"), None)
     if motion is None:
         raise InputError(f"{path}: expected a line MOTION after the hierarchy, found none")
@@ -76,7 +80,10 @@ def _parse_hierarchy(path: Path, lines: list[str]) -> list[_Node]:
         if keyword in ("root", "joint", "end"):
             parent = open_nodes[-1] if open_nodes else -1
             if (keyword == "root") == bool(nodes) or (parent < 0) == bool(nodes):
-                raise InputError(f"{path}: {' '.join(statement)}: expected one ROOT and every other joint inside of it")
+                raise InputError(
+                    f"{path}: {' '.join(statement)}: expected one ROOT and every other joint inside of it; "
+                    "save every person to a file of their own"
+                )
             name = f"{nodes[parent].name}_end" if keyword == "end" else " ".join(values)
             nodes.append(_Node(name, parent, np.zeros(3), ()))
         elif keyword == "{" and nodes and len(nodes) - 1 not in open_nodes:
@@ -120,7 +127,7 @@ def _channels(path: Path, node: _Node, values: list[str]) -> _Node:
 def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, int, Array]:
     """Return frames per second, how many frames there should be, and values [F, width] of the MOTION section.
 
-    Writers that count from 0 state one frame less than follows.
+    Where every line is a whole frame, they may be more or fewer than stated: files are cut by hand.
     """
     rows = [line for line in lines if line.strip()]
     count = _header(path, rows, 0, "Frames:")
@@ -128,9 +135,13 @@ def _parse_motion(path: Path, lines: list[str], width: int) -> tuple[float, int,
     if count < 1 or count != int(count):
         raise InputError(f"{path}: Frames: expected at least 1 frame, found {count:g}")
     if frame_time <= 0:
-        raise InputError(f"{path}: Frame Time: expected seconds above 0, found {frame_time:g}")
+        raise InputError(
+            f"{path}: Frame Time: expected seconds above 0, found {frame_time:g}; write 0.0333333 there for 30 frames "
+            "per second"
+        )
     values = _numbers(path, "MOTION", " ".join(rows[2:]).split())
-    if len(values) < count * width or len(values) > (count + 1) * width or len(values) % max(width, 1):
+    whole_lines = len(rows) > 2 and all(len(row.split()) == width for row in rows[2:])
+    if not whole_lines and (len(values) != count * width):
         raise InputError(
             f"{path}: MOTION: expected {int(count)} frames of {width} values, found {len(values)} values "
             f"({len(values) / max(width, 1):g} frames)"
@@ -145,13 +156,17 @@ def _header(path: Path, rows: list[str], index: int, label: str) -> float:
     line = " ".join(rows[index].replace(":", " : ", 1).split()).replace(" :", ":", 1) if index < len(rows) else ""
     if not line.lower().startswith(label.lower()):
         raise InputError(f"{path}: MOTION: expected {label!r} and a number, found {line[:40]!r}")
-    values = _numbers(path, label, line[len(label) :].split())
+    values = _numbers(path, label.rstrip(":"), line[len(label) :].split())
     if len(values) != 1:
         raise InputError(f"{path}: {label} expected one number, found {line[len(label) :]!r}")
     return float(values[0])
 
 
 def _numbers(path: Path, field: str, words: list[str]) -> Array:
+    """Numbers of a field; commas are decimal points, as some languages write them, unless there are points too."""
+    text = " ".join(words)
+    if "," in text:
+        words = text.replace(",", " " if "." in text or ", " in text else ".").split()
     try:
         values = np.array(words, dtype=float)
     except ValueError as error:
