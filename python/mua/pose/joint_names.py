@@ -8,6 +8,7 @@ import re
 import unicodedata
 from collections.abc import Mapping
 
+from mua.pose.foreign_names import FOREIGN_CENTRAL, FOREIGN_SIDE, FOREIGN_SIDED, WIDE_CENTRAL, WIDE_SIDE, WIDE_SIDED
 from mua.pose.skeleton import Skeleton
 
 Roles = dict[str, tuple[int, ...]]
@@ -63,8 +64,8 @@ _SIDED = {
     part: tuple(f"{before}{name}{segment}" for name in names for before in ("", "hand", "f") for segment in _SEGMENTS)
     for part, names in _FINGER_NAMES.items()
 }
-_CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names}
-_SIDED_PART = {name: part for part, names in _SIDED.items() for name in names}
+_CENTRAL_PART = {name: part for part, names in _CENTRAL.items() for name in names} | FOREIGN_CENTRAL
+_SIDED_PART = {name: part for part, names in _SIDED.items() for name in names} | FOREIGN_SIDED
 _SIDE = {"left": "left", "l": "left", "right": "right", "r": "right"}
 _NO_PART = {
     "bind",
@@ -79,17 +80,10 @@ _NO_PART = {
 }  # words that say nothing about where a joint is
 _BELOW = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}
 
-_JAPANESE_SIDE = {"左": "left", "右": "right"}
-_JAPANESE_CENTRAL = {"下半身": "hips", "上半身": "spine", "首": "neck", "頭": "head"}
-_JAPANESE_SIDED = {
-    **{"肩": "shoulder", "腕": "upper_arm", "ひじ": "forearm", "肘": "forearm", "手首": "hand"},
-    **{"足": "thigh", "ひざ": "shin", "膝": "shin", "足首": "foot", "つま先": "toe"},
-    **{"親指": "thumb", "人指": "index", "人差指": "index", "中指": "middle", "薬指": "ring", "小指": "pinky"},
-}
-
 NAMESPACE = re.compile(r"^.*[:|]")
 _RIG_PREFIX = re.compile(
-    r"^(valvebiped\.)?(mixamorig\d*|bip\d+|cc_base|def|j_bip(_c)?|b|j|jnt|joint|character\d*|quickrigcharacter\d*|skeleton|armature)[\s_.\-]",
+    r"^(valvebiped\.)?((mixamorig\d*|bip\d+)[\s_.\-]?"
+    r"|(cc_base|def|j_bip(_c)?|b|j|jnt|joint|character\d*|quickrigcharacter\d*|skeleton|armature)[\s_.\-])",
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
@@ -136,12 +130,14 @@ def _told(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
 
 
 def _role(name: str, first_finger: int) -> str | None:
+    name = _without_accents(name)
     if not name.isascii():
-        return _japanese_role(name)
+        return _wide_role(name)
     bare = _RIG_PREFIX.sub("", NAMESPACE.sub("", name))
     words = [word.lower() for word in _WORD.findall(bare)]
-    sides = [_SIDE[word] for word in words if word in _SIDE]
-    kept = [word for word in words if word not in _SIDE and word not in _NO_PART]
+    told = _SIDE if _SIDE.keys() & set(words) else FOREIGN_SIDE
+    sides = [told[word] for word in words if word in told]
+    kept = [word for word in words if word not in told and word not in _NO_PART]
     part = "".join(kept)
     for side in SIDES:
         if not sides and part not in _CENTRAL_PART and (part.startswith(side) or part.endswith(side)):
@@ -157,13 +153,19 @@ def _role(name: str, first_finger: int) -> str | None:
     return None if found is None else f"{sides[0]} {found}"
 
 
-def _japanese_role(name: str) -> str | None:
-    """By the names of MikuMikuDance, whose digits may be wide ones; anything more in the name is a helper joint."""
+def _without_accents(name: str) -> str:
+    """The name in ASCII where only accents and the German ß are not."""
+    plain = "".join(letter for letter in unicodedata.normalize("NFKD", name.replace("ß", "ss")) if letter.isascii())
+    return plain if len(plain) >= len(name) else name
+
+
+def _wide_role(name: str) -> str | None:
+    """By names in Chinese and Japanese, whose digits may be wide ones; anything more in the name is a helper joint."""
     part = unicodedata.normalize("NFKC", name).strip().rstrip("0123456789")
-    side = _JAPANESE_SIDE.get(part[:1])
+    side = WIDE_SIDE.get(part[:1])
     if side is None:
-        return _JAPANESE_CENTRAL.get(part)
-    found = _JAPANESE_SIDED.get(part[1:])
+        return WIDE_CENTRAL.get(part)
+    found = WIDE_SIDED.get(part[1:])
     return None if found is None else f"{side} {found}"
 
 
