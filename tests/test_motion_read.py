@@ -32,6 +32,16 @@ def test_refuses_what_holds_no_motion(tmp_path: Path, name: str, says: str) -> N
         read_motion(tmp_path / name)
 
 
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [("a.pkl", "may run code"), ("a.NPY", "numpy.savez"), ("a.c3d", "markers"), ("a.amc", "export it as BVH")],
+)
+def test_says_how_to_convert_motion_of_other_kinds(tmp_path: Path, name: str, says: str) -> None:
+    (tmp_path / name).write_bytes(b"\x80\x04")
+    with pytest.raises(InputError, match=says):
+        read_motion(tmp_path / name)
+
+
 def test_refuses_a_directory_without_motion(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="found none"):
         read_motion(tmp_path)

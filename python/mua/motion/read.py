@@ -13,6 +13,17 @@ RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".us
 SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
 
 
+SAVE_NPZ = "save its poses, trans and mocap_framerate with numpy.savez, and give that .npz"
+ADVICE = {  # for other kinds of motion files
+    **dict.fromkeys(
+        (".pkl", ".pickle", ".pt", ".pth"), f"opening it may run code; where you trust it, open it and {SAVE_NPZ}"
+    ),
+    ".npy": f"it holds one array without names; {SAVE_NPZ}",
+    **dict.fromkeys((".c3d", ".trc", ".csv", ".tsv"), "markers have no joints; solve a skeleton and export it as BVH"),
+    **dict.fromkeys((".asf", ".amc", ".htr", ".vmd"), "import it in Blender or MotionBuilder and export it as BVH"),
+}
+
+
 def read_motion(path: Path) -> list[SourceMotion]:
     """Read every motion of `path`: one file of `SUFFIXES`, or those of a directory by name.
 
@@ -35,6 +46,8 @@ def read_motion(path: Path) -> list[SourceMotion]:
     if suffix in RIG_SUFFIXES:
         return _read_rig_clips(path)
     refuse_foreign(path)
+    if suffix in ADVICE:
+        raise InputError(f"{path}: {path.suffix} files are not read: {ADVICE[suffix]}")
     raise InputError(f"{path}: expected a suffix out of {', '.join(SUFFIXES)}, found {path.suffix!r}")
 
 
