@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from mua.errors import InputError
 from mua.motion.amass import nominal_skeleton, read_amass
+from mua.motion.source import SourceMotion
 
 BOUND = 64 * np.finfo(float).eps  # sine, cosine and one quaternion product
 
@@ -28,7 +29,7 @@ def write(folder: Path, **changes: Any) -> Path:
     return path
 
 
-@pytest.mark.parametrize("joints", [24, 52, 55])
+@pytest.mark.parametrize("joints", [22, 24, 52, 55])
 def test_reads_axis_angles_of_every_model(tmp_path: Path, joints: int) -> None:
     poses = np.random.default_rng(3).normal(size=(5, 3 * joints))
     poses[0] = 0
@@ -60,7 +61,7 @@ def test_a_turn_about_the_vertical_stays_one(tmp_path: Path) -> None:
     np.testing.assert_allclose(Rotation.from_quat(root, scalar_first=True).as_rotvec(), [0, 0.7, 0], atol=BOUND)
 
 
-@pytest.mark.parametrize("joints", [24, 52, 55])
+@pytest.mark.parametrize("joints", [22, 24, 52, 55])
 def test_rests_as_a_person_facing_z(joints: int) -> None:
     skeleton = nominal_skeleton(joints)
     assert (skeleton.parents[1:] < np.arange(1, joints)).all()
@@ -79,12 +80,75 @@ def test_takes_either_spelling_of_the_rate(tmp_path: Path) -> None:
     assert read_amass(write(tmp_path, mocap_framerate=None, mocap_frame_rate=np.array([60]))).clip.rate == 60
 
 
+def test_takes_thirty_frames_a_second_where_no_rate_is_stated_and_says_so(tmp_path: Path) -> None:
+    motion = read_amass(write(tmp_path, mocap_framerate=None))
+    assert motion.clip.rate == 30
+    assert any("no frame rate" in note for note in motion.notes)
+
+
+def same(found: SourceMotion, expected: SourceMotion) -> None:
+    np.testing.assert_array_equal(found.clip.rotations, expected.clip.rotations)
+    np.testing.assert_array_equal(found.clip.translations, expected.clip.translations)
+    assert found.skeleton.names == expected.skeleton.names
+
+
+@pytest.mark.parametrize(
+    ("joints", "parts"),
+    [
+        (22, {"root_orient": 3, "pose_body": 63}),
+        (22, {"global_orient": 3, "body_pose": 63}),
+        (22, {"global_orient": 3, "body_pose": 63, "left_hand_pose": 6, "right_hand_pose": 6}),
+        (24, {"global_orient": 3, "body_pose": 69}),
+        (52, {"root_orient": 3, "pose_body": 63, "pose_hand": 90}),
+        (52, {"global_orient": 3, "body_pose": 63, "left_hand_pose": 45, "right_hand_pose": 45}),
+    ],
+)
+def test_puts_a_pose_in_parts_together(tmp_path: Path, joints: int, parts: dict[str, int]) -> None:
+    whole = np.random.default_rng(4).normal(size=(5, 200))
+    ends = np.cumsum(list(parts.values()))
+    split = {key: whole[:, end - width : end] for (key, width), end in zip(parts.items(), ends, strict=True)}
+    expected = read_amass(write(tmp_path, poses=whole[:, : 3 * joints]))
+    same(read_amass(write(tmp_path, poses=None, **split)), expected)
+
+
+def test_takes_vectors_by_joint_and_other_names_of_arrays(tmp_path: Path) -> None:
+    poses = np.random.default_rng(5).normal(size=(5, 24, 3))
+    trans = np.random.default_rng(6).normal(size=(5, 3))
+    expected = read_amass(write(tmp_path, poses=poses.reshape(5, 72), trans=trans))
+    same(read_amass(write(tmp_path, poses=None, smpl_poses=poses, trans=None, transl=trans)), expected)
+    aist = {"smpl_poses": poses, "smpl_trans": trans * 64, "smpl_scaling": np.array([64.0])}
+    same(read_amass(write(tmp_path, poses=None, trans=None, **aist)), expected)
+
+
+@pytest.mark.parametrize(("turn", "says"), [(0.0, "Y is up"), (np.pi, "Y is down")])
+def test_judges_by_a_standing_body_what_is_up(tmp_path: Path, turn: float, says: str) -> None:
+    poses = np.zeros((3, 66))
+    poses[:, 0] = turn
+    trans = np.array([[0.0, 0, 0], [0, np.cos(turn), 0], [0, 0, 0]])
+    motion = read_amass(write(tmp_path, poses=poses, trans=trans))
+    _, at = motion.skeleton.world(motion.clip.rotations, motion.clip.translations)
+    assert (at[:, motion.skeleton.names.index("head"), 1] > at[:, 0, 1] + 0.4).all()
+    np.testing.assert_allclose(at[1] - at[0], np.tile([0, 1, 0], (22, 1)), atol=1e-12)
+    assert says in motion.notes[0]
+
+
+def test_leaves_a_person_lying_in_a_file_of_amass(tmp_path: Path) -> None:
+    lying = read_amass(write(tmp_path, poses=np.zeros((3, 156)), trans=np.zeros((3, 3)), dmpls=np.zeros((3, 8))))
+    _, at = lying.skeleton.world(lying.clip.rotations, lying.clip.translations)
+    assert abs(at[:, lying.skeleton.names.index("head"), 1] - at[:, 0, 1]).max() < 0.1
+    assert lying.notes == ()
+
+
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
         ({"poses": None}, "poses"),
         ({"trans": None}, "trans"),
-        ({"mocap_framerate": None}, "mocap_framerate"),
+        ({"poses": None, "body_pose": np.zeros((5, 63))}, "global_orient"),
+        ({"poses": None, "body_pose": np.zeros((5, 60)), "global_orient": np.zeros((5, 3))}, "body_pose"),
+        ({"poses": None, "body_pose": np.zeros((4, 63)), "global_orient": np.zeros((5, 3))}, "5, 4"),
+        ({"poses": None, "joints": np.zeros((5, 22, 3))}, "places of joints"),
+        ({"trans": None, "smpl_trans": np.zeros((5, 3)), "smpl_scaling": np.zeros(1)}, "smpl_scaling"),
         ({"poses": np.zeros((5, 63))}, "poses"),
         ({"poses": np.zeros((0, 156)), "trans": np.zeros((0, 3))}, "poses"),
         ({"poses": np.full((5, 156), np.nan)}, "poses"),

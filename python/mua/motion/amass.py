@@ -1,4 +1,7 @@
-"""Read AMASS `.npz` motion: axis-angle poses of the SMPL family of body models, Z up, brought to Y up.
+"""Read `.npz` motion of the SMPL family of body models, axis angles as AMASS and its relatives store them, in Y up.
+
+AMASS has Z up. Relatives (BEAT2, results of pose estimators) have Y up or, seen by a camera, Y down; none says so, but
+the trunk of a person who stands does.
 
 The body model itself is not needed: retargeting asks a skeleton for names and rest directions only. NOMINAL holds rough
 offsets of an average adult in the models' rest pose (arms level, legs straight, facing +Z), rounded to centimetres.
@@ -6,6 +9,7 @@ offsets of an average adult in the models' rest pose (arms level, legs straight,
 
 import zipfile
 import zlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -56,28 +60,58 @@ _FINGERS = tuple(
     )
     for i in (1, 2, 3)
 )
-# By the number of joints in `poses`: SMPL, SMPL-H, SMPL-X.
-NOMINAL = {24: _BODY + _HANDS, 52: _BODY + _FINGERS, 55: _BODY + _FACE + _FINGERS}
+# By the number of joints in `poses`: the body alone, SMPL, SMPL-H, SMPL-X.
+NOMINAL = {22: _BODY, 24: _BODY + _HANDS, 52: _BODY + _FINGERS, 55: _BODY + _FACE + _FINGERS}
 
-RATE_KEYS = ("mocap_framerate", "mocap_frame_rate")
+POSE_KEYS = ("poses", "smpl_poses", "fullpose")
+SPLIT_KEYS = (("root_orient", "global_orient"), ("pose_body", "body_pose"))  # where the pose comes in parts
+HAND_KEYS = (("left_hand_pose",), ("right_hand_pose",))
+HANDS_KEY = "pose_hand"  # both hands in one array
+TRANSLATION_KEYS = ("trans", "transl", "smpl_trans", "root_trans")
+SCALE_KEY = "smpl_scaling"  # of AIST++: units of its smpl_trans in a metre
+OF_AMASS = ("dmpls", "mocap_time_length", "markers_latent")  # only files of AMASS itself have these: Z is up
+RATE_KEYS = ("mocap_framerate", "mocap_frame_rate", "fps", "framerate", "frame_rate")
+SPLIT_BODY = (63, 69)  # numbers of a body without its root: SMPL-H and SMPL-X, SMPL
+HAND = 45  # numbers of a hand; hands in principal components have fewer and are left out
+POSITIONS = ("joints", "positions", "keypoints3d", "motion", "data", "arr_0")
+USUAL_RATE = 30.0
+
 Z_UP_TO_Y_UP = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0, 0])  # a quarter turn about X
+Y_DOWN_TO_Y_UP = np.array([0.0, 1, 0, 0])  # half a turn about X
+IDENTITY = np.array([1.0, 0, 0, 0])
+STANDS = 0.7  # of a unit along an axis: cosine of how far a trunk may lean that stands along it
 
 
 def read_amass(path: Path) -> SourceMotion:
-    """Read poses [F, 3 J] (radians), trans [F, 3] (metres) and the frame rate of an AMASS file.
+    """Read axis angles [F, 3 J] or [F, J, 3] (radians), places [F, 3] (metres) and the frame rate.
 
-    J is 24 (SMPL), 52 (SMPL-H) or 55 (SMPL-X). Pickled content is never loaded.
+    J is 22 (a body), 24 (SMPL), 52 (SMPL-H) or 55 (SMPL-X); `root_orient` and `pose_body`, or `global_orient` and
+    `body_pose`, do as well. Pickled content is never loaded.
     Errors: InputError for an unreadable file, a missing key, another J, no frames, numbers that are not finite.
     """
-    poses, translation, rate = _load(path)
+    arrays = _load(path)
+    poses = _poses(path, arrays)
+    translation = _translation(path, arrays, len(poses))
+    rate, notes = _rate(path, arrays)
     skeleton = nominal_skeleton(poses.shape[1] // 3)
     vectors = poses.reshape(len(poses), -1, 3)
     angles = np.linalg.norm(vectors, axis=-1)
     axes = vectors / np.where(angles > 0, angles, 1)[..., None]
     rotations = rotation.from_axis_angle(axes, angles)
-    rotations[:, 0] = rotation.multiply(Z_UP_TO_Y_UP, rotations[:, 0])
-    pelvis = rotation.rotate(Z_UP_TO_Y_UP, translation + skeleton.bind_translations[0])
-    return SourceMotion(skeleton, Clip(path.stem, rate, rotations, skeleton.with_root(pelvis)))
+    up, turn = ("", Z_UP_TO_Y_UP) if arrays.keys() & set(OF_AMASS) else _up(rotations[:, 0])
+    rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
+    pelvis = rotation.rotate(turn, translation + skeleton.bind_translations[0])
+    if up:
+        notes += (f"{path.name}: {up}, unlike in AMASS; judged by how the body stands.",)
+    return SourceMotion(skeleton, Clip(path.stem, rate, rotations, skeleton.with_root(pelvis)), notes)
+
+
+def _up(roots: Array) -> tuple[str, Array]:
+    """What is up where it is not Z, and the turn [4] to Y up, by the rotations [F, 4] of pelvises."""
+    along = np.median(rotation.rotate(roots, np.array([0.0, 1, 0])), axis=0)[1]
+    if along > STANDS:
+        return "Y is up", IDENTITY
+    return ("Y is down", Y_DOWN_TO_Y_UP) if along < -STANDS else ("", Z_UP_TO_Y_UP)
 
 
 def nominal_skeleton(joints: int) -> Skeleton:
@@ -94,28 +128,91 @@ def nominal_skeleton(joints: int) -> Skeleton:
     )
 
 
-def _load(path: Path) -> tuple[Array, Array, float]:
+def _load(path: Path) -> dict[str, Array]:
+    """The arrays that matter, each of finite numbers."""
+    known = (*POSE_KEYS, *(key for keys in (*SPLIT_KEYS, *HAND_KEYS) for key in keys), HANDS_KEY)
     try:
         with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            arrays = {key: file[key] for key in ("poses", "trans", *RATE_KEYS) if key in file}
+            held = list(file)
+            arrays = {key: file[key] for key in (*known, *TRANSLATION_KEYS, SCALE_KEY, *RATE_KEYS) if key in held}
+            of_amass = dict.fromkeys((key for key in OF_AMASS if key in held), np.zeros(0))
+            shapes = {key: file[key].shape for key in POSITIONS if key in held}
     except (OSError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(f"{path}: cannot be read as an .npz of plain arrays: {error}") from error
-    rate_key = next((key for key in RATE_KEYS if key in arrays), RATE_KEYS[0])
-    for key in ("poses", "trans", rate_key):
-        if key not in arrays:
-            raise InputError(
-                f"{path}: expected the array {key!r} of an AMASS motion, found {', '.join(arrays) or 'none'}"
-            )
-        if not np.issubdtype(arrays[key].dtype, np.number) or not np.isfinite(arrays[key]).all():
+    for key, array in arrays.items():
+        if not np.issubdtype(array.dtype, np.number) or not np.isfinite(array).all():
             raise InputError(f"{path}: {key}: expected finite numbers, found others")
-    poses, translation, rate = (arrays[key].astype(float) for key in ("poses", "trans", rate_key))
+    if not any(key in arrays for key in (*POSE_KEYS, *SPLIT_KEYS[1])):
+        for key, shape in shapes.items():
+            if len(shape) >= 3 and shape[-1] == 3:
+                raise InputError(
+                    f"{path}: {key} holds places of joints {list(shape)}, not rotations, which a character needs; "
+                    "fit a body model to them (such as SMPL by SMPLify) and give its poses"
+                )
+        raise InputError(f"{path}: expected the array 'poses' of an AMASS motion, found {', '.join(held) or 'none'}")
+    return {key: array.astype(float) for key, array in arrays.items()} | of_amass
+
+
+def _first(arrays: Mapping[str, Array], keys: Sequence[str]) -> str | None:
+    return next((key for key in keys if key in arrays), None)
+
+
+def _poses(path: Path, arrays: Mapping[str, Array]) -> Array:
+    """Axis angles [F, 3 J] of a whole body, put together where the file has them in parts."""
+    key = _first(arrays, POSE_KEYS)
+    poses = _flat(arrays[key]) if key else _joined(path, arrays)
     widths = {3 * joints for joints in NOMINAL}
     if poses.ndim != 2 or poses.shape[1] not in widths or len(poses) < 1:
         raise InputError(
-            f"{path}: poses: expected shape [1 or more, one of {sorted(widths)}], found {list(poses.shape)}"
+            f"{path}: {key or 'body_pose'}: expected shape [1 or more, one of {sorted(widths)}], "
+            f"found {list(arrays[key].shape if key else poses.shape)}"
         )
-    if translation.shape != (len(poses), 3):
-        raise InputError(f"{path}: trans: expected shape {[len(poses), 3]}, found {list(translation.shape)}")
-    if rate.size != 1 or rate.item() <= 0:
-        raise InputError(f"{path}: {rate_key}: expected one number above 0, found {rate.tolist()}")
-    return poses, translation, float(rate.item())
+    return poses
+
+
+def _flat(array: Array) -> Array:
+    """[F, J, 3] as [F, 3 J]."""
+    return array.reshape(len(array), -1) if array.ndim == 3 and array.shape[-1] == 3 else array
+
+
+def _joined(path: Path, arrays: Mapping[str, Array]) -> Array:
+    root, body = (_first(arrays, keys) for keys in SPLIT_KEYS)
+    if root is None or body is None:
+        raise InputError(f"{path}: expected 'global_orient' beside 'body_pose', found {', '.join(arrays)}")
+    parts = [_flat(arrays[root]).reshape(len(arrays[root]), -1), _flat(arrays[body])]
+    if parts[0].shape[1] != 3 or parts[1].ndim != 2 or parts[1].shape[1] not in SPLIT_BODY:
+        raise InputError(
+            f"{path}: {root}, {body}: expected shapes [frames, 3] and [frames, {SPLIT_BODY[0]} or {SPLIT_BODY[1]}], "
+            f"found {list(arrays[root].shape)} and {list(arrays[body].shape)}"
+        )
+    hands = [_flat(arrays[key]) for keys in ((HANDS_KEY,), *HAND_KEYS) if (key := _first(arrays, keys))]
+    if sum(hand.shape[-1] for hand in hands) == 2 * HAND and parts[1].shape[1] == SPLIT_BODY[0]:
+        parts += hands
+    if len({len(part) for part in parts}) != 1:
+        raise InputError(
+            f"{path}: {root}, {body}: expected as many frames in every part, found "
+            + ", ".join(str(len(part)) for part in parts)
+        )
+    return np.concatenate(parts, axis=1)
+
+
+def _translation(path: Path, arrays: Mapping[str, Array], frames: int) -> Array:
+    key = _first(arrays, TRANSLATION_KEYS)
+    if key is None:
+        raise InputError(f"{path}: expected the array 'trans' of an AMASS motion, found {', '.join(arrays)}")
+    if arrays[key].shape != (frames, 3):
+        raise InputError(f"{path}: {key}: expected shape {[frames, 3]}, found {list(arrays[key].shape)}")
+    scale = arrays[SCALE_KEY] if key == "smpl_trans" and SCALE_KEY in arrays else np.ones(1)
+    if scale.size != 1 or scale.item() <= 0:
+        raise InputError(f"{path}: {SCALE_KEY}: expected one number above 0, found {scale.tolist()}")
+    return arrays[key] / scale.item()
+
+
+def _rate(path: Path, arrays: Mapping[str, Array]) -> tuple[float, tuple[str, ...]]:
+    """Frames per second, and a note where the file states none."""
+    key = _first(arrays, RATE_KEYS)
+    if key is None:
+        return USUAL_RATE, (f"{path.name}: states no frame rate; {USUAL_RATE:g} frames per second are taken.",)
+    if arrays[key].size != 1 or arrays[key].item() <= 0:
+        raise InputError(f"{path}: {key}: expected one number above 0, found {arrays[key].tolist()}")
+    return float(arrays[key].item()), ()
