@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from people import ANGLE_BOUND, POSITION_BOUND, bone_aligned, person, random_clip, retarget, still, walk, world
+from people import ANGLE_BOUND, POSITION_BOUND, bone_aligned, person, random_clip, retarget, still, upright, walk, world
 from scipy.spatial.transform import Rotation
 from shared_data import SharedData
 
@@ -404,3 +404,34 @@ def test_walks_and_runs_upright_on_the_floor_with_knees_forward(
         assert (bend > -0.02 * np.linalg.norm(forward, axis=-1)).all()
     travel = place["Hips"][-1] - place["Hips"][0]
     assert np.sum(travel * forward.mean(axis=0)) > 0.9 * np.linalg.norm(travel) * np.linalg.norm(forward.mean(axis=0))
+
+
+def animal(*, ahead: int, size: float, knee: float) -> Skeleton:
+    """An animal that stands on four legs, its head along +Z (ahead 2) or +X (0); hind knees bend by metres."""
+    rows = [
+        *(("Hips", "", (0, 0.5, -0.3)), ("Spine", "Hips", (0, 0.5, -0.1)), ("Chest", "Spine", (0, 0.52, 0.2))),
+        *(("Neck", "Chest", (0, 0.55, 0.3)), ("Head", "Neck", (0, 0.7, 0.45))),
+        *(("LeftUpperArm", "Chest", (0.1, 0.45, 0.2)), ("LeftForeArm", "LeftUpperArm", (0.1, 0.25, 0.18))),
+        *(("LeftHand", "LeftForeArm", (0.1, 0.05, 0.2)), ("LeftUpLeg", "Hips", (0.1, 0.45, -0.3))),
+        *(("LeftLeg", "LeftUpLeg", (0.1, 0.25, -0.3 + knee)), ("LeftFoot", "LeftLeg", (0.1, 0.05, -0.3))),
+    ]
+    rows += [
+        (name.replace("Left", "Right"), parent.replace("Left", "Right"), (-x, y, z))
+        for name, parent, (x, y, z) in rows
+        if name.startswith("Left")
+    ]
+    names = [name for name, _, _ in rows]
+    at = {name: np.array(place if ahead == 2 else (place[2], place[1], -place[0])) for name, _, place in rows}
+    offsets = [size * (at[name] - (at[parent] if parent else 0)) for name, parent, _ in rows]
+    return upright(names, [names.index(parent) if parent else -1 for _, parent, _ in rows], offsets)
+
+
+def test_an_animal_stands_as_the_animal_of_the_motion_stands() -> None:
+    source, target = animal(ahead=0, size=3, knee=0.03), animal(ahead=2, size=1, knee=0.08)
+    clip, _ = retarget(SourceMotion(source, still(source, 10)), target)
+    _, at = world(target, clip)
+    _, rest = target.world(target.bind_rotations, target.bind_translations)
+    trunk = [target.names.index(name) for name in ("Hips", "Spine", "Chest", "Neck", "Head", "LeftUpperArm")]
+    np.testing.assert_allclose(at[:, trunk] - at[:, :1], np.tile(rest[trunk] - rest[0], (10, 1, 1)), atol=1e-9)
+    feet = [target.names.index(f"{side}{end}") for side in ("Left", "Right") for end in ("Hand", "Foot")]
+    assert abs(at[:, feet, 1] - rest[feet, 1]).max() < 0.05

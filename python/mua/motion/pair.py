@@ -9,7 +9,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.motion.match import Matches
 from mua.motion.source import SourceMotion
-from mua.motion.trunk import AT_EASE, SIDES, Trunk, lean_of, leaned, stands, trunk_of
+from mua.motion.trunk import AT_EASE, SIDES, Trunk, lean_of, leaned, on_all_fours, stands, trunk_of
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
@@ -79,11 +79,10 @@ class Pair:
         last = {role: joints[-1] for role in ("hips", "spine") if (joints := matches.roles.get(role))}
         source_bind = _bind(source.skeleton)[1]
         sources = {role: joint for role, (_, joint) in ends.items()}
+        source_rest = {role: source_bind[joint] for role, joint in sources.items()}
         return cls(
             Side(at, bind_at, {role: joint for role, (joint, _) in ends.items()}, trusted=True),
-            Side(
-                source_at, source_bind, sources, trusted=stands({role: source_bind[j] for role, j in sources.items()})
-            ),
+            Side(source_at, source_bind, sources, trusted=stands(source_rest) or on_all_fours(source_rest)),
             clip.rate,
             {
                 role: rotation.multiply(turned[:, joint], rotation.conjugate(bind_turned[joint]))

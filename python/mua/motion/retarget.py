@@ -23,7 +23,7 @@ from mua.motion.match import Matches, missing_limbs
 from mua.motion.posed import posed_calibrations
 from mua.motion.rest import IDENTITY, LIMBS, Rest, body_turn, rest_calibrations, rest_of
 from mua.motion.source import SourceMotion
-from mua.motion.trunk import SIDES, degrees, stands, trunk_of, unit
+from mua.motion.trunk import SIDES, degrees, on_all_fours, stands, trunk_of, unit
 from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of
 from mua.pose.resample import resample
@@ -63,7 +63,7 @@ def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[di
     """C_t by target joint, W [4], and whether they come from the source's rest pose, which then tells heights too."""
     upright = body_turn(rest)
     by_rest = rest_calibrations(rest, upright)
-    honest = stands(rest.source_places()) and not _turned_otherwise(rest, turned, at)
+    honest = (stands(rest.source_places()) or _both_on_all_fours(rest)) and not _turned_otherwise(rest, turned, at)
     by_pose = {} if honest else posed_calibrations(rest, turned, at, rate)
     if not by_pose:
         return by_rest, rotation.conjugate(heading_of(upright)), True
@@ -71,6 +71,11 @@ def _calibrations(rest: Rest, turned: Array, at: Array, rate: float) -> tuple[di
     if not _same_frames(rest, by_frames, by_pose):
         return by_pose, IDENTITY, False
     return by_frames | _along_bones(rest, by_frames, by_pose), IDENTITY, False
+
+
+def _both_on_all_fours(rest: Rest) -> bool:
+    target = {role: rest.target_at[pair[0]] for role in rest.matches.roles if (pair := rest.matches.ends(role))}
+    return on_all_fours(target) and on_all_fours(rest.source_places())
 
 
 def _turned_otherwise(rest: Rest, turned: Array, at: Array) -> bool:

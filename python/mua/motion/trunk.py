@@ -16,6 +16,10 @@ RAISED = 45.0  # degrees from straight up within which arms of a standing body d
 MIRRORED = 15.0  # degrees by which a limb may differ from the mirror image of the other
 STRAIGHT = {"shin": 20.0, "forearm": 45.0}  # degrees by which knees and elbows of a body at rest may bend
 POINTED = 20.0  # degrees between shin and foot below which the foot only continues the leg
+LEVEL = 30.0  # degrees from the horizontal within which the trunk of a standing animal lies
+DOWN = 30.0  # degrees from straight down within which its legs reach the ground
+ALL_FOURS = (("upper_arm", "hand"), ("thigh", "foot"))
+Y = np.array([0.0, 1, 0])
 LEGS = (("thigh", "shin"), ("shin", "foot"))
 ARMS = (("upper_arm", "forearm"), ("forearm", "hand"))
 AROUND = (
@@ -108,6 +112,16 @@ def stands(at: Mapping[str, Array]) -> bool:
         if other is not None and degrees(bone, other - 2 * (other @ across) * across) > MIRRORED:
             return False
     return True
+
+
+def on_all_fours(at: Mapping[str, Array]) -> bool:
+    """Whether places [3] of roles are those of an animal that stands: trunk level, all four legs down."""
+    trunk = trunk_of({role: at[role] for role in AROUND if role in at})
+    if trunk is None or abs(trunk.up[1]) > np.sin(np.radians(LEVEL)):
+        return False
+    legs = [(at.get(f"{side} {top}"), at.get(f"{side} {end}")) for top, end in ALL_FOURS for side in SIDES]
+    known = [(top, end) for top, end in legs if top is not None and end is not None]
+    return len(known) == len(legs) and all(degrees(end - top, -Y) < DOWN for top, end in known)
 
 
 def unit(v: Array) -> Array:
