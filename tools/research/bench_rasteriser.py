@@ -1,11 +1,13 @@
 """Print what a picture and its gradients take in the differentiable rasteriser, and how far it is from the reference.
 
-python tools/research/bench_rasteriser.py hero.muaavatar [--side 256] [--device cuda]: one frame of the first clip in
-single precision, the median of several runs; the first compiles the kernels and is left out.
+python tools/research/bench_rasteriser.py hero.muaavatar [--side 256] [--device cuda [--gsplat]]: one frame of the first
+clip in single precision, the median of several runs; the first compiles the kernels and is left out.
 """
 
 import argparse
+from collections.abc import Callable
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -16,6 +18,7 @@ from mua.asset.read import read
 from mua.camera import Camera, orbit
 from mua.decode import Splats, decode_clip_frame
 from mua.rendering import frame_bounds, render_premultiplied
+from mua.splatting.gsplat_views import gsplat_views
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import rasterise
 from mua.splatting.tiles import assign
@@ -28,6 +31,7 @@ def main() -> None:
     parser.add_argument("file", type=Path)
     parser.add_argument("--side", type=int, default=256, help="pixels")
     parser.add_argument("--device", default="cpu", help="cpu or cuda")
+    parser.add_argument("--gsplat", action="store_true", help="also measure gsplat, which needs CUDA")
     given = parser.parse_args()
     avatar = read(given.file)
     frame = decode_clip_frame(avatar, avatar.clips[0], frame=len(avatar.clips[0]) // 2, dtype=np.float64)
@@ -37,26 +41,39 @@ def main() -> None:
     shapes = project(splats, eye, bounds).shapes.detach()
     pairs = len(assign(shapes[:, :2], half_extents(shapes), camera.screen).quads)
     print(f"{len(frame):,} splats, {given.side} x {given.side} pixels, {pairs:,} pairs of a tile and a splat")
-    times = np.median([run(splats, eye, bounds) for _ in range(1 + RUNS)][1:], axis=0)
-    print(f"forward {times[0]:.2f} s, backward {times[1]:.2f} s")
+    show_times("mua", partial(rasterise, splats, eye, bounds))
     print(f"{decibels(splats, eye, bounds, frame, camera):.0f} dB against the reference renderer in double precision")
+    if given.gsplat:
+        show_times("gsplat", lambda: gsplat_views(splats, [eye])[0])
+        with torch.no_grad():
+            error = (gsplat_views(splats, [eye])[0] - rasterise(splats, eye, bounds)).square().mean().item()
+        print(f"gsplat's picture is {-10 * np.log10(error):.0f} dB from ours")
+
+
+def show_times(name: str, draw: Callable[[], torch.Tensor]) -> None:
+    times = np.median([run(draw) for _ in range(1 + RUNS)][1:], axis=0)
+    print(f"{name}: forward {times[0]:.3f} s, backward {times[1]:.3f} s")
 
 
 def on_device(frame: Splats, device: str) -> TorchSplats:
-    of = {field.name: getattr(frame, field.name, None) for field in fields(TorchSplats) if field.name != "normals"}
+    of = {field.name: getattr(frame, field.name, None) for field in fields(TorchSplats)}
     of["turns"] = frame.texel_dq[:, :4]
-    tensors = {name: torch.tensor(v, dtype=torch.float32, device=device).requires_grad_() for name, v in of.items()}
+    tensors = {
+        name: torch.tensor(values, dtype=torch.float32, device=device).requires_grad_(name != "normals")
+        for name, values in of.items()
+        if values is not None
+    }
     return TorchSplats(**tensors)
 
 
-def run(splats: TorchSplats, eye: Eye, bounds: torch.Tensor) -> tuple[float, float]:
+def run(draw: Callable[[], torch.Tensor]) -> tuple[float, float]:
     """Seconds forward and backward."""
     began = perf_counter()
-    loss = rasterise(splats, eye, bounds).square().sum()
+    loss = draw().square().sum()
     loss.item()  # waits for the device
     drawn = perf_counter()
     loss.backward()
-    if splats.centres.is_cuda:
+    if loss.is_cuda:
         torch.cuda.synchronize()
     return drawn - began, perf_counter() - drawn
 

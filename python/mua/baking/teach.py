@@ -1,6 +1,7 @@
 """A capture becomes a teacher, in one call."""
 
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
@@ -14,7 +15,7 @@ from mua.files import missing_directory, require_writable
 from mua.inputs import require_capture, require_file
 from mua.levels import COARSE_TEXELS
 from mua.locks import DirectoryLock
-from mua.teaching.settings import TeacherSettings, teacher_preset
+from mua.teaching.settings import Rasteriser, TeacherSettings, teacher_preset
 
 if TYPE_CHECKING:  # torch takes seconds to load
     from mua.processes import Processes
@@ -32,6 +33,7 @@ def teach(
     drivable: bool = False,
     refine: float = 0.0,
     lpips_weights: PathLike | None = None,
+    rasteriser: Rasteriser = "mua",
     seed: int = 0,
     device: DeviceName = "auto",
     listener: Listener | None = None,
@@ -52,7 +54,9 @@ def teach(
         mua.teach("captures/anna", output="teachers/anna", preset="small")
     """
     settings = _settings(preset, steps=steps, texels=texels, refine=refine, seed=seed)
-    settings = replace(settings, drivable=drivable)
+    settings = replace(settings, drivable=drivable, rasteriser=one_of(rasteriser, "rasteriser", get_args(Rasteriser)))
+    if settings.rasteriser == "gsplat" and find_spec("gsplat") is None:
+        raise InputError("--rasteriser gsplat: the Python package gsplat is not installed; pip install gsplat")
     output, weights = as_path(output, "output"), None
     if lpips_weights is not None:
         weights = as_path(lpips_weights, "lpips_weights")
@@ -106,6 +110,8 @@ def _teach(order: _Order, processes: "Processes", listener: Listener) -> None:
     from mua.baking.lessons import carry_out
 
     device = processes.place(choose_device(order.device))
+    if order.settings.rasteriser == "gsplat" and device.type != "cuda":
+        raise InputError(f"--rasteriser gsplat: draws on NVIDIA GPUs only, and the device is {device.type}")
     if not processes.first:
         carry_out(order.capture, order.output, order.settings, device, Nobody(), processes, weights=order.weights)
         return

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import typer
 
@@ -13,7 +13,7 @@ from mua.cli.console import printer, say
 from mua.cli.display import Display
 from mua.cli.failure import run_command
 from mua.cli.options import lent_by
-from mua.teaching.settings import PRESETS
+from mua.teaching.settings import PRESETS, Rasteriser
 
 # Of each argument of mua.teach what a terminal takes, and its help.
 OPTIONS = {
@@ -42,6 +42,10 @@ OPTIONS = {
         typer.Option(
             help="Weights of torchvision's AlexNet or VGG16, for a perceptual term in the loss.", show_default="none"
         ),
+    ],
+    "rasteriser": Annotated[
+        str,
+        choice(get_args(Rasteriser), "--rasteriser", help="What draws pictures in training; gsplat needs a GPU."),
     ],
     "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
     "device": Annotated[DeviceName, typer.Option(help="Where to train.")],

@@ -65,7 +65,7 @@ def project(
         seen = torch.nonzero(shown)[:, 0]
         keys = _keys(splats.centres[seen], eye.view, near, bounds)
         chosen = seen[torch.sort(keys, stable=True).indices].flip(0)
-    return Quads(chosen, shapes[chosen], _colors(splats, chosen, eye))
+    return Quads(chosen, shapes[chosen], colors_seen(splats, chosen, eye))
 
 
 def half_extents(
@@ -147,7 +147,11 @@ def _keys(centres: torch.Tensor, view: torch.Tensor, near: torch.Tensor, bounds:
     return (fraction * LAST_KEY + 0.5).floor().to(torch.int32)
 
 
-def _colors(splats: TorchSplats, chosen: torch.Tensor, eye: Eye) -> torch.Tensor:
+def colors_seen(
+    splats: TorchSplats,
+    chosen: torch.Tensor,  # [M] int64 into the splats
+    eye: Eye,
+) -> torch.Tensor:
     """Colours [M, 3] of mua.kernels.splat_draw.splat_colors."""
     position = -eye.view[:3, :3].T @ eye.view[:3, 3]
     direction = torch.nn.functional.normalize(splats.centres[chosen] - position, dim=1)

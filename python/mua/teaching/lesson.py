@@ -49,7 +49,7 @@ class Lesson(nn.Module):
         self.correction = ColourCorrection(material.views.cameras)
         self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
         self.refinement = refinement
-        self._material, self._weights = material, settings.weights
+        self._material, self._weights, self._rasteriser = material, settings.weights, settings.rasteriser
         self._size = figure_scale(teacher.rig.mesh.vertices)
 
     def forward(
@@ -90,7 +90,8 @@ class Lesson(nn.Module):
         splats = self.teacher.splats(frame, window.joints[0])
         seen = [self._material.views.see(index, camera) for camera, _ in views]
         loss = len(views) * (self._restraint(frame, index) + self._misalignment(frame, splats, index))
-        for (camera, colour), one, drawn in zip(views, seen, draw_views(splats, [s.eye for s in seen]), strict=True):
+        pictures = draw_views(splats, [one.eye for one in seen], by=self._rasteriser)
+        for (camera, colour), one, drawn in zip(views, seen, pictures, strict=True):
             image = self.correction(drawn, camera)
             background = colour if one.background is None else one.background
             shown = image[..., :3] + (1 - image[..., 3:]) * background

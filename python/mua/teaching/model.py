@@ -10,11 +10,12 @@ from torch import Tensor, nn
 from mua.channels import SH_C0
 from mua.pose.encoding import PoseEncoding
 from mua.rig.rig import Rig
+from mua.splatting.gsplat_views import gsplat_views
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise_views
 from mua.teachers.bones import figure_scale
-from mua.teaching.settings import TeacherSettings
+from mua.teaching.settings import Rasteriser, TeacherSettings
 from mua.teaching.template import DrivableTemplate
 from mua.teaching.template_training import TemplateSettings, template_of
 from mua.teaching.texels import TexelNets
@@ -101,7 +102,9 @@ def draw(splats: TorchSplats, eye: Eye) -> Tensor:
     return draw_views(splats, [eye])[0]
 
 
-def draw_views(splats: TorchSplats, eyes: Sequence[Eye]) -> list[Tensor]:
+def draw_views(splats: TorchSplats, eyes: Sequence[Eye], *, by: Rasteriser = "mua") -> list[Tensor]:
     """The same of several cameras."""
+    if by == "gsplat":
+        return gsplat_views(splats, eyes)
     bounds = torch.stack([splats.centres.amin(dim=0), splats.centres.amax(dim=0)]).detach()
     return rasterise_views(splats, eyes, bounds)

@@ -1,9 +1,12 @@
 """The sizes and schedules of a teacher's training, and presets: from a laptop to the sizes of the paper's teacher."""
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 from mua.errors import InputError
 from mua.student.settings import Schedule
+
+Rasteriser = Literal["mua", "gsplat"]
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,7 @@ class TeacherSettings:
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the pictures
     drivable: bool = False  # whether motion deforms the template, or its skin alone
     weights: LossWeights = field(default_factory=LossWeights)
+    rasteriser: Rasteriser = "mua"  # what draws the pictures in training
     seed: int = 0
 
 
