@@ -171,6 +171,11 @@ FAULTS: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
         r"name is '\.\.'; expected a name that can",
     ),
     "a path that no file has": (lambda s: s.update(template="a\0b"), "template is .*; expected a text"),
+    "a picture larger than any": (lambda s: s["cameras"][0].update(size=[32769, 240]), "1 to 32768 pixels"),
+    "a turn that stretches": (
+        lambda s: s["cameras"][0]["world_to_camera"][1].__setitem__(slice(0, 3), [0.0, 1.01, 0.0]),
+        "not a rotation: its rows have lengths 1, 1.01, 1",
+    ),
     "half a frame": (lambda s: s["clips"][0].update(first=0.5), r"\(walk\): first is 0.5"),
     "held out by a text": (lambda s: s["clips"][0].update(held_out="no"), "held_out is 'no'; expected true or false"),
     "images of one camera": (
