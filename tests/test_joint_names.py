@@ -27,6 +27,7 @@ ARM = ("left shoulder", "left upper_arm", "left forearm", "left hand")
         (("clavicle_l", "upperarm_l", "lowerarm_l", "hand_l"), ARM),
         (("thigh.L", "shin.L", "foot.L", "toe.L"), LEG),
         (("shoulder.L", "upper_arm.L", "forearm.L", "hand.L"), ARM),
+        (("shoulderFBXASC046L", "upper_armFBXASC046L", "forearmFBXASC046L", "handFBXASC046L"), ARM),
         (("DEF-thigh.L_023", "DEF-shin.L_025", "DEF-foot.L_027", "DEF-toe.L_028"), LEG),
         (("LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToes"), LEG),
         (("LeftShoulder", "LeftUpperArm", "LeftLowerArm", "LeftHand"), ARM),

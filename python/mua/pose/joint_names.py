@@ -87,6 +87,7 @@ _RIG_PREFIX = re.compile(
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
+_FBX_ESCAPE = re.compile(r"FBXASC(\d{3})")  # a character that Maya allows in no name, by its code
 _NUMBERED_FINGER = re.compile(r"finger[\s_.\-]?(\d)", re.IGNORECASE)
 
 
@@ -130,7 +131,7 @@ def _told(skeleton: Skeleton, said: Mapping[str, str]) -> Roles:
 
 
 def _role(name: str, first_finger: int) -> str | None:
-    name = _without_accents(name)
+    name = _without_accents(_FBX_ESCAPE.sub(lambda code: chr(int(code[1])), name))
     if not name.isascii():
         return _wide_role(name)
     bare = _RIG_PREFIX.sub("", NAMESPACE.sub("", name))
