@@ -19,10 +19,11 @@ PACKAGE = Path(mua.__file__).parent
 PROJECT = tomllib.loads((ROOT / "python" / "pyproject.toml").read_text())["project"]
 COMMANDS = [name.removeprefix("mua-") for name in PROJECT["scripts"]]
 CALLED = {"PIL": "pillow", "pxr": "usd-core", "pywt": "pywavelets", "warp": "warp-lang"}  # distributions of packages
-FEW_USE = {  # by extra: what is in USD files; videos of captures, and a perceptual term
+FEW_USE = {  # by extra: what is in USD files; videos of captures, a perceptual term and a rasteriser for CUDA
     "view": {"pxr"},
-    "eval": {"pxr"},
-    "bake": {"imageio_ffmpeg", "torchmetrics"},
+    "eval": {"pxr", "gsplat"},
+    "bake": {"imageio_ffmpeg", "torchmetrics", "gsplat"},
+    "teach": {"gsplat"},
 }
 
 
