@@ -1,4 +1,4 @@
-"""A teacher of one's own, from nothing to a picture: a figure of capsules is recorded, distilled and looked at.
+"""Your own teacher, from recording to rendered image, with a figure made of capsules.
 
     python docs/examples/own_teacher.py FOLDER
 
@@ -51,13 +51,15 @@ CAPSULES = [
 
 def build_rig() -> Rig:
     """What a recording has to know of the character: skeleton, template, skin weights, texels."""
-    places = np.array([place for _, place in JOINTS.values()], dtype=float)
+    positions = np.array([position for _, position in JOINTS.values()], dtype=float)
     parents = np.array([-1 if parent is None else NAMES.index(parent) for parent, _ in JOINTS.values()], np.int32)
     skeleton = Skeleton(
         names=NAMES,
         parents=parents,
         bind_rotations=np.tile([1.0, 0, 0, 0], (len(NAMES), 1)),  # wxyz
-        bind_translations=np.where(parents[:, None] < 0, places, places - places[parents]),  # from parent to joint
+        bind_translations=np.where(
+            parents[:, None] < 0, positions, positions - positions[parents]
+        ),  # from parent to joint
         root=0,
     )
     vertices, faces, uv, uv_faces, indices, weights = (
@@ -171,6 +173,8 @@ def record(folder: Path) -> Path:
 
 
 def main() -> None:
+    if len(sys.argv) != 2:
+        sys.exit("usage: python docs/examples/own_teacher.py FOLDER")
     folder = Path(sys.argv[1])
     recording, avatar = record(folder), folder / "figure.muaavatar"
     train = [sys.executable, "-m", "mua.cli.train", str(recording), "-o", str(avatar)]  # mua-train in a shell
