@@ -26,7 +26,7 @@ def pack(
         Storage, typer.Option(help="packed is the smallest; the others are read by players older than format 3.0 too.")
     ] = "packed",
 ) -> None:
-    """Write the avatar of FILE again, small enough to be sent: a third of the bytes, the pictures as they were."""
+    """Compress the avatar in FILE for download: a third of the bytes, less than 0.1 dB from the original."""
     require_file(file)
     target = output or file.with_name(f"{file.stem}_{storage}{file.suffix}")
     require_writable(target)
