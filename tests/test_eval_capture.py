@@ -212,8 +212,8 @@ def test_a_wrong_option_is_a_sentence(
 
 
 def test_a_recording_has_no_pictures_to_compare_a_teacher_with(written: Path, command: Commands) -> None:
-    assert "compared with the pictures of a capture" in command("eval", written, "--teacher", "x").sentence
+    assert "can only be compared with the images of a capture" in command("eval", written, "--teacher", "x").sentence
 
 
 def test_systems_of_a_recording_have_one_size(written: Path, command: Commands) -> None:
-    assert "--scale 2: is for systems that are compared with" in command("eval", written, "--scale", "2").sentence
+    assert "--scale 2: only applies to a comparison with" in command("eval", written, "--scale", "2").sentence

@@ -63,7 +63,7 @@ def describe(
     source: Annotated[
         Path,
         typer.Argument(
-            help="Folder with pictures: in the layout of AvatarReX, THuman4 or UMA, or with --calibration in images/ "
+            help="Folder with images: in the layout of AvatarReX, THuman4 or UMA, or with --calibration in images/ "
             "or videos/ and masks/."
         ),
     ],
@@ -103,7 +103,7 @@ def describe(
         list[str] | None, typer.Option(help="Mesh, node or material of the template that nobody filmed; repeatable.")
     ] = None,
 ) -> None:
-    """Write the capture.json of pictures that lie in another layout; the pictures stay where they are."""
+    """Write a capture.json for images in another layout; the images are not copied."""
     require_folder(source)
     for given in (template, motion):
         if given is not None:
@@ -127,7 +127,7 @@ def describe(
 
 def run() -> None:
     """Entry point of the command."""
-    run_commands("Captures: pictures of a person by calibrated cameras.", check, describe, poses)
+    run_commands("Captures: images of a person from calibrated cameras.", check, describe, poses)
 
 
 def _described(

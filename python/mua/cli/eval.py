@@ -50,7 +50,7 @@ OPTIONS = {
         ),
     ],
     "views": Annotated[int, typer.Option(help="Number of cameras around the figure.")],
-    "size": Annotated[int, typer.Option(help="Width and height of the pictures in pixels.")],
+    "size": Annotated[int, typer.Option(help="Width and height of the rendered images, in pixels.")],
     "own_mesh": Annotated[bool, typer.Option(help="Also draw each avatar file on its own predicted mesh.")],
     "lpips_weights": Annotated[
         Path | None, typer.Option(help="Weights of torchvision's AlexNet or VGG16, to measure LPIPS.")
@@ -78,9 +78,11 @@ def evaluate(**options: Any) -> None:
     else:
         require_recording(order.recording)
         if order.scale:
-            raise InputError(f"--scale {order.scale[0]:g}: is for systems that are compared with pictures of a capture")
+            raise InputError(f"--scale {order.scale[0]:g}: only applies to a comparison with the images of a capture")
         if order.teacher is not None:
-            raise InputError(f"--teacher {order.teacher}: is compared with the pictures of a capture, not a recording")
+            raise InputError(
+                f"--teacher {order.teacher}: can only be compared with the images of a capture, not with a recording"
+            )
     for file in (*order.avatars, *(() if order.lpips_weights is None else (order.lpips_weights,))):
         require_file(file)
     preset(order.preset)

@@ -25,7 +25,7 @@ def share(
         bool, typer.Option("--single-file", help="Write one HTML file that holds everything; for small avatars.")
     ] = False,
     reference: Annotated[
-        bool, typer.Option("--reference", help="Draw the poster picture on the CPU; needs no graphics device.")
+        bool, typer.Option("--reference", help="Draw the poster image on the CPU; needs no graphics device.")
     ] = False,
 ) -> None:
     """Write a page that plays FILES in a browser, with all that it needs."""

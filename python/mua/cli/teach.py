@@ -33,7 +33,7 @@ OPTIONS = {
     "refine": Annotated[
         float,
         typer.Option(
-            help="Degrees by which each joint, and centimetres by which the root may be moved to fit the pictures "
+            help="Degrees by which each joint, and centimetres by which the root may be moved to fit the images "
             "better; 0 trusts the poses."
         ),
     ],
@@ -45,7 +45,7 @@ OPTIONS = {
     ],
     "rasteriser": Annotated[
         str,
-        choice(get_args(Rasteriser), "--rasteriser", help="What draws pictures in training; gsplat needs a GPU."),
+        choice(get_args(Rasteriser), "--rasteriser", help="Rasteriser to train with; gsplat needs a GPU."),
     ],
     "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
     "device": Annotated[DeviceName, typer.Option(help="Where to train.")],
