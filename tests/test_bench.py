@@ -143,6 +143,10 @@ def test_measures_a_setting_without_a_file() -> None:
         (("--preset", "huge"), "expected one of tiny, preview, paper"),
         (("--preset", "tiny", "--size", "0"), "--size is '0'"),
         (("--preset", "tiny", "--device", "no such device"), "device no such device: "),
+        (("--preset", "tiny", "--counts", "--size", "64"), "--size is given, but --counts counts one frame of one eye"),
+        (("--preset", "tiny", "--counts", "--frames", "2"), "--frames is given, but --counts"),
+        (("--preset", "tiny", "--model", "quest3", "--stereo"), "--stereo is given, but --model"),
+        (("--preset", "tiny", "--model", "quest3", "--counts"), "--counts and --model are given"),
     ],
 )
 def test_refuses_in_one_sentence(arguments: tuple[str, ...], said: str) -> None:

@@ -34,6 +34,7 @@ COLUMNS = ("kernel", "ms", "spread", "MB", "GB/s", "copy", "MFLOP", "GFLOP/s")
 
 
 def bench(
+    context: typer.Context,
     file: Annotated[Path | None, typer.Argument(help="Avatar file (.muaavatar).")] = None,
     preset_name: Annotated[
         str | None,
@@ -56,6 +57,10 @@ def bench(
         raise InputError("mua-bench measures a FILE or a --preset; expected one of the two")
     if model is not None:
         model_device(model)
+    if counts and model is not None:
+        raise InputError("--counts and --model are given; expected one of the two")
+    if counts or model is not None:
+        _require_used(context, "--counts" if counts else "--model")
     screen, eyes = parse_screen(size), EYE_DISTANCE if stereo else None
     if file is not None:
         require_file(file)
@@ -83,6 +88,14 @@ def bench(
         console.print(part)
     if output is not None:
         console.print(output, highlight=False, soft_wrap=True)
+
+
+def _require_used(context: typer.Context, kind: str) -> None:
+    """Raises InputError for an option that counting a frame would ignore."""
+    for name in ("size", "stereo", *(["frames"] if kind == "--counts" else [])):
+        source = context.get_parameter_source(name)
+        if source is not None and source.name == "COMMANDLINE":
+            raise InputError(f"--{name} is given, but {kind} counts one frame of one eye at sizes of its own")
 
 
 def _count(device: "Device", path: Path, output: Path | None) -> None:
