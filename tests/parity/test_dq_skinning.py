@@ -214,6 +214,17 @@ def test_hlsl_blends_vertices_as_the_reference(device: Device, count: int, influ
     np.testing.assert_allclose(found, expected, rtol=0, atol=BLEND_BOUND)
 
 
+def test_hlsl_adds_what_is_turned_half_round_as_it_stands(device: Device) -> None:
+    """It lies neither across from the reference nor beside it."""
+    joints = np.zeros((2, 8), np.float32)
+    joints[0, 0] = joints[1, 1] = 1
+    indices, weights = np.zeros((1, 8), np.int32), np.zeros((1, 8), np.float32)
+    indices[0, 1], weights[0, :2] = 1, 0.5
+    expected = np.array([[1, 1, 0, 0, 0, 0, 0, 0]]) / np.sqrt(2)
+    np.testing.assert_allclose(blend_vertices(joints, indices, weights), expected, rtol=0, atol=BLEND_BOUND)
+    np.testing.assert_allclose(blend_on(device, joints, indices, weights), expected, rtol=0, atol=BLEND_BOUND)
+
+
 def test_hlsl_leaves_what_lies_behind_the_last_vertex(device: Device) -> None:
     rng = np.random.default_rng(5)
     indices, weights = random_influences(rng, GROUP)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from packed_splats import LARGEST_HALF
+from packed_splats import LARGEST_HALF, colors_of
 from projected import FACES, GROUP, UNWRITTEN, Scene, Texels, held, on_steps, project_on, texels_of
 from projection_errors import assert_as_the_reference, covariance_of
 from splat_rounding import CENTRE_BOUND, ULP
@@ -16,7 +16,9 @@ from mua.camera import NEAR, Camera, orbit
 from mua.decode import Splats
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances
+from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import (
+    COLOR_SCALES,
     HIDDEN,
     LAST_KEY,
     LEAST_OPACITY,
@@ -301,7 +303,7 @@ def test_hlsl_takes_the_first_of_equal_barycentrics_for_the_sign(device: Device)
     """Each vertex lies across from both others, so that the reference decides where the sum turns to."""
     half_turn = np.array([[1, 0, 0, 0], [-0.6, 0.8, 0, 0], [-0.6, -0.64, 0.48, 0]], np.float32)
     vertex_dq = np.concatenate([half_turn, np.zeros((3, 4), np.float32)], axis=1)
-    barycentrics = on_steps(np.array([[0.5, 0.5, 0], [0, 0.5, 0.5], [0.25, 0.25, 0.5], [0.375, 0.25, 0.375]]))
+    barycentrics = on_steps(np.array([[0.5, 0.5, 0], [0, 0.5, 0.5], [3 / 8, 3 / 8, 1 / 4], [3 / 8, 1 / 4, 3 / 8]]))
     texture = np.zeros((4, 23))
     texture[:, :3], texture[:, 7:10], texture[:, 10] = [0.1, 0.2, 0.3], -4, 3
     texels = Texels(
@@ -337,6 +339,29 @@ def test_hlsl_keeps_rotations_that_cancel_and_scales_beyond_any_finite(device: D
     drawn = found.splats[found.keys != HIDDEN]
     assert len(drawn) > 0
     assert all(np.isfinite(drawn[name]).all() for name in drawn.dtype.names)
+
+
+def test_hlsl_draws_splats_as_large_as_houses(device: Device) -> None:
+    texels = posed(np.tile([0, 0, -2.0], (4, 1)), np.exp([[4.0] * 3, [5.0] * 3, [6.0] * 3, [7.0] * 3]))
+    found = project_on(device, Scene(texels, (Camera(np.eye(4), camera().projection, SCREEN),), 3 * BOX))
+    minors = found.splats["minors"][:, 0].astype(float)
+    np.testing.assert_allclose(minors[1:] / minors[:-1], np.e, rtol=2**-9)
+
+
+def test_hlsl_holds_a_tint_beyond_the_largest_scale(device: Device) -> None:
+    texels = posed(np.array([[0, 0, -2.0], [0, 0, -2.1]]), np.full((2, 3), 0.01))
+    texels.texture[:, 20:23] = [[80, -160, 240], [-500, 900, 30]]  # what goes with x
+    frame = texels.splats
+    sides = [np.eye(4), np.eye(4)]
+    sides[0][0, 3], sides[1][0, 3] = -0.3, 0.3
+    scene = Scene(texels, tuple(Camera(view, camera().projection, SCREEN) for view in sides), 3 * BOX)
+    exact = [splat_colors(frame.centres, frame.texel_dq, frame.sh, camera.position) for camera in scene.cameras]
+    mean, tint = (exact[0] + exact[1]) / 2, (exact[0] - exact[1]) / 2
+    most = 63 / 1023 * COLOR_SCALES[-1]
+    assert np.all(abs(tint) > most)
+    expected = np.minimum(mean, COLOR_SCALES[-1]) + [[[1]], [[-1]]] * np.clip(tint, -most, most)
+    colors = colors_of(project_on(device, scene).splats)
+    np.testing.assert_allclose(colors, expected, rtol=0, atol=2 * COLOR_SCALES[-1] / 1023)
 
 
 @pytest.mark.parametrize("scales", [(3, 1, 1), (1, 3, 1), (1, 1, 3), (1, 1, 1), (0.01, 2, 2)])

@@ -1,13 +1,16 @@
 """The radix sort against numpy's stable argsort: the reference, and the shader on a device."""
 
+import re
+import shutil
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 from sorted_keys import INSTANCES, UNWRITTEN, sort_keys
 
 from mua.arrays import Array
-from mua.gpu import Device
+from mua.gpu import Device, sources
 from mua.kernels.splat_project import HIDDEN
 from mua.kernels.splat_sort import splat_sort
 
@@ -98,3 +101,18 @@ def test_shader_gives_the_same_order_every_time(device: Device) -> None:
     first = sort_keys(device, keys)[0]
     for _ in range(3):
         np.testing.assert_array_equal(sort_keys(device, keys)[0], first)
+
+
+def test_shader_sorts_whichever_thread_of_a_group_is_ahead(
+    device: Device, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Threads that run from the last to the first find what a missing barrier leaves unwritten."""
+    shaders = shutil.copytree(sources.directory(), tmp_path / "shaders")
+    kernel = shaders / "splat_sort.compute"
+    text = kernel.read_text()
+    for_each = re.compile(r"uint thread : SV_GroupIndex(.*)\)\n\{")
+    turned, entries = for_each.subn(r"uint slot : SV_GroupIndex\1)\n{\n    uint thread = THREADS - 1 - slot;", text)
+    assert entries == len(sources.kernels(text))
+    kernel.write_text(turned)
+    monkeypatch.setenv("MUA_SHADERS", str(shaders))
+    assert_sorts(device, partly_hidden(9 * 2048 + 5, 0.3))
