@@ -56,8 +56,11 @@ def test_scales_of_joints_leave_the_pose_alone(scale: tuple[float, float, float]
     assert_follows(whole, surfaces)
 
 
-def test_scale_added_after_binding_is_folded_into_the_mesh() -> None:
-    stretch = np.diag([2.0, 1.5, 0.5, 1])
+@pytest.mark.parametrize(("scale", "about"), [((2.0, 1.5, 0.5), 0), ((1.03, 1, 0.98), 0), ((2.0, 1.5, 0.5), 40)])
+def test_scale_added_after_binding_is_folded_into_the_mesh(scale: tuple[float, ...], about: float) -> None:
+    """Also a small one, and one along axes that are not the joint's."""
+    turn = at(0, 0, 0, Rotation.from_euler("xyz", [about, about / 2, about], degrees=True))
+    stretch = turn @ np.diag([*scale, 1]) @ turn.T
     bigger_head = BIND.copy()
     bigger_head[2] = BIND[2] @ stretch
     motion = moving(BIND, PARENTS)
@@ -68,6 +71,19 @@ def test_scale_added_after_binding_is_folded_into_the_mesh() -> None:
     surfaces = assemble(whole, HERE)
     assert_follows(whole, surfaces)
     assert not surfaces.notes
+
+
+def test_scale_that_children_inherit_moves_them_with_it() -> None:
+    grown = BIND.copy()
+    grown[1:] = BIND[1] @ np.diag([1.25, 1.25, 1.25, 1]) @ np.linalg.inv(BIND[1]) @ BIND[1:]
+    rigid = replace(part(), weights=np.tile([1.0, 0.0], (30, 1)))
+    whole = scene(rest=grown, parts=(rigid,), motions=(moving(grown, PARENTS),))
+    surfaces = assemble(whole, HERE)
+    assert_follows(whole, surfaces)
+    bind = surfaces.skeleton.bind_pose
+    places = surfaces.skeleton.world(bind.rotations, bind.translations)[1]
+    apart = grown[:, :3, 3] - grown[0, :3, 3]
+    np.testing.assert_allclose(places - places[0], apart, atol=DOUBLE_BOUND)
 
 
 def test_mirrored_mesh_keeps_its_outside() -> None:
@@ -92,6 +108,23 @@ def test_z_up_mesh_stands_up_although_the_rest_pose_is_another() -> None:
     assert_follows(whole, surfaces)
 
 
+def test_a_mesh_of_another_pose_stands_where_the_node_above_its_joints_does() -> None:
+    armature = at(0.4, 0, 0.3)
+    motion = moving(BIND, PARENTS)
+    worlds = np.concatenate([np.tile(armature, (9, 1, 1, 1)), armature @ motion.worlds], axis=1)
+    whole = scene(
+        node_names=("armature", *scene().node_names),
+        parents=np.append(-1, PARENTS + 1),
+        rest=worlds[5],
+        skins=(Skin(np.arange(1, 6), np.linalg.inv(BIND)),),
+        motions=(replace(motion, worlds=worlds),),
+    )
+    surfaces = assemble(whole, HERE)
+    expected = placed(armature, part().positions)[part().faces]
+    np.testing.assert_allclose(surfaces.vertices[surfaces.faces], expected, atol=DOUBLE_BOUND)
+    assert_follows(whole, surfaces)
+
+
 def test_hips_are_the_root_of_a_still_character() -> None:
     surfaces = assemble(scene(node_names=("Armature", "mixamorig:Hips", "c", "d", "e")), HERE)
     assert surfaces.skeleton.names[surfaces.skeleton.root] in ("Armature", "mixamorig:Hips")
@@ -100,7 +133,7 @@ def test_hips_are_the_root_of_a_still_character() -> None:
     assert surfaces.skeleton.names[surfaces.skeleton.root] == "mixamorig:Hips"
 
 
-@pytest.mark.parametrize("degrees", [0, 30, 90, 180, 270])
+@pytest.mark.parametrize("degrees", [0, 30, 55, 65, 90, 180, 270])
 def test_character_is_turned_to_face_forward(degrees: int) -> None:
     away = at(0, 0, 0, Rotation.from_euler("y", degrees, degrees=True))
     bind = away @ BIND
@@ -111,8 +144,14 @@ def test_character_is_turned_to_face_forward(degrees: int) -> None:
     )
     surfaces = assemble(whole, HERE)
     left = surfaces.skeleton.world(surfaces.skeleton.bind_rotations, surfaces.skeleton.bind_pose.translations)[1][3]
-    assert left[0] > 0.15
-    assert bool(surfaces.notes) == (degrees >= 90)
+    assert left[0] > 0.1
+    assert bool(surfaces.notes) == (degrees > 60)
+
+
+def test_joints_with_numbers_behind_their_names_tell_left_from_right() -> None:
+    away = at(0, 0, 0, Rotation.from_euler("y", 180, degrees=True))
+    names = ("hips_01", "spine_02", "head_03", "arm_l_04", "arm_r_05")
+    assert any("turned by 180" in note for note in assemble(scene(node_names=names, rest=away @ BIND), HERE).notes)
 
 
 def test_collapsed_mesh_and_joint_are_refused() -> None:

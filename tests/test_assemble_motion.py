@@ -3,12 +3,26 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from gltf_files import posed
-from scenes import BIND, HERE, NAMES, PARENTS, WEIGHT_BOUND, assert_follows, at, moving, part, scene, skinned
+from scenes import (
+    BIND,
+    DOUBLE_BOUND,
+    HERE,
+    NAMES,
+    PARENTS,
+    WEIGHT_BOUND,
+    assert_follows,
+    at,
+    moving,
+    part,
+    scene,
+    skinned,
+)
 
 from mua.characters.assemble import assemble
 from mua.rig.stretched import stretched
-from mua.scene import Motion, Skin
+from mua.scene import Motion, Scene, Skin
 
 
 def test_clip_follows_the_sources_matrices() -> None:
@@ -114,3 +128,43 @@ def test_moved_ancestor_of_two_skeletons_becomes_a_joint() -> None:
         motions=(Motion("roll", 30.0, worlds),),
     )
     assert "carriage" in assemble(whole, HERE).skeleton.names
+
+
+def steered(size: float) -> Scene:
+    """A figure of that size whose head slides a little and whose foot hangs beside the hips, on a node above them."""
+    names = ("armature", "hips", "head", "foot", "prop")
+    parents = np.array([-1, 0, 1, 0, 1])
+    bind = np.stack([at(0, 0, 0), at(0, 0.9, 0), at(0, 1.6, 0), at(0.2, 0.1, 0), at(0.2, 1.2, 0)])
+    worlds = np.tile(bind, (9, 1, 1, 1))
+    worlds[:, 1:, 0, 3] += 0.01 * np.arange(9)[:, None]  # 5 % of the height from where the armature had them
+    worlds[:, 2, 1, 3] += 0.00004 * np.arange(9)
+    bound = bind.copy()
+    bound[4, 0, 3] += 0.1  # the prop carries nothing, and is bound beside its place at rest
+    for matrices in (bind, worlds, bound):
+        matrices[..., :3, 3] *= size
+    joints = np.stack([1 + np.arange(30) % 3, 1 + (np.arange(30) + 1) % 3], axis=1)
+    mesh = replace(part(), positions=part().positions * size, joints=joints)
+    skin = Skin(np.arange(5), np.linalg.inv(bound))
+    motion = Motion("slides", 30.0, worlds)
+    return scene(node_names=names, parents=parents, rest=bind, parts=(mesh,), skins=(skin,), motions=(motion,))
+
+
+@pytest.mark.parametrize("size", [0.07, 4.0])
+def test_a_doll_and_a_giant_move_as_a_person_does(size: float) -> None:
+    person, other = assemble(steered(1), HERE), assemble(steered(size), HERE)
+    assert other.unit == 1
+    assert (other.skeleton.names, other.skeleton.root) == (person.skeleton.names, person.skeleton.root)
+    np.testing.assert_array_equal(other.skeleton.parents, person.skeleton.parents)
+    places = size * person.skeleton.bind_translations
+    np.testing.assert_allclose(other.skeleton.bind_translations, places, atol=DOUBLE_BOUND)
+    np.testing.assert_allclose(other.clips[0].translations, size * person.clips[0].translations, atol=DOUBLE_BOUND)
+
+
+def test_what_leaves_the_side_of_the_node_above_the_hips_hangs_on_the_hips() -> None:
+    """Also a head that slides by a fraction of a millimetre does so in the clip."""
+    surfaces = assemble(steered(1), HERE)
+    names = surfaces.skeleton.names
+    assert names[surfaces.skeleton.parents[names.index("foot")]] == "hips"
+    slid = np.ptp(surfaces.clips[0].translations[:, names.index("head"), 1])
+    assert slid == pytest.approx(8 * 0.00004)
+    assert_follows(steered(1), surfaces)

@@ -46,6 +46,14 @@ def ball(radius: float, *, material: int, rings: int = 12, inward: bool = False)
     )
 
 
+def together(first: Part, second: Part) -> Part:
+    """Both as one part."""
+    count = len(first.positions)
+    columns = {name: (getattr(first, name), getattr(second, name)) for name in ("positions", "uv", "joints", "weights")}
+    columns |= {name: (getattr(first, name), getattr(second, name) + count) for name in ("faces", "uv_faces")}
+    return replace(first, **{name: np.concatenate(column) for name, column in columns.items()})
+
+
 def kept(*parts: Part) -> tuple[list[str], tuple[str, ...]]:
     """The materials that a character of these parts shows, and what is said of it."""
     surfaces = assemble(scene(materials=(GREY, BLACK), parts=parts), HERE)
@@ -75,9 +83,10 @@ def test_a_shell_keeps_nothing_of_what_was_there_without_it() -> None:
         ball(1.02, material=1),  # clothing: faces outward
         ball(0.98, material=1, inward=True),  # a lining: lies within
         ball(1.02, material=1, inward=True, rings=7),  # the inside of a coat of its own shape
-        ball(1.4, material=1, inward=True),  # far from the body
+        ball(1.4, material=1, inward=True),
+        together(ball(1.02, material=1, inward=True), ball(1.03, material=1, inward=True, rings=9)),
     ],
-    ids=["clothing", "lining", "coat", "far"],
+    ids=["clothing", "lining", "coat", "far from the body", "a copy beside a coat"],
 )
 def test_other_surfaces_beside_the_body_stay(other: Part) -> None:
     names, _ = kept(ball(1, material=0), other)

@@ -9,7 +9,7 @@ from scenes import HERE, in_units, part, scene
 
 from mua.atlas.surfaces import Surfaces
 from mua.characters.assemble import assemble
-from mua.characters.correction import ADULT
+from mua.characters.correction import ADULT, plausible_unit
 from mua.characters.figure_size import FigureSize
 from mua.characters.resize import resized
 from mua.errors import InputError
@@ -23,6 +23,24 @@ def test_implausible_height_is_brought_to_metres_and_told(unit: float, told: flo
     assert "--scale" in surfaces.notes[0]
     assert "--height" in surfaces.notes[0]
     np.testing.assert_allclose(surfaces.clips[0].translations[-1, surfaces.skeleton.root], [0.8, 0.9, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("height", "unit"),
+    [
+        (0.01, 100.0),
+        (0.03, 100.0),
+        (0.099, 1.0),
+        (0.1, 1.0),
+        (8.0, 1.0),
+        (20.1, 0.01),
+        (300, 0.01),
+        (401, 0.001),
+        (15, 1.0),
+    ],
+)
+def test_a_unit_is_the_likeliest_that_makes_a_figure_of_usual_height(height: float, unit: float) -> None:
+    assert plausible_unit(height)[0] == unit
 
 
 def high(surfaces: Surfaces) -> float:
@@ -64,6 +82,8 @@ def test_an_asked_scale_multiplies_the_units_of_the_file_not_those_guessed() -> 
     found = assemble(in_units(100.0), HERE)  # taken as centimetres
     made = resized(found, FigureSize(scale=0.02), HERE)
     assert high(made) == pytest.approx(2 * high(found))
+    again = resized(resized(found, FigureSize(height=3.0), HERE), FigureSize(scale=0.02), HERE)
+    assert high(again) == pytest.approx(high(made))
 
 
 def test_a_scale_that_leaves_no_possible_size_is_refused() -> None:

@@ -9,6 +9,7 @@ from scenes import GREY, HERE, at, part
 from scipy.spatial.transform import Rotation
 
 from mua.atlas.surfaces import Surfaces
+from mua.characters.animation import bare_animation
 from mua.characters.assemble import assemble
 from mua.pose.joint_names import roles
 from mua.scene import Scene, Skin
@@ -65,8 +66,14 @@ def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
         whole(Rotation.identity(), sitting=80),
         whole(Rotation.from_euler("x", 90, degrees=True), sitting=80),  # on four legs
         whole(Rotation.from_euler("x", 45, degrees=True)),
+        whole(Rotation.from_euler("x", 55, degrees=True)),
         whole(Rotation.from_euler("x", 90, degrees=True), rest=Rotation.identity()),
     ],
 )
 def test_who_stands_sits_leans_or_goes_on_four_legs_is_not_turned(scene: Scene) -> None:
     assert not any("turned upright" in note for note in assemble(scene, HERE).notes)
+
+
+def test_who_lies_in_motion_without_a_mesh_keeps_lying() -> None:
+    lying = whole(Rotation.from_euler("x", -90, degrees=True))
+    assert bare_animation(replace(lying, parts=()), HERE).notes == ()
