@@ -22,17 +22,17 @@ JOINTS = """
   Spine_ry  revolute  HipsScale     0  550   15   0 0.6 0.8    1.0
   Spine_rx  revolute  Spine_ry      0    0    0   1 0 0        1.0
 """
-DOFS = {  # what each moves; `stretch` moves nothing, and two move the chest
-    "move_x": {"Root_tx": 1000},
-    "move_y": {"Root_ty": 1000},
-    "move_z": {"Root_tz": 1000},
-    "turn": {"Root_ry": 3},
-    "roll": {"Hips": 1},
-    "twist": {"Spine_ry": 0.5, "Chest": 0.25},
-    "lean": {"Spine_rx": 2},
-    "stretch": {},
-    "bend": {"Chest": 1.5},
-    "hips_scale": {"HipsScale": 200},
+DOFS = {  # what each moves; `stretch` moves nothing, two move the chest, one of them in two lines
+    "move_x": [("Root_tx", 1000)],
+    "move_y": [("Root_ty", 1000)],
+    "move_z": [("Root_tz", 1000)],
+    "turn": [("Root_ry", 3)],
+    "roll": [("Hips", 1)],
+    "twist": [("Spine_ry", 0.5), ("Chest", 0.25)],
+    "lean": [("Spine_rx", 2)],
+    "stretch": [],
+    "bend": [("Chest", 1), ("Chest", 0.5)],
+    "hips_scale": [("HipsScale", 200)],
 }
 BONES = ("Chest", "Hips", "Spine")
 REST = np.array([0.3, 0.02, -0.2, 0.4, 0.1, -0.3, 0.2, 0.7, 0.1, 0.05])  # the pose that the mesh is in
@@ -90,7 +90,7 @@ def skeleton_text(millimetre: float) -> str:
     lines += [f"dofs: {len(DOFS)}"]
     for dof, moved in DOFS.items():
         lines += [f"  {dof} {len(moved)}", "    nolimits" if len(moved) % 2 else "    limits -0.1 0.1"]
-        lines += [f"    {joint} {weight * (millimetre if joint in slides else 1):g}" for joint, weight in moved.items()]
+        lines += [f"    {joint} {weight * (millimetre if joint in slides else 1):g}" for joint, weight in moved]
     return "\n".join([*lines, "textureEntries: 0", ""])
 
 

@@ -132,6 +132,22 @@ def test_judges_by_a_standing_body_what_is_up(tmp_path: Path, turn: float, says:
     assert says in motion.notes[0]
 
 
+def test_a_person_who_is_upside_down_for_a_while_stands_as_in_most_frames(tmp_path: Path) -> None:
+    poses = np.zeros((10, 66))
+    poses[:4, 0] = np.pi
+    assert "Y is up" in read_amass(write(tmp_path, poses=poses, trans=np.zeros((10, 3)))).notes[0]
+
+
+@pytest.mark.parametrize("joints", [52, 55])
+def test_joints_of_a_finger_follow_each_other(joints: int) -> None:
+    skeleton = nominal_skeleton(joints)
+    above = {name: skeleton.names[parent] for name, parent in zip(skeleton.names, skeleton.parents, strict=True)}
+    for side in ("left", "right"):
+        for finger in ("index", "middle", "pinky", "ring", "thumb"):
+            chain = [f"{side}_wrist", *(f"{side}_{finger}{k}" for k in (1, 2, 3))]
+            assert [above[name] for name in chain[1:]] == chain[:-1]
+
+
 def test_leaves_a_person_lying_in_a_file_of_amass(tmp_path: Path) -> None:
     lying = read_amass(write(tmp_path, poses=np.zeros((3, 156)), trans=np.zeros((3, 3)), dmpls=np.zeros((3, 8))))
     _, at = lying.skeleton.world(lying.clip.rotations, lying.clip.translations)

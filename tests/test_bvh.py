@@ -158,6 +158,19 @@ MOTION\nFrames: 1\nFrame Time: 1\n0 {leg} 0\n"""
     np.testing.assert_allclose(world_positions(motion)[0, 3], [0.8, 1.5, 0], rtol=1e-12)
 
 
+def test_a_span_that_no_unit_makes_a_person_s_takes_the_nearest_by_ratio(tmp_path: Path) -> None:
+    text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nEnd Site\n{\nOFFSET 0 7 0\n}\n}\n"
+    motion = read_bvh(write(tmp_path, text + "MOTION\nFrames: 1\nFrame Time: 0.1\n0"))
+    assert motion.skeleton.bind_translations[1, 1] == 7  # metres, not decimetres
+
+
+@pytest.mark.parametrize(
+    ("seconds", "rate"), [("0.00833", 120), ("0.03334", 30), ("0.0417", 24), ("0.0404", 1 / 0.0404), ("2", 0.5)]
+)
+def test_a_frame_time_that_was_rounded_means_a_whole_rate(tmp_path: Path, seconds: str, rate: float) -> None:
+    assert read_bvh(write(tmp_path, PERSON.replace("0.04\n", f"{seconds}\n"))).clip.rate == rate
+
+
 def test_takes_a_given_scale(tmp_path: Path) -> None:
     motion = read_bvh(write(tmp_path, PERSON), scale=0.5)
     np.testing.assert_array_equal(motion.clip.translations[:, 0], [[0, 4.5, 0], [0.5, 4.75, -1]])
@@ -227,8 +240,9 @@ def test_carries_hips_that_move_below_a_moving_reference(tmp_path: Path) -> None
     np.testing.assert_allclose(world_positions(motion), slow_world_positions(path), atol=BOUND)
 
 
-def test_follows_bones_that_stretch(tmp_path: Path) -> None:
-    rows = "0 0 0 0 0 0  0 1 0 0 0 0  0 0.7 0 0 0 0\n0 0 0 0 0 0  0 1 0 0 0 0  0 0.9 0 0 0 0\n"
+@pytest.mark.parametrize("ends", [(0.7, 0.9), (0.799, 0.801)])
+def test_follows_bones_that_stretch(tmp_path: Path, ends: tuple[float, float]) -> None:
+    rows = "".join(f"0 0 0 0 0 0  0 1 0 0 0 0  0 {end} 0 0 0 0\n" for end in ends)
     path = write(tmp_path, REFERENCE + rows)
     motion = read_bvh(path, scale=1.0)
     np.testing.assert_allclose(motion.skeleton.bind_translations[2], [0, 0.8, 0])
@@ -289,6 +303,13 @@ def test_turns_z_up_to_y_up(tmp_path: Path) -> None:
     assert "Y up" in found.notes[0]
     joints = [0, 1, 3]
     np.testing.assert_allclose(world_positions(found)[:, joints], world_positions(expected)[:, joints], atol=BOUND)
+
+
+def test_turns_the_place_of_the_root_at_rest_with_the_world(tmp_path: Path) -> None:
+    z_up = PERSON.replace("OFFSET 0 0 0", "OFFSET 1 -3 9").replace("OFFSET 1 -9 0", "OFFSET 1 0 -9")
+    z_up = z_up.replace("OFFSET 0 7 0.5", "OFFSET 0 -0.5 7").replace("10 -20 30 5 6 -7 45", "0 0 0 0 0 0 0")
+    rest = read_bvh(write(tmp_path, z_up), scale=1.0).skeleton
+    np.testing.assert_allclose(rest.bind_translations[0], [1, 9, 3], atol=BOUND)
 
 
 def test_turns_a_camera_s_y_down_to_y_up(tmp_path: Path) -> None:

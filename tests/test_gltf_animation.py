@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from gltf_files import FLOAT_BOUND, HALF_TURN, animate, body, read
+from scipy.spatial.transform import Rotation
 
-from mua.characters.gltf.animation import sample
+from mua.characters.gltf.animation import compose, sample
 from mua.motion.read import read_motion
 from mua.pose.joint_names import limb_count
 
@@ -19,6 +21,32 @@ def test_clip_turns_and_moves_the_joints(tmp_path: Path) -> None:
     np.testing.assert_allclose(clip.translations[15, 0], [1.5, 0, 0], atol=FLOAT_BOUND)
     np.testing.assert_allclose(clip.rotations[15, 1], [np.sqrt(0.5), 0, 0, np.sqrt(0.5)], atol=1e-7)
     np.testing.assert_allclose(clip.rotations[:, 2], np.tile([1, 0, 0, 0], (31, 1)), atol=1e-7)
+
+
+def test_a_transform_scales_first_then_turns_then_moves() -> None:
+    turn = Rotation.from_euler("xyz", [20, 50, -70], degrees=True)
+    found = compose(np.array([1.0, 2, 3]), turn.as_quat(), np.array([2.0, 3, 0.5]))
+    np.testing.assert_allclose(found[:3, :3], turn.as_matrix() @ np.diag([2, 3, 0.5]), atol=1e-12)
+    np.testing.assert_array_equal(found[:, 3], [1, 2, 3, 1])
+
+
+@pytest.mark.parametrize("start", [0.0, 2.0])
+def test_a_clip_begins_with_its_first_key_and_ends_with_its_last(tmp_path: Path, start: float) -> None:
+    """Also where the last one is a frame's time but for what float32 takes off."""
+    glb = body()
+    animate(glb, 1, "rotation", times=[start, start + 0.7], values=HALF_TURN)
+    (clip,) = read(glb, tmp_path).clips
+    turned = Rotation.from_quat(clip.rotations[[0, 10, -1], 1], scalar_first=True).magnitude()
+    np.testing.assert_allclose(turned, np.pi * np.array([0, 10 / 21, 1]), atol=1e-6)
+    assert len(clip) == 22
+
+
+def test_a_joint_that_turns_keeps_the_scale_of_its_node(tmp_path: Path) -> None:
+    glb = body()
+    glb.json["nodes"][2]["scale"] = [2, 2, 2]
+    animate(glb, 2, "rotation", times=[0.0, 1.0], values=HALF_TURN)
+    (clip,) = read(glb, tmp_path).clips
+    assert clip.stretches is None
 
 
 def test_clip_of_no_length_is_dropped_with_a_note(tmp_path: Path) -> None:

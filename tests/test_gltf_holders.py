@@ -132,6 +132,24 @@ def test_moving_mesh_beside_the_skeleton_is_taken_where_it_is_near(
     assert any("drone" in note for note in surfaces.notes), told
 
 
+@pytest.mark.parametrize("unit", [1, 100])
+@pytest.mark.parametrize(("along", "taken"), [(1.3, True), (1.7, False)])
+def test_near_is_measured_by_the_skeleton_and_where_a_mesh_truly_lies(
+    tmp_path: Path, unit: float, along: float, taken: bool
+) -> None:
+    """In any unit; the mesh lies far along an axis of its own node, which is turned to lead upwards."""
+    glb = body()
+    drone = block(glb, "drone", at=(0, 0, 0), parent=None)
+    points = np.add(BLOCK, [along, 0, 0])
+    ends = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
+    glb.json["meshes"][-1]["primitives"][0]["attributes"]["POSITION"] = glb.accessor(points, **ends)
+    glb.json["nodes"][drone]["rotation"] = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
+    turn(glb, drone)
+    glb.json["nodes"].append({"name": "unit", "scale": [unit] * 3, "children": glb.json["scenes"][0]["nodes"]})
+    glb.json["scenes"][0]["nodes"] = [len(glb.json["nodes"]) - 1]
+    assert ("drone" in read(glb, tmp_path).skeleton.names) is taken
+
+
 def test_second_skinned_root_is_part_of_the_character(tmp_path: Path) -> None:
     """A tail on two joints of its own, which share no ancestor with the body's."""
     glb = body()

@@ -25,9 +25,10 @@ def test_masked_texture_keeps_its_alpha_times_the_factor(tmp_path: Path) -> None
     assert (material.alpha_mode, material.alpha_cutoff) == ("mask", 0.5)
 
 
-def test_reads_alpha_modes_and_cutoffs(tmp_path: Path) -> None:
-    (cut,) = read(textured(PICTURE, alphaMode="MASK", alphaCutoff=0.25), tmp_path).materials
-    assert (cut.alpha_mode, cut.alpha_cutoff) == ("mask", 0.25)
+@pytest.mark.parametrize("cutoff", [0.25, 0.0])
+def test_reads_alpha_modes_and_cutoffs(tmp_path: Path, cutoff: float) -> None:
+    (cut,) = read(textured(PICTURE, alphaMode="MASK", alphaCutoff=cutoff), tmp_path).materials
+    assert (cut.alpha_mode, cut.alpha_cutoff) == ("mask", cutoff)
     assert read(textured(PICTURE, alphaMode="BLEND"), tmp_path).materials[0].alpha_mode == "blend"
     assert read(textured(PICTURE), tmp_path).materials[0].alpha_mode == "opaque"
 

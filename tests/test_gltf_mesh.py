@@ -130,9 +130,12 @@ def test_vertex_colours_reach_the_corners_of_triangles(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fields", [{"normalized": True}, {}])
-def test_vertex_colours_in_bytes_are_brought_to_one(tmp_path: Path, fields: dict[str, Any]) -> None:
-    surfaces = read(with_colors(np.round(RAMP * 255), "u1", **fields), tmp_path)
-    np.testing.assert_allclose(surfaces.corner_colors[..., :3], RAMP[TRIANGLES][..., :3], atol=0.5 / 255)
+@pytest.mark.parametrize(("dtype", "most"), [("u1", 255), ("u2", 65535)])
+def test_vertex_colours_in_whole_numbers_are_brought_to_one(
+    tmp_path: Path, dtype: str, most: int, fields: dict[str, Any]
+) -> None:
+    surfaces = read(with_colors(np.round(RAMP * most), dtype, **fields), tmp_path)
+    np.testing.assert_allclose(surfaces.corner_colors[..., :3], RAMP[TRIANGLES][..., :3], atol=0.51 / most)
 
 
 def test_opacity_of_vertices_counts_where_the_material_is_not_opaque(tmp_path: Path) -> None:

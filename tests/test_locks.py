@@ -4,6 +4,7 @@ import errno
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,23 @@ def test_a_second_process_is_refused_until_the_first_is_killed(tmp_path: Path) -
 @pytest.mark.parametrize("left", [b"", b"1", b"999999", b"\xff no number"])
 def test_the_file_of_a_process_that_is_gone_locks_nobody_out(tmp_path: Path, left: bytes) -> None:
     (tmp_path / locks.NAME).write_bytes(left)
+    with DirectoryLock(tmp_path, name="it"):
+        assert (tmp_path / locks.NAME).read_text() == str(os.getpid())
+
+
+def test_a_lock_on_a_file_that_its_holder_removes_meanwhile_is_none(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Another process would make the file anew, and lock that one."""
+    taken: list[int] = []
+
+    def locked(file: int, real: Callable[[int], bool] = locks._locked) -> bool:
+        if not taken:
+            (tmp_path / locks.NAME).unlink()
+        taken.append(file)
+        return real(file)
+
+    monkeypatch.setattr(locks, "_locked", locked)
     with DirectoryLock(tmp_path, name="it"):
         assert (tmp_path / locks.NAME).read_text() == str(os.getpid())
 

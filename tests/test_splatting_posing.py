@@ -43,6 +43,23 @@ def test_splats_are_those_of_the_reference(avatar: Model, decoded: Splats) -> No
         np.testing.assert_allclose(getattr(splats, name).numpy(), values, rtol=1e-7, atol=1e-9, err_msg=name)
 
 
+def test_opacity_reaches_from_nothing_to_all(avatar: Model, decoded: Splats) -> None:
+    joints, canonical, texture = joints_of(avatar), torch.tensor(decoded.canonical), torch.tensor(decoded.texture)
+    texture[:3, 10] = torch.tensor([-8.0, 0, 8])
+    found = pose_splats(TorchRig.of(avatar.rig, canonical), joints, canonical, texture).opacities[:3]
+    np.testing.assert_allclose(found, 1 / (1 + np.exp([8, 0, -8])), rtol=1e-12)
+
+
+def test_all_joints_that_carry_a_vertex_are_taken(avatar: Model) -> None:
+    rng = np.random.default_rng(5)
+    joints = rotation.normalize(rng.normal(size=(8, 8)))
+    count = len(avatar.rig.mesh.vertices)
+    indices, weights = np.tile(np.arange(8), (count, 1)), np.full((count, 8), 1 / 8)
+    taken = TorchRig.of(replace(avatar.rig, skin_indices=indices, skin_weights=weights), torch.tensor(joints))
+    found = blend_vertices(taken.skin_indices, taken.skin_weights, torch.tensor(joints))
+    np.testing.assert_allclose(found, kernel.blend_vertices(joints, indices, weights), rtol=1e-9, atol=1e-12)
+
+
 def test_a_scale_is_held_where_players_hold_it(avatar: Model, decoded: Splats) -> None:
     joints, canonical, texture = joints_of(avatar), torch.tensor(decoded.canonical), torch.tensor(decoded.texture)
     texture[0, 7:10] = torch.tensor([LARGEST_LOG_SCALE - 1, LARGEST_LOG_SCALE, LARGEST_LOG_SCALE + 1])
