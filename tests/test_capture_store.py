@@ -31,7 +31,7 @@ def same(a: View, b: View) -> None:
         np.testing.assert_array_equal(a.background, b.background)
 
 
-def filmed(folder: Path) -> Capture:
+def filmed(folder: Path, *, ending: str = "mp4") -> Capture:
     """The capture with distorted videos for pictures, and with backgrounds."""
     capture = make_capture(folder, distortion=(-0.1, 0.05, 1e-3, 0.0, 0.0))
     rng = np.random.default_rng(2)
@@ -43,13 +43,14 @@ def filmed(folder: Path) -> Capture:
                 place = folder / name / clip / f"{camera.name}.mp4"
                 place.parent.mkdir(parents=True, exist_ok=True)
                 write_video(place, (b.astype(np.uint8) for b in bytes_of), rate=30)
+                place.rename(place.with_suffix(f".{ending}"))
         empty = rng.integers(0, 256, (SIDE, SIDE, 3), dtype=np.uint8)
         (folder / "empty").mkdir(exist_ok=True)
         Image.fromarray(empty).save(folder / "empty" / f"{camera.name}.png")
     return replace(
         capture,
-        images="video/{clip}/{camera}.mp4",
-        masks="mask/{clip}/{camera}.mp4",
+        images=f"video/{{clip}}/{{camera}}.{ending}",
+        masks=f"mask/{{clip}}/{{camera}}.{ending}",
         backgrounds="empty/{camera}.png",
     )
 
@@ -63,7 +64,7 @@ def test_a_stored_view_is_the_view(tmp_path: Path, rows: int | None) -> None:
 
 
 def test_a_video_is_decoded_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    capture, decoded = filmed(tmp_path / "filmed"), []
+    capture, decoded = filmed(tmp_path / "filmed", ending="MP4"), []  # as some cameras call them
     of_video = stores.video_frames
 
     def counted(path: Path, first: int = 0) -> object:

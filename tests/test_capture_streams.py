@@ -1,5 +1,6 @@
 """UMA's layout: cameras of both calibration formats see what their formulas say; videos, masks and what is refused."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -133,6 +134,20 @@ def test_what_is_said_of_a_capture_is_in_its_description(
     capture = open_capture(tmp_path / "out")
     assert (capture.rate, capture.template_height, capture.leave_out) == (12, 1.5, ("hat", "shoes"))
     assert [camera.size for camera in capture.cameras] == [SIZE] * 3
+
+
+def test_masks_beside_folders_of_videos_are_no_videos_of_the_person(
+    source: Path, person: Capture, command: Commands, tmp_path: Path
+) -> None:
+    training = source / "training"
+    training.mkdir()
+    for video in source.glob("stream*.mp4"):
+        video.rename(training / f"{video.stem}.MP4")  # as some cameras call them
+    shutil.copytree(source / "foregroundSegmentation", training / "foregroundSegmentation")
+    given = ("--template", person.template, "--motion", person.clips[0].motion)
+    command("capture", "describe", source, *given, "-o", tmp_path / "out")
+    capture = open_capture(tmp_path / "out")
+    assert [(clip.name, clip.frames) for clip in capture.clips] == [("training", 5)]
 
 
 def test_masks_may_be_pictures(source: Path, person: Capture, command: Commands, tmp_path: Path) -> None:

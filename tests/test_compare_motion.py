@@ -7,12 +7,15 @@ from compared import HELD_OUT, SETTINGS, STEPS, trained
 from synthetic_avatar import synthetic_rig
 
 from mua import rotation
+from mua.channels import APPEARANCE, GEOMETRY
 from mua.compare.maps import SurfaceMaps
 from mua.compare.motion import band_statistics, motion_of, pose_about_root
 from mua.compare.system import Budget, TrainingFrames
 from mua.pose.clip import Clip
 from mua.recording import Recording
 from mua.student.distil import prepare
+from mua.student.targets import channel_weights
+from mua.teachers.bones import PERSON
 
 
 @pytest.mark.parametrize("size", [2, 7, 16])
@@ -77,6 +80,16 @@ def test_a_variance_is_that_of_a_texel(smooth_frames: TrainingFrames) -> None:
         away = (band - middle).square()
         energy += away.movedim(1 if band.dim() == 4 else 2, 0).flatten(1).sum(1)
     torch.testing.assert_close(variance, energy / (len(rows) * size**2), rtol=1e-4, atol=0)
+
+
+def test_errors_of_channels_are_weighed_by_how_much_they_vary(
+    smooth_recording: Recording, smooth_frames: TrainingFrames
+) -> None:
+    texels = smooth_frames.sizes.settings.texels
+    _, variance = band_statistics(smooth_frames.bands, frames=len(smooth_frames), texels=texels)
+    size = np.ptp(smooth_recording.rig.mesh.vertices, axis=0).max() / PERSON
+    weights = [channel_weights(variance[part], part, size=size) for part in (GEOMETRY, APPEARANCE)]
+    torch.testing.assert_close(smooth_frames.weights, torch.cat(weights))
 
 
 def test_systems_see_the_teachers_mesh(smooth_recording: Recording, smooth_frames: TrainingFrames) -> None:

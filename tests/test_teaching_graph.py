@@ -51,6 +51,36 @@ def test_nodes_are_spread_over_the_whole_surface(rig: Rig) -> None:
     assert np.ptp(graph.positions[:, 1]) == pytest.approx(HEIGHT)
 
 
+def test_a_weight_is_a_gaussian_that_ends_where_the_next_node_is() -> None:
+    """As wide as half the way there."""
+    apart = np.arange(INFLUENCES + 2) ** 1.2
+    steps = sparse.csr_matrix(np.diag(np.diff(apart), 1))
+    line = np.stack([apart, 0 * apart, 0 * apart], axis=1)
+    graph = spread_nodes(steps + steps.T, line, count=len(line))
+    ways = np.sort(abs(apart - apart[1]))
+    fall = np.exp(-2 * (ways / ways[INFLUENCES]) ** 2) - np.exp(-2)
+    np.testing.assert_allclose(graph.weights[1], fall[:INFLUENCES] / fall[:INFLUENCES].sum(), atol=BOUND)
+
+
+def test_a_step_is_as_long_as_the_edge_whichever_triangles_share_it(rig: Rig) -> None:
+    """Two vertices in one place are a step apart too, or nothing would lead from one to the other."""
+    weights = np.zeros_like(rig.skin_weights)
+    weights[:, 0] = 1
+    still = replace(rig, skin_indices=np.zeros_like(rig.skin_indices), skin_weights=weights)
+    mesh = still.mesh
+    a, b = mesh.faces[0, :2]
+    vertices = mesh.vertices.copy()
+    vertices[a] = vertices[b]
+    for places in (mesh.vertices, vertices):
+        steps = surface_steps(replace(still, mesh=replace(mesh, vertices=places)))
+        edges = mesh.faces[:, [0, 1]]
+        lengths = np.linalg.norm(places[edges[:, 0]] - places[edges[:, 1]], axis=1)
+        found = np.asarray(steps[edges[:, 0], edges[:, 1]]).ravel()
+        np.testing.assert_allclose(found, lengths, atol=2e-6 * np.ptp(places, axis=0).max())
+        assert np.isfinite(csgraph.dijkstra(steps, indices=a)).all()
+    assert steps[a, b] > 0
+
+
 def test_weights_fall_with_distance_and_sum_to_one(rig: Rig) -> None:
     graph = build_graph(rig, nodes=40)
     assert graph.weights.shape == (len(rig.mesh.vertices), INFLUENCES)

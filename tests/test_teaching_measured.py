@@ -1,13 +1,16 @@
 """Meshes of a capture: read, refused, and what mua-teach makes of them."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import torch
 from captures import make_capture
 from plyfile import PlyData, PlyElement
+from synthetic_avatar import synthetic_avatar
 from taught import FEW
 
 import mua
@@ -15,10 +18,13 @@ from mua.arrays import Array
 from mua.baking import lessons
 from mua.capture import open_capture
 from mua.errors import InputError
+from mua.kernels.dq_skinning import blend_vertices
+from mua.rotation import dual_transform
 from mua.student.settings import Schedule
+from mua.teachers.bones import PERSON
 from mua.teaching import measured, settings
 from mua.teaching.folder import load_teacher
-from mua.teaching.measured import MeasuredSurfaces, read_surface, unit_of
+from mua.teaching.measured import MeasuredSurfaces, measured_surfaces, read_surface, unit_of
 from mua.teaching.motion_deformation import MotionDeformation
 from mua.teaching.template_training import TemplateSettings
 from mua.teaching.trained import TrainedTeacher
@@ -87,6 +93,23 @@ def surfaces_of(folder: Path, count: int) -> MeasuredSurfaces:
     """Frames whose surfaces differ in size."""
     files = tuple(write_ply(folder / f"{frame}.ply", CORNERS * (1 + frame)) for frame in range(count))
     return MeasuredSurfaces(torch.zeros(count, 6), torch.zeros(count, 1, 8), files, 1.0)
+
+
+def test_a_surface_is_measured_by_the_size_of_the_figure(tmp_path: Path) -> None:
+    """Which decides how much the way that points face counts."""
+    avatar = synthetic_avatar()
+    rig, large = avatar.rig, replace(avatar.rig, mesh=replace(avatar.rig.mesh, vertices=4 * avatar.rig.mesh.vertices))
+    for own in (rig, large):
+        joints = own.skeleton.skinning(avatar.clips[0].rotations[:1], avatar.clips[0].translations[:1])[0]
+        posed = dual_transform(blend_vertices(joints, own.skin_indices, own.skin_weights), own.mesh.vertices)
+        file = write_ply(tmp_path / "a.ply", posed, own.mesh.faces)
+        capture = SimpleNamespace(meshes="", place=lambda *_, file=file, **__: file)
+        subject = SimpleNamespace(rig=own, encoding=avatar.encoding)
+        surfaces = measured_surfaces(SimpleNamespace(capture=capture, subject=subject, clips=avatar.clips))  # type: ignore[arg-type]
+        assert surfaces is not None
+        cloud = surfaces.observe(0, torch.Generator()).cloud
+        assert cloud is not None
+        assert cloud.size == surfaces.size == pytest.approx(np.ptp(own.mesh.vertices, axis=0).max() / PERSON)
 
 
 def test_a_surface_is_read_once_for_all_steps(tmp_path: Path) -> None:

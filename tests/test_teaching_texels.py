@@ -34,6 +34,15 @@ def test_an_untrained_teacher_draws_the_textured_mesh() -> None:
     np.testing.assert_array_equal(frame.canonical.numpy(), subject().rig.mesh.vertices.astype(np.float32))
 
 
+def test_networks_speak_in_what_a_pose_changes_of_a_channel() -> None:
+    """Offsets by centimetres of a person, opacity by half a logit."""
+    sizes = {"window": 3, "channels": 4, "levels": 3, "code": 2}
+    person, giant = (TexelNets(subject().rig, **sizes, size=size).units for size in (1.0, 4.0))
+    wanted = [0.01] * 3 + [0.05] * 4 + [0.1] * 3 + [0.5] + [0.2] * 3 + [0.1] * 9
+    torch.testing.assert_close(person, torch.tensor(wanted))
+    torch.testing.assert_close(giant / person, torch.tensor([4.0] * 3 + [1.0] * 20))
+
+
 def test_textures_hold_place_and_normal_of_each_texel() -> None:
     rig, vertices = subject().rig, posed()
     image = SurfaceTextures(rig)(vertices)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,8 +13,11 @@ from taught import SETTINGS, material, motion, subject, teacher
 from mua import rotation
 from mua.arrays import Array
 from mua.capture.tracks import PointTracks
+from mua.errors import InputError
+from mua.pose.clip import Clip
 from mua.rig.surface_points import face_normals, interpolate, spread_points
 from mua.teachers.bones import figure_scale
+from mua.teaching import tracked
 from mua.teaching.anchors import Anchors, anchors_of, first_hits, places
 from mua.teaching.lesson import Lesson
 from mua.teaching.track_losses import TexelTracks, Tracks
@@ -90,6 +94,15 @@ def test_a_ray_meets_triangles_alone_and_only_ahead_of_its_camera() -> None:
     np.testing.assert_allclose(hits.barycentrics[[0, 5]], [[0.5, 0.2, 0.3]] * 2, atol=1e-12)
 
 
+def test_a_point_that_is_never_seen_is_no_point_of_the_template() -> None:
+    wanted, posed = spread()
+    weights = np.ones((3, POINTS))
+    weights[:, 3] = 0
+    tracks = PointTracks(Path(), followed(posed, wanted), weights)
+    found = anchors_of(tracks, synthetic_avatar().rig.mesh, posed, size=1.0).found
+    np.testing.assert_array_equal(np.flatnonzero(~found), [3])
+
+
 def test_how_far_is_too_far_grows_with_the_figure() -> None:
     wanted, posed = spread()
     mesh = synthetic_avatar().rig.mesh
@@ -98,6 +111,31 @@ def test_how_far_is_too_far_grows_with_the_figure() -> None:
     for bind in (None, points[0]):
         tracks = PointTracks(Path(), points, np.ones((3, POINTS)), bind=bind)
         assert anchors_of(tracks, large, 8 * posed, size=8.0).found.all()
+
+
+def large_figure(points: Array, monkeypatch: pytest.MonkeyPatch) -> list[TexelTracks]:
+    """The tracks of a frame in which a figure of some 12 m stands as in its bind pose."""
+    rig = synthetic_avatar().rig
+    rig = replace(rig, mesh=replace(rig.mesh, vertices=8 * rig.mesh.vertices))
+    bind = rig.skeleton.bind_pose
+    clip = Clip("stands", 30.0, bind.rotations[None], bind.translations[None])
+    seen = PointTracks(Path("tracks.npz"), points[None], np.ones((1, len(points))))
+    monkeypatch.setattr(tracked, "read_tracks", lambda *_: [seen])
+    filmed = SimpleNamespace(subject=SimpleNamespace(rig=rig), capture=None, device=torch.device("cpu"))
+    return tracked.tracks_of_clip(filmed, clip)  # type: ignore[arg-type]
+
+
+def test_tracks_of_a_clip_are_those_of_its_points_that_lie_on_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the figure's size; what a point belongs to does not depend on those that are left out."""
+    own, _ = spread()
+    on = 8 * places(own, *template()) + [0.2, 0, 0]  # 3 cm on a person
+    off = np.add(on[:5], [9.0, 0, 0])
+    [alone], [beside] = (large_figure(points, monkeypatch) for points in (on, np.concatenate([off, on])))
+    assert len(alone.tracks.points) == len(beside.tracks.points) == POINTS
+    torch.testing.assert_close(beside.tracks.points, torch.tensor(on).float())
+    assert torch.equal(beside.texels, alone.texels)
+    with pytest.raises(InputError, match=r"tracks\.npz: no tracked point lies on the posed template"):
+        large_figure(off, monkeypatch)
 
 
 def of_texels(*, shift: float) -> TexelTracks:
