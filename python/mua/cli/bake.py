@@ -10,7 +10,7 @@ from mua.baking.bake import bake as mua_bake
 from mua.baking.options import read_order
 from mua.cli.console import printer
 from mua.cli.failure import run_command
-from mua.cli.options import lent_by
+from mua.cli.options import in_panels, lent_by
 from mua.cli.training_options import BOTH
 from mua.errors import InputError
 from mua.motion.planted_feet import Feet
@@ -95,9 +95,14 @@ OPTIONS = {
         typer.Option(help="Directory for the recording and checkpoints.", show_default="beside the output"),
     ],
 }
+PANELS = {
+    "Character": ("scale", "height", "leave_out", "uv", "detail"),
+    "Motion": ("mapping", "feet", "hold_out", "clips"),
+    "Training": ("frames", "texels", "recipe", "storage", "seed", "device", "jobs", "work"),
+}
 
 
-@lent_by(mua_bake, OPTIONS)
+@lent_by(mua_bake, in_panels(OPTIONS, PANELS))
 def main(
     *,
     check: Annotated[

@@ -1,10 +1,11 @@
 """The two options that every command has, --version and --quiet, and options that are a function's arguments."""
 
+import copy
 import functools
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin
@@ -55,6 +56,21 @@ def with_common_options(command: Callable[..., None]) -> Callable[..., None]:
 
 def with_version(*, version: Version = False) -> None:
     """What a command of several commands can do by itself."""
+
+
+def in_panels(
+    kinds: Mapping[str, Any],  # of each option: a terminal's type, with its help
+    panels: Mapping[str, Sequence[str]],  # title to the names of its options
+) -> dict[str, Any]:
+    """The same options, those of a panel under its title in --help."""
+    titles = {name: title for title, names in panels.items() for name in names}
+    grouped = {}
+    for name, kind in kinds.items():
+        of, option = get_args(kind)
+        option = copy.copy(option)  # another command may share it
+        option.rich_help_panel = titles.get(name)
+        grouped[name] = Annotated[of, option]
+    return grouped
 
 
 def lent_by(
