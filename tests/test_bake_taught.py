@@ -32,18 +32,25 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("small")
 def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_path: Path, command: Commands) -> None:
     given = ("--preset", "tiny", "--jobs", "1")
-    whole = command("bake", capture, "-o", tmp_path / "whole.muaavatar", *given)
+    motion = capture / "walk.bvh"
+    whole = command("bake", capture, "--motion", motion, "-o", tmp_path / "whole.muaavatar", *given)
     assert whole.status == 0, whole
     assert "taught from the pictures of a capture" in whole.out
     avatar = mua.load(tmp_path / "whole.muaavatar")
     assert avatar.name == "figure"
-    assert {clip.name for clip in avatar.clips} == {"walk", "reach"}
+    assert {clip.name for clip in avatar.clips} == {"walk", "reach", "walk 2"}
     assert "held out of training: reach" in avatar.notes
+    (recording,) = (tmp_path / "whole.work").glob("recording-*")
+    recorded = [clip.name for clip in mua.Recording(recording).clips if not clip.held_out and len(clip.recorded)]
+    assert {name.partition(" (")[0] for name in recorded} == {"walk", "walk 2"}
+    assert any(" degrees)" in name for name in recorded)
 
-    teacher, motion = tmp_path / "whole.work" / "teacher", capture / "walk.bvh"
+    teacher = tmp_path / "whole.work" / "teacher"
     apart = command("bake", "--teacher", teacher, "--motion", motion, "-o", tmp_path / "apart.muaavatar", *given)
     assert apart.status == 0, apart
-    assert [clip.name for clip in mua.load(tmp_path / "apart.muaavatar").clips] == ["walk"]
+    avatar = mua.load(tmp_path / "apart.muaavatar")
+    assert [clip.name for clip in avatar.clips] == ["walk"]
+    assert not avatar.encoding.heading
 
 
 @pytest.mark.parametrize(
