@@ -159,6 +159,12 @@ def test_the_command_trains_systems_at_several_sizes_and_once(
     assert {path.name: path.stat().st_mtime_ns for path in (output / "work").glob("system *.pt")} == trained
     assert (output / "results.json").read_bytes() == before
 
+    (recording,) = (output / "work").glob("recording-*")
+    monkeypatch.setitem(STUDENTS, "tiny", replace(QUICK, frames=2))  # what is not recorded again does not follow it
+    few = (capture, "--teacher", teacher, "--system", "linear", "--steps", "1", "--preset", "tiny", "--frames", "1")
+    assert command("eval", *few, "--train-on", recording, "-o", tmp_path / "given").status == 0
+    assert "on 3 frames of the teacher" in (tmp_path / "given" / "results.md").read_text()
+
 
 def test_an_avatar_on_another_skeleton_is_refused(capture: Path, tmp_path: Path, command: Commands) -> None:
     write(tmp_path / "a.muaavatar", synthetic_avatar())
@@ -202,6 +208,8 @@ def test_an_avatar_shows_a_capture_at_another_rate_at_the_same_moment(tmp_path: 
         (("--system", "ours"), "--system ours: learns from a teacher; give its folder with --teacher"),
         (("--system", "theirs"), "--system theirs: expected one of all, pca-only"),
         (("--teacher", "x", "--scale", "2"), "--scale 2: is the size of a --system, and none is given"),
+        (("--teacher", "x", "--train-on", "y"), "--train-on y: is what a --system is trained on, and none is given"),
+        (("--teacher", "x", "--system", "ours", "--train-on", "absent"), "absent: there is no such directory"),
         (("--teacher", "absent"), "--teacher absent: there is no such directory"),
     ],
 )
@@ -213,6 +221,17 @@ def test_a_wrong_option_is_a_sentence(
 
 def test_a_recording_has_no_pictures_to_compare_a_teacher_with(written: Path, command: Commands) -> None:
     assert "can only be compared with the images of a capture" in command("eval", written, "--teacher", "x").sentence
+
+
+def test_systems_of_a_recording_are_trained_on_it(written: Path, command: Commands) -> None:
+    assert "--train-on x: only applies to a comparison" in command("eval", written, "--train-on", "x").sentence
+
+
+def test_a_recording_of_another_character_is_refused(
+    capture: Path, teacher: Path, written: Path, command: Commands
+) -> None:
+    ended = command("eval", capture, "--teacher", teacher, "--system", "ours", "--train-on", written)
+    assert f"--train-on {written}: its joints are not those of the capture's template" in ended.sentence
 
 
 def test_systems_of_a_recording_have_one_size(written: Path, command: Commands) -> None:

@@ -21,6 +21,13 @@ OPTIONS = {
         Path | None,
         typer.Option(help="Folder that mua-teach wrote, where RECORDING is a capture.", show_default="none"),
     ],
+    "train_on": Annotated[
+        Path | None,
+        typer.Option(
+            help="Recording of the teacher to train systems on, as mua-bake leaves it in its work directory.",
+            show_default="made of the capture's own poses",
+        ),
+    ],
     "system": Annotated[
         list[str],
         choice((ALL, *SYSTEM_NAMES), "--system", help="System to train and compare; may be repeated", several=True),
@@ -79,6 +86,8 @@ def evaluate(**options: Any) -> None:
         require_recording(order.recording)
         if order.scale:
             raise InputError(f"--scale {order.scale[0]:g}: only applies to a comparison with the images of a capture")
+        if order.train_on is not None:
+            raise InputError(f"--train-on {order.train_on}: only applies to a comparison with the images of a capture")
         if order.teacher is not None:
             raise InputError(
                 f"--teacher {order.teacher}: can only be compared with the images of a capture, not with a recording"
@@ -106,6 +115,10 @@ def _check_filmed(order: EvaluationOrder) -> None:
         raise InputError(f"--system {order.system[0]}: learns from a teacher; give its folder with --teacher")
     if order.scale and not order.system:
         raise InputError(f"--scale {order.scale[0]:g}: is the size of a --system, and none is given")
+    if order.train_on is not None:
+        if not order.system:
+            raise InputError(f"--train-on {order.train_on}: is what a --system is trained on, and none is given")
+        require_recording(order.train_on)
     if order.teacher is None and not order.avatars:
         raise InputError("give a --teacher or avatar files to compare with the pictures of the capture")
     if order.teacher is not None:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import torch
 
-from mua.baking.plan import plan
 from mua.baking.recorded import recording_key
+from mua.baking.taught_motion import plan_headings, taught_settings
 from mua.capture import Capture, open_capture
 from mua.capture.store import ViewStore
 from mua.checkpoint import Checkpoints, run_key
@@ -66,8 +66,12 @@ def _systems(
     """The systems at their sizes, trained on what the teacher shows of the training poses, and what is said of them."""
     assert order.teacher is not None
     settings = replace(preset(order.preset), seed=order.seed)
-    recording = _record(order.teacher, capture, settings.frames, work, display)
-    settings = replace(settings, texels=recording.rig.texels.size)
+    if order.train_on is None:
+        recording = _record(order.teacher, capture, settings.frames, work, display)
+    else:
+        recording = Recording(order.train_on)
+        filmed.require_skeleton(f"--train-on {order.train_on}", recording.rig.skeleton, capture.surfaces.skeleton)
+    settings = taught_settings(settings, recording.rig.texels.size)
     budget = Budget(seconds=order.seconds) if order.steps is None else Budget(steps=order.steps)
     checkpoints = Checkpoints(work, run_key((settings, recording.fingerprint(), budget.seconds, budget.steps), []))
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -100,7 +104,9 @@ def _systems(
 
 def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: Display) -> Recording:
     """What the teacher shows of the capture's training poses, at most so many."""
-    planned = plan([capture.motion(clip.name) for clip in capture.clips if not clip.held_out], [], frames=frames)
+    own = [capture.motion(clip.name) for clip in capture.clips if not clip.held_out]
+    names = [clip.name for clip in own]
+    planned = plan_headings(capture.surfaces.skeleton, own, [], filmed=names, frames=frames)
     planned = [replace(clip, whole=frozenset()) for clip in planned]
     key = recording_key([*teacher_bytes(teacher), str(capture.rate).encode()], planned)
     directory = work / f"recording-{key}"

@@ -23,6 +23,7 @@ from mua.compare.metrics import LPIPS_UNIT
 from mua.decode import Splats, decode, pose_splats
 from mua.errors import InputError
 from mua.pose.clip import Clip
+from mua.pose.encoding import PoseEncoding
 from mua.pose.resample import sample
 from mua.pose.skeleton import Skeleton
 from mua.rendering import to_bytes
@@ -121,17 +122,20 @@ def avatar_entry(path: Path, template: Skeleton) -> FilmedEntry:
     """An avatar file; raises InputError where its skeleton is not that of the capture's template."""
     avatar = read(path)
     require_skeleton(str(path), avatar.rig.skeleton, template)
-    encoding = avatar.encoding
 
     def show(clip: Clip, frame: int) -> Splats:
-        ages = np.arange(encoding.window)
-        if clip.rate == encoding.rate:
-            poses = clip.cut(np.maximum(frame - ages, 0))
-        else:
-            poses = sample(clip, np.maximum(frame * encoding.rate / clip.rate - ages, 0), rate=encoding.rate)
+        poses = window_of(clip, frame, avatar.encoding)
         return decode(avatar, poses.rotations, translations=poses.translations)
 
     return FilmedEntry(path.stem, show, file_cost(path, avatar))
+
+
+def window_of(clip: Clip, frame: int, encoding: PoseEncoding) -> Clip:
+    """The window of poses that ends at a frame of a clip, newest first, at the encoding's rate."""
+    ages = np.arange(encoding.window)
+    if clip.rate == encoding.rate:
+        return clip.cut(np.maximum(frame - ages, 0))
+    return sample(clip, np.maximum(frame * encoding.rate / clip.rate - ages, 0), rate=encoding.rate)
 
 
 def require_skeleton(name: str, own: Skeleton, template: Skeleton) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from mua.checkpoint import Checkpoints
 from mua.compare.cost import Cost, learnt_cost
 from mua.compare.entries import sentence
-from mua.compare.filmed import FilmedEntry, Show
+from mua.compare.filmed import FilmedEntry, Show, window_of
 from mua.compare.motion import motion_of
 from mua.compare.network import NetworkSystem
 from mua.compare.order import OURS
@@ -98,7 +98,9 @@ def _shown(system: NetworkSystem, frames: TrainingFrames) -> Show:
     """A system's texture on the coarse mesh that all share."""
 
     def show(clip: Clip, frame: int) -> Splats:
-        motion = motion_of(clip, np.array([frame]), rig=frames.rig, student=frames.student)
+        window = window_of(clip, frame, frames.student.encoding)
+        oldest_first = window.cut(slice(None, None, -1))
+        motion = motion_of(oldest_first, np.array([len(window) - 1]), rig=frames.rig, student=frames.student)
         (texture,), (canonical,) = system.textures(motion), motion.canonical
         return pose_splats(frames.rig, canonical.numpy(), texture=texture.numpy(), pose=clip.pose(frame))
 

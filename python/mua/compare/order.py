@@ -24,6 +24,7 @@ class EvaluationOrder:
     recording: Path
     avatars: Sequence[Path] = ()
     teacher: Path | None = None  # folder that mua-teach wrote, where the recording is a capture
+    train_on: Path | None = None  # recording of that teacher; None: it is recorded on the capture's own poses
     system: Sequence[str] = ()  # those of the paper's tables, or all
     scale: Sequence[float] = ()  # of the systems, where the recording is a capture; none: that of the preset alone
     seconds: float = 60.0  # of training of each system, unless there are steps
