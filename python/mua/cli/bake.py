@@ -32,7 +32,9 @@ OPTIONS = {
     "motion": Annotated[
         list[Path],
         typer.Option(
-            help="Motion file, or directory of motion files; may be repeated.", show_default="the character's own clips"
+            help="Motion file, or directory of motion files; may be repeated. Where a capture is given, its own motion "
+            "is recorded too.",
+            show_default="the character's own clips",
         ),
     ],
     "output": BOTH["output"],
