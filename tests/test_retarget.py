@@ -206,7 +206,7 @@ def test_feet_that_climb_keep_their_height() -> None:
 
 def test_joints_without_a_match_keep_their_bind_rotation() -> None:
     source, target = person(axes=1), person(axes=2)
-    names = tuple("Wing" if name == "LeftForeArm" else name for name in target.names)
+    names = tuple("Wing" if name == "LeftShoulder" else name for name in target.names)
     winged = replace(target, names=names)
     found, notes = retarget(SourceMotion(source, random_clip(source)), winged)
     j = names.index("Wing")

@@ -1,15 +1,19 @@
-"""What joints are by their places, where names say nothing: legs reach the floor, arms do not, both in mirrored pairs.
+"""What joints are by their places, where names say nothing: legs reach the floor, arms do not, both in pairs alike.
 
-Asked only of skeletons none of whose limbs is known by name, and answered only where the bind pose is a body that
-stands upright on one pair of legs: a wrong guess would be worse than the question.
+Answered only where a pose is that of a body that stands upright on one pair of legs: a wrong guess would be worse than
+the question.
 """
 
+from collections import Counter
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.motion.limb_parts import ARM as ARM_PARTS
+from mua.motion.limb_parts import LEG as LEG_PARTS
+from mua.motion.limb_parts import chain_length, fork, longest_tail, parts_of
 from mua.motion.trunk import degrees, unit
 from mua.pose.skeleton import Skeleton
 
@@ -17,10 +21,13 @@ ON_FLOOR = 0.12  # of the height: how near to the lowest joint a leg ends
 ARM = 0.2  # of the height: the least length of an arm
 LEG = 0.25  # of the height: the least length of a leg
 MIRRORED = 0.08  # of the height by which a joint may miss the mirror image of the other side's
-LONG = 0.2  # of a limb: bones from this length on are thigh and shin, or upper arm and forearm
+ALIKE = 0.05  # of a limb's length by which the bones of one side may differ from those of the other in all
 UPRIGHT = 35.0  # degrees by which the way from hips to chest may lean
-POINTS = 0.03  # of the height: a foot of this length shows which way the body faces
+POINTS = 0.03  # of the height: feet and knees that point this far show which way the body faces
+LOW = 0.35  # of a leg: how high an ankle may be above the ground
 Y = np.array([0.0, 1, 0])
+
+Parts = tuple[int, ...] | None
 
 
 @dataclass(frozen=True)
@@ -33,11 +40,30 @@ class _Limbs:
     length: float  # metres
 
 
-def roles_by_place(skeleton: Skeleton) -> dict[str, str]:
+def roles_by_place(
+    skeleton: Skeleton,
+    poses: Array | None = None,  # [P, J, 3] places of the joints in frames of a motion
+) -> dict[str, str]:
     """Joint name to role (mua.pose.joint_names.ROLES); empty where the places do not tell."""
-    _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    if len(set(skeleton.names)) < len(skeleton.names):
+        return {}
+    return {skeleton.names[joint]: role for joint, role in sorted(joints_by_place(skeleton, poses).items())}
+
+
+def joints_by_place(skeleton: Skeleton, poses: Array | None = None) -> dict[int, str]:
+    """Joint to role by the bind pose; where that is no person who stands, by what most poses tell."""
+    _, bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    found = _by_pose(skeleton, bind)
+    if found or poses is None:
+        return found
+    told = Counter(tuple(sorted(_by_pose(skeleton, at).items())) for at in poses)
+    told.pop((), None)
+    return dict(told.most_common(1)[0][0]) if told else {}
+
+
+def _by_pose(skeleton: Skeleton, at: Array) -> dict[int, str]:
     height = float(np.ptp(at[:, 1]))
-    if height <= 0 or len(set(skeleton.names)) < len(skeleton.names):
+    if height <= 0:
         return {}
     pairs = _pairs(skeleton, at, height)
     floor = at[:, 1].min() + ON_FLOOR * height
@@ -46,48 +72,47 @@ def roles_by_place(skeleton: Skeleton) -> dict[str, str]:
     if len(hips) != 1:
         return {}
     leg = max(legs, key=lambda pair: pair.length)
-    above = [pair for pair in pairs if pair.trunk != leg.trunk and leg.trunk in skeleton.ancestors(pair.trunk)]
+    above = [pair for pair in pairs if _apart(skeleton, pair, leg)]
     arms = [pair for pair in above if at[pair.first[-1], 1] > floor and pair.length > ARM * height]
     if not arms:
         return {}
-    arm = max(arms, key=lambda pair: pair.length)
+    arm = max(arms, key=lambda pair: (fork(skeleton.parents, at, pair.first) is not None, pair.length))
     if degrees(unit(at[arm.trunk] - at[leg.trunk]), Y) > UPRIGHT:
         return {}
     return _named(skeleton, at, height, leg, arm)
 
 
+def _apart(skeleton: Skeleton, pair: _Limbs, leg: _Limbs) -> bool:
+    """Whether a pair hangs neither on the joint that the legs hang on nor on the legs."""
+    above = {pair.trunk, *skeleton.ancestors(pair.trunk)}
+    return pair.trunk != leg.trunk and not above & {*leg.first, *leg.second}
+
+
 def _pairs(skeleton: Skeleton, at: Array, height: float) -> list[_Limbs]:
-    """Every two mirrored branches of one joint, each followed to its farthest tip."""
-    children: dict[int, list[int]] = {}
-    for joint, parent in enumerate(skeleton.parents.tolist()):
-        children.setdefault(parent, []).append(joint)
+    """Every two branches of one joint that are alike, each followed to its farthest tip."""
     found = []
-    for trunk, branches in children.items():
-        chains = {branch: _longest(children, at, branch) for branch in branches} if trunk >= 0 else {}
+    for trunk in sorted({parent for parent in skeleton.parents.tolist() if parent >= 0}):
+        branches = np.flatnonzero(skeleton.parents == trunk).tolist()
+        chains = {branch: longest_tail(skeleton.parents, at, branch) for branch in branches}
         for one, other in combinations(chains, 2):
             first, second = chains[one], chains[other]
-            if min(len(first), len(second)) >= 3 and _mirrored(at, first, second, MIRRORED * height):
-                length = float(np.linalg.norm(np.diff(at[list(first)], axis=0), axis=-1).sum())
-                found.append(_Limbs(trunk, first, second, length))
+            joints = min(len(first), len(second))  # what one hand holds makes its chain longer
+            if joints < 3:
+                continue
+            first, second = first[:joints], second[:joints]
+            if _mirrored(at, first, second, MIRRORED * height) or _equal(at, first, second):
+                found.append(_Limbs(trunk, first, second, chain_length(at, first)))
     return found
 
 
-def _longest(children: dict[int, list[int]], at: Array, joint: int) -> tuple[int, ...]:
-    """The chain of joints from `joint` on that is longest along its bones."""
-    tails = [_longest(children, at, child) for child in children.get(joint, ())]
-    if not tails:
-        return (joint,)
-    return (joint, *max(tails, key=lambda tail: _length(at, (joint, *tail))))
-
-
-def _length(at: Array, chain: tuple[int, ...]) -> float:
-    return float(np.linalg.norm(np.diff(at[list(chain)], axis=0), axis=-1).sum())
+def _equal(at: Array, first: tuple[int, ...], second: tuple[int, ...]) -> bool:
+    """Whether two chains have bones of the same lengths."""
+    one, other = (np.linalg.norm(np.diff(at[list(chain)], axis=0), axis=-1) for chain in (first, second))
+    return bool(np.abs(one - other).sum() < ALIKE * max(one.sum(), other.sum()))
 
 
 def _mirrored(at: Array, first: tuple[int, ...], second: tuple[int, ...], near: float) -> bool:
     """Whether two chains are mirror images about the vertical plane between them."""
-    if len(first) != len(second):
-        return False
     one, other = at[list(first)], at[list(second)]
     across = (one - other).mean(axis=0) * [1, 0, 1]
     if np.linalg.norm(across) <= near / 4:
@@ -97,41 +122,43 @@ def _mirrored(at: Array, first: tuple[int, ...], second: tuple[int, ...], near: 
     return bool(np.linalg.norm(image - one, axis=-1).max() < near)
 
 
-def _named(skeleton: Skeleton, at: Array, height: float, leg: _Limbs, arm: _Limbs) -> dict[str, str]:
-    legs, arms = ([_segments(at, chain) for chain in (pair.first, pair.second)] for pair in (leg, arm))
-    if any(segments is None for segments in (*legs, *arms)):
-        return {}
+def _named(skeleton: Skeleton, at: Array, height: float, leg: _Limbs, arm: _Limbs) -> dict[int, str]:
+    legs = [parts_of(at, chain, LEG_PARTS, end=_ankle(at, chain)) for chain in (leg.first, leg.second)]
+    arms = [parts_of(at, chain, ARM_PARTS, end=fork(skeleton.parents, at, chain)) for chain in (arm.first, arm.second)]
     found: dict[int, str] = {leg.trunk: "hips"}
-    ahead = _ahead(at, [segments for segments in legs if segments is not None], height)
-    for segments, parts in (
-        *((segments, ("thigh", "shin", "foot", "toe")) for segments in legs),
-        *((segments, ("upper_arm", "forearm", "hand")) for segments in arms),
+    ahead = _ahead(at, legs, height)
+    for parts, names in (
+        *((parts, ("thigh", "shin", "foot", "toe")) for parts in legs),
+        *((parts, ("upper_arm", "forearm", "hand")) for parts in arms),
     ):
-        assert segments is not None
-        left = np.cross(Y, ahead) @ (at[segments[0]] - at[leg.trunk]) > 0
-        found |= {joint: f"{'left' if left else 'right'} {part}" for joint, part in zip(segments, parts, strict=False)}
-    way = [arm.trunk, *skeleton.ancestors(arm.trunk)]
-    found |= dict.fromkeys(way[: way.index(leg.trunk)], "spine")
-    found |= _neck_and_head(skeleton, at, arm, found)
-    return {skeleton.names[joint]: role for joint, role in sorted(found.items())}
+        if parts is None:
+            return {}
+        left = np.cross(Y, ahead) @ (at[parts[0]] - at[leg.trunk]) > 0
+        found |= {joint: f"{'left' if left else 'right'} {name}" for joint, name in zip(parts, names, strict=False)}
+    if len({role for role in found.values() if role.endswith(("thigh", "upper_arm"))}) < 4:
+        return {}
+    below = {leg.trunk, *skeleton.ancestors(leg.trunk)}
+    way = [joint for joint in (arm.trunk, *skeleton.ancestors(arm.trunk)) if joint not in below]
+    found |= dict.fromkeys(way or [arm.trunk], "spine")
+    return found | _neck_and_head(skeleton, at, arm, found)
 
 
-def _segments(at: Array, chain: tuple[int, ...]) -> tuple[int, ...] | None:
-    """Joints where the first two long bones begin and where the second ends, then the joint after it."""
-    length = _length(at, chain)
-    bones = np.linalg.norm(np.diff(at[list(chain)], axis=0), axis=-1)
-    long = [i for i, bone in enumerate(bones) if bone > LONG * length]
-    if len(long) < 2 or long[1] != long[0] + 1:
-        return None
-    begin = long[0]
-    return chain[begin : begin + 4]
+def _ankle(at: Array, chain: tuple[int, ...]) -> int | None:
+    """The first joint of a leg that is near the ground."""
+    ground, top = at[list(chain), 1].min(), at[chain[0], 1]
+    return next((joint for joint in chain[2:] if at[joint, 1] - ground < LOW * (top - ground)), None)
 
 
-def _ahead(at: Array, legs: list[tuple[int, ...]], height: float) -> Array:
-    """Where the body faces: along its feet, else along +Z, as files have it."""
-    feet = [at[leg[3]] - at[leg[2]] for leg in legs if len(leg) > 3]
-    along = np.sum(feet, axis=0) * [1, 0, 1] if feet else np.zeros(3)
-    return unit(along) if np.linalg.norm(along) > POINTS * height else np.array([0.0, 0, 1])
+def _ahead(at: Array, legs: list[Parts], height: float) -> Array:
+    """Where the body faces: along its feet, else as its knees bend, else along +Z, as files have it."""
+    known = [parts for parts in legs if parts is not None]
+    feet = [at[parts[3]] - at[parts[2]] for parts in known if len(parts) > 3]
+    knees = [at[parts[1]] - (at[parts[0]] + at[parts[2]]) / 2 for parts in known]
+    for shown in (feet, knees):
+        along = np.sum(shown, axis=0) * [1, 0, 1] if shown else np.zeros(3)
+        if np.linalg.norm(along) > POINTS * height:
+            return unit(along)
+    return np.array([0.0, 0, 1])
 
 
 def _neck_and_head(skeleton: Skeleton, at: Array, arm: _Limbs, found: dict[int, str]) -> dict[int, str]:

@@ -14,6 +14,8 @@ from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
 
+POSES = 12  # frames that show what joints are, where neither names nor the rest pose do
+
 
 @dataclass(frozen=True)
 class LoadedMotion:
@@ -84,10 +86,17 @@ def _put_on(
     refuse: bool,
 ) -> LoadedMotion:
     try:
-        if same_joints(source.skeleton, skeleton):
-            matches = match_joints(source.skeleton, skeleton, source_said=source.said, target_said=said)
+        same = same_joints(source.skeleton, skeleton)
+        matches = match_joints(
+            source.skeleton,
+            skeleton,
+            None if same else mapping,
+            source_said=source.said,
+            target_said=said,
+            source_poses=source.places(POSES),
+        )
+        if same:
             return LoadedMotion(resample(source.clip, rate), source, matches, source.notes)
-        matches = match_joints(source.skeleton, skeleton, mapping, source_said=source.said, target_said=said)
         if refuse:
             require_limbs(source.skeleton, skeleton, matches)
         clip, notes = retarget(source, skeleton, matches, rate=rate)

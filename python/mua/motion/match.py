@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.motion.joint_places import roles_by_place
+from mua.motion.whole_limbs import with_whole_limbs
 from mua.pose.joint_names import FINGERS, NAMESPACE, SIDES, Roles
 from mua.pose.joint_names import roles as find_roles
 from mua.pose.skeleton import Skeleton
@@ -19,6 +20,7 @@ class Matches:
     chains: Mapping[int, tuple[int, int]]  # target joint -> first and last source joint of the chain that moves it
     roles: Roles  # of the target
     notes: tuple[str, ...] = ()  # what was told by other means than names, a sentence each
+    source_roles: Roles = field(default_factory=dict)
 
     def joint(self, role: str) -> int | None:
         """The first matched target joint of a role."""
@@ -37,6 +39,7 @@ def match_joints(
     *,
     source_said: Mapping[str, str] | None = None,  # joint name to role, where the source's file itself says it
     target_said: Mapping[str, str] | None = None,
+    source_poses: Array | None = None,  # [P, J, 3] places of the source's joints in some frames
 ) -> Matches:
     """Find the source chain that moves each target joint: by `mapping`, then by role, then by equal names.
 
@@ -46,7 +49,7 @@ def match_joints(
     Errors: InputError if `mapping` names an unknown joint.
     """
     chains = _match_equal_names(source, target)
-    source_roles, source_notes = _roles(source, source_said, "motion")
+    source_roles, source_notes = _roles(source, source_said, "motion", source_poses)
     target_roles, target_notes = _roles(target, target_said, "character")
     for side in SIDES:
         thumb, *fingers = (f"{side} {finger}" for finger in FINGERS)
@@ -62,20 +65,49 @@ def match_joints(
     for target_name, source_name in (mapping or {}).items():
         chosen = _index(source, source_name, "source")
         chains[_index(target, target_name, "target")] = chosen, chosen
-    return Matches(chains, target_roles, (*source_notes, *target_notes))
+    return Matches(chains, target_roles, (*source_notes, *target_notes), source_roles)
 
 
-def _roles(skeleton: Skeleton, said: Mapping[str, str] | None, owner: str) -> tuple[Roles, tuple[str, ...]]:
-    """Joints of every role by what the file says and names tell; by their places where these know no limb at all."""
+def _roles(
+    skeleton: Skeleton, said: Mapping[str, str] | None, owner: str, poses: Array | None = None
+) -> tuple[Roles, tuple[str, ...]]:
+    """Joints of every role by what the file says and names tell, by places and lengths where these leave out limbs."""
     found = find_roles(skeleton, said)
-    if any(role in found for roles in LIMBS.values() for role in roles if role != "spine"):
-        return found, ()
-    placed = roles_by_place(skeleton)
-    if not placed:
-        return found, ()
-    listed = ", ".join(f"{name} the {role.replace('_', ' ')}" for name, role in placed.items() if " " in role)
-    note = f"The {owner}'s joints are recognised by their positions, because their names are unknown: {listed}."
-    return find_roles(skeleton, {**placed, **(said or {})}), (note,)
+    notes: tuple[str, ...] = ()
+    if placed := _placed(skeleton, found, poses):
+        listed = ", ".join(f"{name} the {role.replace('_', ' ')}" for name, role in placed.items() if " " in role)
+        found = find_roles(skeleton, {**placed, **(said or {})})
+        notes = (f"The {owner}'s joints are recognised by their positions, because their names are unknown: {listed}.",)
+    found, mended = with_whole_limbs(skeleton, found)
+    if mended:
+        listed = ", ".join(
+            f"{skeleton.names[found[role][0]]} the {role.replace('_', ' ')}"
+            for limb in mended
+            for role in LIMBS[limb]
+            if role in found
+        )
+        notes += (f"The {owner}'s {_listed(mended)} {_are(mended)} recognised by the lengths of the bones: {listed}.",)
+    return found, notes
+
+
+def _are(words: tuple[str, ...]) -> str:
+    return "is" if len(words) == 1 else "are"
+
+
+def _placed(skeleton: Skeleton, found: Roles, poses: Array | None) -> dict[str, str]:
+    """Joint name to role by places, of the limbs that names leave out; of the trunk too where they tell no limb."""
+    known = {limb for limb in LIMBS if limb != "spine" and any(role in found for role in LIMBS[limb])}
+    if len(known) == len(LIMBS) - 1:
+        return {}
+    placed = roles_by_place(skeleton, poses)
+    if not known:
+        return placed
+    named = {skeleton.names[joint]: role for role, joints in found.items() for joint in joints}
+    sides = [placed[name].split()[0] == role.split()[0] for name, role in named.items() if " " in placed.get(name, "")]
+    if not sides or not all(sides):
+        return {}
+    missing = {role for limb in LIMBS if limb not in known for role in (*LIMBS[limb], *BEYOND[limb])}
+    return {name: role for name, role in placed.items() if role in missing and name not in named}
 
 
 def _with_mapped(
@@ -96,6 +128,11 @@ LIMBS = {
     **{f"{side} arm": (f"{side} upper_arm", f"{side} forearm") for side in SIDES},
     **{f"{side} leg": (f"{side} thigh", f"{side} shin") for side in SIDES},
     "spine": ("spine",),
+}
+BEYOND = {
+    limb: tuple(f"{limb.split()[0]} {part}" for part in (("hand",) if "arm" in limb else ("foot", "toe")))
+    for limb in LIMBS
+    if limb != "spine"
 }
 END = re.compile(r"(end|nub|tip)$", re.IGNORECASE)  # of joints that only mark where a bone ends
 SAME_RIG = 0.8  # of the target's joints: with as many equal names, motion and character are of one kind of rig

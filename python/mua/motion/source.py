@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from mua.arrays import Array
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
@@ -15,3 +18,8 @@ class SourceMotion:
     clip: Clip
     notes: tuple[str, ...] = ()  # decisions of the reader worth telling the user, a sentence each
     said: Mapping[str, str] = field(default_factory=dict)  # joint to role, where the file itself says it
+
+    def places(self, poses: int) -> Array:
+        """Where the joints are [P, J, 3] in at most `poses` frames, spread over the clip."""
+        frames = np.unique(np.linspace(0, len(self.clip) - 1, poses).astype(int))
+        return self.skeleton.world(self.clip.rotations[frames], self.clip.translations[frames])[1]

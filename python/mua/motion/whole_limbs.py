@@ -1,0 +1,77 @@
+"""Limbs whose names tell only some of their parts, made whole by the lengths along their joints.
+
+"arm_joint_1" to "arm_joint_3" are all an arm by their names; a shoulder, an arm and a wrist leave out the elbow.
+"""
+
+from mua.arrays import Array
+from mua.motion.limb_parts import ARM, LEG, Proportions, fork, longest_tail, parts_of
+from mua.pose.joint_names import SIDES, Roles
+from mua.pose.skeleton import Skeleton
+
+_LIMBS: dict[str, tuple[tuple[str, ...], Proportions]] = {
+    "arm": (("shoulder", "upper_arm", "forearm", "hand"), ARM),
+    "leg": (("thigh", "shin", "foot", "toe"), LEG),
+}
+
+
+def with_whole_limbs(skeleton: Skeleton, found: Roles) -> tuple[Roles, tuple[str, ...]]:
+    """The roles with arms and legs made whole, and the names of these limbs."""
+    _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    mended = dict(found)
+    limbs = []
+    for limb, (parts, usual) in _LIMBS.items():
+        for side in SIDES:
+            split = _split(skeleton, at, found, side, parts, usual)
+            if split:
+                mended = {role: joints for role, joints in mended.items() if role not in split}
+                mended |= {role: joints for role, joints in split.items() if joints}
+                limbs.append(f"{side} {limb}")
+    return mended, tuple(limbs)
+
+
+def _split(
+    skeleton: Skeleton, at: Array, found: Roles, side: str, parts: tuple[str, ...], usual: Proportions
+) -> dict[str, tuple[int, ...]]:
+    """Joints of all parts of a limb, none for those that it lacks; {} where names tell enough or lengths nothing."""
+    upper, lower, end = (f"{side} {part}" for part in _main(parts))
+    twisted = end not in found and len(found.get(lower, ())) > 1
+    if not (upper in found or lower in found) or (upper in found and lower in found and not twisted):
+        return {}
+    chain = limb_chain(skeleton, at, found, side, parts)
+    if chain is None:
+        return {}
+    known = found[end][0] if end in found else fork(skeleton.parents, at, chain) if usual is ARM else None
+    split = parts_of(at, chain, usual, end=known)
+    if split is None:
+        return {}
+    ends = [chain.index(joint) for joint in split[:3]]
+    named = {upper: chain[ends[0] : ends[1]], lower: chain[ends[1] : ends[2]], end: chain[ends[2] : ends[2] + 1]}
+    if usual is ARM:
+        return {f"{side} shoulder": chain[: ends[0]]} | named
+    return named | {f"{side} toe": split[3:]}
+
+
+def _main(parts: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(part for part in parts if part not in ("shoulder", "toe"))
+
+
+def limb_chain(
+    skeleton: Skeleton, at: Array, found: Roles, side: str, parts: tuple[str, ...]
+) -> tuple[int, ...] | None:
+    """Joints from where a limb leaves the trunk to its tip; None where its joints are no chain."""
+    ours, theirs = (
+        sorted({joint for part in parts for joint in found.get(f"{whose} {part}", ())})
+        for whose in (side, _other(side))
+    )
+    if not ours or not theirs:
+        return None
+    way = [ours[-1], *skeleton.ancestors(ours[-1])]
+    trunk = {theirs[-1], *skeleton.ancestors(theirs[-1])}
+    below = [joint for joint in way if joint not in trunk]
+    if not below or not set(ours) <= set(below):
+        return None
+    return (*below[:0:-1], *longest_tail(skeleton.parents, at, ours[-1]))
+
+
+def _other(side: str) -> str:
+    return SIDES[1 - SIDES.index(side)]

@@ -1,0 +1,86 @@
+"""Limbs whose names tell only some of their parts, split by the lengths of their bones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from people import person, retarget, upright, walk, world
+
+from mua.motion.limb_parts import ARM, LEG, parts_of
+from mua.motion.match import match_joints
+from mua.motion.source import SourceMotion
+from mua.pose.skeleton import Skeleton
+
+
+def line(*bones: float) -> np.ndarray:
+    """Joints in a row, whose bones have these lengths."""
+    return np.cumsum([0.0, *bones])[:, None] * [1.0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("bones", "expected"),
+    [
+        ((0.15, 0.28, 0.25, 0.1, 0.09), (1, 2, 3, 4)),  # a long collar bone, as short figures have it
+        ((0.28, 0.25, 0.18), (0, 1, 2, 3)),
+        ((0.28, 0.25), (0, 1, 2)),
+        ((0.13, 0.13, 0.12, 0.12, 0.1), (0, 2, 4, 5)),  # twist joints
+    ],
+)
+def test_finds_the_upper_arm_behind_collar_bones_and_twist_joints(
+    bones: tuple[float, ...], expected: tuple[int, ...]
+) -> None:
+    assert parts_of(line(*bones), tuple(range(len(bones) + 1)), ARM) == expected
+
+
+def test_finds_the_thigh_beside_the_pelvis() -> None:
+    assert parts_of(line(0.1, 0.27, 0.27, 0.09, 0.05), tuple(range(6)), LEG) == (1, 2, 3, 4)
+
+
+def test_finds_no_limb_in_what_has_no_limbs_proportions() -> None:
+    assert parts_of(line(0.1, 0.1, 1.0), tuple(range(4)), ARM) is None
+    assert parts_of(line(0, 0, 0), tuple(range(4)), ARM) is None
+
+
+NUMBERED = {
+    **{part: f"arm_joint_{i}" for i, part in enumerate(("Arm", "ForeArm", "Hand", "HandMiddle1"))},
+    **{part: f"leg_joint_{i}" for i, part in enumerate(("UpLeg", "Leg", "Foot", "ToeBase", "Toe_End"))},
+}
+WITHOUT_ELBOW = {"Shoulder": "Clav", "Arm": "Shoulder", "ForeArm": "Arm", "Hand": "Wrist"}
+
+
+def called(skeleton: Skeleton, parts: dict[str, str]) -> Skeleton:
+    """The skeleton with other names of parts on both sides, without collar bones' names where these say nothing."""
+    names = {f"{side}{part}": f"{name}_{side[0]}" for side in ("Left", "Right") for part, name in parts.items()}
+    return replace(skeleton, names=tuple(names.get(name, name) for name in skeleton.names))
+
+
+@pytest.mark.parametrize("parts", [NUMBERED, WITHOUT_ELBOW])
+def test_motion_goes_onto_limbs_whose_names_tell_only_some_parts(parts: dict[str, str]) -> None:
+    source, target = person(), called(person(size=1.2), parts)
+    found, notes = retarget(SourceMotion(source, walk(source)), target)
+    expected, _ = retarget(SourceMotion(source, walk(source)), person(size=1.2))
+    np.testing.assert_allclose(world(target, found)[1], world(target, expected)[1], atol=1e-9)
+    assert any("by the lengths of the bones" in note and "left forearm" in note for note in notes)
+
+
+def test_names_go_before_lengths() -> None:
+    assert not match_joints(person(), person()).notes
+
+
+def test_a_limb_of_one_bone_stays_one() -> None:
+    names = ("Hips", "Spine", "Arm_L", "Arm_R", "Hand_L", "Hand_R", "tip_L", "tip_R")
+    at = [(0, 1, 0), (0, 0.4, 0), (0.2, 0, 0), (-0.2, 0, 0), (0.5, 0, 0), (-0.5, 0, 0), (0.1, 0, 0), (-0.1, 0, 0)]
+    block = upright(names, [-1, 0, 1, 1, 2, 3, 4, 5], at)
+    assert "left forearm" not in match_joints(block, block).roles
+
+
+def test_a_motion_without_names_is_told_by_its_frames_where_its_rest_pose_is_no_person() -> None:
+    """All bones of the rest pose point one way: only the frames show a body."""
+    whole = person()
+    clip = walk(whole)
+    along = np.linalg.norm(whole.bind_translations, axis=-1)[:, None] * [0.0, 1, 0]
+    hidden = replace(whole, names=tuple(f"joint{i}" for i in range(len(whole.names))), bind_translations=along)
+    frames = world(whole, clip)[1][::6]
+    roles = match_joints(hidden, whole, source_poses=frames)
+    assert roles.ends("left forearm") == (whole.names.index("LeftForeArm"),) * 2
+    assert roles.ends("right shin") == (whole.names.index("RightLeg"),) * 2
