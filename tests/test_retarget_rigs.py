@@ -82,3 +82,23 @@ def test_feet_that_hang_on_controls_stay_at_the_shins_end() -> None:
     found, _ = retarget(SourceMotion(source, walk(source)), target)
     expected, _ = retarget(SourceMotion(source, walk(source)), plain)
     np.testing.assert_allclose(world(target, found)[1][:, 1:], world(plain, expected)[1], atol=POSITION_BOUND)
+
+
+def test_forearms_that_end_in_fingers_point_as_those_of_the_motion() -> None:
+    """Arms without a hand, bent in the bind pose: the first finger shows where the forearm points."""
+    source, target = person(), person()
+    fingers = {
+        f"{side}Hand{part}": f"{side}HandMiddle{i}"
+        for side in ("Left", "Right")
+        for i, part in ((1, ""), (2, "Middle1"))
+    }
+    bent = target.bind_translations.copy()
+    for side, out in (("Left", 1), ("Right", -1)):
+        bent[target.names.index(f"{side}Hand")] = (out * 0.18, 0, 0.18)
+    target = replace(target, names=tuple(fingers.get(name, name) for name in target.names), bind_translations=bent)
+    clip = random_clip(source)
+    found, _ = retarget(SourceMotion(source, clip), target)
+    elbow, wrist = (source.names.index(name) for name in ("LeftForeArm", "LeftHand"))
+    (moved, wanted) = (at[:, wrist] - at[:, elbow] for at in (world(target, found)[1], world(source, clip)[1]))
+    moved, wanted = (v / np.linalg.norm(v, axis=-1, keepdims=True) for v in (moved, wanted))
+    np.testing.assert_allclose(moved, wanted, atol=ANGLE_BOUND)

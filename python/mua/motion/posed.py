@@ -52,7 +52,7 @@ class _Frames:
 
     def bone(self, begin: str, end: str) -> tuple[Array, Array] | None:
         """Directions between the places of two roles: the target's in bind [3], the source's [F, 3]."""
-        first, second = self.rest.matches.ends(begin), self.rest.matches.ends(end)
+        first, second = self.rest.matches.ends(begin), self.rest.ends(begin, end)
         if first is None or second is None:
             return None
         target = self.rest.target_at[second[0]] - self.rest.target_at[first[0]]

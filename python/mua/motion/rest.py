@@ -11,8 +11,10 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.motion.limb_parts import longest_tail
 from mua.motion.match import Matches
 from mua.motion.trunk import SIDES, nearest_axis, unit
+from mua.pose.joint_names import Roles
 from mua.pose.skeleton import Skeleton
 
 LIMBS = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shin", "shin": "foot"}  # bones aligned: where they end
@@ -48,10 +50,26 @@ class Rest:
         ends = {role: self.matches.ends(role) for role in self.matches.roles}
         return {role: self.source_at[pair[1]] for role, pair in ends.items() if pair is not None}
 
+    def ends(self, role: str, end: str) -> tuple[int, int] | None:
+        """The joints of target and source where a bone ends: those of role `end`, else where its chain goes on."""
+        matched = self.matches.ends(end)
+        if matched is not None:
+            return matched
+        target = _next(self.target, self.target_at, self.matches.roles, role, end)
+        source = _next(self.source, self.source_at, self.matches.source_roles, role, end)
+        return None if target is None or source is None else (target, source)
+
     def middle(self, part: str) -> Array | None:
         """[2, 3] the middle between left and right."""
         left, right = (self.places(f"{side} {part}") for side in SIDES)
         return None if left is None or right is None else (left + right) / 2
+
+
+def _next(skeleton: Skeleton, at: Array, roles: Roles, role: str, end: str) -> int | None:
+    """The joint of role `end`; where there is none, as in arms that end in fingers, the next of the longest chain."""
+    if end in roles or role not in roles:
+        return next(iter(roles.get(end, ())), None)
+    return next(iter(longest_tail(skeleton.parents, at, roles[role][-1])[1:]), None)
 
 
 def rest_calibrations(rest: Rest, upright: Array) -> dict[int, Array]:
@@ -118,9 +136,10 @@ def _alignments(rest: Rest, upright: Array) -> dict[int, Array]:
 
 def _bone_alignment(rest: Rest, role: str, end: str, base: Array) -> Array:
     """`base` [4], then the shortest rotation that lays the target's bone from `role` to `end` along the source's."""
-    begins, ends = rest.places(role), rest.places(end)
-    if begins is None or ends is None:
+    begins, joints = rest.places(role), rest.ends(role, end)
+    if begins is None or joints is None:
         return base
+    ends = np.stack([rest.target_at[joints[0]], rest.source_at[joints[1]]])
     lengths = np.linalg.norm(ends - begins, axis=-1)
     if not lengths.all():
         return base
