@@ -136,7 +136,7 @@ def _quality(order: Order, character: Character, motion: LoadedMotion) -> Motion
     """What a clip keeps of its source; a character's own clip is its source."""
     if order.motions:
         return measure_motion(motion.source, character.skeleton, motion.clip, motion.matches)
-    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, ())
+    return MotionQuality(motion.clip.name, 0.0, None, None, None, {}, (), ())
 
 
 def _notes(loaded: Sequence[LoadedMotion]) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from mua.arrays import Array
 from mua.motion.contacts import floor_of, planted, speed, standing
 from mua.motion.match import Matches
 from mua.motion.pair import Pair, Side
+from mua.motion.reach import WRONG, Figure, Reach, best_heading, reaches
 from mua.motion.source import SourceMotion
 from mua.motion.trunk import SIDES, degrees, trunk_of, unit
 from mua.pose.clip import Clip
@@ -43,7 +44,13 @@ class MotionQuality:
     feet_height: float | None  # metres of the lower foot above where it stands in the bind pose, None without feet
     slide: float | None  # metres per second of the target's feet while the source's stand, None where none stands
     limbs: Mapping[str, float]  # median degrees by limb
+    reach: tuple[Reach, ...]  # how far hands and feet are from where the motion has them
     flaws: tuple[str, ...]  # a sentence for everything that looks wrong
+
+    @property
+    def worst_reach(self) -> float | None:
+        """The largest distance of a hand or foot, as a share of its limb; None where no limb is known on both sides."""
+        return max((limb.share for limb in self.reach), default=None)
 
 
 def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: Matches) -> MotionQuality:
@@ -53,6 +60,9 @@ def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: 
     facing = _facing(pair)
     height = _feet_height(pair.target)
     slide, source_slide = _slide(pair)
+    reach = reaches(
+        Figure(target, matches.roles, pair.target.at), Figure(source.skeleton, matches.source_roles, pair.source.at)
+    )
     return MotionQuality(
         name=clip.name,
         limb_degrees=max(limbs.values(), default=0.0),
@@ -60,8 +70,10 @@ def measure_motion(source: SourceMotion, target: Skeleton, clip: Clip, matches: 
         feet_height=height,
         slide=slide,
         limbs=limbs,
+        reach=reach,
         flaws=(
             *_limb_flaws(clip.name, limbs),
+            *_reach_flaws(clip.name, reach),
             *_facing_flaws(clip.name, facing),
             *_floor_flaws(clip.name, height, pair.target.leg),
             *_slide_flaws(clip.name, slide, source_slide, pair.target.leg),
@@ -75,7 +87,7 @@ def _limb_angles(pair: Pair) -> dict[str, float]:
     shared = [limb for limb in target if limb in source]
     if not shared:
         return {}
-    heading = _best_heading(*(np.concatenate([side[limb] for limb in shared]) for side in (target, source)))
+    heading = best_heading(*(np.concatenate([side[limb] for limb in shared]) for side in (target, source)))
     return {limb: float(np.median(degrees(target[limb], rotation.rotate(heading, source[limb])))) for limb in shared}
 
 
@@ -88,13 +100,6 @@ def _directions(side: Side) -> dict[str, Array]:
             found[limb] = unit(last - first)
     trunk = side.trunk()
     return found if trunk is None else found | {"spine": trunk.up}
-
-
-def _best_heading(target: Array, source: Array) -> Array:
-    """The turn about Y [4] that lays directions of the source [N, 3] nearest to those of the target [N, 3]."""
-    sine = np.sum(source[:, 2] * target[:, 0] - source[:, 0] * target[:, 2])
-    cosine = np.sum(source[:, 0] * target[:, 0] + source[:, 2] * target[:, 2])
-    return rotation.from_axis_angle(np.array([0.0, 1, 0]), np.arctan2(sine, cosine))
 
 
 @dataclass(frozen=True)
@@ -180,6 +185,18 @@ def _limb_flaws(name: str, limbs: Mapping[str, float]) -> list[str]:
         return []
     listed = ", ".join(f"{limb} {angle:.0f}" for limb, angle in sorted(wrong.items(), key=lambda item: -item[1]))
     return [f"{name}: limbs point in other directions than in the motion (degrees: {listed})."]
+
+
+def _reach_flaws(name: str, reach: tuple[Reach, ...]) -> list[str]:
+    wrong = [limb for limb in reach if limb.share > WRONG]
+    if not wrong:
+        return []
+    listed = ", ".join(
+        f"the {limb.limb} is {limb.metres:.2f} m from where the motion has it "
+        f"({' to '.join(limb.character)}; in the motion {' to '.join(limb.motion)})"
+        for limb in sorted(wrong, key=lambda limb: -limb.share)
+    )
+    return [f"{name}: seen from shoulder or hip, {listed}. A pair of joints may be wrong."]
 
 
 def _facing_flaws(name: str, facing: _Facing | None) -> list[str]:
