@@ -320,6 +320,8 @@ def test_the_window_takes_a_pose_in_each_frame_of_the_avatars_rate(story: Story)
     assert window == 3
     assert told["window"] == ["12 9 6", "13 12 9", "14 14 14", "15 14 14", "16 16 16"]
     assert [float(number) for number in told["before"]] == [pytest.approx(0.5), pytest.approx(1)]
+    assert told["steady"] == ["300"]  # one pose in each frame
+    assert told["other clip"] == ["1"]  # is another window, though both play their first frame
 
 
 def test_a_rig_that_is_destroyed_is_said_once(story: Story) -> None:
@@ -357,6 +359,15 @@ def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None
     assert told["still"] == [str(len(FRAME_ORDER))]
     assert told["geometry"] == [str(levels[0])]
     assert told["log"] == []
+
+
+def test_texels_are_measured_at_the_nearest_point_that_is_drawn(story: Story) -> None:
+    """That is the near plane, 0.25 m away, where the eye is within the avatar's box."""
+    told = story("MeasuresTexels", "first")
+    focal = float(told["focal"][0])
+    seen = [tuple(map(float, line.split())) for line in told["seen"]]
+    for found, wanted in zip(seen, [(0, focal / 0.25)] * 2 + [(2, focal / 2)] * 2, strict=True):
+        assert found == pytest.approx(wanted, rel=1e-4)
 
 
 def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:

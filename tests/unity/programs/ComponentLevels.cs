@@ -1,4 +1,5 @@
 // Levels of detail of AvatarRenderer and AvatarBudget in the stand-ins' player loop.
+using System.Reflection;
 using UnityEngine;
 
 namespace Mua
@@ -33,6 +34,31 @@ namespace Mua
             Say("still", Dispatches(2) - Dispatches(1)); // a decode goes before the pose once
             shown.Views = AvatarViews.Splats | AvatarViews.Geometry;
             Say("geometry", Splats(shown));
+        }
+
+        /// <summary>How large a texel looks: from within the box, from its side, and by a projection whose rows run down.</summary>
+        private static void MeasuresTexels()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            Frames(1);
+            AvatarInstance instance = (AvatarInstance)typeof(AvatarRenderer)
+                .GetField("shown", BindingFlags.Instance | BindingFlags.NonPublic).GetValue(shown);
+            Vector3 middle = shown.Bounds.center;
+            Matrix4x4 upright = Matrix4x4.Perspective(60, 1, 0.25f, 100), flipped = upright;
+            flipped.m11 = -flipped.m11;
+            foreach (float away in new[] { 0, shown.Bounds.extents.z + 2 })
+            {
+                foreach (Matrix4x4 projection in new[] { upright, flipped })
+                {
+                    var eyes = new AvatarEyes();
+                    eyes.Begin(400, 200, 0.25f);
+                    Matrix4x4 before = Matrix4x4.Translate(new Vector3(0, 0, away) - middle);
+                    eyes.Add(Matrix4x4.Scale(new Vector3(1, 1, -1)) * before, projection);
+                    AvatarSeen seen = instance.Seen(eyes);
+                    Say("seen", seen.Distance + " " + seen.Texel / shown.Decoded.Avatar.TexelLength);
+                }
+            }
+            Say("focal", upright.m11 * 100);
         }
 
         private static void SharesBudget()

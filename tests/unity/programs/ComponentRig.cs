@@ -136,6 +136,18 @@ namespace Mua
             var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
             Say("before", clip.FrameCount - clip.Position(-0.5 * frame));
             Say("before", clip.FrameCount - clip.Position(-(clip.FrameCount + 1) * frame));
+            int taken = 0;
+            for (int i = 0; i < 300; i++) // at times whose differences are a frame but for rounding
+            {
+                long due = pose.Due;
+                Turn(rig, joints, pose, 1000.1 + i / (double)avatar.Encoding.Rate, seen);
+                taken += pose.Due != due ? 1 : 0;
+            }
+            Say("steady", taken);
+            pose.Sample(clip, 0, 0);
+            long first = pose.Due;
+            pose.Sample(new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate), 0, 0);
+            Say("other clip", pose.Due != first ? 1 : 0);
         }
 
         private static void Turn(Transform[] rig, AvatarJoints joints, AvatarPose pose, double seconds, List<double[]> seen)
