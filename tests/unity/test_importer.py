@@ -170,7 +170,7 @@ def test_a_second_avatar_has_another_name_and_lies_in_the_stage_that_is_open(sto
 
 def test_an_avatar_is_dropped_into_the_scene(story: Story, sound: Path) -> None:
     told = story("Drops", sound)
-    assert (told["hover"], told["other"], told["drop"]) == ([["Copy", "0"]], [["None"]], [["Copy"]])
+    assert (told["hover"], told["other"], told["drop"]) == ([["Copy", "0"]], [["None", "None"]], [["Copy"]])
     [made] = told["object"]
     assert [float(value) for value in made[2:5]] == [1, 0, 2]
 
@@ -179,6 +179,8 @@ def test_the_selected_avatar_comes_first(story: Story, sound: Path, tmp_path: Pa
     other = tmp_path / "Other.muaavatar"
     write(other, synthetic_avatar(2), storage="f16")
     assert story("Selects", sound, other)["found"] == [["Other"]]
+    other.write_bytes(b"no avatar")
+    assert story("Selects", sound, other)["found"] == [["Walking Woman"]]
 
 
 def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) -> None:

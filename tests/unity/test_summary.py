@@ -12,7 +12,9 @@ from synthetic_avatar import synthetic_avatar
 from mua.asset import write
 from mua.asset.read import decode_tree, load
 from mua.asset.summary import summary
+from mua.bench.random_avatar import random_avatar
 from mua.cli import inspect
+from mua.student.settings import preset
 
 EDITOR = ROOT / "unity-package" / "Editor"
 GOLDEN = ROOT / "tests" / "golden" / "synthetic.muaavatar"
@@ -24,10 +26,15 @@ def program(csharp: CSharp) -> Path:
     return csharp.build([RUNTIME / "Format", *ENGINE_FREE, PROGRAMS / "EditorProgram.cs"])
 
 
-@pytest.mark.parametrize("storage", ["golden", "f32", "f16", "i8", "packed"])
+@pytest.mark.parametrize("storage", ["golden", "f32", "f16", "i8", "packed", "large"])
 def test_the_summary_is_that_of_mua_inspect(csharp: CSharp, program: Path, tmp_path: Path, storage: str) -> None:
+    """Also of costs that do not round to nothing, and of a rate with six digits."""
     path = GOLDEN
-    if storage != "golden":
+    if storage == "large":
+        avatar = random_avatar(preset("tiny"))
+        path = tmp_path / "a.muaavatar"
+        write(path, replace(avatar, clips=(replace(avatar.clips[0], rate=29.9701),)))
+    elif storage != "golden":
         avatar = synthetic_avatar()
         clips = (avatar.clips[0], replace(avatar.clips[0], name="as slow as a glacier", rate=1.0))
         path = tmp_path / "a.muaavatar"

@@ -112,7 +112,7 @@ namespace Mua.Editor
             typeof(AvatarObject).GetMethod("Register", Hidden).Invoke(null, null);
             AvatarAsset asset = AvatarObject.Find();
             Say("hover", Drag.Drop(new Vector3(1, 0, 2), false, asset), UnityEngine.Object.FindObjectsByType<AvatarRenderer>(FindObjectsSortMode.None).Length);
-            Say("other", Drag.Drop(new Vector3(1, 0, 2), true, asset.Thumbnail));
+            Say("other", Drag.Drop(new Vector3(1, 0, 2), true, asset.Thumbnail), Drag.Drop(new Vector3(1, 0, 2), true, asset, asset));
             Say("drop", Drag.Drop(new Vector3(1, 0, 2), true, asset));
             Tell();
         }
