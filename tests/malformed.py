@@ -47,6 +47,22 @@ def put(path: str, value: Any) -> Callable[[Tree], None]:
     return edit
 
 
+def times(path: str, factor: float) -> Callable[[Tree], None]:
+    """Multiply all elements of an f32 tensor."""
+
+    def edit(tree: Tree) -> None:
+        container, last = child(tree, path)
+        values = container[last]["data"].view("<f4") * np.float32(factor)
+        container[last] = {**container[last], "data": values.view(np.uint8)}
+
+    return edit
+
+
+def long_filters(tree: Tree) -> None:
+    """One pair of taps more than there may be."""
+    tree["wavelet"]["rec_lo"] = tree["wavelet"]["rec_hi"] = np.full(42, 0.1)
+
+
 def poke(path: str, at: int, value: float) -> Callable[[Tree], None]:
     """Change one element of an f32, f16 or i32 tensor."""
 
@@ -133,9 +149,11 @@ MALFORMED = [
     ("range", "skeleton.parents", poke("skeleton.parents", 1, 9)),
     ("value", "skeleton.root", put("skeleton.root", 3)),
     ("value", "skeleton.bind_rotations", poke("skeleton.bind_rotations", 0, 2)),
+    ("value", "skeleton.bind_rotations", times("skeleton.bind_rotations", 1.005)),
     ("shape", "skeleton.bind_rotations.shape", put("skeleton.bind_rotations", pack(np.full((1, 3, 4), 0.5)))),
     ("finite", "skeleton.bind_translations", poke("skeleton.bind_translations", 0, NAN)),
     ("value", "skeleton.bind_inverse", poke("skeleton.bind_inverse", 5, 0.5)),
+    ("value", "skeleton.bind_inverse", times("skeleton.bind_inverse", 1.001)),
     ("shape", "skeleton.bind_inverse.shape", put("skeleton.bind_inverse", pack(np.zeros((3, 7))))),
     ("value", "encoding.joints", poke("encoding.joints", 0, 0)),
     ("value", "encoding.joints", poke("encoding.joints", 1, 1)),
@@ -166,11 +184,13 @@ MALFORMED = [
     ("range", "template.uv_faces", poke("template.uv_faces", 2, 99)),
     ("range", "template.skin_indices", poke("template.skin_indices", 0, 3)),
     ("value", "template.skin_weights", poke("template.skin_weights", 0, 5)),
+    ("value", "template.skin_weights", times("template.skin_weights", 1.001)),
     ("value", "template.skin_weights", negative_weight),
     ("value", "template.skin_weights", smaller_weight_first),
     ("type", "template.faces", put("template.faces", pack(np.zeros((18, 3))))),
     ("type", "template.uv", put("template.uv", pack_indices(np.zeros((16, 2))))),
     ("value", "texels.size", put("texels.size", 0)),
+    ("value", "texels.size", put("texels.size", 4097)),
     ("shape", "geometry.ll_basis.shape", put("texels.size", 64)),
     ("value", "texels.texels", poke("texels.texels", 0, 900)),
     ("range", "texels.texels", poke("texels.texels", 0, 1024)),
@@ -179,6 +199,7 @@ MALFORMED = [
     *[("shape", "texels.one_sided", put("texels.one_sided", np.zeros(n, np.uint8))) for n in (0, 84, 86)],
     ("value", "wavelet.levels", put("wavelet.levels", 99)),
     ("value", "wavelet.rec_lo", put("wavelet.rec_lo", np.zeros(3))),
+    ("value", "wavelet.rec_lo", long_filters),
     ("finite", "wavelet.rec_lo", put("wavelet.rec_lo", np.full(10, NAN))),
     ("finite", "wavelet.rec_lo", put("wavelet.rec_hi", np.full(10, NAN))),
     ("value", "wavelet.rec_lo", put("wavelet.rec_lo", np.full(10, -16.1))),
