@@ -84,3 +84,22 @@ def test_a_motion_without_names_is_told_by_its_frames_where_its_rest_pose_is_no_
     roles = match_joints(hidden, whole, source_poses=frames)
     assert roles.ends("left forearm") == (whole.names.index("LeftForeArm"),) * 2
     assert roles.ends("right shin") == (whole.names.index("RightLeg"),) * 2
+
+
+def test_a_hip_beside_the_pelvis_is_no_part_of_the_thigh_though_its_name_says_so() -> None:
+    """LHipJoint and LeftHip of CMU's motion: the thigh begins at the second."""
+    whole = person()
+    hips = [whole.names.index(name) for name in ("LeftUpLeg", "RightUpLeg")]
+    names = [*whole.names, "LHipJoint", "RHipJoint"]
+    parents, places = [*whole.parents.tolist(), 0, 0], [*whole.bind_translations, (0, 0, 0), (0, 0, 0)]
+    for helper, hip in enumerate(hips, start=len(whole.names)):
+        names[hip], parents[hip] = f"{names[hip][:-5]}Hip", helper
+    order = [0, len(names) - 2, len(names) - 1, *range(1, len(names) - 2)]
+    skeleton = upright(
+        [names[j] for j in order],
+        [order.index(parents[j]) if parents[j] >= 0 else -1 for j in order],
+        [places[j] for j in order],
+    )
+    roles = match_joints(skeleton, skeleton).roles
+    assert [skeleton.names[joint] for joint in roles["left thigh"]] == ["LeftHip"]
+    assert [skeleton.names[joint] for joint in roles["right thigh"]] == ["RightHip"]

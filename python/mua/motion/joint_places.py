@@ -13,7 +13,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.motion.limb_parts import ARM as ARM_PARTS
 from mua.motion.limb_parts import LEG as LEG_PARTS
-from mua.motion.limb_parts import chain_length, fork, longest_tail, parts_of
+from mua.motion.limb_parts import ankle, chain_length, fork, longest_tail, parts_of
 from mua.motion.trunk import degrees, unit
 from mua.pose.skeleton import Skeleton
 
@@ -24,7 +24,6 @@ MIRRORED = 0.08  # of the height by which a joint may miss the mirror image of t
 ALIKE = 0.05  # of a limb's length by which the bones of one side may differ from those of the other in all
 UPRIGHT = 35.0  # degrees by which the way from hips to chest may lean
 POINTS = 0.03  # of the height: feet and knees that point this far show which way the body faces
-LOW = 0.35  # of a leg: how high an ankle may be above the ground
 Y = np.array([0.0, 1, 0])
 
 Parts = tuple[int, ...] | None
@@ -53,15 +52,17 @@ def roles_by_place(
 def joints_by_place(skeleton: Skeleton, poses: Array | None = None) -> dict[int, str]:
     """Joint to role by the bind pose; where that is no person who stands, by what most poses tell."""
     _, bind = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    found = _by_pose(skeleton, bind)
+    bends = bind[None] if poses is None else poses
+    found = _by_pose(skeleton, bind, bends)
     if found or poses is None:
         return found
-    told = Counter(tuple(sorted(_by_pose(skeleton, at).items())) for at in poses)
+    told = Counter(tuple(sorted(_by_pose(skeleton, at, bends).items())) for at in poses)
     told.pop((), None)
     return dict(told.most_common(1)[0][0]) if told else {}
 
 
-def _by_pose(skeleton: Skeleton, at: Array) -> dict[int, str]:
+def _by_pose(skeleton: Skeleton, at: Array, bends: Array) -> dict[int, str]:
+    """By the places [J, 3] in one pose, and where limbs bend in several [P, J, 3]."""
     height = float(np.ptp(at[:, 1]))
     if height <= 0:
         return {}
@@ -79,7 +80,7 @@ def _by_pose(skeleton: Skeleton, at: Array) -> dict[int, str]:
     arm = max(arms, key=lambda pair: (fork(skeleton.parents, at, pair.first) is not None, pair.length))
     if degrees(unit(at[arm.trunk] - at[leg.trunk]), Y) > UPRIGHT:
         return {}
-    return _named(skeleton, at, height, leg, arm)
+    return _named(skeleton, at, bends, leg, arm)
 
 
 def _apart(skeleton: Skeleton, pair: _Limbs, leg: _Limbs) -> bool:
@@ -122,11 +123,13 @@ def _mirrored(at: Array, first: tuple[int, ...], second: tuple[int, ...], near: 
     return bool(np.linalg.norm(image - one, axis=-1).max() < near)
 
 
-def _named(skeleton: Skeleton, at: Array, height: float, leg: _Limbs, arm: _Limbs) -> dict[int, str]:
-    legs = [parts_of(at, chain, LEG_PARTS, end=_ankle(at, chain)) for chain in (leg.first, leg.second)]
-    arms = [parts_of(at, chain, ARM_PARTS, end=fork(skeleton.parents, at, chain)) for chain in (arm.first, arm.second)]
+def _named(skeleton: Skeleton, at: Array, bends: Array, leg: _Limbs, arm: _Limbs) -> dict[int, str]:
+    legs = [parts_of(bends, chain, LEG_PARTS, end=ankle(at, chain)) for chain in (leg.first, leg.second)]
+    arms = [
+        parts_of(bends, chain, ARM_PARTS, end=fork(skeleton.parents, at, chain)) for chain in (arm.first, arm.second)
+    ]
     found: dict[int, str] = {leg.trunk: "hips"}
-    ahead = _ahead(at, legs, height)
+    ahead = _ahead(at, legs, float(np.ptp(at[:, 1])))
     for parts, names in (
         *((parts, ("thigh", "shin", "foot", "toe")) for parts in legs),
         *((parts, ("upper_arm", "forearm", "hand")) for parts in arms),
@@ -141,12 +144,6 @@ def _named(skeleton: Skeleton, at: Array, height: float, leg: _Limbs, arm: _Limb
     way = [joint for joint in (arm.trunk, *skeleton.ancestors(arm.trunk)) if joint not in below]
     found |= dict.fromkeys(way or [arm.trunk], "spine")
     return found | _neck_and_head(skeleton, at, arm, found)
-
-
-def _ankle(at: Array, chain: tuple[int, ...]) -> int | None:
-    """The first joint of a leg that is near the ground."""
-    ground, top = at[list(chain), 1].min(), at[chain[0], 1]
-    return next((joint for joint in chain[2:] if at[joint, 1] - ground < LOW * (top - ground)), None)
 
 
 def _ahead(at: Array, legs: list[Parts], height: float) -> Array:

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from mua.arrays import Array
+from mua.motion.trunk import degrees
 
 
 @dataclass(frozen=True)
@@ -24,21 +25,34 @@ ARM = Proportions(before=0.3, lower=0.9, after=0.5)
 LEG = Proportions(before=0.1, lower=1.0, after=0.4)
 SPREAD = Proportions(before=0.5, lower=0.35, after=0.5)  # one standard deviation; of the lower part's logarithm
 PASSED = 0.6  # how much less likely, in squared standard deviations, each joint makes a part that is no end of it
+BENDS = 2.0  # degrees by which the angle at a joint changes where it is no twist joint: shoulder, elbow, knee
+PASSED_BENDING = 6.0  # as PASSED, of a joint that bends
 UNLIKELY = 9.0  # squared standard deviations in all
+LOW = 0.35  # of a leg: how high an ankle may be above the ground
+STANDING = 0.7  # of a leg's length: how high hips are at least above the ground while it stands
 
 
 def parts_of(
-    at: Array,  # [J, 3] joints in any pose
+    at: Array,  # [..., J, 3] joints in any pose, or in several
     chain: tuple[int, ...],  # joints from where the limb leaves the trunk to its tip
     usual: Proportions,
     *,
     end: int | None = None,  # joint of `chain` that is the hand or foot, where that is known
 ) -> tuple[int, ...] | None:
     """The joints of `chain` where upper and lower part and hand or foot begin, then the one after; None if unlikely."""
-    bones = np.linalg.norm(np.diff(at[list(chain)], axis=0), axis=-1)
-    along = np.concatenate([[0.0], np.cumsum(bones)])
+    poses = at.reshape(-1, *at.shape[-2:])[:, list(chain)]
+    bones = np.diff(poses, axis=1)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(bones, axis=-1).mean(axis=0))])
+    passing = [PASSED, *np.where(np.ptp(degrees(bones[:, :-1], bones[:, 1:]), axis=0) > BENDS, PASSED_BENDING, PASSED)]
     choices = [ends for ends in combinations(range(len(chain)), 3) if end is None or chain[ends[2]] == end]
-    scored = [(_unlikeliness(along, ends, usual, ends_known=end is not None), ends) for ends in choices]
+    scored = [
+        (
+            _unlikeliness(along, ends, usual, ends_known=end is not None)
+            + sum(passing[joint] for joint in range(ends[0] + 1, ends[2]) if joint != ends[1]),
+            ends,
+        )
+        for ends in choices
+    ]
     least, (upper, lower, last) = min(scored, default=(np.inf, (0, 0, 0)))
     return (chain[upper], chain[lower], *chain[last : last + 2]) if least < UNLIKELY else None
 
@@ -52,7 +66,15 @@ def _unlikeliness(along: Array, ends: tuple[int, int, int], usual: Proportions, 
     before = (upper / length - usual.before) / SPREAD.before
     ratio = np.log((last - lower) / length / usual.lower) / SPREAD.lower
     after = 0.0 if ends_known else ((along[-1] - last) / length - usual.after) / SPREAD.after
-    return float(before**2 + ratio**2 + after**2 + PASSED * (ends[2] - ends[0] - 2))
+    return float(before**2 + ratio**2 + after**2)
+
+
+def ankle(at: Array, chain: tuple[int, ...]) -> int | None:
+    """The first joint of a leg that is near the ground; None where the leg does not stand."""
+    ground, top = at[list(chain), 1].min(), at[chain[0], 1]
+    if top - ground < STANDING * chain_length(at, chain):
+        return None
+    return next((joint for joint in chain[2:] if at[joint, 1] - ground < LOW * (top - ground)), None)
 
 
 def fork(

@@ -78,7 +78,7 @@ def _roles(
         listed = ", ".join(f"{name} the {role.replace('_', ' ')}" for name, role in placed.items() if " " in role)
         found = find_roles(skeleton, {**placed, **(said or {})})
         notes = (f"The {owner}'s joints are recognised by their positions, because their names are unknown: {listed}.",)
-    found, mended = with_whole_limbs(skeleton, found)
+    found, mended = with_whole_limbs(skeleton, found, poses)
     if mended:
         listed = ", ".join(
             f"{skeleton.names[found[role][0]]} the {role.replace('_', ' ')}"

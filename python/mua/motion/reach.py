@@ -11,9 +11,9 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion.limb_parts import ARM, LEG, Proportions, chain_length, fork, parts_of
+from mua.motion.limb_parts import ARM, LEG, Proportions, ankle, chain_length, fork, parts_of
 from mua.motion.trunk import unit
-from mua.motion.whole_limbs import limb_chain
+from mua.motion.whole_limbs import limb_chain, with_whole_limbs
 from mua.pose.joint_names import SIDES, Roles
 from mua.pose.joint_names import roles as find_roles
 from mua.pose.skeleton import Skeleton
@@ -90,27 +90,27 @@ def _limbs(figure: Figure) -> dict[str, tuple[int, int, int]]:
     """The joints where each limb begins, bends and ends."""
     skeleton = figure.skeleton
     _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    named = {role: joints[0] for role, joints in find_roles(skeleton).items()}
+    named = {role: joints[0] for role, joints in with_whole_limbs(skeleton, find_roles(skeleton), figure.at)[0].items()}
     found = {}
     for limb, (parts, ends, usual) in _LIMBS.items():
         chains = [limb_chain(skeleton, at, figure.roles, side, parts) for side in SIDES]
         length = min(len(chain) if chain else 0 for chain in chains)  # what one hand holds makes its chain longer
         for side, chain in zip(SIDES, chains, strict=True):
             known = [named.get(f"{side} {part}") for part in ends]
-            joints = _joints(skeleton, at, chain[:length], usual, known) if chain and length > 2 else None
+            joints = _joints(skeleton, at, figure.at, chain[:length], usual, known) if chain and length > 2 else None
             if joints is not None:
                 found[f"{side} {limb}"] = joints
     return found
 
 
 def _joints(
-    skeleton: Skeleton, at: Array, chain: tuple[int, ...], usual: Proportions, named: list[int | None]
+    skeleton: Skeleton, at: Array, bends: Array, chain: tuple[int, ...], usual: Proportions, named: list[int | None]
 ) -> tuple[int, int, int] | None:
     """The three joints of a limb, of which names may tell some."""
     begin, bend, end = (joint if joint in chain else None for joint in named)
-    if end is None and usual is ARM:
-        end = fork(skeleton.parents, at, chain)
-    split = parts_of(at, chain, usual, end=end) or (None, None, None)
+    if end is None:
+        end = fork(skeleton.parents, at, chain) if usual is ARM else ankle(at, chain)
+    split = parts_of(bends, chain, usual, end=end) or (None, None, None)
     begin, bend = begin or split[0], bend or split[1]
     end = end or (chain[-1] if usual is ARM else split[2])
     if begin is None or bend is None or end is None:

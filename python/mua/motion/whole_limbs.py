@@ -14,23 +14,43 @@ _LIMBS: dict[str, tuple[tuple[str, ...], Proportions]] = {
 }
 
 
-def with_whole_limbs(skeleton: Skeleton, found: Roles) -> tuple[Roles, tuple[str, ...]]:
+def with_whole_limbs(
+    skeleton: Skeleton,
+    found: Roles,
+    poses: Array | None = None,  # [P, J, 3] places of the joints in frames of a motion
+) -> tuple[Roles, tuple[str, ...]]:
     """The roles with arms and legs made whole, and the names of these limbs."""
     _, at = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    bends = at if poses is None else poses
     mended = dict(found)
     limbs = []
     for limb, (parts, usual) in _LIMBS.items():
         for side in SIDES:
-            split = _split(skeleton, at, found, side, parts, usual)
+            upper = f"{side} {_main(parts)[0]}"
+            split = _split(skeleton, at, bends, found, side, parts, usual)
             if split:
                 mended = {role: joints for role, joints in mended.items() if role not in split}
                 mended |= {role: joints for role, joints in split.items() if joints}
                 limbs.append(f"{side} {limb}")
+            elif len(found.get(upper, ())) > 1:
+                mended[upper] = _without_hip(skeleton, at, bends, found, side, parts, usual)
     return mended, tuple(limbs)
 
 
+def _without_hip(
+    skeleton: Skeleton, at: Array, bends: Array, found: Roles, side: str, parts: tuple[str, ...], usual: Proportions
+) -> tuple[int, ...]:
+    """The joints of an upper part less those before it, which some rigs call by the same name: LHipJoint, LeftHip."""
+    upper, lower, end = (found.get(f"{side} {part}", ()) for part in _main(parts))
+    chain = limb_chain(skeleton, at, found, side, parts)
+    split = None if chain is None else parts_of(bends, chain, usual, end=end[0] if end else None)
+    if split is None or not lower or split[1] != lower[0] or split[0] not in upper:
+        return upper
+    return upper[upper.index(split[0]) :]
+
+
 def _split(
-    skeleton: Skeleton, at: Array, found: Roles, side: str, parts: tuple[str, ...], usual: Proportions
+    skeleton: Skeleton, at: Array, bends: Array, found: Roles, side: str, parts: tuple[str, ...], usual: Proportions
 ) -> dict[str, tuple[int, ...]]:
     """Joints of all parts of a limb, none for those that it lacks; {} where names tell enough or lengths nothing."""
     upper, lower, end = (f"{side} {part}" for part in _main(parts))
@@ -41,7 +61,7 @@ def _split(
     if chain is None:
         return {}
     known = found[end][0] if end in found else fork(skeleton.parents, at, chain) if usual is ARM else None
-    split = parts_of(at, chain, usual, end=known)
+    split = parts_of(bends, chain, usual, end=known)
     if split is None:
         return {}
     ends = [chain.index(joint) for joint in split[:3]]
