@@ -37,8 +37,8 @@ def test_a_joint_that_bends_over_the_frames_begins_a_part() -> None:
     lengths = (0.09, 0.16, 0.2, 0.24, 0.1)
     bent = [line(*lengths), line(*lengths)]
     bent[1][3:] = bent[1][2] + np.cumsum(lengths[2:])[:, None] * [0.8, 0.6, 0]
-    assert parts_of(np.stack(bent[:1] * 2), tuple(range(6)), ARM) == (1, 3, 4, 5)
-    assert parts_of(np.stack(bent), tuple(range(6)), ARM) == (2, 3, 4, 5)
+    assert parts_of(np.stack(bent[:1] * 2), tuple(range(6)), ARM, end=4) == (1, 3, 4, 5)
+    assert parts_of(np.stack(bent), tuple(range(6)), ARM, end=4) == (2, 3, 4, 5)
 
 
 def test_finds_the_thigh_beside_the_pelvis() -> None:
