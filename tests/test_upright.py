@@ -15,16 +15,19 @@ from mua.pose.joint_names import roles
 from mua.scene import Scene, Skin
 
 
-def whole(turn: Rotation, *, sitting: float = 0.0, rest: Rotation | None = None) -> Scene:
-    """A person turned as a whole, the thighs lifted by `sitting` degrees; at rest turned as `rest` says."""
+def whole(turn: Rotation, *, sitting: float = 0.0, bent: float = 0.0, rest: Rotation | None = None) -> Scene:
+    """A person turned as a whole, the thighs lifted by `sitting` degrees, forearms and shins bent to the front by
+    `bent`; at rest turned as `rest` says.
+    """
     skeleton = person()
     _, places = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    for side in ("Left", "Right"):
-        hip = skeleton.names.index(f"{side}UpLeg")
-        for joint in range(len(places)):
-            if hip in skeleton.ancestors(joint):
-                lift = Rotation.from_euler("x", -sitting, degrees=True)
-                places[joint] = places[hip] + lift.apply(places[joint] - places[hip])
+    for side, inwards in (("Left", -bent), ("Right", bent)):
+        for name, axis, degrees in (("UpLeg", "x", -sitting), ("Leg", "x", -bent), ("ForeArm", "y", inwards)):
+            hinge = skeleton.names.index(f"{side}{name}")
+            for joint in range(len(places)):
+                if hinge in skeleton.ancestors(joint):
+                    lift = Rotation.from_euler(axis, degrees, degrees=True)
+                    places[joint] = places[hinge] + lift.apply(places[joint] - places[hinge])
     bound, rests = (np.stack([at(*t.apply(place), t) for place in places]) for t in (turn, rest or turn))
     count = len(places)
     skin = Skin(np.arange(count), np.linalg.inv(bound))
@@ -65,6 +68,7 @@ def test_a_person_who_lies_is_made_to_stand(axis: str, degrees: float) -> None:
         whole(Rotation.identity()),
         whole(Rotation.identity(), sitting=80),
         whole(Rotation.from_euler("x", 90, degrees=True), sitting=80),  # on four legs
+        whole(Rotation.from_euler("x", 90, degrees=True), bent=90),  # on short ones
         whole(Rotation.from_euler("x", 45, degrees=True)),
         whole(Rotation.from_euler("x", 55, degrees=True)),
         whole(Rotation.from_euler("x", 90, degrees=True), rest=Rotation.identity()),

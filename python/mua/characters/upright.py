@@ -11,12 +11,15 @@ from mua.scene import Scene
 
 STRAIGHT = 45.0  # degrees between trunk and legs up to which a body is upright in itself, as no animal on four legs is
 ALONG = 30.0  # degrees from a level axis within which it lies
+ON_FOUR = 0.3  # of the trunk's length: hands and feet both this far below it carry an animal that stands
 Y = np.array([0.0, 1, 0])
 
 
 def upright_rotation(scene: Scene, bind: Bind) -> Array | None:
     """The rotation [3, 3] that makes a lying person stand; None where nobody lies, or names do not tell a person."""
     found = _roles(scene, bind)
+    if _on_four_legs(found, bind.places):
+        return None
     body = [_upright(found, places) for places in (bind.places, scene.rest[bind.nodes, :3, 3])]
     bound, rests = body
     if bound is None or rests is None:
@@ -33,6 +36,20 @@ def _roles(scene: Scene, bind: Bind) -> dict[str, tuple[int, ...]]:
     still = np.tile([1.0, 0, 0, 0], (len(names), 1))
     said = {name: scene.roles[int(node)] for name, node in zip(names, bind.nodes, strict=True) if node in scene.roles}
     return roles(Skeleton(names, bind.parents, still, bind.places, root=0), said)
+
+
+def _on_four_legs(found: dict[str, tuple[int, ...]], places: Array) -> bool:
+    """Whether all four limbs reach well below where they begin: short legs that are bent hang on a straight body."""
+    top = found.get("neck") or found.get("head")
+    limbs = [
+        [next((found[f"{side} {part}"][0] for part in ends if f"{side} {part}" in found), None) for side in SIDES]
+        for ends in (("upper_arm",), ("hand", "forearm"), ("thigh",), ("foot", "shin"))
+    ]
+    if top is None or any(joint is None for pair in limbs for joint in pair):
+        return False
+    shoulders, hands, hips, feet = (np.mean([places[joint] for joint in pair], axis=0) for pair in limbs)
+    reach = ON_FOUR * np.linalg.norm(places[top[0]] - hips)
+    return bool(min((shoulders - hands) @ Y, (hips - feet) @ Y) > reach)
 
 
 def _upright(found: dict[str, tuple[int, ...]], places: Array) -> Array | None:
