@@ -150,6 +150,35 @@ def test_near_is_measured_by_the_skeleton_and_where_a_mesh_truly_lies(
     assert ("drone" in read(glb, tmp_path).skeleton.names) is taken
 
 
+def bare_primitive(glb: Glb) -> None:
+    """One more primitive of the skinned mesh, without weights: a small column 0.1 m above its node."""
+    attributes = {"POSITION": glb.accessor(BLOCK + [0, 0.1, 0]), "TEXCOORD_0": glb.accessor(UV)}
+    indices = glb.accessor(TRIANGLES.reshape(-1), "u2")
+    glb.json["meshes"][0]["primitives"].append({"attributes": attributes, "indices": indices})
+
+
+def test_primitive_without_weights_follows_the_node_of_its_skinned_mesh(tmp_path: Path) -> None:
+    glb = body()
+    bare_primitive(glb)
+    glb.json["nodes"][2]["children"] = [3]  # the mesh hangs on the head
+    glb.json["scenes"] = [{"nodes": [0]}]
+    surfaces = read(glb, tmp_path)
+    assert len(surfaces.vertices) == 2 * len(COLUMN)
+    hat = surfaces.vertices[len(COLUMN) :]
+    np.testing.assert_allclose(hat.min(axis=0), [-0.04, 1.1, -0.02], atol=FLOAT_BOUND)
+    joints = surfaces.skin_indices[len(COLUMN) :, 0]
+    assert {surfaces.skeleton.names[joint] for joint in joints} == {"head"}
+
+
+def test_primitive_without_weights_that_no_joint_moves_is_left_out_by_name(tmp_path: Path) -> None:
+    glb = body()
+    bare_primitive(glb)
+    surfaces = read(glb, tmp_path)
+    assert_is_column(surfaces)
+    left_out = "Primitives without skin weights, which no joint moves, are left out, of meshes: body."
+    assert left_out in surfaces.notes
+
+
 def test_second_skinned_root_is_part_of_the_character(tmp_path: Path) -> None:
     """A tail on two joints of its own, which share no ancestor with the body's."""
     glb = body()

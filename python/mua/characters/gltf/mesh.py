@@ -17,16 +17,30 @@ TRIANGLES, STRIP, FAN = 4, 5, 6
 TYPES = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",), "COLOR": ("VEC3", "VEC4")}
 
 
+def has_unweighted(document: Document, node: int) -> bool:
+    """Whether the mesh of a skinned node has primitives without skin weights: they follow the node, as rigid ones."""
+    mesh = document.item("meshes", document.gltf.nodes[node].mesh, field=f"nodes[{node}].mesh")
+    return not all(_is_weighted(primitive) for primitive in mesh.primitives or [])
+
+
+def _is_weighted(primitive: Any) -> bool:
+    names = () if primitive.attributes is None else vars(primitive.attributes)
+    return any(name.startswith(("JOINTS_", "WEIGHTS_")) for name in names)
+
+
 def read_parts(
     document: Document,
     node: int,
     *,
     skin: int,
-    bones: int,
+    bones: int | None,
     coordinates: tuple[Coordinates, ...],
     messages: Messages,
 ) -> list[Part]:
-    """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `messages`."""
+    """The primitives of a node's mesh, on a skin of `bones` joints; what is left out goes to `messages`.
+
+    With None for `bones`, the primitives that are rigid: those without weights on a node with a skin, else all.
+    """
     source = document.gltf.nodes[node]
     mesh = document.item("meshes", source.mesh, field=f"nodes[{node}].mesh")
     name = mesh.name or f"mesh{source.mesh}"
@@ -34,6 +48,8 @@ def read_parts(
     parts = []
     for p, primitive in enumerate(mesh.primitives or []):
         where = f"meshes[{source.mesh}].primitives[{p}]"
+        if source.skin is not None and _is_weighted(primitive) == (bones is None):
+            continue
         mode = TRIANGLES if primitive.mode is None else primitive.mode
         if mode not in (TRIANGLES, STRIP, FAN):
             messages.add("Points and lines are left out, of meshes: {}.", name)
@@ -43,8 +59,7 @@ def read_parts(
             raise document.error(f"{where}.material is {material}, but materials holds {len(coordinates) - 1} entries")
         geometry = _geometry(document, primitive, where)
         faces = _triangles(geometry["indices"], mode)
-        rigid = source.skin is None
-        joints, weights = _influences(document, geometry, where, bones=bones, rigid=rigid)
+        joints, weights = _influences(document, geometry, where, bones=bones)
         uv = geometry.get(f"TEXCOORD_{coordinates[material].texcoord}")
         if uv is None and coordinates[material].needed:
             messages.add("Meshes without the texture coordinates that their material asks for: {}.", name)
@@ -161,10 +176,10 @@ def _triangles(indices: Array, mode: int) -> Array:
 
 
 def _influences(
-    document: Document, geometry: dict[str, Array], where: str, *, bones: int, rigid: bool
+    document: Document, geometry: dict[str, Array], where: str, *, bones: int | None
 ) -> tuple[Array, Array]:
     count = len(geometry["POSITION"])
-    if rigid:
+    if bones is None:
         return np.zeros((count, 1), int), np.ones((count, 1))
     sets = sorted(name for name in geometry if name.startswith("JOINTS_"))
     if not sets or any(name.replace("JOINTS", "WEIGHTS") not in geometry for name in sets):

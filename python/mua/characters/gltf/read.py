@@ -14,7 +14,7 @@ from mua.characters.gltf.animation import chain, moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
 from mua.characters.gltf.holders import Holders
 from mua.characters.gltf.materials import read_materials
-from mua.characters.gltf.mesh import read_parts
+from mua.characters.gltf.mesh import has_unweighted, read_parts
 from mua.characters.gltf.nodes import Tree, below, local_matrix, node_name, read_tree
 from mua.characters.gltf.vrm import Vrm, read_vrm
 from mua.characters.messages import UNHELD, Messages
@@ -22,6 +22,7 @@ from mua.pose.joint_names import limb_count
 from mua.scene import Part, Scene, Skin
 
 INSTANCES = "EXT_mesh_gpu_instancing"
+UNWEIGHTED = "Primitives without skin weights, which no joint moves, are left out, of meshes: {}."
 LIMBS = 8  # bones of arms and legs of a whole body, as `limb_count` counts them
 
 
@@ -69,21 +70,22 @@ def _meshes(document: Document, tree: Tree) -> Scene:
     parts: list[Part] = []
     for node in _drawn(document, tree, vrm, messages):
         skin = document.gltf.nodes[node].skin
-        if skin is None:
+        if skin is not None:
+            document.item("skins", skin, field=f"nodes[{node}].skin")
+            bones = len(skins[skin].joints)
+            parts += read_parts(document, node, skin=skin, bones=bones, coordinates=coordinates, messages=messages)
+        if skin is None or has_unweighted(document, node):
             holder = holders.of(node)
             if holder is None:
-                messages.add(UNHELD, node_name(document, node))
+                messages.add(UNHELD if skin is None else UNWEIGHTED, node_name(document, node))
                 continue
             skins.append(Skin(np.array([holder]), (np.linalg.inv(tree.world[holder]) @ tree.world[node])[None], True))
-            skin = len(skins) - 1
-        else:
-            document.item("skins", skin, field=f"nodes[{node}].skin")
-        count = len(skins[skin].joints)
-        parts += read_parts(document, node, skin=skin, bones=count, coordinates=coordinates, messages=messages)
+            own = len(skins) - 1
+            parts += read_parts(document, node, skin=own, bones=None, coordinates=coordinates, messages=messages)
     used = sorted({part.skin for part in parts})
     parts = [replace(part, skin=used.index(part.skin)) for part in parts]
-    bones = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them
-    kept = [skins[s] for s in used] + ([replace(bones, rigid=True)] if parts and vrm.bones else [])
+    humanoid = _at_rest(tree, sorted(set(vrm.bones.values())))  # joints also where no mesh hangs on them
+    kept = [skins[s] for s in used] + ([replace(humanoid, rigid=True)] if parts and vrm.bones else [])
     scene = _scene(document, tree, kept, vrm=vrm)
     return replace(scene, parts=tuple(parts), materials=materials, notes=(*vrm.notes, *messages.notes(), *scene.notes))
 
