@@ -152,7 +152,7 @@ def test_near_is_measured_by_the_skeleton_and_where_a_mesh_truly_lies(
 
 def bare_primitive(glb: Glb) -> None:
     """One more primitive of the skinned mesh, without weights: a small column 0.1 m above its node."""
-    attributes = {"POSITION": glb.accessor(BLOCK + [0, 0.1, 0]), "TEXCOORD_0": glb.accessor(UV)}
+    attributes = {"POSITION": glb.accessor(BLOCK + np.array([0, 0.1, 0])), "TEXCOORD_0": glb.accessor(UV)}
     indices = glb.accessor(TRIANGLES.reshape(-1), "u2")
     glb.json["meshes"][0]["primitives"].append({"attributes": attributes, "indices": indices})
 

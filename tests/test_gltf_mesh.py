@@ -99,6 +99,21 @@ def test_reads_quantised_attributes(tmp_path: Path) -> None:
     assert_is_column(read(glb, tmp_path), bound=1 / steps)
 
 
+def test_quantised_mesh_that_rests_in_another_pose_keeps_its_place(tmp_path: Path) -> None:
+    """gltfpack moves and scales positions to whole numbers and folds that into the inverse binds."""
+    steps, low = 30000 / 1.5, POINTS.min(axis=0)
+    binds = np.tile(np.eye(4), (3, 1, 1))
+    binds[:, :3, :3] /= steps
+    binds[:, :3, 3] = low - np.stack([np.zeros(3), HEIGHTS, np.zeros(3)], axis=1)
+    glb = body()
+    glb.json["nodes"][1]["rotation"] = [0.28, 0, 0, 0.96]
+    glb.json["nodes"][2]["rotation"] = [0, 0.28, 0, 0.96]
+    glb.json["skins"][0]["inverseBindMatrices"] = glb.accessor(binds.swapaxes(1, 2))
+    primitive(glb)["attributes"]["POSITION"] = glb.accessor(np.round((POINTS - low) * steps), "u2")
+    surfaces = read(glb, tmp_path)
+    np.testing.assert_allclose(surfaces.vertices[surfaces.faces], POINTS[TRIANGLES], atol=1 / steps)
+
+
 def test_second_set_of_influences_counts(tmp_path: Path) -> None:
     glb = body()
     _, weights = weighted(BONES)

@@ -51,6 +51,7 @@ class Skin:
     joints: Array  # [n] int nodes of the scene
     inverse_binds: Array  # [n, 4, 4] from the mesh's own space to the joint's; rigid: to the joint's in the rest pose
     rigid: bool = False
+    quantised: bool = False  # the mesh's own space is then moved and scaled against that of the skeleton
 
 
 @dataclass(frozen=True, eq=False)

@@ -224,6 +224,9 @@ def _upright_space(
     space = np.eye(4)
     space[:3, :3] = np.median(scale) * rotation
     space[:3, 3] = frame_matrix[:3, 3]
+    if skin.quantised:  # its origin says nothing: the topmost joint is where it is at rest
+        first = int(np.argmin(skin.joints))
+        space[:3, 3] += (scene.rest[skin.joints[first]] - space @ np.linalg.inv(skin.inverse_binds[first]))[:3, 3]
     return space
 
 

@@ -37,7 +37,7 @@ def _joined(group: list[tuple[Skin, Array]]) -> tuple[Skin, Array]:
     order = np.argsort(-mass, kind="stable")
     first = order[np.sort(np.unique(joints[order], return_index=True)[1])]
     total = np.array([mass[joints == joint].sum() for joint in joints[first]])
-    return Skin(joints[first], binds[first]), total
+    return Skin(joints[first], binds[first], quantised=group[0][0].quantised), total
 
 
 def _relation(skin: Skin, mass: Array, other: Skin, weights: Array) -> Array | None:

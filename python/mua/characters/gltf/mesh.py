@@ -14,6 +14,7 @@ from mua.scene import Part
 
 DRACO = "KHR_draco_mesh_compression"
 TRIANGLES, STRIP, FAN = 4, 5, 6
+FLOAT = 5126  # component type of an accessor
 TYPES = {"POSITION": ("VEC3",), "TEXCOORD": ("VEC2",), "COLOR": ("VEC3", "VEC4")}
 
 
@@ -21,6 +22,14 @@ def has_unweighted(document: Document, node: int) -> bool:
     """Whether the mesh of a skinned node has primitives without skin weights: they follow the node, as rigid ones."""
     mesh = document.item("meshes", document.gltf.nodes[node].mesh, field=f"nodes[{node}].mesh")
     return not all(_is_weighted(primitive) for primitive in mesh.primitives or [])
+
+
+def is_quantised(document: Document, node: int) -> bool:
+    """Whether the mesh of a node has positions in whole numbers, which are scaled and moved to fit (gltfpack)."""
+    mesh = document.gltf.meshes[document.gltf.nodes[node].mesh]
+    indices = [primitive.attributes.POSITION for primitive in mesh.primitives or [] if primitive.attributes]
+    accessors = [document.item("accessors", index, field="POSITION") for index in indices if index is not None]
+    return any(accessor.componentType != FLOAT for accessor in accessors)
 
 
 def _is_weighted(primitive: Any) -> bool:

@@ -14,7 +14,7 @@ from mua.characters.gltf.animation import chain, moved_nodes, read_animations
 from mua.characters.gltf.document import Document, load
 from mua.characters.gltf.holders import Holders
 from mua.characters.gltf.materials import read_materials
-from mua.characters.gltf.mesh import has_unweighted, read_parts
+from mua.characters.gltf.mesh import has_unweighted, is_quantised, read_parts
 from mua.characters.gltf.nodes import Tree, below, local_matrix, node_name, read_tree
 from mua.characters.gltf.vrm import Vrm, read_vrm
 from mua.characters.messages import UNHELD, Messages
@@ -74,6 +74,7 @@ def _meshes(document: Document, tree: Tree) -> Scene:
             document.item("skins", skin, field=f"nodes[{node}].skin")
             bones = len(skins[skin].joints)
             parts += read_parts(document, node, skin=skin, bones=bones, coordinates=coordinates, messages=messages)
+            skins[skin] = replace(skins[skin], quantised=skins[skin].quantised or is_quantised(document, node))
         if skin is None or has_unweighted(document, node):
             holder = holders.of(node)
             if holder is None:
