@@ -137,11 +137,13 @@ def accessor_of(glb: Glb, name: str) -> dict[str, Any]:
     return glb.json["accessors"][primitive(glb)["attributes"][name]]
 
 
-def meshopt_view(glb: Glb, encoded: bytes, *, count: int, stride: int, mode: str) -> int:
+def meshopt_view(
+    glb: Glb, encoded: bytes, *, count: int, stride: int, mode: str, name: str = "EXT_meshopt_compression"
+) -> int:
     properties = {"buffer": 0, "byteOffset": len(glb.blob) + -len(glb.blob) % 4, "byteLength": len(encoded)}
     glb.view(encoded)
     plain = {"buffer": 1, "byteLength": count * stride}  # the fallback buffer, which holds no bytes
-    extension = {"EXT_meshopt_compression": properties | {"count": count, "byteStride": stride, "mode": mode}}
+    extension = {name: properties | {"count": count, "byteStride": stride, "mode": mode}}
     glb.json["bufferViews"].append(plain | ({"byteStride": stride} if mode == "ATTRIBUTES" else {}))
     glb.json["bufferViews"][-1]["extensions"] = extension
     return len(glb.json["bufferViews"]) - 1

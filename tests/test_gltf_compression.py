@@ -23,24 +23,25 @@ from gltf_files import (
 from mua.errors import InputError
 
 
+@pytest.mark.parametrize("name", ["EXT_meshopt_compression", "KHR_meshopt_compression"])
 @pytest.mark.parametrize("index", ["u2", "u4"])
-def test_reads_meshopt_compression(tmp_path: Path, index: str) -> None:
+def test_reads_meshopt_compression(tmp_path: Path, index: str, name: str) -> None:
     glb = body()
     floats = POINTS.astype("<f4")
     encoded = meshoptimizer.encode_vertex_buffer(floats, len(floats), 12)
     position = glb.accessor(POINTS)
     glb.json["accessors"][position]["bufferView"] = meshopt_view(
-        glb, bytes(encoded), count=len(POINTS), stride=12, mode="ATTRIBUTES"
+        glb, bytes(encoded), count=len(POINTS), stride=12, mode="ATTRIBUTES", name=name
     )
     corners = TRIANGLES.reshape(-1).astype(np.uint32)
     encoded = meshoptimizer.encode_index_buffer(corners, len(corners), len(POINTS))
     indices = glb.accessor(corners, index)
     glb.json["accessors"][indices]["bufferView"] = meshopt_view(
-        glb, bytes(encoded), count=len(corners), stride=int(index[1]), mode="TRIANGLES"
+        glb, bytes(encoded), count=len(corners), stride=int(index[1]), mode="TRIANGLES", name=name
     )
     primitive(glb)["attributes"]["POSITION"] = position
     primitive(glb)["indices"] = indices
-    glb.json["extensionsRequired"] = ["EXT_meshopt_compression"]
+    glb.json["extensionsRequired"] = [name]
     surfaces = read(glb, tmp_path)
     corner_sets = {frozenset(map(tuple, np.round(t, 5))) for t in surfaces.vertices[surfaces.faces]}
     assert corner_sets == {frozenset(map(tuple, np.round(t, 5))) for t in POINTS[TRIANGLES]}

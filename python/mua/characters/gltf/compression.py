@@ -1,4 +1,4 @@
-"""The two compressions of glTF geometry: EXT_meshopt_compression and KHR_draco_mesh_compression."""
+"""The two compressions of glTF geometry: meshopt, by its EXT and its KHR extension, and KHR_draco_mesh_compression."""
 
 import ctypes
 from typing import Any
@@ -14,7 +14,7 @@ MAX_MESHOPT_STRIDE = 256  # bytes per vertex that the codec takes
 
 
 def decode_meshopt(encoded: bytes, properties: dict[str, Any]) -> bytes:
-    """Decode the bytes of a buffer view compressed by EXT_meshopt_compression.
+    """Decode the bytes of a buffer view compressed by EXT_meshopt_compression or KHR_meshopt_compression.
 
     `properties` is the extension's object (count, byteStride, mode, filter). Raises ValueError where bytes and
     properties do not fit together.

@@ -21,11 +21,12 @@ from mua.errors import InputError
 
 COMPONENT_TYPES = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")  # which differ in what filters there are
 READ_EXTENSIONS = {
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "EXT_texture_webp",
-    "EXT_meshopt_compression",
+    *MESHOPT,
     "KHR_draco_mesh_compression",
     "KHR_node_visibility",
     "VRM",
@@ -38,7 +39,6 @@ ADVICE = {
     "EXT_texture_avif": "its pictures are AVIF; export it with PNG or JPEG pictures",
     "EXT_mesh_gpu_instancing": "export it with its instances as nodes of their own",
 }
-MESHOPT = "EXT_meshopt_compression"
 
 
 class Document:
@@ -66,9 +66,9 @@ class Document:
         """The bytes of a buffer view, decompressed."""
         view = self.item("bufferViews", index, field=field)
         if index not in self._views:
-            compressed = (view.extensions or {}).get(MESHOPT)
+            name, compressed = _compressed(view)
             if compressed:
-                where = f"bufferViews[{index}].extensions.{MESHOPT}"
+                where = f"bufferViews[{index}].extensions.{name}"
                 try:
                     self._views[index] = decode_meshopt(self._slice(compressed, where), compressed)
                 except (ValueError, KeyError, TypeError) as broken:
@@ -103,8 +103,7 @@ class Document:
     def _elements(self, at: Any, where: str, *, dtype: np.dtype, count: int, width: int) -> Array:
         data = self.view(at.bufferView, field=f"{where}.bufferView")
         view = self.gltf.bufferViews[at.bufferView]
-        compressed = (view.extensions or {}).get(MESHOPT)
-        stride = (compressed or {}).get("byteStride") or view.byteStride or dtype.itemsize * width
+        stride = _compressed(view)[1].get("byteStride") or view.byteStride or dtype.itemsize * width
         offset = at.byteOffset or 0
         end = offset + stride * (count - 1) + dtype.itemsize * width
         if offset < 0 or stride < dtype.itemsize * width or end > len(data):
@@ -178,6 +177,12 @@ class Document:
             return (self.path.parent / urllib.parse.unquote(uri)).read_bytes()
         except (OSError, ValueError) as missing:
             raise self.error(f"{field} names {uri}, which cannot be read: {missing}") from missing
+
+
+def _compressed(view: Any) -> tuple[str, dict[str, Any]]:
+    """The extension that compresses a buffer view, with its properties; none where the view is plain."""
+    extensions = view.extensions or {}
+    return next(((name, extensions[name]) for name in MESHOPT if name in extensions), ("", {}))
 
 
 def load(path: Path) -> Document:
