@@ -97,6 +97,8 @@ def test_i8_is_for_what_loses_nothing_by_it() -> None:
     assert tree["geometry"]["static_offset"]["type"] == "F16"
     assert tree["appearance"]["static_offset"]["type"] == "I8"
     assert tree["coarse"]["basis"]["type"] == tree["geometry"]["ll_basis"]["type"] == "I8"
+    means = [tree["coarse"]["mean"], *(tree[name]["ll_mean"] for name in ("geometry", "appearance"))]
+    assert [mean["type"] for mean in means] == ["F32"] * 3
 
 
 @pytest.mark.parametrize("storage", ["f32", "f16", "i8"])
