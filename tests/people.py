@@ -1,6 +1,7 @@
 """Skeletons: plain ones, a person in T-pose with other proportions and joint axes, and motion for it."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,12 @@ from mua.pose.skeleton import Skeleton
 # Chains of at most 12 joints, some 100 operations each on lengths up to 10 m, divided by bones of at least 0.1 m.
 POSITION_BOUND = 12 * 100 * 10 * np.finfo(float).eps
 ANGLE_BOUND = POSITION_BOUND / 0.1
+
+LIMBS = [
+    (f"{side}{bone}", f"{side}{end}")
+    for side in ("Left", "Right")
+    for bone, end in (("Arm", "ForeArm"), ("ForeArm", "Hand"), ("UpLeg", "Leg"), ("Leg", "Foot"))
+]
 
 # Parents, and world positions of a person in T-pose who faces +Z and stands on the floor, metres; the right side is
 # mirrored.
@@ -167,3 +174,29 @@ def retarget(
     if not mapping:
         require_limbs(source.skeleton, target, matches)
     return retargeting.retarget(source, target, matches, rate=rate)
+
+
+def bone(skeleton: Skeleton, clip: Clip, begin: str, end: str) -> np.ndarray:
+    """Unit directions [F, 3] in the world from joint to joint."""
+    at = world(skeleton, clip)[1]
+    along = at[:, skeleton.names.index(end)] - at[:, skeleton.names.index(begin)]
+    return np.asarray(along / np.linalg.norm(along, axis=-1, keepdims=True))
+
+
+def angle(a: np.ndarray, b: np.ndarray) -> float:
+    """The largest angle between unit vectors, radians."""
+    return float(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)).max())
+
+
+def with_offset(skeleton: Skeleton, joint: str, offset: Any) -> Skeleton:
+    """The same with a joint elsewhere in its parent."""
+    offsets = skeleton.bind_translations.copy()
+    offsets[skeleton.names.index(joint)] = offset
+    return replace(skeleton, bind_translations=offsets)
+
+
+def assert_turned_as_at_rest(skeleton: Skeleton, turned: np.ndarray, *names: str) -> None:
+    """`turned` [J, 4] are rotations in the world."""
+    rest, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    joints = [skeleton.names.index(name) for name in names]
+    np.testing.assert_allclose(np.abs(np.sum(turned[joints] * rest[joints], axis=1)), 1, atol=POSITION_BOUND)

@@ -3,7 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
-from people import ANGLE_BOUND, POSITION_BOUND, person, random_clip, retarget, upright, walk, world
+from people import (
+    ANGLE_BOUND,
+    POSITION_BOUND,
+    person,
+    random_clip,
+    retarget,
+    upright,
+    walk,
+    world,
+)
 
 from mua import rotation
 from mua.motion import retarget as retargeting
