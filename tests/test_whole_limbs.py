@@ -112,3 +112,17 @@ def test_a_hip_beside_the_pelvis_is_no_part_of_the_thigh_though_its_name_says_so
     roles = match_joints(skeleton, skeleton).roles
     assert [skeleton.names[joint] for joint in roles["left thigh"]] == ["LeftHip"]
     assert [skeleton.names[joint] for joint in roles["right thigh"]] == ["RightHip"]
+
+
+def test_twist_joints_of_a_thick_arm_stay_a_part_of_it() -> None:
+    """Upper arms of two bones and short forearms: the lengths alone would begin the arm at the second bone."""
+    bones = {"arm": 0.2, "arm_twist": 0.12, "forearm": 0.12, "hand": 0.1}
+    names, parents, places = ["hips", "spine"], [-1, 0], [(0.0, 1, 0), (0, 0.5, 0)]
+    for side, out in (("left", 1), ("right", -1)):
+        for above, (part, length) in enumerate(bones.items()):
+            names.append(f"{side}_{part.replace('_twist', '')}{above if 'twist' in part else ''}")
+            parents.append(len(names) - 2 if above else 1)
+            places.append((out * length, 0, 0))
+    skeleton = upright(names, parents, places)
+    arm = [skeleton.names[joint] for joint in match_joints(skeleton, skeleton).roles["left upper_arm"]]
+    assert arm == ["left_arm", "left_arm1"]

@@ -3,8 +3,11 @@
 "arm_joint_1" to "arm_joint_3" are all an arm by their names; a shoulder, an arm and a wrist leave out the elbow.
 """
 
+import numpy as np
+
 from mua.arrays import Array
 from mua.motion.limb_parts import ARM, LEG, Proportions, fork, longest_tail, parts_of
+from mua.motion.trunk import degrees
 from mua.pose.joint_names import SIDES, Roles
 from mua.pose.skeleton import Skeleton
 
@@ -12,6 +15,9 @@ _LIMBS: dict[str, tuple[tuple[str, ...], Proportions]] = {
     "arm": (("shoulder", "upper_arm", "forearm", "hand"), ARM),
     "leg": (("thigh", "shin", "foot", "toe"), LEG),
 }
+
+
+TWISTED = 15.0  # degrees by which joints that only twist a limb lie off its line
 
 
 def with_whole_limbs(
@@ -44,9 +50,11 @@ def _without_hip(
     upper, lower, end = (found.get(f"{side} {part}", ()) for part in _main(parts))
     chain = limb_chain(skeleton, at, found, side, parts)
     split = None if chain is None else parts_of(bends, chain, usual, end=end[0] if end else None)
-    if split is None or not lower or split[1] != lower[0] or split[0] not in upper:
+    if split is None or not lower or split[1] != lower[0] or split[0] not in upper[1:]:
         return upper
-    return upper[upper.index(split[0]) :]
+    first = upper.index(split[0])
+    above, at_begin, at_bend = (bends[..., joint, :] for joint in (upper[first - 1], split[0], split[1]))
+    return upper[first:] if np.max(degrees(at_begin - above, at_bend - at_begin)) > TWISTED else upper
 
 
 def _split(
