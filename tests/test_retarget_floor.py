@@ -47,6 +47,16 @@ def test_feet_that_step_on_one_level_are_put_on_the_floor() -> None:
     assert any("put on the floor" in note for note in notes)
 
 
+def test_feet_that_stay_where_a_raised_rest_pose_has_them_stand() -> None:
+    """Files without joints in the soles begin above the floor, and so do figures on a pedestal."""
+    raised = person()
+    raised.bind_translations[raised.root, 1] += 0.35
+    found, notes = retarget(SourceMotion(raised, still(raised, frames=30)), person())
+    at_rest = np.tile(world(person(), still(person()))[1], (30, 1, 1))
+    np.testing.assert_allclose(world(person(), found)[1], at_rest, atol=1e-9)
+    assert not any("floor" in note for note in notes)
+
+
 def test_legs_without_feet_end_on_the_floor() -> None:
     source = person()
     clip = walk(source)

@@ -136,19 +136,19 @@ def _lift(
 ) -> tuple[float, list[str]]:
     """Metres by which to raise the target so that standing feet are as high as the source's, and what to say of it.
 
-    The height of a foot is that above its place in the rest pose. Where the source's rest pose does not stand on the
-    floor (ASF skeletons rest about the hips) or shows no body (`source_at` is None), the clip's lower foot is taken to
-    stand, unless the whole clip is far above the floor and its feet do not step on one level up there.
+    The height of a foot is that above its place in the rest pose. Where the source's rest pose shows no body
+    (`source_at` is None) or stands neither on the floor (ASF skeletons rest about the hips) nor where the clip's feet
+    stand, the clip's lower foot is taken to stand, unless the whole clip is far above the floor and its feet do not
+    step on one level up there.
     """
     soles = [joint for side in SIDES for part in SOLES if (joint := rest.joint(f"{side} {part}")) is not None]
     heights = at[:, soles, 1] - rest.target_at[soles, 1]
     height = standing(heights) + floor_of(rest.target_at)
     expected = 0.0
-    if source_at is not None and floor_of(rest.source_at) == 0:
-        feet = [rest.matches.chains[joint][0] for joint in soles]
-        expected = scale * standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
-        if expected < -LOWEST * leg:  # a path that starts at the origin, not on the floor
-            expected = 0.0
+    feet = [rest.matches.chains[joint][0] for joint in soles]
+    rise = None if source_at is None else scale * standing(source_at[:, feet, 1] - rest.source_at[feet, 1])
+    if rise is not None and (floor_of(rest.source_at) == 0 or abs(rise) < LOWEST * leg):
+        expected = rise if rise >= -LOWEST * leg else 0.0  # below: a path that starts at the origin, not on the floor
     elif height > LOWEST * leg:
         if _level(heights, leg) and _steps(at[:, soles], rate, leg):
             return -height, [f"its feet step {height:.2f} m above the height 0; they are put on the floor."]
