@@ -71,11 +71,14 @@ def plan_headings(
 ) -> list[PlannedClip]:
     """Record `frames` training frames: of filmed clips and of others, as they are and turned to other headings.
 
-    Each of these four has an equal share of the frames; what one has no need of goes to the others.
+    Filmed clips as they are get up to half of the frames, the other three an equal share of the rest each; what one of
+    these has no need of goes to the others.
     """
     parts = [[clip for clip in training if (clip.name in filmed) == own] for own in (True, False)]
     groups = [group for part in parts if part for group in (part, _other_headings(skeleton, part))]
-    counts = _share(frames, [sum(map(len, group)) for group in groups])
+    first, *others = [sum(map(len, group)) for group in groups]
+    first = min(first, frames - frames // 2)
+    counts = [first, *_share(frames - first, others)]
     planned = [plan(group, [], frames=count) for group, count in zip(groups, counts, strict=True) if count]
     return [clip for group in (*planned, plan([], held, frames=frames)) for clip in group]
 
