@@ -118,6 +118,47 @@ def test_glow_that_lies_elsewhere_than_the_colour_is_named(tmp_path: Path) -> No
     assert "Emission with another UV mapping than the base colour is left out, in materials: cloth." in surfaces.notes
 
 
+def transmission(factor: object, **texture: object) -> dict:
+    return {"extensions": {"KHR_materials_transmission": {"transmissionFactor": factor, **texture}}}
+
+
+@pytest.mark.parametrize(
+    ("factor", "mode", "opacities"),
+    [
+        (0, {}, [255, 255, 255]),
+        (1, {}, [255, 128, 0]),
+        (0.5, {}, [255, 191, 128]),
+        (1, {"alphaMode": "BLEND"}, [255, 128, 0]),
+        (1, {"alphaMode": "MASK"}, [255, 255, 255]),
+    ],
+)
+def test_bright_glass_is_clear_and_dark_glass_is_not(
+    tmp_path: Path, factor: float, mode: dict, opacities: list[int]
+) -> None:
+    picture = np.full((1, 3, 4), 255, np.uint8)
+    picture[0, :, :3] = np.array([0, 188, 255])[:, None]  # sRGB 188 is half of the light of 255
+    (material,) = read(textured(picture, **mode, **transmission(factor)), tmp_path).materials
+    np.testing.assert_allclose(material.image[0, :, 3], opacities, atol=1)
+    np.testing.assert_array_equal(material.image[..., :3], picture[..., :3])
+
+
+def test_a_picture_says_where_glass_is(tmp_path: Path) -> None:
+    picture = np.full((1, 2, 4), 255, np.uint8)
+    picture[0, 0, 0] = 0
+    glb = textured(picture, **transmission(1, transmissionTexture={"index": 0}))
+    (material,) = read(glb, tmp_path).materials
+    assert material.image[0, :, 3].tolist() == [255, 0]
+    moved = {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}}
+    surfaces = read(textured(picture, **transmission(1, transmissionTexture=moved)), tmp_path)
+    assert (surfaces.materials[0].image[..., 3] == 255).all()
+    assert any(note.startswith("Transmission with another UV mapping") for note in surfaces.notes)
+
+
+def test_broken_transmission_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="transmissionFactor is 2, expected a number from 0 to 1"):
+        read(textured(PICTURE, **transmission(2)), tmp_path)
+
+
 def test_unlit_materials_and_variants_are_named(tmp_path: Path) -> None:
     glb = textured(PICTURE, extensions={"KHR_materials_unlit": {}})
     glb.json["extensions"] = {"KHR_materials_variants": {"variants": [{"name": "night"}, {"name": "day"}]}}

@@ -70,6 +70,18 @@ def glowing(image: Array, glow: Array) -> Array:
     return np.dstack([np.maximum(image[..., :3], glow[..., :3]), image[..., 3]])
 
 
+def transmitting(image: Array, share: Array) -> Array:
+    """A picture [h, w, 4] uint8 that lets through a share of the light, [h', w'] in 0..1; both may be 1 x 1.
+
+    Glass filters light by its colour: what is white becomes clear, what is dark stays opaque.
+    """
+    height, width = np.maximum(image.shape[:2], share.shape)
+    image = _resized(image, width, height)
+    passed = _resized(np.repeat(np.round(255 * share[..., None]).astype(np.uint8), 4, axis=2), width, height)[..., 0]
+    opacity = image[..., 3] * (1 - passed / 255 * LINEAR[image[..., :3].max(axis=2)])
+    return np.dstack([image[..., :3], np.round(opacity).astype(np.uint8)])
+
+
 def _resized(image: Array, width: int, height: int) -> Array:
     if image.shape[:2] == (height, width):
         return image

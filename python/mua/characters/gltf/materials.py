@@ -22,6 +22,7 @@ BASIS = "KHR_texture_basisu"
 SPECULAR = "KHR_materials_pbrSpecularGlossiness"
 STRENGTH = "KHR_materials_emissive_strength"
 UNLIT = "KHR_materials_unlit"
+TRANSMISSION = "KHR_materials_transmission"
 VARIANTS = "KHR_materials_variants"
 
 
@@ -79,6 +80,8 @@ def _material(document: Document, index: int, material: Any, messages: Messages)
         else:
             messages.add("Emission with another UV mapping than the base colour is left out, in materials: {}.", name)
     read = _with_opacity(Material(name, image, *wraps), material, document, where)
+    if read.alpha_mode != "mask":
+        read = _with_transmission(read, reads, material, document, where, messages)
     opaque = read.alpha_mode == "opaque"
     return read, replace(reads, opaque=opaque, vertex_colors=not is_toon(material))
 
@@ -109,6 +112,30 @@ def _with_opacity(read: Material, material: Any, document: Document, where: str)
     cutoff = 0.5 if material.alphaCutoff is None else material.alphaCutoff
     image = pictures.opaque(read.image) if mode == "opaque" else read.image
     return replace(read, image=image, alpha_mode=mode, alpha_cutoff=float(cutoff))
+
+
+def _with_transmission(
+    read: Material, reads: Coordinates, material: Any, document: Document, where: str, messages: Messages
+) -> Material:
+    """The material clear where light passes through it: glass, and the cornea before an eye."""
+    extension = (material.extensions or {}).get(TRANSMISSION) or {}
+    factor, texture = extension.get("transmissionFactor", 0), extension.get("transmissionTexture")
+    field = f"{where}.extensions.{TRANSMISSION}"
+    if not isinstance(factor, int | float) or not 0 <= factor <= 1:
+        raise document.error(f"{field}.transmissionFactor is {factor}, expected a number from 0 to 1")
+    if not factor:
+        return read
+    share = np.ones((1, 1))
+    if texture is not None:
+        picture, wraps = _picture(document, texture, f"{field}.transmissionTexture")
+        share = picture[..., 0] / 255
+        here = reads.needed and reads.agrees(_coordinates(document, texture, where))
+        if not here or wraps != (read.wrap_u, read.wrap_v):
+            messages.add(
+                "Transmission with another UV mapping than the base colour is left out, in materials: {}.", read.name
+            )
+            return read
+    return replace(read, image=pictures.transmitting(read.image, factor * share), alpha_mode="blend")
 
 
 def _base_color(material: Any) -> tuple[Any, dict[str, Any] | None]:
