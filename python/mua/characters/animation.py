@@ -8,7 +8,8 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.characters.bind_pose import bind_pose
-from mua.characters.correction import check_scales, corrected
+from mua.characters.collapsed import without_collapsed
+from mua.characters.correction import corrected
 from mua.characters.joint_tree import is_hips
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.errors import InputError
@@ -35,7 +36,7 @@ def bare_animation(scene: Scene, path: Path) -> Animation:
     """
     if not any(len(skin.joints) for skin in scene.skins):
         raise InputError(f"{path}: no skinned mesh, skeleton or animated nodes were found, expected motion")
-    check_scales(scene, path)
+    scene = without_collapsed(scene, path)
     carries = _body(scene)
     scene = replace(scene, parts=tuple(_stand_in(scene, skin, carries) for skin in range(len(scene.skins))))
     bind = bind_pose(scene)

@@ -9,7 +9,8 @@ import numpy as np
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.characters.bind_pose import Bind, bind_pose
-from mua.characters.correction import check_scales, corrected
+from mua.characters.collapsed import without_collapsed
+from mua.characters.correction import corrected
 from mua.characters.messages import UNHELD, Messages
 from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
@@ -51,7 +52,7 @@ def assemble(scene: Scene, path: Path, *, leave_out: Sequence[str] = ()) -> Surf
         still = any(note.startswith(UNHELD.partition("{")[0]) for note in scene.notes)
         advice = "; add a skeleton in Blender or with Mixamo" if still else ""
         raise InputError(f"{path}: no skinned mesh with triangles was found, expected a rigged character{advice}")
-    check_scales(scene, path)
+    scene = without_collapsed(scene, path)
     scene = replace(scene, parts=tuple(replace(part, weights=weighted(part.weights)) for part in scene.parts))
     bind = bind_pose(scene)
     mesh = _merge(scene, bind)

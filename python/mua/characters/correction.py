@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -10,7 +9,6 @@ from mua.arrays import Array
 from mua.characters.bind_pose import Bind
 from mua.characters.figure_size import LEAST, MOST
 from mua.characters.upright import upright_rotation
-from mua.errors import InputError
 from mua.scene import Scene
 
 HEIGHTS = (0.2, 4.0)  # metres: what a person, a child or a large animal measures
@@ -39,13 +37,6 @@ class Correction:
     unit: float  # metres as which one metre of the file is taken
     size_notes: tuple[str, ...]
     notes: tuple[str, ...]  # of all else
-
-
-def check_scales(scene: Scene, path: Path) -> None:
-    """Raise an InputError that names a node which the rest pose scales to nothing."""
-    flat = np.abs(np.linalg.det(scene.rest[:, :3, :3])) < np.finfo(np.float32).tiny
-    if flat.any():
-        raise InputError(f"{path}: node {scene.node_names[flat.argmax()]} has a scale of 0 in the rest pose")
 
 
 def corrected(
