@@ -98,8 +98,13 @@ def test_a_recording_that_grew_is_distilled_anew(tmp_path: Path) -> None:
 
 def test_joints_move_the_mesh_themselves_or_through_a_descendant() -> None:
     rig = synthetic_rig()
-    only_middle = replace(rig, skin_indices=np.full_like(rig.skin_indices, 1))
-    assert moving_joints(only_middle).tolist() == [True, True, False]
+    first = np.zeros_like(rig.skin_weights)
+    first[:, 0] = 1
+    for joint, expected in ((0, [True, False, False]), (1, [True, True, False]), (2, [True, True, True])):
+        indices = np.full_like(rig.skin_indices, 2)  # also where nothing weighs on it
+        indices[:, 0] = joint
+        alone = replace(rig, skin_indices=indices, skin_weights=first)
+        assert moving_joints(alone).tolist() == expected
 
 
 def test_decode_is_the_student_where_joints_move_in_their_parents(tmp_path: Path) -> None:
