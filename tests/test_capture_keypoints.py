@@ -12,7 +12,8 @@ from mua import rotation
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.capture.keypoint_fit import fit_keypoints
-from mua.capture.keypoints import Keypoints, read_trc
+from mua.capture.keypoints import Keypoints
+from mua.capture.keypoints.trc import read_trc
 from mua.capture.outline import posed_template
 from mua.characters.read import read_surfaces
 from mua.errors import InputError

@@ -20,28 +20,45 @@ NOTED = 0.1  # of the length of limbs, by which the template may be of another s
 
 
 def poses(
-    keypoints: Annotated[Path, typer.Argument(help="3D keypoints as .trc, of Pose2Sim, OpenCap or OpenSim.")],
+    keypoints: Annotated[
+        Path,
+        typer.Argument(
+            help="3D keypoints: a .trc of Pose2Sim, OpenCap or OpenSim, a .csv or .npy of FreeMoCap, or a folder of "
+            "EasyMocap or OpenPose with a .json for each frame."
+        ),
+    ],
     template: Annotated[Path, typer.Option(help="The person as a rigged character.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="File of poses to write (.npz).")],
     height: Annotated[
         float | None, typer.Option(help="Height of the template in metres.", show_default="as its file says")
     ] = None,
+    axes: Annotated[
+        str, typer.Option(help="What X, Y and Z of the keypoints are in a world with Y up; X,-Z,Y where their Z is up.")
+    ] = "X,Y,Z",
+    scale: Annotated[
+        float, typer.Option(min=1e-9, help="What lengths are multiplied by, where the file's are in another unit.")
+    ] = 1.0,
+    rate: Annotated[
+        float | None, typer.Option(min=1, max=1000, help="Frames per second.", show_default="as the file says, or 30")
+    ] = None,
 ) -> None:
     """Pose a template by 3D keypoints, for `describe --motion`; its limbs become as long as the person's."""
-    require_file(keypoints)
+    if not keypoints.is_dir():
+        require_file(keypoints)
     require_file(template)
     if output.suffix.lower() != ".npz":
         raise InputError(f"--output {output}: the suffix is {output.suffix or 'missing'}, expected .npz")
     require_writable(output)
 
+    from mua.capture.conventions import read_axes
     from mua.capture.keypoint_fit import fit_keypoints
-    from mua.capture.keypoints import read_trc
+    from mua.capture.keypoints import read_keypoints
     from mua.characters.figure_size import FigureSize
     from mua.characters.read import read_surfaces
     from mua.motion.poses_file import write_poses
 
     console, surfaces = printer(), read_surfaces(template, size=FigureSize(height=height))
-    fitted = fit_keypoints(read_trc(keypoints), surfaces)
+    fitted = fit_keypoints(read_keypoints(keypoints, axes=read_axes(axes), scale=scale, rate=rate), surfaces)
     write_poses(output, surfaces.skeleton, fitted.clip)
     _show(console, fitted)
     say(console, f"{output}: {len(fitted.clip)} poses at {fitted.clip.rate:g} frames per second")

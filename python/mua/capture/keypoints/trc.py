@@ -1,14 +1,14 @@
-"""3D keypoints of a person as markerless capture writes them: .trc files of Pose2Sim, OpenCap and OpenSim.
+""".trc files of Pose2Sim, OpenCap and OpenSim.
 
 The file: https://opensimconfluence.atlassian.net/wiki/spaces/OpenSim/pages/53089972/Marker+.trc+Files
 """
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.capture.keypoints.keypoints import Keypoints
 from mua.errors import InputError
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}  # metres
@@ -16,18 +16,8 @@ HEADER = 5  # lines before the first frame
 COLUMNS = 2  # before the first point: the frame's number and its time
 
 
-@dataclass(frozen=True, eq=False)
-class Keypoints:
-    """Named points of a person through F frames."""
-
-    path: Path
-    names: tuple[str, ...]
-    points: Array  # [F, K, 3] metres, Y up; not finite where a point was not seen
-    rate: float  # frames per second
-
-
 def read_trc(path: Path) -> Keypoints:
-    """Read a .trc file, whose world must have Y up; raises InputError that names line and value."""
+    """Read a .trc file; raises InputError that names line and value."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
