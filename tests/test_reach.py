@@ -51,6 +51,7 @@ def test_a_wrong_pair_shows_where_the_limb_ends_and_names_the_joints(mapping: di
     found = measured(person(), mapping)
     wrong = [limb for limb in found.reach if limb.share > WRONG]
     assert [limb.limb for limb in wrong] == [hand]
+    assert all(limb.share < 0.05 for limb in found.reach if limb.limb != hand)
     (flaw,) = (flaw for flaw in found.flaws if "A pair of joints may be wrong" in flaw)
     assert f"the {hand} is {wrong[0].metres:.2f} m from where the motion has it" in flaw
     assert " to ".join(wrong[0].character) in flaw

@@ -51,12 +51,13 @@ def reaches(character: Figure, motion: Figure) -> tuple[Reach, ...]:
     shared = [limb for limb in ours if limb in theirs]
     if not shared:
         return ()
-    ways = {limb: sum(_bones(character, ours[limb])) for limb in shared}
+    ways = {limb: np.sum(_bones(character, ours[limb]), axis=0) for limb in shared}
     wanted = {limb: _wanted(_bones(character, ours[limb]), _bones(motion, theirs[limb])) for limb in shared}
-    heading = best_heading(*(np.concatenate(list(vectors.values())) for vectors in (ways, wanted)))
+    headings = [best_heading(ways[limb], wanted[limb]) for limb in shared]  # of each limb: a wrong one turns none else
+    heading = min(headings, key=lambda turn: sum(np.median(_away(ways[limb], wanted[limb], turn)) for limb in shared))
     found = []
     for limb in shared:
-        metres = np.linalg.norm(ways[limb] - rotation.rotate(heading, wanted[limb]), axis=-1)
+        metres = _away(ways[limb], wanted[limb], heading)
         length = np.sum([np.linalg.norm(bone, axis=-1) for bone in _bones(character, ours[limb])], axis=0)
         ends = _ends(character, ours[limb]), _ends(motion, theirs[limb])
         found.append(Reach(limb, float(np.median(metres)), float(np.median(metres / length)), *ends))
@@ -67,6 +68,11 @@ def _wanted(character: tuple[Array, Array], motion: tuple[Array, Array]) -> Arra
     """[F, 3] from where a limb begins to where it would end if its bones pointed as those of the motion."""
     lengths = [np.linalg.norm(bone, axis=-1, keepdims=True) for bone in character]
     return np.asarray(sum(length * unit(bone) for length, bone in zip(lengths, motion, strict=True)))
+
+
+def _away(way: Array, wanted: Array, heading: Array) -> Array:
+    """[F] metres."""
+    return np.asarray(np.linalg.norm(way - rotation.rotate(heading, wanted), axis=-1))
 
 
 def _ends(figure: Figure, joints: tuple[int, int, int]) -> tuple[str, str]:
