@@ -4,6 +4,7 @@ import errno
 import io
 import pickle
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, BinaryIO
 
 import pytest
@@ -126,3 +127,9 @@ def test_key_depends_on_settings_and_inputs() -> None:
     keys = {run_key("a", [x]), run_key("b", [x]), run_key("a", [x + 1])}
     assert len(keys) == 3
     assert run_key("a", [x]) == run_key("a", [x.clone()])
+
+
+def test_of_several_processes_the_first_alone_writes(tmp_path: Path) -> None:
+    others = SimpleNamespace(first=False)
+    Checkpoints(tmp_path, "key", others).save("stage", {"step": 1})  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []

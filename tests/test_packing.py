@@ -2,6 +2,8 @@
 
 import tracemalloc
 import zlib
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +13,9 @@ from synthetic_avatar import synthetic_avatar
 from mua.arrays import Array
 from mua.asset.flatbuffer import FormatError, parse
 from mua.asset.packing import ROOM, TIMES, packed, tensors, unpack
-from mua.asset.read import parse_checked
+from mua.asset.read import parse_checked, read
 from mua.asset.tensors import Element, pack, pack_indices, stored
-from mua.asset.write import encode
+from mua.asset.write import encode, write
 
 WORDS = 1 << 17  # bytes of Python's own that reading a small file takes
 
@@ -104,3 +106,13 @@ def test_the_claims_of_all_tensors_count_together(network: bytes) -> None:
         parse_checked(content)
     assert caught.value.code == "value"
     assert caught.value.field.startswith("clips[")
+
+
+def test_texels_that_are_not_where_uv_has_them_stay_where_they_are(tmp_path: Path) -> None:
+    """Places that a reader can compute are left out of the file, these are not."""
+    avatar = synthetic_avatar()
+    barycentrics = avatar.rig.texels.barycentrics.copy()
+    barycentrics[[3, 8]] = [[0.5, 0.25, 0.25], [0, 0, 1]]
+    texels = replace(avatar.rig.texels, barycentrics=barycentrics)
+    write(tmp_path / "a.muaavatar", replace(avatar, rig=replace(avatar.rig, texels=texels)), storage="packed")
+    np.testing.assert_allclose(read(tmp_path / "a.muaavatar").rig.texels.barycentrics, barycentrics, atol=1e-6)
