@@ -6,7 +6,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.characters.gltf.compression import decode_draco
-from mua.characters.gltf.document import Document
+from mua.characters.gltf.document import COMPONENT_TYPES, Document
 from mua.characters.gltf.materials import Coordinates
 from mua.characters.gltf.nodes import node_name
 from mua.characters.messages import Messages
@@ -168,6 +168,9 @@ def _draco(document: Document, extension: dict[str, Any], where: str, *, wanted:
     geometry = {"indices": faces.reshape(-1).astype(int)}
     for name, stored in attributes.items():
         accessor = document.item("accessors", wanted[name], field=f"{where}.attributes.{name}")
+        kind = COMPONENT_TYPES.get(accessor.componentType)
+        if kind is not None and stored.dtype.kind in "iu":  # Draco may hold wider numbers, of which 1 is another
+            stored = stored.astype(kind)
         geometry[name] = document.numbers(stored, f"{where}.attributes.{name}", normalized=bool(accessor.normalized))
     return geometry
 
