@@ -30,9 +30,9 @@ ANGLES = {"front": 0.1, "left": 1.8, "right": 4.0, "above": 5.4}  # radians roun
 
 
 def make_capture(folder: Path, *, distortion: tuple[float, ...] = (0.0,) * 5) -> Capture:
-    """Write the capture; pictures have the figure's alpha as their masks. The same bytes for the same arguments.
+    """Write the capture; images have the figure's alpha as their masks. The same bytes for the same arguments.
 
-    With `distortion`, capture.json says so, but pictures are those of a pinhole.
+    With `distortion`, capture.json says so, but images are those of a pinhole.
     """
     character = _character()
     folder.mkdir(parents=True, exist_ok=True)
@@ -60,7 +60,7 @@ def make_capture(folder: Path, *, distortion: tuple[float, ...] = (0.0,) * 5) ->
 
 
 def ring() -> list[CaptureCamera]:
-    """Cameras round the figure, their principal points off the middle of their pictures."""
+    """Cameras round the figure, their principal points off the middle of their images."""
     return [
         CaptureCamera(
             name=name,
@@ -104,7 +104,7 @@ def motions() -> dict[str, Clip]:
 
 @cache
 def _pictures() -> dict[tuple[str, int, str], Array]:
-    """Pictures [H, W, 4] uint8, their colours not premultiplied, by clip, frame and camera."""
+    """Images [H, W, 4] uint8, their colours not premultiplied, by clip, frame and camera."""
     teacher = StillTeacher(_character(), texels=TEXELS, template_vertices=500)
     return {
         (name, frame, camera.name): drawn(_splats(teacher, clip, frame + 1), camera)
@@ -120,7 +120,7 @@ def _splats(teacher: StillTeacher, clip: Clip, frame: int) -> Splats:
 
 
 def drawn(splats: Splats, camera: CaptureCamera) -> Array:
-    """A picture [H, W, 4] uint8."""
+    """An image [H, W, 4] uint8."""
     image = render_premultiplied(splats, camera.camera())
     color = image[..., :3] / np.maximum(image[..., 3:], 1 / 255)
     return to_bytes(np.concatenate([color, image[..., 3:]], axis=-1))

@@ -1,7 +1,7 @@
-"""Pictures of surfaces and bones by numpy alone, which those of the players' shaders are held against.
+"""Images of surfaces and bones by numpy alone, which those of the players' shaders are held against.
 
 Each pixel is drawn at its centre and at four places so near to it that rounding decides which of them a device takes.
-By as much as these differ a picture may be off; where they differ much an edge passes, and the pixel is left out.
+By as much as these differ an image may be off; where they differ much an edge passes, and the pixel is left out.
 """
 
 from collections.abc import Iterable
@@ -18,14 +18,14 @@ CENTRES = np.array([[0.5, 0.5]]) + NEAR_EDGE * np.array([[0, 0], [-1, -1], [1, -
 STEADY = 0.01  # of a colour: by less an even surface changes between these places
 AMBIENT, INSIDE, TURNED = 0.28, 0.45, 0.25  # how surfaces are lit: grazed, from inside, and from where that is sure
 BEHIND = 0.01  # metres that surfaces yield to the splats on them
-SURFACE_BOUND = 2.0**-11 + 1e-4  # a half float's rounding, in which some pictures are kept, and float32's of directions
+SURFACE_BOUND = 2.0**-11 + 1e-4  # a half float's rounding, in which some images are kept, and float32's of directions
 STROKES_BOUND = 2.0**-8 + 4 * 2.0**-11  # corners lie on 1/256 of a pixel; bone and joint, each with its outline, blend
 LEAST_STEADY = 0.9  # of what is covered: where edges are many, a tenth lies near one
 
 
 @dataclass(frozen=True)
 class Wall:
-    """A plane before the camera, over the left half of the picture."""
+    """A plane before the camera, over the left half of the image."""
 
     distance: float  # metres along the camera's axis
 
@@ -156,7 +156,7 @@ def _nearest(camera: Camera, places: Array, triangles: Array, wall: Wall | None)
     away = places - camera.position
     _, yielding = _project(camera, places + BEHIND * _unit(away))
     samples = _samples(camera)
-    nearness = np.zeros(samples.shape[:3])  # 1 / distance, which is even over a triangle in the picture
+    nearness = np.zeros(samples.shape[:3])  # 1 / distance, which is even over a triangle in the image
     if wall is not None:
         nearness[:, :, : camera.screen[0] // 2] = 1 / wall.distance
     owner, weights = np.full(nearness.shape, -1), np.zeros((*nearness.shape, 3))
@@ -210,7 +210,7 @@ def _unit(vectors: Array) -> Array:
 
 
 def _picture(owner: Array, color: Array) -> Picture:
-    """The picture of samples [5, H, W] and their colours [5, H, W, 3]."""
+    """The image of samples [5, H, W] and their colours [5, H, W, 3]."""
     color = np.concatenate([color, np.ones((*color.shape[:-1], 1))], axis=-1)
     samples = np.where(owner[..., None] >= 0, color, 0)
     return Picture(samples[0], np.abs(samples - samples[0]).max(axis=(0, -1)))

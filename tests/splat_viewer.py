@@ -145,5 +145,5 @@ def draw(
 
 
 def decibels(a: Array, b: Array) -> float:
-    """Peak signal-to-noise ratio of pictures in 0..1."""
+    """Peak signal-to-noise ratio of images in 0..1."""
     return float(-10 * np.log10(np.mean((a - b) ** 2)))

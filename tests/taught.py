@@ -1,4 +1,4 @@
-"""A teacher of few texels, and pictures that it can be taught from."""
+"""A teacher of few texels, and images that it can be taught from."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -70,7 +70,7 @@ def looks_of_pictures(truth: TeacherModel) -> torch.Tensor:
 
 
 def material(change: Callable[[Seen, int], Seen] = lambda seen, camera: seen) -> Material:
-    """Pictures of a teacher whose colours and folds depend on the pose; `change` is done to those of each camera."""
+    """Images of a teacher whose colours and folds depend on the pose; `change` is done to those of each camera."""
     truth = teacher()
     with torch.no_grad():
         truth.mean.copy_(looks_of_pictures(truth))
@@ -120,7 +120,7 @@ def taught(
 
 
 def errors(lesson: Lesson, shown: Material, *, moving: bool = True) -> float:
-    """The mean square error of all pictures."""
+    """The mean square error of all images."""
     squares = []
     with torch.no_grad():
         for frame in range(FRAMES):

@@ -35,7 +35,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
     motion = capture / "walk.bvh"
     whole = command("bake", capture, "--motion", motion, "-o", tmp_path / "whole.muaavatar", *given)
     assert whole.status == 0, whole
-    assert "taught from the pictures of a capture" in whole.out
+    assert "taught from the images of a capture" in whole.out
     avatar = mua.load(tmp_path / "whole.muaavatar")
     assert avatar.name == "figure"
     assert {clip.name for clip in avatar.clips} == {"walk", "reach", "walk 2"}

@@ -74,4 +74,4 @@ def test_fragments_are_the_pixels_of_all_quads(device: Device, avatar_file: Path
     posed = decode_clip_frame(avatar, clip, frame=0, dtype=np.float64)
     seen = projected(posed, camera)
     lengths = REACH * wide_deviations(seen.ellipses[:, 4:6])
-    assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the picture
+    assert found == pytest.approx(4 * lengths.prod(axis=1).sum(), rel=0.02)  # all of them inside the image

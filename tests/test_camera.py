@@ -70,7 +70,7 @@ def test_a_box_is_seen_until_all_of_it_lies_beyond_one_side(axis: int, side: int
     direction = side * camera.view[axis, :3]
     size = float(np.linalg.norm(np.ptp(BOX, axis=0)))
     assert sees(camera, BOX)
-    assert sees(camera, BOX + 0.4 * size * direction)  # half of it is out of the picture
+    assert sees(camera, BOX + 0.4 * size * direction)  # half of it is out of the image
     behind_all = axis == 2 and side == -1  # there is no far plane
     assert sees(camera, BOX + 20 * size * direction) == behind_all
 

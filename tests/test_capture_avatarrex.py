@@ -150,7 +150,7 @@ def test_frames_without_a_mask_are_left_out(tmp_path: Path, command: Commands) -
 
 @pytest.mark.parametrize("begin", [0, 1])
 def test_pictures_may_have_other_names(tmp_path: Path, command: Commands, begin: int) -> None:
-    """Of fewer digits, masks as PNG, and counted from 1: the first picture then shows the first pose."""
+    """Of fewer digits, masks as PNG, and counted from 1: the first image then shows the first pose."""
     source = write_source(tmp_path / "set", WORLDS["y"])
     for file in sorted(source.rglob("*.jpg"), reverse=True):
         masked = "pha" in file.parts
@@ -181,7 +181,7 @@ def test_what_a_set_lacks_is_named(tmp_path: Path, command: Commands) -> None:
         (source / camera / "mask" / "pha" / "00000002.jpg").unlink()
         (source / camera / "00000001.jpg").unlink()
         (source / camera / "00000003.jpg").unlink()
-    assert "no two frames in a row have pictures and masks of all 2 cameras" in command(*asked).sentence
+    assert "no two frames in a row have images and masks of all 2 cameras" in command(*asked).sentence
     for camera in ("22010708", "22053925"):
         (source / camera / "mask" / "pha").rename(source / camera / "mask" / "fgr")
     assert "22010708/mask/pha: found no masks; expected 00000000.jpg" in command(*asked).sentence

@@ -152,9 +152,7 @@ def test_smaller_pictures_have_a_smaller_camera(tmp_path: Path) -> None:
     one = read_cameras(write(tmp_path, "anipose"))[0]
     camera = one.camera((20, 12), name="a", scale=1, axes=np.eye(3))
     np.testing.assert_allclose([*camera.focal, *camera.centre], [30.5, 30.0, 9.85, 5.8])
-    with pytest.raises(
-        InputError, match="camera cam_01: was calibrated for pictures of 40 x 24, those of a are 20 x 24"
-    ):
+    with pytest.raises(InputError, match="camera cam_01: was calibrated for images of 40 x 24, those of a are 20 x 24"):
         one.camera((20, 24), name="a", scale=1, axes=np.eye(3))
 
 
@@ -261,15 +259,15 @@ def test_what_a_folder_lacks_is_named(given: tuple[object, ...], command: Comman
     source.mkdir()
     line = ("capture", "describe", source, "-o", tmp_path / "out")
     calibrated = (*line, "--calibration", calibration, *given)
-    assert "found no pictures; looked for videos/cam00.mp4" in command(*calibrated).sentence
+    assert "found no images; looked for videos/cam00.mp4" in command(*calibrated).sentence
     assert "expected --template and --motion with it" in command(*line, "--calibration", calibration).sentence
     assert "--axes and --scale are of a --calibration" in command(*line, *given, "--scale", 0.001).sentence
     for name in ("cam01", "side"):
         (source / "images" / name).mkdir(parents=True)
         Image.new("RGB", SIZE).save(source / "images" / name / "0.png")
-    assert "has no camera called side, as pictures in" in command(*calibrated).sentence
+    assert "has no camera called side, as images in" in command(*calibrated).sentence
     (source / "images" / "side").rename(source / "images" / "cam02")
-    assert "no two frames in a row have pictures and masks of all 2 cameras" in command(*calibrated).sentence
+    assert "no two frames in a row have images and masks of all 2 cameras" in command(*calibrated).sentence
     calibration.write_text(toml(head="cameras.x{name}", name="'a'"))
     assert "two cameras are called a; expected one for each" in command(*calibrated).sentence
     assert not (tmp_path / "out" / "capture.json").exists()

@@ -89,9 +89,7 @@ def test_a_camera_with_the_pictures_of_another_is_named(damaged: Capture) -> Non
             own, other = (damaged.files(clip, frame, name).image for name in ("front", "above"))
             own.write_bytes(other.read_bytes())
     (told,) = everything(damaged).problems
-    assert re.fullmatch(
-        r"Camera front: overlaps by .*; its pictures fit the calibration of camera above by 9\d%\.", told
-    )
+    assert re.fullmatch(r"Camera front: overlaps by .*; its images fit the calibration of camera above by 9\d%\.", told)
 
 
 def test_a_camera_that_nothing_explains_is_named(small_capture: Capture) -> None:
@@ -99,14 +97,14 @@ def test_a_camera_that_nothing_explains_is_named(small_capture: Capture) -> None
     wrong = replace(front, world_to_camera=left.world_to_camera)
     (told,) = everything(replace(small_capture, cameras=(wrong, left, *others))).problems
     assert told.startswith("Camera front: overlaps by")
-    assert told.endswith("its calibration, or which pictures it has, cannot be right.")
+    assert told.endswith("its calibration, or which images it has, cannot be right.")
 
 
 def test_a_camera_that_sees_nobody_is_named(small_capture: Capture) -> None:
     front, *others = small_capture.cameras
     away = replace(front, world_to_camera=np.diag([-1.0, 1, -1, 1]) @ front.world_to_camera)
     (told,) = everything(replace(small_capture, cameras=(away, *others))).problems
-    assert told == "Camera front sees nobody: the posed template is outside its picture."
+    assert told == "Camera front sees nobody: the posed template is outside its image."
 
 
 def test_a_mask_of_another_frame_is_named_with_the_frame(damaged: Capture) -> None:
@@ -130,9 +128,9 @@ def test_missing_frames_and_cameras_are_named(damaged: Capture) -> None:
     last = damaged.files("reach", 1, "left").image
     last.unlink()
     assert everything(damaged).problems == (
-        f"Camera front: 1 of 6 pictures are missing, first {frame} of clip walk, frame 2.",
-        f"Camera left: 1 of 6 pictures are missing, first {last} of clip reach, frame 1.",
-        f"Camera above: has no pictures: there is no {camera / '000000.png'}.",
+        f"Camera front: 1 of 6 images are missing, first {frame} of clip walk, frame 2.",
+        f"Camera left: 1 of 6 images are missing, first {last} of clip reach, frame 1.",
+        f"Camera above: has no images: there is no {camera / '000000.png'}.",
     )
 
 
@@ -140,7 +138,7 @@ def test_a_picture_of_another_size_is_named(damaged: Capture) -> None:
     image = damaged.files("walk", 1, "left").image
     Image.new("RGBA", (9, 7)).save(image)
     (told,) = everything(damaged).problems
-    assert told.startswith(f"Camera left, clip walk, frame 1: {image}: the picture is 9 x 7 pixels; ")
+    assert told.startswith(f"Camera left, clip walk, frame 1: {image}: the image is 9 x 7 pixels; ")
 
 
 def test_a_video_that_ends_early_is_named(damaged: Capture) -> None:

@@ -171,7 +171,7 @@ FAULTS: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
         r"name is '\.\.'; expected a name that can",
     ),
     "a path that no file has": (lambda s: s.update(template="a\0b"), "template is .*; expected a text"),
-    "a picture larger than any": (lambda s: s["cameras"][0].update(size=[32769, 240]), "1 to 32768 pixels"),
+    "an image larger than any": (lambda s: s["cameras"][0].update(size=[32769, 240]), "1 to 32768 pixels"),
     "a turn that stretches": (
         lambda s: s["cameras"][0]["world_to_camera"][1].__setitem__(slice(0, 3), [0.0, 1.01, 0.0]),
         "not a rotation: its rows have lengths 1, 1.01, 1",
@@ -201,7 +201,7 @@ FAULTS: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
     ),
     "distortion of another model": (
         lambda s: s["cameras"][0].update(distortion=[0.1] * 8),
-        "distortion: has 8 coefficients; expected OpenCV's k1, k2, p1, p2, k3; undistort the pictures",
+        "distortion: has 8 coefficients; expected OpenCV's k1, k2, p1, p2, k3; undistort the images",
     ),
     "columns for rows": (
         lambda s: s["cameras"][0].update(world_to_camera=np.transpose(s["cameras"][0]["world_to_camera"]).tolist()),

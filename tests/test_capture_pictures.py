@@ -1,4 +1,4 @@
-"""Pictures of a camera: every kind of file gives the same colours, and one of another size is refused."""
+"""Images of a camera: every kind of file gives the same colours, and one of another size is refused."""
 
 from pathlib import Path
 
@@ -46,5 +46,5 @@ def test_a_mask_covers_where_any_colour_is_and_may_hold_ones() -> None:
 def test_a_picture_that_lies_on_its_side_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "a.png"
     Image.fromarray(GREY).save(file)
-    with pytest.raises(InputError, match=r"the picture is 3 x 2 pixels; capture\.json gives its camera 2 x 3"):
+    with pytest.raises(InputError, match=r"the image is 3 x 2 pixels; capture\.json gives its camera 2 x 3"):
         read_picture(file, number=0, size=(2, 3))

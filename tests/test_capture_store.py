@@ -32,7 +32,7 @@ def same(a: View, b: View) -> None:
 
 
 def filmed(folder: Path, *, ending: str = "mp4") -> Capture:
-    """The capture with distorted videos for pictures, and with backgrounds."""
+    """The capture with distorted videos for images, and with backgrounds."""
     capture = make_capture(folder, distortion=(-0.1, 0.05, 1e-3, 0.0, 0.0))
     rng = np.random.default_rng(2)
     for camera in capture.cameras:
@@ -85,7 +85,7 @@ def of_cameras(**changes: Any) -> Callable[[Capture], Capture]:
 
 CHANGES: dict[str, tuple[Callable[[Capture], Capture], dict[str, Any]]] = {  # of the capture, and of the store
     "focal length": (of_cameras(focal=(80.0, 80.0)), {}),
-    "middle of the picture": (of_cameras(centre=(30.0, 32.0)), {}),
+    "middle of the image": (of_cameras(centre=(30.0, 32.0)), {}),
     "lens": (of_cameras(distortion=(-0.1, 0.05, 0.0, 0.0, 0.0)), {}),
     "numbers of images": (lambda c: replace(c, clips=(replace(c.clips[0], first_image=1), c.clips[1])), {}),
     "height": (lambda c: c, {"rows": 24}),
@@ -208,7 +208,7 @@ def test_a_video_of_masks_that_ends_early_is_told_where_its_frame_is_wanted(tmp_
 def test_a_video_of_another_size_is_refused(tmp_path: Path) -> None:
     capture = filmed(tmp_path / "filmed")
     wider = replace(capture, cameras=tuple(replace(one, size=(SIDE + 2, SIDE)) for one in capture.cameras))
-    with pytest.raises(InputError, match=r"left\.mp4: the picture is 64 x 64 pixels; .* 66 x 64"):
+    with pytest.raises(InputError, match=r"left\.mp4: the image is 64 x 64 pixels; .* 66 x 64"):
         ViewStore(wider, tmp_path / "store").view("walk", 0, "left")
 
 

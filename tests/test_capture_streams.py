@@ -128,7 +128,7 @@ def test_what_is_said_of_a_capture_is_in_its_description(
     source: Path, person: Capture, command: Commands, tmp_path: Path
 ) -> None:
     (source / "stream000.json").touch()  # which is no video
-    (source / "metadata" / "cameras.calib").write_text(captury())  # which does not say how large pictures are
+    (source / "metadata" / "cameras.calib").write_text(captury())  # which does not say how large images are
     given = ("--template", person.template, "--motion", person.clips[0].motion, "--rate", 12, "--height", 1.5)
     command("capture", "describe", source, *given, "--leave-out", "hat", "--leave-out", "shoes", "-o", tmp_path / "out")
     capture = open_capture(tmp_path / "out")

@@ -24,7 +24,7 @@ from mua.teaching.trained import TrainedTeacher
 
 
 def film_set(folder: Path, capture: Capture) -> None:
-    """Draw the pictures and masks of an AvatarReX set: its template in the poses of the capture that it becomes."""
+    """Draw the images and masks of an AvatarReX set: its template in the poses of the capture that it becomes."""
     for clip in capture.clips:
         posed = posed_template(capture.surfaces, capture.motion(clip.name))
         for camera in capture.cameras:

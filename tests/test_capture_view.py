@@ -49,7 +49,7 @@ def test_the_lens_bends_as_opencv_says() -> None:
 
 
 def test_straight_lines_and_places_are_back_where_a_pinhole_has_them() -> None:
-    """Each pixel of the lens' picture holds the direction it looks in, so the undone picture is linear."""
+    """Each pixel of the lens' image holds the direction it looks in, so the undone image is linear."""
     rows, columns = np.mgrid[:120, :160] + 0.5
     # Where a lens pixel looks, by fixed-point iteration of the forward formula, which the code never inverts.
     x = seen_x = (columns - CAMERA.centre[0]) / CAMERA.focal[0]
@@ -89,7 +89,7 @@ def test_an_edge_that_is_rounded_beyond_the_picture_is_its_end() -> None:
 
 @pytest.mark.parametrize("rows", [None, 48, 17])
 def test_cutting_and_shrinking_move_the_camera_with_the_picture(small_capture: Capture, rows: int | None) -> None:
-    """A patch of the whole picture lies where both cameras project the same points of the world."""
+    """A patch of the whole image lies where both cameras project the same points of the world."""
     whole, part = (small_capture.view("walk", 1, "left", rows=rows, crop=crop) for crop in (False, True))
     points = np.random.default_rng(1).normal([0, 0.85, 0], 0.2, (30, 3))
     tiny = np.tile([1e-8, 0, 0, 1e-8, 0, 1e-8], (30, 1))
@@ -195,7 +195,7 @@ def test_a_background_is_seen_as_the_picture_is(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def filmed(tmp_path_factory: pytest.TempPathFactory) -> Capture:
-    """A capture whose pictures are videos: each frame as bright as its number says."""
+    """A capture whose images are videos: each frame as bright as its number says."""
     capture = make_capture(tmp_path_factory.mktemp("filmed"))
     capture = replace(capture, images="video/{camera}.mp4", masks="video/mask.mp4")
     clips = (replace(capture.clips[0], first_image=37), capture.clips[1])
@@ -210,14 +210,14 @@ def filmed(tmp_path_factory: pytest.TempPathFactory) -> Capture:
 def test_a_video_gives_the_frame_of_its_number(filmed: Capture, clip: str, frame: int) -> None:
     view = filmed.view(clip, frame, "front")
     number = frame + filmed.clip(clip).first_image
-    coded = 2.5 / 255  # that an encoder changes of an even picture
+    coded = 2.5 / 255  # that an encoder changes of an even image
     assert view.image.mean() == pytest.approx((40 + 4 * number) / 255, abs=coded / 2)
     assert view.mask.mean() == pytest.approx((40 + 4 * number) / 255, abs=coded / 2)
 
 
 def test_a_video_of_another_size_is_refused(filmed: Capture) -> None:
     wider = replace(filmed, cameras=tuple(replace(one, size=(SIDE, SIDE + 2)) for one in filmed.cameras))
-    with pytest.raises(InputError, match=r"front\.mp4: the picture is 64 x 64 pixels; .* 64 x 66"):
+    with pytest.raises(InputError, match=r"front\.mp4: the image is 64 x 64 pixels; .* 64 x 66"):
         wider.view("walk", 0, "front")
 
 
@@ -253,9 +253,9 @@ def test_names_a_picture_that_cannot_be_a_view(tmp_path: Path) -> None:
     capture = make_capture(tmp_path)
     for name, picture in (("small", Image.new("RGBA", (SIDE, 9))), ("solid", Image.new("RGB", (SIDE, SIDE)))):
         picture.save(tmp_path / f"{name}.png")
-    (tmp_path / "text.png").write_text("no picture")
+    (tmp_path / "text.png").write_text("no image")
     files = {"small": r"is 64 x 9 pixels; capture\.json gives its camera 64 x 64", "solid": "has no alpha"}
-    for name, sentence in (files | {"text": "cannot be read as a picture", "none": "there is no such file"}).items():
+    for name, sentence in (files | {"text": "cannot be read as an image", "none": "there is no such file"}).items():
         with pytest.raises(InputError, match=rf"{name}\.png: .*{sentence}"):
             replace(capture, images=f"{name}.png").view("walk", 0, "front")
 

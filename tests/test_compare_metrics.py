@@ -24,7 +24,7 @@ ALEXNET = ((3, 64, 11, 4, 2), (64, 192, 5, 1, 2), (192, 384, 3, 1, 1), (384, 256
 
 
 def pictures(noise: float = 0.1) -> tuple[Array, Array]:
-    """A smooth picture with edges and the same with noise."""
+    """A smooth image with edges and the same with noise."""
     rng = np.random.default_rng(0)
     y, x = np.mgrid[:SIZE, :SIZE] / SIZE
     truth = np.stack([x, y, 0.5 + 0.4 * np.sign(np.sin(20 * x + 9 * y))], axis=2)

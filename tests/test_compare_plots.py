@@ -20,7 +20,7 @@ SIDE = 240
 
 
 def figure() -> Array:
-    """A grey square that fills the middle of a black picture."""
+    """A grey square that fills the middle of a black image."""
     picture = np.zeros((SIDE, SIDE, 3), np.float32)
     picture[40:200, 40:200] = 0.5
     return picture

@@ -1,4 +1,4 @@
-"""Colours that surfels show as a picture, held against pictures composited surfel by surfel."""
+"""Colours that surfels show as an image, held against images composited surfel by surfel."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ EIGHT_BITS = 1 / 255
 
 
 def striped(fineness: int) -> Array:
-    """A picture four times as fine as the texels, with slanting stripes of several widths and a grey ramp."""
+    """An image four times as fine as the texels, with slanting stripes of several widths and a grey ramp."""
     row, column = np.indices((4 * SIZE, 4 * SIZE))
     stripes = (row + 2 * column) // fineness % 2
     return np.stack([60 + 130 * stripes, 190 - 130 * stripes, 100 + row, np.full_like(row, 255)], axis=2).astype(

@@ -1,4 +1,4 @@
-"""mua-eval: pictures are the player's, tables say what was measured, one system's failure is its own."""
+"""mua-eval: images are the player's, tables say what was measured, one system's failure is its own."""
 
 import csv
 import json
@@ -36,7 +36,7 @@ from mua.student.settings import Schedule
 from mua.teachers.teacher import TeacherFrame
 
 SIZE = 176
-SAME = 2 / 255  # of a picture of 0..1: the recording's half precision, and the order of equal depths
+SAME = 2 / 255  # of an image of 0..1: the recording's half precision, and the order of equal depths
 LEAST_PSNR = 50.0  # dB, beside the CPU rasteriser, as tests/parity
 
 

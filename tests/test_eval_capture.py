@@ -1,4 +1,4 @@
-"""mua-eval of a capture: a teacher and avatars beside its pictures, by cameras and in clips that are held out."""
+"""mua-eval of a capture: a teacher and avatars beside its images, by cameras and in clips that are held out."""
 
 import csv
 import json
@@ -31,7 +31,7 @@ from mua.teachers.procedural import procedural_character
 from mua.teachers.still import StillTeacher
 from mua.teaching.settings import PRESETS
 
-MADE_SO = 45.0  # dB, of 8 bits and of the rasteriser's own limits, beside what drew the pictures
+MADE_SO = 45.0  # dB, of 8 bits and of the rasteriser's own limits, beside what drew the images
 
 
 @pytest.fixture(scope="module")
@@ -100,8 +100,8 @@ def judged() -> list[Judged]:
 
 def test_tables_have_a_row_for_each_entry_and_a_dash_for_what_is_not_there() -> None:
     entries = [FilmedEntry("a", nothing, Cost(2_500_000, 30_000_000)), FilmedEntry("b", nothing)]
-    text = filmed_report.markdown(judged(), entries, ["Two pictures."])
-    assert "- Two pictures." in text
+    text = filmed_report.markdown(judged(), entries, ["Two images."])
+    assert "- Two images." in text
     assert "| a | 20.00 | 0.9000 | 0.1000 | - | - | - | 2.500 | 30.00 |" in text
     assert "| b | 30.00 | 0.9000 | 0.1000 | - | - | - | - | - |" in text
     assert "LPIPS" not in text

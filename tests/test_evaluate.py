@@ -13,7 +13,7 @@ HALF = np.radians(1) / 2
 
 
 def errors(attribute: str, values: list[float]) -> Errors:
-    """Of one frame, whose picture differs in the attribute of every texel, or in the mesh."""
+    """Of one frame, whose image differs in the attribute of every texel, or in the mesh."""
     texture, mesh = np.zeros((5, 23), np.float32), np.zeros((7, 3), np.float32)
     texture[:, ATTRIBUTES["rotation"]] = [1, 0, 0, 0]
     other, moved = texture.astype(float), mesh.astype(float)

@@ -27,7 +27,7 @@ from mua.rendering import render_premultiplied
 EPSILON = 2.0**-23
 COLOR_BOUND = 64 * EPSILON  # a turned vector of coefficients of about 1, and a sum of four products
 TURN_BOUND = 16 * EPSILON  # a product of two unit quaternions
-SAME_KERNEL, PUBLISHED = 60.0, 27.0  # decibels, beside our picture: of our kernel, and of the published one
+SAME_KERNEL, PUBLISHED = 60.0, 27.0  # decibels, beside our image: of our kernel, and of the published one
 LEVEL = 1 / 255
 
 

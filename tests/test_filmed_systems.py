@@ -174,7 +174,7 @@ def test_ours_stands_among_systems_that_cost_at_most_as_much() -> None:
     assert (known.split, known.rival, known.difference, known.ahead, known.views) == (TRAINED, "small", 0.5, 1, 2)
     assert (unseen.split, unseen.rival, unseen.difference, unseen.ahead) == (UNSEEN, "smaller", -1.0, 0)
     first, last = sentences([known, unseen])
-    assert "ours is first: +0.50 dB, nearer in 1 of 2 pictures, than small" in first
+    assert "ours is first: +0.50 dB, nearer in 1 of 2 images, than small" in first
     assert "ours is NOT first: -1.00 dB" in last
     assert standings(views(), [one for one in ENTRIES if one.system != "ours"]) == []
     assert standings(views(), ENTRIES[:4]) == []

@@ -26,7 +26,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 
 
 def rich() -> Any:
-    """A character with a picture, morph targets, clips, glow and a VRM's bones."""
+    """A character with an image, morph targets, clips, glow and a VRM's bones."""
     glb = textured(PICTURE, emissiveFactor=[1, 1, 1], emissiveTexture={"index": 0}, alphaMode="MASK", alphaCutoff=0.4)
     primitive(glb)["targets"] = [{"POSITION": glb.accessor(np.ones((16, 3)))}]
     glb.json["meshes"][0]["weights"] = [0.5]

@@ -1,4 +1,4 @@
-"""Pictures of single triangles, in values that a half float holds exactly."""
+"""Images of single triangles, in values that a half float holds exactly."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Pictures by gsplat, whose CUDA kernels a plain stand-in of its documented arguments replaces here."""
+"""Images by gsplat, whose CUDA kernels a plain stand-in of its documented arguments replaces here."""
 
 import sys
 from pathlib import Path

@@ -19,7 +19,7 @@ from mua.texture.albedo import sample_albedo
 WHOLE = uv_map(1, 1, at=(0, 0))
 RED, GREEN = (200, 30, 20), (0, 255, 0)
 ROUNDED = 1  # of 255
-RADIUS = 0.3  # of a red disc in a clear green picture, of the picture's side
+RADIUS = 0.3  # of a red disc in a clear green image, of the image's side
 BY_PIXELS = 0.03  # relative: the area of a disc counted in texels whose edges are smooth
 
 
@@ -37,7 +37,7 @@ def disc(size: int, *, soft: float = 0.0) -> Array:
 def card(
     picture: Array, mode: AlphaMode, *, cutoff: float | None = None, cells: int = 1, behind: bool = True
 ) -> Surfaces:
-    """A square sheet that shows the picture, and a solid one behind it."""
+    """A square sheet that shows the image, and a solid one behind it."""
     sheets = [patch(cells, at=0, uv=WHOLE)] + [patch(2, at=2, uv=WHOLE)] * behind
     surfaces = surfaces_of(*sheets, images=(picture, plain(9, 9, 9, 255))[: 1 + behind])
     first = replace(surfaces.materials[0], alpha_mode=mode)

@@ -1,4 +1,4 @@
-"""Videos are whole or not there; pictures lie over their background."""
+"""Videos are whole or not there; images lie over their background."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -45,7 +45,7 @@ from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 
 SCREEN = (97, 131)  # pixels
-HALF = 2.0**-11  # relative rounding of a half float: the picture's format
+HALF = 2.0**-11  # relative rounding of a half float: the image's format
 INDEX = 3  # frame of the clip
 
 
@@ -133,13 +133,13 @@ def test_draws_every_joint_over_all_else(stage: Stage) -> None:
 
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(stage: Stage, side: int) -> None:
-    """One joint before the camera, the other behind: every point between them that is in the picture is drawn."""
+    """One joint before the camera, the other behind: every point between them that is in the image is drawn."""
     _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
     behind, ahead = joints[1:3][::side]
     along = (ahead - behind) / np.linalg.norm(ahead - behind)
     across = rotation.normalize(np.cross(along, [1.0, 0.2, 0.1]))
     up = np.cross(across, along)
-    look = np.cos(0.27) * along - np.sin(0.27) * across  # so that the bone's direction in the picture tells its end
+    look = np.cos(0.27) * along - np.sin(0.27) * across  # so that the bone's direction in the image tells its end
     turn = np.stack([np.cross(look, up), up, -look])
     view = np.eye(4)
     view[:3, :3], view[:3, 3] = turn, -turn @ (0.75 * behind + 0.25 * ahead) + [-0.03, -0.04, 0]

@@ -147,7 +147,7 @@ class Watched:
         monkeypatch.setattr(DecodeSchedule, "record", noting)
 
     def draw(self) -> tuple[int, int]:
-        """The frame that is due in a picture and the one that is decoded ahead."""
+        """The frame that is due in an image and the one that is decoded ahead."""
         self.session.draw(self._target)
         return self.moments[-1]
 

@@ -1,6 +1,6 @@
 """The interactive player answers mouse, keys and panel; its window opens on a display and says so where there is none.
 
-Most tests drive the window's own code on rendercanvas' off-screen canvas, whose pictures can be read back; one opens a
+Most tests drive the window's own code on rendercanvas' off-screen canvas, whose images can be read back; one opens a
 window on a virtual display and looks at the screen.
 """
 
@@ -281,7 +281,7 @@ def test_says_that_there_is_no_display(avatar_files: tuple[Path, ...], monkeypat
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    with pytest.raises(InputError, match="a window needs a display and there is none; -o writes a picture"):
+    with pytest.raises(InputError, match="a window needs a display and there is none; -o writes an image"):
         show(Source(avatar_files), LOOK)
 
 

@@ -133,7 +133,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "colour": (lambda: mua.render(SPLATS, background="whitish"), "background is 'whitish'; expected a colour name"),
     "number as colour": (lambda: mua.render(SPLATS, background=3), r"background is 3 \(int\)"),  # type: ignore[arg-type]
     "one side": (lambda: mua.render(SPLATS, size=64), r"size is 64 \(int\); expected width and height"),  # type: ignore[arg-type]
-    "empty picture": (lambda: mua.render(SPLATS, size=(0, 64)), "expected sides of 1 to 8192 pixels"),
+    "empty image": (lambda: mua.render(SPLATS, size=(0, 64)), "expected sides of 1 to 8192 pixels"),
     "angle": (lambda: mua.render(SPLATS, azimuth=np.inf), "azimuth: a value is not finite"),
     "no camera": (lambda: mua.render(SPLATS, "front"), "camera is 'front'; expected a mua.Camera"),  # type: ignore[arg-type]
     "camera and angle": (

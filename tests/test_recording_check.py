@@ -1,4 +1,4 @@
-"""mua-train --check: what it says of a recording before anything is trained, and the picture that it leaves."""
+"""mua-train --check: what it says of a recording before anything is trained, and the image that it leaves."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -31,7 +31,7 @@ RADIANS = 1e-4
 
 @pytest.fixture(scope="module")
 def order(tmp_path_factory: pytest.TempPathFactory) -> Order:
-    """A few pictures of the procedural character, without simulation."""
+    """A few images of the procedural character, without simulation."""
     folder = tmp_path_factory.mktemp("given")
     given = make_capture(folder)
     motions = tuple(str(clip.motion) for clip in given.clips)
@@ -100,7 +100,7 @@ def test_the_job_has_every_picture_of_the_capture_once(folder: Path) -> None:
 
 @pytest.fixture
 def renderer(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """tools/cycles_render.py without Blender: a picture is the name of its camera."""
+    """tools/cycles_render.py without Blender: an image is the name of its camera."""
     mathutils = ModuleType("mathutils")
     vars(mathutils).update(Matrix=None, Vector=None)
     monkeypatch.setitem(sys.modules, "bpy", ModuleType("bpy"))

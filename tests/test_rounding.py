@@ -1,4 +1,4 @@
-"""Rounding for the network: steps are powers of two, and the demo's pictures lose less than a tenth of a decibel."""
+"""Rounding for the network: steps are powers of two, and the demo's images lose less than a tenth of a decibel."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -16,7 +16,7 @@ from mua.decode import decode_clip_frame
 from mua.rendering import frame_bounds, render_premultiplied
 
 DEMO = Path(__file__).resolve().parents[1] / "build" / "demo" / "avatar.muaavatar"
-TEACHER = 53.6  # dB, of the demo's pictures beside the teacher's, of which the figure covers COVERED
+TEACHER = 53.6  # dB, of the demo's images beside the teacher's, of which the figure covers COVERED
 COVERED = 0.08
 LOSS = 0.1  # dB
 STEADY = 0.999  # of the pixels; in a few, two splats of like depth change places, whatever moved them
@@ -89,7 +89,7 @@ def test_weights_are_rounded_by_how_many_texels_their_coefficients_move() -> Non
 @pytest.mark.skipif(not DEMO.exists(), reason="needs build/demo/avatar.muaavatar: run `make demo`")
 @pytest.mark.parametrize("frame", [0, 12])
 def test_pictures_of_the_demo_lose_less_than_a_tenth_of_a_decibel(frame: int) -> None:
-    """Beside the teacher, whose pictures the demo's miss by an error that this one is added to."""
+    """Beside the teacher, whose images the demo's miss by an error that this one is added to."""
     avatar = read(DEMO)
     clip = avatar.clips[0]
     exact, near = (decode_clip_frame(one, clip, frame=frame) for one in (avatar, rounded(avatar)))

@@ -1,4 +1,4 @@
-"""By how much pictures change with a sample of the subbands, against pictures of subbands that were changed."""
+"""By how much images change with a sample of the subbands, against images of subbands that were changed."""
 
 from copy import copy
 from dataclasses import replace
@@ -57,7 +57,7 @@ def run(tmp_path: Path, seed: int = 0) -> Run:
 
 
 def changed_pictures(recording: Recording, channel: int, step: float) -> Array:
-    """Mean squared change of a picture of the first frame, for each sample of a channel's LL and D3, over `step`."""
+    """Mean squared change of an image of the first frame, for each sample of a channel's LL and D3, over `step`."""
     size, clip = recording.rig.texels.size // 16, recording.clips[0]
     mean = torch.from_numpy(recording.mean_texture()).double()
     pose, rig = clip.pose(clip.recorded[0]), TorchRig.of(recording.rig, mean)

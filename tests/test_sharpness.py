@@ -1,4 +1,4 @@
-"""How narrow surfels are where a picture is busy, and how they lie along its lines."""
+"""How narrow surfels are where an image is busy, and how they lie along its lines."""
 
 import numpy as np
 import pytest
@@ -13,13 +13,13 @@ SINGLE = 64 * float(np.finfo(np.float32).eps)  # a few products of float32
 
 
 def wanted_by(gray: Array, alpha: int = 255) -> Sharpness:
-    """What a picture of greys [S, S] asks for."""
+    """What an image of greys [S, S] asks for."""
     channels = [gray, gray, gray, np.full_like(gray, alpha)]
     return sharpness(finer_picture(np.stack(channels, axis=2).astype(np.uint8), SIZE))
 
 
 def stripes(degrees: float, *, apart: float = 4.0) -> Array:
-    """Smooth stripes so many texels apart that change most in one direction, on a picture four times as fine."""
+    """Smooth stripes so many texels apart that change most in one direction, on an image four times as fine."""
     row, column = (np.indices((4 * SIZE, 4 * SIZE)) + 0.5) / 4
     angle = np.radians(degrees)
     return 127 + 120 * np.sin(2 * np.pi / apart * (np.cos(angle) * column + np.sin(angle) * row))

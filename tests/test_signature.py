@@ -14,7 +14,7 @@ WRONG = {
     "page with a comment": (b"<!-- mirror --><html>", "is an HTML page"),
     "pointer": (LFS, "is a Git LFS pointer, not a glTF file; fetch the file that it stands for"),
     "zip": (b"PK\x03\x04" + bytes(30), "is a ZIP archive, not a glTF file; unpack it first"),
-    "picture": (b"\x89PNG\r\n\x1a\n" + bytes(30), "is a PNG picture"),
+    "picture": (b"\x89PNG\r\n\x1a\n" + bytes(30), "is a PNG image"),
     "fbx": (b"Kaydara FBX Binary  \x00" + bytes(30), "is an FBX file, not a glTF file; open it in Blender"),
     "xml": (b'<?xml version="1.0"?><Error><Code>AccessDenied</Code></Error>', "is an XML document"),
     "nothing": (b"", "the file is empty, expected a glTF file"),

@@ -1,4 +1,4 @@
-"""The site that `make docs` builds: no warning, every guide and picture in it, every public name in the reference."""
+"""The site that `make docs` builds: no warning, every guide and image in it, every public name in the reference."""
 
 import subprocess
 import sys

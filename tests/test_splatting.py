@@ -1,4 +1,4 @@
-"""The differentiable rasteriser: its picture against the reference renderer, its gradients against differences."""
+"""The differentiable rasteriser: its image against the reference renderer, its gradients against differences."""
 
 from collections.abc import Callable
 from dataclasses import fields, replace
@@ -81,7 +81,7 @@ def test_a_large_splat_beside_the_picture_is_drawn_as_by_the_reference_renderer(
 
 
 def test_splats_are_seen_shaped_and_ordered_as_by_the_reference_kernels() -> None:
-    """By a camera whose middle is off its picture's, with splats thinner than a pixel, far aside, and in one place."""
+    """By a camera whose middle is off its image's, with splats thinner than a pixel, far aside, and in one place."""
     splats = random_splats(400)
     centres = splats.centres * np.where(np.arange(400) % 3 == 0, 2.0, 1.0)[:, None]
     centres[200:300] = centres[:100]  # of which the later lies before the earlier

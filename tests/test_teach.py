@@ -195,7 +195,7 @@ def test_a_full_disk_keeps_what_was_trained(
 
 
 def spoilt_pictures(capture: Path, change: Callable[[Image.Image], Image.Image | None], camera: str = "*") -> None:
-    """Change the pictures of a camera; None takes them away."""
+    """Change the images of a camera; None takes them away."""
     for file in capture.glob(f"images/*/{camera}/*.png"):
         with Image.open(file) as opened:
             changed = change(opened.copy())

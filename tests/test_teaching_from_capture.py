@@ -23,7 +23,7 @@ from mua.teaching.tracked import tracks_of
 
 CPU = torch.device("cpu")
 ROWS = 32
-STEP = 0.5 / 255 + 1e-6  # by which a picture of 8 bits is rounded
+STEP = 0.5 / 255 + 1e-6  # by which an image of 8 bits is rounded
 
 
 @pytest.fixture(scope="module")

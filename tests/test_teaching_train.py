@@ -1,4 +1,4 @@
-"""A teacher learns from pictures, goes on after a kill to the same bytes, and is the same in two processes."""
+"""A teacher learns from images, goes on after a kill to the same bytes, and is the same in two processes."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -159,7 +159,7 @@ def away(poses: PoseRefinement) -> float:
 def test_poses_are_turned_to_fit_the_pictures(tmp_path: Path) -> None:
     poses = refinement(3.0)
     with torch.no_grad():
-        poses.turns[0, 1] = 1.0  # the pictures show what is not turned
+        poses.turns[0, 1] = 1.0  # the images show what is not turned
     before = away(poses)
     assert 3 < before < 3 * 3**0.5
     shown = replace(material(), poses=[[0] * 3, [2] * 3, [4] * 3])

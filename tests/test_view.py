@@ -1,4 +1,4 @@
-"""mua-view writes the picture or video that it is asked for and refuses what it cannot show in a sentence."""
+"""mua-view writes the image or video that it is asked for and refuses what it cannot show in a sentence."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ CODED_SHADES = 3  # of 255, by which a plain colour may come back from 8-bit YCb
 
 
 def video(path: Path, *, side: int, channels: int = 3) -> np.ndarray:
-    """Pictures [F, H, W, channels] of a video of square pictures."""
+    """Images [F, H, W, channels] of a video of square images."""
     clear = ["-c:v", "libvpx-vp9"] if path.suffix == ".webm" else []  # whose decoder reads transparency
     layout = "rgba" if channels == 4 else "rgb24"
     line = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", *clear, "-i", path, "-f", "rawvideo", "-pix_fmt", layout]
@@ -49,7 +49,7 @@ def test_frames_and_angles_differ(avatar_file: Path, tmp_path: Path) -> None:
     assert len(images) == len(choices)
 
 
-@pytest.mark.parametrize(("name", "written"), [("v.png", "v.png: 40 x 60 pixels"), ("v.gif", "v.gif: 2 pictures of")])
+@pytest.mark.parametrize(("name", "written"), [("v.png", "v.png: 40 x 60 pixels"), ("v.gif", "v.gif: 2 frames of")])
 def test_names_the_file_that_it_has_written(
     avatar_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, written: str
 ) -> None:

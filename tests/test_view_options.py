@@ -44,7 +44,7 @@ def test_no_option_is_forgotten() -> None:
     ("output", "choice", "sentence"),
     [
         (None, {"frames": "0:3"}, "--frames: works only with a video; no -o is given"),
-        (None, {"reference": True}, "--reference: works only with a picture, a video or a turntable; no -o is given"),
+        (None, {"reference": True}, "--reference: works only with an image, a video or a turntable; no -o is given"),
         (None, {"turntable": True}, "--turntable: no -o is given; expected -o with a name that ends in .mp4"),
         (None, {"background": "transparent"}, "--background is transparent, but the window cannot be"),
         (None, {"show": "hat"}, "--show is 'hat'"),
@@ -59,17 +59,17 @@ def test_no_option_is_forgotten() -> None:
         (None, {"ipd": float("inf"), "stereo": True}, "--ipd is inf; expected a distance in metres"),
         (None, {"ipd": 0.06}, "--ipd: works only with --stereo, which is not given"),
         (None, {"mapping": Path("m.json")}, "--mapping: works only with --motion, which is not given"),
-        ("v.png", {"frames": "0:3"}, "--frames: works only with a video; -o is v.png, a picture"),
+        ("v.png", {"frames": "0:3"}, "--frames: works only with a video; -o is v.png, an image"),
         ("v.png", {"orbit": 45.0}, "--orbit: works only with the window, a video or a turntable; -o is v.png"),
         ("v.png", {"turntable": True}, "--turntable: -o is v.png; expected -o with a name that ends in .mp4"),
-        ("v.mp4", {"frame": 3}, "--frame: works only with the window, a picture or a turntable; -o is v.mp4, a video"),
+        ("v.mp4", {"frame": 3}, "--frame: works only with the window, an image or a turntable; -o is v.mp4, a video"),
         ("v.mp4", {"frames": "0:3", "turntable": True}, "--frames: works only with a video; -o is v.mp4, a turntable"),
         ("v.mp4", {"background": "transparent"}, "--background is transparent, but v.mp4 cannot be"),
         ("v.jpg", {"background": "transparent"}, "but v.jpg cannot be; expected -o with .webm, .gif, .png"),
         ("v.webm", {"size": "33x32"}, "--size is '33x32'; a video needs an even width and height"),
         ("v.png", {"reference": True, "device": "0"}, "--device and --reference are both given"),
-        ("v.docx", {}, "expected a name that ends like a picture, such as .png, or in .mp4, .webm or .gif"),
-        ("v.psd", {}, "-o is v.psd; expected a name that ends like a picture"),  # which can be read alone
+        ("v.docx", {}, "expected a name that ends like an image, such as .png, or in .mp4, .webm or .gif"),
+        ("v.psd", {}, "-o is v.psd; expected a name that ends like an image"),  # which can be read alone
         ("v.png", {"motion": Path("nowhere.bvh")}, "nowhere.muaavatar: there is no such file"),
     ],
 )

@@ -1,4 +1,4 @@
-"""How well the true surfaces of a capture fit its pictures: whether cameras, frames and surfaces belong together."""
+"""How well the true surfaces of a capture fit its images: whether cameras, frames and surfaces belong together."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,16 +17,16 @@ FRAMES = 3  # of each clip that are compared: first, middle and last
 
 @dataclass(frozen=True)
 class Fit:
-    """Distances between the edges of surface and picture, pixels."""
+    """Distances between the edges of surface and image, pixels."""
 
     mean: float
     worst: float
     pictures: int
-    where: str  # the picture with the worst
+    where: str  # the image with the worst
 
 
 def measure_fit(capture: Capture) -> Fit:
-    """Draw the true surfaces of some frames over all cameras' pictures; needs OpenGL."""
+    """Draw the true surfaces of some frames over all cameras' images; needs OpenGL."""
     with np.load(capture.folder / "render" / "surface.npz") as held:
         faces, uv = held["faces"], held["uv"].reshape(-1, 2)
     texture = np.asarray(Image.open(capture.folder / "render" / "texture.png"))

@@ -1,4 +1,4 @@
-"""All of a virtual capture but its pictures: template, motion, true surfaces, cameras, and the renderer's job."""
+"""All of a virtual capture but its images: template, motion, true surfaces, cameras, and the renderer's job."""
 
 import json
 import shutil
@@ -27,7 +27,7 @@ from mua.rig.surface_points import interpolate, spread_points
 from mua.teachers.simulated_surface import SimulatedSurface
 from mua.teachers.surface import SkinnedSurface
 
-ATLAS = 2048  # texels of the rendered picture of all materials along a side
+ATLAS = 2048  # texels of the rendered image of all materials along a side
 IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame:06d}.ply"
 TRACKS, TRACKED = "tracks/{clip}.npz", 1000  # points all over the surface that are followed
 ONE_FILE = (".glb", ".vrm", ".usdc", ".usdz")  # kinds of characters that can be copied
@@ -63,12 +63,12 @@ class Filmed:
 
 
 def job_file(folder: Path) -> Path:
-    """What the renderer of a capture is given; it is there once all but the pictures is."""
+    """What the renderer of a capture is given; it is there once all but the images is."""
     return folder / "render" / "job.json"
 
 
 def prepare(order: Order, folder: Path) -> None:
-    """Write all of a capture but its pictures, and last the job that makes them."""
+    """Write all of a capture but its images, and last the job that makes them."""
     path = Path(order.character)
     size = FigureSize(height=order.height)
     character = read_character(path, "auto", atlas_size=ATLAS, size=size, leave_out=order.leave_out)
@@ -181,7 +181,7 @@ def copy_template(character: Path, folder: Path) -> Path:
 
 
 def write_job(order: Order, capture: Capture, character: Character, outline: Array) -> None:
-    """Write what tools/cycles_render.py reads: surface, texture, and the list of pictures in the order of the clips."""
+    """Write what tools/cycles_render.py reads: surface, texture, and the list of images in the order of the clips."""
     mesh, place = character.mesh, job_file(capture.folder)
     with replacing(place.with_name("surface.npz")) as temporary:
         np.savez(temporary, faces=mesh.faces, uv=mesh.uv[mesh.uv_faces])
@@ -211,13 +211,13 @@ def write_job(order: Order, capture: Capture, character: Character, outline: Arr
 
 
 def pictures(capture: Capture, seed: int) -> list[dict[str, str | int]]:
-    """Surface, camera, file and seed of every picture, all cameras of a frame after each other."""
+    """Surface, camera, file and seed of every image, all cameras of a frame after each other."""
     rows: list[dict[str, str | int]] = []
     for clip in capture.clips:
         for frame in range(clip.frames):
             mesh = MESHES.format(clip=clip.name, frame=frame)
             for camera in capture.cameras:
                 image = IMAGES.format(clip=clip.name, camera=camera.name, frame=frame)
-                noise = seed * 1_000_003 + len(rows)  # no two pictures have the same
+                noise = seed * 1_000_003 + len(rows)  # no two images have the same
                 rows.append({"mesh": f"../{mesh}", "camera": camera.name, "image": f"../{image}", "seed": noise})
     return rows

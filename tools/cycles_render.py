@@ -1,11 +1,11 @@
-"""Renders the pictures of a job with Blender's Cycles; runs in a Python that has bpy and knows nothing of mua.
+"""Renders the images of a job with Blender's Cycles; runs in a Python that has bpy and knows nothing of mua.
 
     python tools/cycles_render.py FOLDER/render/job.json [--threads 2]
 
-A job is the surface (`surface.npz`: faces [F, 3], the UV of each corner [F, 3, 2] with v down), its picture
-(`texture.png`, sRGB, alpha is opacity), cameras, and pictures to make: each names a .ply with the vertices, a camera
-and the file to write. Pictures that are there are left as they are, so a job that was stopped goes on where it was.
-Pictures are sRGB with straight alpha, without any film look. The world has Y up; Blender does not mind.
+A job is the surface (`surface.npz`: faces [F, 3], the UV of each corner [F, 3, 2] with v down), its image
+(`texture.png`, sRGB, alpha is opacity), cameras, and images to make: each names a .ply with the vertices, a camera
+and the file to write. Images that are there are left as they are, so a job that was stopped goes on where it was.
+Images are sRGB with straight alpha, without any film look. The world has Y up; Blender does not mind.
 """
 
 import argparse
@@ -30,7 +30,7 @@ LAMP_DISTANCE, LAMP_SIDE = 2.5, 1.6  # of the figure's size
 
 
 def render(job_file: Path, *, threads: int) -> None:
-    """Make every picture of a job that is not there yet, and print how far it is after each frame."""
+    """Make every image of a job that is not there yet, and print how far it is after each frame."""
     folder, job = job_file.parent, json.loads(job_file.read_text())
     missing = [one for one in job["pictures"] if not (folder / one["image"]).exists()]
     done = len(job["pictures"]) - len(missing)

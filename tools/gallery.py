@@ -29,7 +29,7 @@ SAMPLES = ROOT.parent / "shared" / "data"  # where the tests look for real data 
 TEXELS, FRAMES = 384, 120
 GOOD_IOU, GOOD_PSNR = 0.97, 30.0
 SECONDS = 3600  # after which a run is ended
-STRIP = (1152, 534)  # width and height of one view in the picture of a check, pixels
+STRIP = (1152, 534)  # width and height of one view in the image of a check, pixels
 VIEWS = (3, 4)  # of each character: three quarters of its own pose, and the first frame of its motion
 HEADINGS = ("character", "motion", "overlap", "inside", "limbs", "facing", "explained", "size", "seconds", "memory")
 

@@ -3,7 +3,7 @@
     python tools/render_capture.py hero.glb --motion walk.bvh dance.bvh -o captures/hero --blender blender/bin/python
 
 Cloth hangs and swings by the simulation of mua-bake (--still: joints alone move the surface); the character is kept on
-the spot. FOLDER becomes a capture: template, motion on its skeleton, pictures whose alpha is the mask, true surfaces
+the spot. FOLDER becomes a capture: template, motion on its skeleton, images whose alpha is the mask, true surfaces
 and calibration. A second run goes on where the first one stopped. Blender is a Python package that needs its own
 environment, best beside the project:
 
@@ -26,7 +26,7 @@ from mua.capture import open_capture
 from mua.errors import InputError
 
 RENDERER = Path(__file__).with_name("cycles_render.py")
-WORST_FIT = 1.0  # pixels between the edges of true surface and picture: more is a wrong calibration
+WORST_FIT = 1.0  # pixels between the edges of true surface and image: more is a wrong calibration
 HOW_TO_GET = "make one with `python3.11 -m venv blender && blender/bin/pip install bpy==5.0.1`"
 
 
@@ -84,11 +84,11 @@ def run_renderer(command: Sequence[str], *, log: Path) -> None:
 
 
 def check_fit(folder: Path) -> None:
-    """Print how well the true surfaces fit the pictures; raises InputError where they do not."""
+    """Print how well the true surfaces fit the images; raises InputError where they do not."""
     fit = measure_fit(open_capture(folder))
     print(
         f"{folder}: the edges of the true surface lie {fit.mean:.2f} pixels from those of the mask on the mean of "
-        f"{fit.pictures} pictures, {fit.worst:.2f} in the worst ({fit.where})"
+        f"{fit.pictures} images, {fit.worst:.2f} in the worst ({fit.where})"
     )
     if fit.worst > WORST_FIT:
         raise InputError(f"{fit.where}: the true surface is {fit.worst:.2f} pixels beside it, expected {WORST_FIT:g}")
@@ -114,7 +114,7 @@ def parser() -> argparse.ArgumentParser:
     add("-o", "--output", type=Path, required=True, metavar="FOLDER", help="where the capture goes")
     add("--cameras", type=at_least(1), default=8, help="cameras to train on; default %(default)s")
     add("--held-out-cameras", type=at_least(0), default=2, help="cameras to test with; default %(default)s")
-    add("--size", type=at_least(16), default=256, help="pixels of a picture along a side; default %(default)s")
+    add("--size", type=at_least(16), default=256, help="pixels of an image along a side; default %(default)s")
     add("--frames", type=at_least(1), default=100, help="frames to train on; default %(default)s")
     add("--held-out-frames", type=at_least(0), default=30, help="frames to test with; default %(default)s")
     add("--samples", type=at_least(1), default=16, help="light paths for each pixel; default %(default)s")

@@ -46,7 +46,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Pages and pictures by their paths in the repository, in place of the folder docs alone."""
+    """Pages and images by their paths in the repository, in place of the folder docs alone."""
     theme = [file for file in files if not Path(file.abs_src_path or "").is_relative_to(config.docs_dir)]
     pages = _pages()
     linked = {target for page in pages for target in _targets(page) if target.is_file() and target.suffix != ".md"}

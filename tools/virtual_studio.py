@@ -17,7 +17,7 @@ SWAY = 0.5  # seconds: slower ways of the hips through the world are taken out
 LOW, HIGH, BETWEEN = np.radians([3.0, 25.0, 14.0])  # elevations of the two rings, and of held-out cameras
 JITTER = 0.1  # of the angle between two cameras
 DISTANCE = 3.0  # of the figure's size
-FILL = 0.94  # of the picture's half size, that the figure reaches
+FILL = 0.94  # of the image's half size, that the figure reaches
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def ring(
     *,
     cameras: int,
     held_out: int,
-    size: int,  # of the square pictures, pixels
+    size: int,  # of the square images, pixels
     rng: np.random.Generator,
 ) -> tuple[CaptureCamera, ...]:
     """Cameras about the points at two heights in turn, and held-out ones between them, all with one lens."""

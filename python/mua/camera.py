@@ -74,7 +74,7 @@ def sees(
     camera: Camera,
     box: Array,  # [2, 3] lowest and highest corner, metres
 ) -> bool:
-    """Whether any of the box may be in the picture: not all of it lies beyond one side, or before the near plane."""
+    """Whether any of the box may be in the image: not all of it lies beyond one side, or before the near plane."""
     corners = np.array(np.meshgrid(*np.transpose(box))).reshape(3, -1)
     x, y, z, w = camera.projection @ camera.view @ np.concatenate([corners, np.ones((1, corners.shape[1]))])
     return not any(side.all() for side in (x > w, x < -w, y > w, y < -w, z < -w))

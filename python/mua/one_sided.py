@@ -1,6 +1,6 @@
 """Which texels are one-sided: hidden by others wherever a camera sees their triangles from behind.
 
-That is measured on pictures of an avatar's most different poses, from all around: a texel is one-sided that nowhere
+That is measured on images of an avatar's most different poses, from all around: a texel is one-sided that nowhere
 gives a pixel LARGEST_SHARE or more of its colour while splat_project would leave it out. None is that lies near an open
 edge of the mesh: tips of hair and hems are thin, and a pose that was not looked at shows them from within.
 """
@@ -29,8 +29,8 @@ LARGEST_SHARE = 1 / 24  # of a pixel's colour
 OPEN = 0.01  # of the figure's largest side: texels so near to an open edge are not one-sided
 SAME_PLACE = 1e-6  # of the same: vertices so near to each other are one, as along the seams of a texture
 POSES, VIEWS = 8, 24  # views of each pose
-PIXEL = 1.0  # texels, in the middle of a picture
-FOV = np.radians(60)  # of the pictures; near enough for openings to be looked into
+PIXEL = 1.0  # texels, in the middle of an image
+FOV = np.radians(60)  # of the images; near enough for openings to be looked into
 LARGEST_SIDE = 4096  # pixels
 SAME = 1e-9  # squared sines, summed over joints, of poses that are one
 LOOKED_AT = 512  # frames, evenly over all clips, among which poses are chosen

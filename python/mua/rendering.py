@@ -21,7 +21,7 @@ from mua.kernels.splat_project import splat_project
 from mua.kernels.splat_sort import splat_sort
 
 WHITE = (1.0, 1.0, 1.0)
-SIZE = (640, 960)  # pixels of a picture: upright, as people stand
+SIZE = (640, 960)  # pixels of an image: upright, as people stand
 LARGEST = 8192  # pixels along a side
 
 
@@ -44,9 +44,9 @@ def render(
     elevation: float = 0.0,
     background: str = "white",
 ) -> Image.Image:
-    """A picture of the splats on the CPU, in a second or a few.
+    """An image of the splats on the CPU, in a second or a few.
 
-    Without a `camera`, one is placed so that all splats are in the picture: `size` is its width and height in pixels,
+    Without a `camera`, one is placed so that all splats are in the image: `size` is its width and height in pixels,
     `azimuth` the degrees by which it goes round to the avatar's left, 0 being the front of the bind pose, and
     `elevation` the degrees from which it looks down. `background` is a colour name or `#rrggbb`.
 

@@ -17,7 +17,7 @@ AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """Base colour of some faces: a picture with the material's factor already multiplied in."""
+    """Base colour of some faces: an image with the material's factor already multiplied in."""
 
     name: str
     image: Array  # [h, w, 4] uint8 sRGB, at least 1 x 1; alpha is opacity (255 where the material is opaque)

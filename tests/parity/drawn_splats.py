@@ -84,14 +84,14 @@ def sort_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> Sort
 
 
 def draw_frame(device: Device, frame: Splats, cameras: Sequence[Camera]) -> Array:
-    """The shaders' picture [E, H, W, 4], premultiplied."""
+    """The shaders' image [E, H, W, 4], premultiplied."""
     splats = sort_frame(device, frame, cameras)
     image = draw_image(device, SplatRenderer(device, IMAGE_FORMAT), splats, cameras)
     return np.stack(np.split(image, len(cameras), axis=1))
 
 
 def reference_frame(frame: Splats, cameras: Sequence[Camera]) -> Array:
-    """The reference's picture [E, H, W, 4], premultiplied: one order for both eyes."""
+    """The reference's image [E, H, W, 4], premultiplied: one order for both eyes."""
     frame = as_drawn(frame)
     splats, keys, ellipses = splat_project(
         frame.centres,

@@ -1,6 +1,6 @@
 """One-line faults of the shaders, each of which the kernel's parity test must notice (test_mutations.py).
 
-Not listed, because no picture and no number shows them: reads past a tile's edge whose results are not written, and
+Not listed, because no image and no number shows them: reads past a tile's edge whose results are not written, and
 quads drawn for an eye that does not see the splat, whose deviations of 0 leave them without opacity.
 """
 

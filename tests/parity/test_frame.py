@@ -1,4 +1,4 @@
-"""The whole frame, from a window of poses to sorted splats and their picture, against the reference in float64."""
+"""The whole frame, from a window of poses to sorted splats and their image, against the reference in float64."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -34,7 +34,7 @@ POSITION_BOUND = 0.125 * 2**-10 * float(np.sqrt(3))
 MOST_KEYS = 4.0  # of 65535, by which splats so far from where they belong may be sorted wrongly
 COLOR_BOUND = 1 / 512  # half a step of 8 bits
 OPACITY_BOUND = 2**-10  # a half float below 1, and a logit in one, both of which a GPU may round towards zero
-LEAST_PSNR = 50.0  # dB of a picture against the CPU rasteriser's
+LEAST_PSNR = 50.0  # dB of an image against the CPU rasteriser's
 FEWER_THAN = 31  # dispatches in a frame
 OPACITY = 10  # channel
 
@@ -72,7 +72,7 @@ def opened(device: Device, avatar: Avatar, directory: Path, *, storage: Storage 
 
 
 def psnr(image: Array, exact: Array) -> float:
-    """Decibels below 1; two pictures that are both empty agree by 120."""
+    """Decibels below 1; two images that are both empty agree by 120."""
     return float(-10 * np.log10(np.maximum(np.mean((image - exact) ** 2), 1e-12)))
 
 

@@ -1,7 +1,7 @@
 """Blending against a loop; windows are in test_splat_draw_integral.py, colours in test_splat_draw_colors.py.
 
 The shaders against the reference: one splat to the rounding of a half float, whole frames by their PSNR; against the
-exact picture in test_splat_draw_exact.py.
+exact image in test_splat_draw_exact.py.
 """
 
 from collections.abc import Sequence
@@ -110,7 +110,7 @@ FIELDS = ["centres", "rotations", "scales", "opacities", "sh", "texel_dq"]
 
 @cache
 def reference_scene(eyes: int) -> tuple[Splats, tuple[Camera, ...], Array]:
-    """The scene and the reference's picture of it [E, H, W, 4]."""
+    """The scene and the reference's image of it [E, H, W, 4]."""
     frame, seen_by = scene(eyes)
     return frame, seen_by, reference_frame(frame, seen_by)
 

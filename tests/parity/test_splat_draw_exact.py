@@ -1,4 +1,4 @@
-"""What is drawn of a surface against the exact picture: every Gaussian integrated over pixels, in the order of depth.
+"""What is drawn of a surface against the exact image: every Gaussian integrated over pixels, in the order of depth.
 
 A window stands for each Gaussian: splats that stand alone differ, those of a surface lie over one another.
 """
@@ -21,7 +21,7 @@ from mua.rendering import render_premultiplied
 RADIUS, COUNT = 0.4, 3000
 # Of baked avatars: the deviation of a splat in distances of its neighbours, and the opacity.
 SPREAD, OPACITY = 0.65, 0.993
-ROOM = 0.88 * np.array([[-1.0, -1, -1], [1, 1, 1]])  # metres; the ball takes a twentieth of a picture of it
+ROOM = 0.88 * np.array([[-1.0, -1, -1], [1, 1, 1]])  # metres; the ball takes a twentieth of an image of it
 MOST_ALPHA = 0.99  # of one splat at one pixel, as in 3D Gaussian Splatting
 LEAST_EXACT_PSNR = 45.0  # dB
 

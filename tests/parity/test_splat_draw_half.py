@@ -1,4 +1,4 @@
-"""What a fragment that computes in half floats, as on mobile devices, does to a picture.
+"""What a fragment that computes in half floats, as on mobile devices, does to an image.
 
 Devices at hand compute it in float32 whatever the shader says. So the reference's steps are rounded here one by one, as
 splatFragment of ComputeShaders/splat_draw.hlsl makes them.
@@ -16,7 +16,7 @@ from mua.kernels.splat_project import wide_deviations
 
 SCREEN = (48, 40)
 COUNT = 1200  # splats: tens lie over each pixel
-LARGEST_ERROR = 1 / 255  # of any channel of the picture: at most a step of 8 bits
+LARGEST_ERROR = 1 / 255  # of any channel of the image: at most a step of 8 bits
 
 
 def to_nearest(values: Array) -> Array:

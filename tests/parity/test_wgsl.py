@@ -1,4 +1,4 @@
-"""The shaders for browsers do what the desktop's do, on the golden cases and in pictures of all that is shown."""
+"""The shaders for browsers do what the desktop's do, on the golden cases and in images of all that is shown."""
 
 from dataclasses import replace
 from pathlib import Path

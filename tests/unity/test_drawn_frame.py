@@ -166,7 +166,7 @@ def agree(found: Array, expected: Array) -> None:
 
 
 def seen(image: Array) -> bool:
-    """Whether a picture would tell an upside-down one, or one shifted as between the eyes."""
+    """Whether an image would tell an upside-down one, or one shifted as between the eyes."""
     return bool(np.mean(image[..., 3] > 0.5) > 0.05)
 
 

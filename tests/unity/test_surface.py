@@ -1,6 +1,6 @@
 """The package's surfaces: the triangles that mono reads, and every pass of surface.shader, recorded and replayed.
 
-Triangles are held against the desktop player's; pictures against those that numpy draws of the posed avatar.
+Triangles are held against the desktop player's; images against those that numpy draws of the posed avatar.
 """
 
 from collections.abc import Iterator

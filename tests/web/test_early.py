@@ -1,4 +1,4 @@
-"""Pictures that are drawn while kernels are still being compiled: the same, and none of what has gone meanwhile."""
+"""Images that are drawn while kernels are still being compiled: the same, and none of what has gone meanwhile."""
 
 import json
 from pathlib import Path

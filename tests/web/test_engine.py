@@ -1,4 +1,4 @@
-"""The engine in a browser: pictures beside the desktop player's, levels, time and place."""
+"""The engine in a browser: images beside the desktop player's, levels, time and place."""
 
 import base64
 import io
@@ -28,7 +28,7 @@ from mua.share.site import player_files
 
 DEMO = Path(__file__).parents[2] / "build" / "demo" / "avatar.muaavatar"
 SCREEN = (240, 320)
-LEAST_PSNR = 45.0  # dB beside the desktop player's picture, both of 8 bits
+LEAST_PSNR = 45.0  # dB beside the desktop player's image, both of 8 bits
 GREY = (0.5, 0.5, 0.5)
 PAGE = f"<!doctype html><body><canvas width={SCREEN[0]} height={SCREEN[1]}></canvas>".encode()
 START = """(async () => {
@@ -71,13 +71,13 @@ def load(page: Page, source: str = '"a.muaavatar"') -> str:
 
 
 def screenshot(page: Page) -> Array:
-    """The picture over grey, [H, W, 3] of 0 to 1."""
+    """The image over grey, [H, W, 3] of 0 to 1."""
     straight = transparent(page)
     return np.asarray(straight[..., :3] * straight[..., 3:] + (1 - straight[..., 3:]) * GREY)
 
 
 def transparent(page: Page) -> Array:
-    """The picture, [H, W, 4] of 0 to 1."""
+    """The image, [H, W, 4] of 0 to 1."""
     code = """player.screenshot().then((blob) => new Promise((resolve) => {
       const reader = new FileReader();
       reader.onload = () => resolve(reader.result);
@@ -101,7 +101,7 @@ def desktop(
     *,
     both: bool = False,
 ) -> Array:
-    """The desktop player's picture from where the page's camera is, of both eyes where asked for."""
+    """The desktop player's image from where the page's camera is, of both eyes where asked for."""
     buffers = AvatarBuffers(device, file)
     clip = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)
     levels = Levels(buffers.avatar, level)

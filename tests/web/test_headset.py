@@ -1,4 +1,4 @@
-"""The player in a headset: what a stand-in for WebXR (fake_headset.js) is shown, beside the desktop's pictures."""
+"""The player in a headset: what a stand-in for WebXR (fake_headset.js) is shown, beside the desktop's images."""
 
 import base64
 import json
@@ -28,14 +28,14 @@ FAKE = (Path(__file__).parent / "fake_headset.js").read_text()
 BACKDROP = (0.44, 0.47, 0.5)  # sRGB of the empty room
 IMAGE, SEEN = (168, 128), (slice(6, 166), slice(4, 124))  # rows and columns: of an image, and of what an eye sees of it
 SCREEN = (120, 160)
-ROUNDED = 2 / 255  # two pictures of 8 bits, each rounded
+ROUNDED = 2 / 255  # two images of 8 bits, each rounded
 BEFORE = 1.2  # metres between the reader and what is nearest
 NEAR, FAR = 0.02, 1000.0
 FRAME, AZIMUTH = 3, 0.7
 
 
 def eye_to_clip(aside: float) -> Array:
-    """A projection [4, 4] of an eye whose picture reaches farther to one side, z of 0 to w."""
+    """A projection [4, 4] of an eye whose image reaches farther to one side, z of 0 to w."""
     left, right, down, up = -0.45 - aside, 0.45 - aside, -0.7, 0.5  # slopes
     return np.array(
         [
@@ -96,7 +96,7 @@ def world_to_room(file: Path) -> Array:
 
 
 def desktop(device: Device, file: Path, eyes: Sequence[tuple[Array, Array]], shown: str) -> Array:
-    """The desktop player's picture for these eyes, side by side over the empty room, [H, E W, 3] of 0 to 1."""
+    """The desktop player's image for these eyes, side by side over the empty room, [H, E W, 3] of 0 to 1."""
     buffers, room = AvatarBuffers(device, file), world_to_room(file)
     cameras = [Camera(view @ room, projection_of(clip), SCREEN) for view, clip in eyes]
     played = resample(buffers.avatar.clips[0], buffers.avatar.encoding.rate)

@@ -15,7 +15,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.pose.resample import resample
 
-LONGEST = 0.25  # seconds that one picture plays at most
+LONGEST = 0.25  # seconds that one image plays at most
 PLACE = np.tile([10, 20, 30], 2)  # where modules.mjs stands it, metres
 
 

@@ -176,7 +176,7 @@ def halves() -> Iterator[tuple[Give, Event]]:
         thread.join()
 
 
-# Counts what is not transparent in a picture.
+# Counts what is not transparent in an image.
 COUNT = """(picture) => {
   const flat = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
   flat.drawImage(picture, 0, 0);
@@ -186,7 +186,7 @@ COUNT = """(picture) => {
 
 
 def seen(page: Page) -> int:
-    """Pixels of the present picture that are not transparent."""
+    """Pixels of the present image that are not transparent."""
     picture = f"{ELEMENT}.player.draw().then(() => {ELEMENT}.screenshot()).then(createImageBitmap)"
     return int(page.evaluate(f"{picture}.then({COUNT})"))
 

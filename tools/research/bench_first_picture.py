@@ -1,4 +1,4 @@
-"""Print when a browser shows the first picture of an avatar, and what it has read and computed by then.
+"""Print when a browser shows the first image of an avatar, and what it has read and computed by then.
 
 python tools/research/bench_first_picture.py hero.muaavatar [more.muaavatar] [--rate 2.5] [--runs 3]: the page that
 mua-share writes, in a headless browser whose WebGPU is software, on a connection of so many megabytes a second. The

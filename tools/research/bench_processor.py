@@ -98,7 +98,7 @@ def kernels(device: Device, frame: SplatFrame[AvatarFrame], recorded: Recorded, 
 def drawing(
     device: Device, frame: SplatFrame[AvatarFrame], clip: Any, window: list[int], camera: Camera, name: str, repeat: int
 ) -> None:
-    """Print what drawing the frame before a camera takes beyond an empty picture."""
+    """Print what drawing the frame before a camera takes beyond an empty image."""
     commands = device.commands()
     frame.avatars[0].decode(commands, clip.rotations[window], clip.translations[window])
     frame.sort(commands, [camera])

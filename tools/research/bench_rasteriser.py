@@ -1,4 +1,4 @@
-"""Print what a picture and its gradients take in the differentiable rasteriser, and how far it is from the reference.
+"""Print what an image and its gradients take in the differentiable rasteriser, and how far it is from the reference.
 
 python tools/research/bench_rasteriser.py hero.muaavatar [--side 256] [--device cuda [--gsplat]]: one frame of the first
 clip in single precision, the median of several runs; the first compiles the kernels and is left out.
@@ -47,7 +47,7 @@ def main() -> None:
         show_times("gsplat", lambda: gsplat_views(splats, [eye])[0])
         with torch.no_grad():
             error = (gsplat_views(splats, [eye])[0] - rasterise(splats, eye, bounds)).square().mean().item()
-        print(f"gsplat's picture is {-10 * np.log10(error):.0f} dB from ours")
+        print(f"gsplat's image is {-10 * np.log10(error):.0f} dB from ours")
 
 
 def show_times(name: str, draw: Callable[[], torch.Tensor]) -> None:

@@ -3,7 +3,7 @@
     python tools/research/compare_systems.py RECORDING --preset tiny --seconds 40 -o build/systems.md
 
 Share of the variance about the mean texture, by attribute, over the frames that the recording keeps whole. `mua-eval`
-draws pictures and takes the paper's metrics; this needs no GPU.
+draws images and takes the paper's metrics; this needs no GPU.
 """
 
 import argparse

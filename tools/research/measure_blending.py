@@ -1,7 +1,7 @@
 """Print how far splats blended as light, as in a Unity project of linear colour space, are from blended sRGB values.
 
 python tools/research/measure_blending.py hero.muaavatar: frames of all clips over white and over black; dB of the 8-bit
-pictures over the pixels that any splat covers. An avatar is fitted by blending sRGB values, as a project in gamma space
+images over the pixels that any splat covers. An avatar is fitted by blending sRGB values, as a project in gamma space
 does.
 """
 

@@ -1,4 +1,4 @@
-"""Print how far drawn pictures are from exact ones, and what leaving out one-sided texels saves.
+"""Print how far drawn images are from exact ones, and what leaving out one-sided texels saves.
 
 python tools/research/measure_drawing.py hero.muaavatar --clip walk_07 --frame 280 --pictures build/drawn: one frame
 from all sides, as an eye of a headset sees it, by the device at hand. Exact is every Gaussian of every splat integrated
@@ -42,7 +42,7 @@ POINTS = 3  # along a side of a pixel
 REACH = 4.0  # deviations; beyond, a Gaussian is below 1/2900
 MOST_ALPHA = 0.99  # of one splat at one pixel, as in 3D Gaussian Splatting
 BACKGROUNDS = (0.0, 1.0)  # of which the worse counts
-SHOWN = 0.5  # grey behind pictures
+SHOWN = 0.5  # grey behind images
 
 
 @wp.func
@@ -97,7 +97,7 @@ def main() -> None:
     parser.add_argument("--distance", type=float, action="append", help="metres; 2.2, 1.0 and 0.6 if left out")
     parser.add_argument("--share", type=float, action="append", default=[], help="24 for 1/24 of a pixel's colour")
     parser.add_argument("--recorded", action="append", default=[], help="clip that --share measures; all if left out")
-    parser.add_argument("--pictures", type=Path, help="folder for pictures: exact, all splats, without one-sided ones")
+    parser.add_argument("--pictures", type=Path, help="folder for images: exact, all splats, without one-sided ones")
     given = parser.parse_args()
     torch.set_num_threads(1)
     avatar = read(given.file)
@@ -125,7 +125,7 @@ def main() -> None:
 
 
 def save(folder: Path, distance: float, pictures: list[list[Array]]) -> None:
-    """A picture for each side: the exact one, then those of each marking, beside each other."""
+    """An image for each side: the exact one, then those of each marking, beside each other."""
     for side, images in enumerate(zip(*pictures, strict=True)):
         Image.fromarray(np.hstack(images)).save(folder / f"{distance}_{side}.png")
 
@@ -171,7 +171,7 @@ def exact(splats: Splats, camera: Camera) -> Array:
 def drawn(
     device: Device, avatar: Avatar, clip: Clip, frame: int, cameras: list[Camera]
 ) -> Iterator[tuple[Array, float]]:
-    """The device's picture of a frame for each camera, and its fragments."""
+    """The device's image of a frame for each camera, and its fragments."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "drawn.muaavatar"
         write(path, avatar)
@@ -188,7 +188,7 @@ def drawn(
 
 
 def decibels(found: Array, wanted: Array) -> float:
-    """Of the whole picture over the worse background."""
+    """Of the whole image over the worse background."""
     over = [[image[..., :3] + grey * (1 - image[..., 3:]) for image in (found, wanted)] for grey in BACKGROUNDS]
     return float(-10 * np.log10(max(np.mean((one - other) ** 2) for one, other in over)))
 

@@ -1,6 +1,6 @@
-"""Print how far a picture would be off if a splat had one colour for both eyes in place of one for each.
+"""Print how far an image would be off if a splat had one colour for both eyes in place of one for each.
 
-python tools/research/measure_eyes.py hero.muaavatar --clip walk_07 --frame 0 --frame 20: the left eye's picture by the
+python tools/research/measure_eyes.py hero.muaavatar --clip walk_07 --frame 0 --frame 20: the left eye's image by the
 device at hand, from the front and from aside, at the height of face and chest. Order and ellipses are the same.
 """
 

@@ -3,7 +3,7 @@
 python tools/research/measure_hiding.py hero.muaavatar --clip walk_07 --frame 280 --motion jump.bvh: first how far the
 posed template must be moved inwards so that it hides no splat that is seen in the avatar's most different poses; then,
 from all sides as an eye of a headset sees a frame of the clip and one of the motion, the splats and fragments that are
-left, decibels against the exact picture, and what a Quest 3 would take to draw both eyes, modelled.
+left, decibels against the exact image, and what a Quest 3 would take to draw both eyes, modelled.
 """
 
 import argparse

@@ -1,7 +1,7 @@
 """Print what a coarser level of detail loses where it is chosen, and how much a camera that walks sees of the switches.
 
 python tools/research/measure_levels.py hero.muaavatar --clip walk_07 --clip turn_02 --strip walk.png: as an eye of a
-headset sees it, by the CPU reference. Decibels and FLIP are of the eye's whole picture, and of the part that just holds
+headset sees it, by the CPU reference. Decibels and FLIP are of the eye's whole image, and of the part that just holds
 the figure.
 """
 
@@ -29,9 +29,9 @@ from mua.rendering import frame_bounds, render_over, to_bytes
 BACKGROUND = (0.5, 0.5, 0.5)
 AZIMUTH = 0.3  # radians
 AROUND = 0.06  # metres about the figure's box
-STEPS = 120  # pictures of a walk in one direction
+STEPS = 120  # images of a walk in one direction
 BEYOND = 1.5  # times the farthest switch and less than the nearest: where a walk begins and ends
-SHOWN, HEIGHT = 12, 240  # pictures of a filmstrip, pixels
+SHOWN, HEIGHT = 12, 240  # images of a filmstrip, pixels
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Eye:
     half: Array  # [3] of its size, metres
 
     def camera(self, distance: float) -> Camera:
-        """The part of the eye's picture that just holds the figure, so many metres before its middle."""
+        """The part of the eye's image that just holds the figure, so many metres before its middle."""
         c, s = np.cos(AZIMUTH), np.sin(AZIMUTH)
         view = np.eye(4)
         view[:3, :3] = [[c, 0, -s], [0, 1, 0], [s, 0, c]]
@@ -57,13 +57,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", type=Path)
     parser.add_argument("--clip", action="append", help="to measure, one or several; the first if left out")
-    parser.add_argument("--strip", type=Path, help="picture to write, of a walk past all switches")
+    parser.add_argument("--strip", type=Path, help="image to write, of a walk past all switches")
     given = parser.parse_args()
     avatar = read(given.file)
     names = given.clip or [avatar.clips[0].name]
-    print(
-        "| clip | frame | texels | metres | dB, FLIP of the eye's picture | dB, FLIP of the figure's part | covered |"
-    )
+    print("| clip | frame | texels | metres | dB, FLIP of the eye's image | dB, FLIP of the figure's part | covered |")
     print("| --- | ---: | --- | ---: | --- | --- | ---: |")
     for name in names:
         for frame in (0, len(avatar.clip(name)) // 2):
@@ -92,7 +90,7 @@ def losses(avatar: Avatar, clip: str, frame: int) -> None:
 
 
 def walk(avatar: Avatar, clip: str, strip: Path | None) -> None:
-    """Print by how much a still figure's mean colour changes from picture to picture, with and without a switch."""
+    """Print by how much a still figure's mean colour changes from image to image, with and without a switch."""
     levels, length = Levels(avatar, AUTO), texel_length(avatar)
     poses = avatar.clip(clip)
     posed = cache(lambda level: avatar.at_level(level).decode(clip, 0))
@@ -111,10 +109,8 @@ def walk(avatar: Avatar, clip: str, strip: Path | None) -> None:
         before, shown = mean, level
         seen.append((distance, level, image))
     switches = sum(a[1] != b[1] for a, b in itertools.pairwise(seen))
-    print(f"\nFrom {ways[0]:.1f} m to {ways[-1]:.1f} m and back in {len(seen)} pictures, {switches} switches.")
-    print(
-        f"The mean colour of the figure's part changes by up to {jumps[False]:.5f} between two pictures of one level,"
-    )
+    print(f"\nFrom {ways[0]:.1f} m to {ways[-1]:.1f} m and back in {len(seen)} images, {switches} switches.")
+    print(f"The mean colour of the figure's part changes by up to {jumps[False]:.5f} between two images of one level,")
     print(f"by up to {jumps[True]:.5f} at a switch.")
     if strip is not None:
         chosen = [seen[int(i)] for i in np.linspace(0, len(seen) - 1, SHOWN)]

@@ -1,4 +1,4 @@
-"""Print how far pictures of a virtual capture are from the same pictures with other noise, and with almost none.
+"""Print how far images of a virtual capture are from the same images with other noise, and with almost none.
 
 python tools/research/measure_noise.py CAPTURE --blender PYTHON [--pictures 4] [--samples 256]: CAPTURE is a folder that
 tools/render_capture.py made. The second figure is what an avatar without any fault would reach. PSNR is taken inside
@@ -21,11 +21,11 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 from capture_job import job_file
 from render_capture import RENDERER, require_bpy
 
-OTHER_NOISE = 777_777  # added to the seed of each picture
+OTHER_NOISE = 777_777  # added to the seed of each image
 
 
 def rerendered(source: Path, chosen: list[dict[str, Any]], samples: int, blender: str) -> list[np.ndarray]:
-    """The chosen pictures of a job once more, with other noise and so many samples."""
+    """The chosen images of a job once more, with other noise and so many samples."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         for name in ("surface.npz", "texture.png"):
@@ -48,7 +48,7 @@ def picture(file: Path) -> np.ndarray:
 
 
 def decibels(one: np.ndarray, other: np.ndarray) -> float:
-    """PSNR on black, inside the box of the first picture's mask."""
+    """PSNR on black, inside the box of the first image's mask."""
     rows, columns = np.nonzero(one[..., 3])
     box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
     apart = (one[..., :3] * one[..., 3:] - other[..., :3] * other[..., 3:])[box]
@@ -60,7 +60,7 @@ def main() -> None:
     parser.add_argument("capture", type=Path, metavar="CAPTURE")
     parser.add_argument("--blender", default=sys.executable, metavar="PYTHON", help="a Python that has bpy")
     parser.add_argument("--pictures", type=int, default=4, help="how many, spread over the capture")
-    parser.add_argument("--samples", type=int, default=256, help="of the pictures with almost no noise")
+    parser.add_argument("--samples", type=int, default=256, help="of the images with almost no noise")
     given = parser.parse_args()
     require_bpy(given.blender)
     source = job_file(given.capture)

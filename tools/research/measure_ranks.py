@@ -1,9 +1,9 @@
-"""Print what bases of each rank leave of the error that pictures show, subband by subband.
+"""Print what bases of each rank leave of the error that images show, subband by subband.
 
     python tools/research/measure_ranks.py RECORDING --pictures 12 --channel 11 --rank 64 --rank 128
 
 Bases are solved in closed form on the training frames; every frame then takes the best coefficients there are. Squared
-errors are weighted by what a sample changes in pictures; one of 10,000 is what the mean texture leaves in all three
+errors are weighted by what a sample changes in images; one of 10,000 is what the mean texture leaves in all three
 subbands together. Where a rank exceeds the number of training frames, LL is exact on these.
 """
 
@@ -34,7 +34,7 @@ def main(
     recording: Annotated[Path, typer.Argument(help="Recording with held-out clips.")],
     channel: Annotated[list[int], typer.Option(help="Channel of the texture, may be repeated.")],
     rank: Annotated[list[int], typer.Option(help="Rank of each subband, may be repeated.")],
-    pictures: Annotated[int, typer.Option(help="Pictures that sensitivities are measured in.")] = 12,
+    pictures: Annotated[int, typer.Option(help="Images that sensitivities are measured in.")] = 12,
 ) -> None:
     """Measure what ranks are worth."""
     opened = Recording(recording)

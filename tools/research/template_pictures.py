@@ -1,4 +1,4 @@
-"""Pictures of meshes for measurements of the template: lit from the viewer, red where they are wrong."""
+"""Images of meshes for measurements of the template: lit from the viewer, red where they are wrong."""
 
 import numpy as np
 import torch

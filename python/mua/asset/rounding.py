@@ -1,4 +1,4 @@
-"""Round an avatar's numbers to what a picture shows, so that they deflate to a fraction: multiples of powers of two.
+"""Round an avatar's numbers to what an image shows, so that they deflate to a fraction: multiples of powers of two.
 
 Every step follows from that of its channel: a basis is rounded to what moves a texel as far, a weight to what moves
 its basis as far. Multiples of a power of two are exact as f16, so that a reader has nothing to do.

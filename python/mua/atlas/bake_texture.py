@@ -13,15 +13,15 @@ from mua.scene import Material, Wrap, wrapped
 
 def bake_texture(
     texels: TexelMap,  # of the atlas
-    corners: Array,  # [F, 3, 2] UV that the materials' pictures belong to
+    corners: Array,  # [F, 3, 2] UV that the materials' images belong to
     face_material: Array,  # [F] into materials
     *,
     materials: tuple[Material, ...],
     colors: Array | None = None,  # [F, 3, 4] linear colour and opacity of the corners, multiplied in
 ) -> Array:
-    """Sample every texel of the atlas where its point lay in its material's picture: [S, S, 4] uint8 sRGB.
+    """Sample every texel of the atlas where its point lay in its material's image: [S, S, 4] uint8 sRGB.
 
-    Pictures finer than the atlas are averaged first. Texels that no triangle covers take the colour of the nearest that
+    Images finer than the atlas are averaged first. Texels that no triangle covers take the colour of the nearest that
     one does, so that interpolation across chart borders never meets a foreign colour.
     """
     picture = np.zeros((texels.size * texels.size, 4), np.uint8)
@@ -47,7 +47,7 @@ def _averaged(
     corners: Array,  # [F, 3, 2] UV of the triangles that use it
     wanted: int,  # texels that these triangles have in the atlas
 ) -> Array:
-    """Its picture reduced by the whole factor by which it is finer than the atlas, no colour in it foreign: uint8."""
+    """Its image reduced by the whole factor by which it is finer than the atlas, no colour in it foreign: uint8."""
     image, used = material.image, areas(corners).sum()
     if material.alpha_mode == "mask":
         image = cut_out(material, np.sqrt(used * image.shape[0] * image.shape[1] / wanted))

@@ -1,4 +1,4 @@
-"""Averages of pictures in which what is clear has no colour: weighted by opacity, and carried on past edges."""
+"""Averages of images in which what is clear has no colour: weighted by opacity, and carried on past edges."""
 
 import numpy as np
 from PIL import Image
@@ -14,7 +14,7 @@ def reduced(
     image: Array,  # [h, w, 4] uint8
     factor: int,
 ) -> Array:
-    """The picture averaged over squares of `factor` texels, weighted by opacity: [ceil(h / factor), .., 4] uint8."""
+    """The image averaged over squares of `factor` texels, weighted by opacity: [ceil(h / factor), .., 4] uint8."""
     if factor <= 1:
         return image
     if image[..., 3].min() == 255:
@@ -28,7 +28,7 @@ def reduced(
 def bled(
     image: Array,  # [h, w, 4] uint8
 ) -> Array:
-    """The picture with each clear texel in the colour of the nearest that is not, and as clear as before."""
+    """The image with each clear texel in the colour of the nearest that is not, and as clear as before."""
     return np.dstack([filled(image[..., :3], image[..., 3] < CLEAR), image[..., 3]])
 
 
@@ -36,7 +36,7 @@ def filled(
     picture: Array,  # [h, w, c]
     empty: Array,  # [h, w] bool
 ) -> Array:
-    """The picture with every empty texel replaced by the nearest that is not."""
+    """The image with every empty texel replaced by the nearest that is not."""
     if empty.all() or not empty.any():
         return picture
     rows, columns = distance_transform_edt(empty, return_distances=False, return_indices=True)

@@ -1,4 +1,4 @@
-"""Which triangles a material leaves clear everywhere, and pictures whose opacity is cut off at a threshold."""
+"""Which triangles a material leaves clear everywhere, and images whose opacity is cut off at a threshold."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ from mua.scene import Material, wrapped
 FINEST = 1024  # texels along the finest map of what is seen
 STEPS = 32  # samples along a triangle's longest side, at most one texel apart on the map that is coarse enough
 SAMPLES_AT_ONCE = 1 << 20
-EDGE = 3  # texels of a cut-out picture for each one of the atlas, so that its edges come out smooth
+EDGE = 3  # texels of a cut-out image for each one of the atlas, so that its edges come out smooth
 LARGEST_CUT_OUT = 4096  # texels along a side
 
 
@@ -46,9 +46,9 @@ def without_unseen(surfaces: Surfaces) -> Surfaces:
 
 def cut_out(
     material: Material,
-    density: float,  # texels of its picture for one of the atlas, in length
+    density: float,  # texels of its image for one of the atlas, in length
 ) -> Array:
-    """A material's picture, solid from its cut-off on and clear below: [h, w, 4] uint8, enlarged where it is coarse."""
+    """A material's image, solid from its cut-off on and clear below: [h, w, 4] uint8, enlarged where it is coarse."""
     image = bled(material.image)
     height, width = image.shape[:2]
     finer = int(np.ceil(EDGE / max(density, EDGE / LARGEST_CUT_OUT)))

@@ -45,13 +45,13 @@ class _Layout:
 
 
 def build_atlas(surfaces: Surfaces, *, uv: UvMode, size: int, detail: Detail | None = None) -> Character:
-    """Give a character one UV layout and one picture for all its materials.
+    """Give a character one UV layout and one image for all its materials.
 
     `auto` brings the artist's charts to one density of texels, finer where `detail` says so, packs them, and cuts anew
     only what overlaps itself, is distorted or is starved of texels; `unwrap` cuts everything anew with xatlas; `keep`
     leaves every chart where its artist put it, several materials side by side as whole squares.
 
-    The picture is `size` x `size`, or the only material's own where that is square and its layout is kept.
+    The image is `size` x `size`, or the only material's own where that is square and its layout is kept.
     """
     source = _read(without_unseen(surfaces))
     if uv == "keep":
@@ -191,7 +191,7 @@ def _side_by_side(
 
 
 def _character(source: _Source, layout: _Layout, size: int) -> Character:
-    """The character in its new texture space, with the picture that belongs to it."""
+    """The character in its new texture space, with the image that belongs to it."""
     surfaces = source.surfaces
     uv, uv_faces = np.unique(layout.corners.reshape(-1, 2), axis=0, return_inverse=True)
     mesh = Mesh(

@@ -41,7 +41,7 @@ class Check:
 
 
 def check(order: Order, listener: Listener) -> Check:
-    """Measure fidelity and motion, and leave a picture and a mapping file to start from beside the output.
+    """Measure fidelity and motion, and leave an image and a mapping file to start from beside the output.
 
     Raises InputError where the character or a motion cannot be read, or where nothing can be written.
     """
@@ -89,7 +89,7 @@ def fidelity_of(character: Character, clips: Sequence[Clip], *, texels: int) -> 
 
 
 def write_sheet(path: Path, fidelity: Fidelity) -> None:
-    """Write the picture of source beside splats."""
+    """Write the image of source beside splats."""
     with replacing(path) as temporary:
         fidelity_sheet(fidelity).save(temporary)
 

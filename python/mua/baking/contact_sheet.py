@@ -21,7 +21,7 @@ COLUMNS = 2  # frames beside each other
 
 
 def contact_sheet(avatar: Avatar, frames: Iterable[WholeFrame], *, fidelity: Fidelity | None = None) -> Image.Image:
-    """One picture with three cells for each frame, below those of the source beside the splats where there are any."""
+    """One image with three cells for each frame, below those of the source beside the splats where there are any."""
     strips = [] if fidelity is None else worst_strips(fidelity, CELL)
     strips += [np.full_like(strips[0], 255)] * (len(strips) % COLUMNS) if strips else []
     strips += [_strip(avatar, frame) for frame in frames]

@@ -101,7 +101,7 @@ def teach(order: Distillation, recording: Recording, listener: Listener, *, only
 
 
 def finish(order: Distillation, student: Student, recording: Recording, listener: Listener) -> Baked:
-    """Write the avatar, read it back, measure it and picture it."""
+    """Write the avatar, read it back, measure it and image it."""
     release_memory()
     listener.stage("avatar")
     clips = playback.whole_clips(recording.clips) if order.clips is None else order.clips

@@ -1,7 +1,7 @@
 """How much of a teacher a student explains, and whether bands, bases or coefficients miss the rest.
 
 Errors are taken on the full-resolution texture of frames that the recording keeps whole, over the valid texels, in raw
-channels. Four pictures of each frame stand beside the teacher's: the mean texture of the training frames; the best that
+channels. Four images of each frame stand beside the teacher's: the mean texture of the training frames; the best that
 the dynamic subbands could do (D1 and D0 at their mean); the best coefficients for the learnt bases; the student's own.
 """
 
@@ -52,7 +52,7 @@ class Picture:
 
 @dataclass
 class Errors:
-    """Sums of squared errors of one group of frames by attribute and picture."""
+    """Sums of squared errors of one group of frames by attribute and image."""
 
     frames: int = 0
     squares: dict[tuple[str, str], float] = field(default_factory=dict)
@@ -88,7 +88,7 @@ class Errors:
         return UNITS[attribute][1] * math.sqrt(self.squares[attribute, picture] / self.vectors[attribute])
 
     def explained(self, attribute: str, picture: str = "student") -> float:
-        """Share of the variance about the mean texture that a picture explains; nan where nothing varies."""
+        """Share of the variance about the mean texture that an image explains; nan where nothing varies."""
         variance = self.squares[attribute, "mean"]
         return 1 - self.squares[attribute, picture] / variance if variance > 0 else math.nan
 
@@ -142,7 +142,7 @@ class _Comparer:
         return counted
 
     def pictures(self, frames: Sequence[WholeFrame]) -> Iterator[dict[str, Picture]]:
-        """The pictures of each frame by name."""
+        """The images of each frame by name."""
         bands, best = self._closest(frames)
         for i, frame in enumerate(frames):
             posed = decode_clip_frame(self.avatar, frame.clip, frame=frame.index)

@@ -63,7 +63,7 @@ def carry_out(
 
 
 def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None, material: Material) -> str:
-    """Changes with everything that a training depends on but the pictures themselves."""
+    """Changes with everything that a training depends on but the images themselves."""
     clips = [torch.from_numpy(values) for clip in filmed.clips for values in (clip.rotations, clip.translations)]
     points = [values for of in material.tracks for values in (of.tracks.points, of.tracks.weights)]
     said = filmed.capture.file.read_bytes()

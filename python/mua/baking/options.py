@@ -63,7 +63,7 @@ def read_order(options: Mapping[str, Any]) -> Order:
 
 
 def _taught(order: Order, options: Mapping[str, Any]) -> Order:
-    """The order of a bake whose teacher learns, or has learnt, from pictures."""
+    """The order of a bake whose teacher learns, or has learnt, from images."""
     for name in ("uv", "detail", "scale", "height", "leave_out"):
         if options[name] not in (None, (), [], {}, "auto"):
             raise InputError(

@@ -35,7 +35,7 @@ class Order:
     size: FigureSize = AS_FOUND
     storage: Storage = "f16"
     jobs: int = 1  # processes that record side by side
-    teacher: Path | None = None  # that was taught from pictures; None: the simulated character
+    teacher: Path | None = None  # that was taught from images; None: the simulated character
     lessons: TeacherSettings | None = None  # of the teacher that is taught first, where the character is a capture
     clips: tuple[str, ...] = (ALL,)  # which the file holds for playback: names, or "all", "none" or a number
 

@@ -32,7 +32,7 @@ from mua.teachers.simulated import SimulatedTeacher
 
 
 def bake(order: Order, listener: Listener) -> Baked:
-    """Carry out `order`: record a teacher, distil it, write the avatar, measure it and picture it.
+    """Carry out `order`: record a teacher, distil it, write the avatar, measure it and image it.
 
     Raises InputError for anything that cannot be used, and where another process is at work in the work directory.
     """

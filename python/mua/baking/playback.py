@@ -68,7 +68,7 @@ def typical_frame(
     *,
     root: int,  # joint whose heading does not count
 ) -> tuple[Clip, int]:
-    """The clip and frame whose pose is nearest to the mean of all: what a picture of the character shows."""
+    """The clip and frame whose pose is nearest to the mean of all: what an image of the character shows."""
     owners = [(clip, frame) for clip in clips for frame in range(len(clip))]
     owners = owners[:: -(-len(owners) // LOOKED_AT)]
     rotations = np.stack([np.delete(clip.rotations[frame], root, axis=0) for clip, frame in owners])  # [F, J - 1, 4]

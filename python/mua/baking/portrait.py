@@ -1,4 +1,4 @@
-"""The camera of every picture that the bake makes: three quarters of the figure's own front."""
+"""The camera of every image that the bake makes: three quarters of the figure's own front."""
 
 import numpy as np
 

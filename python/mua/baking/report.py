@@ -13,7 +13,7 @@ from mua.baking.evaluate import MESH, PICTURES, TRAINING, UNITS, Errors, held_ou
 from mua.channels import ATTRIBUTES
 
 STAND_IN = "the teacher is a simulated stand-in, not a capture"
-TAUGHT = "the teacher was taught from the pictures of a capture"
+TAUGHT = "the teacher was taught from the images of a capture"
 UNSAID = "the recording does not say whether its teacher is a capture or a simulation"
 LEGEND = (
     "Errors are root mean squares of whole vectors. Mean: the mean texture of the training frames. Best: the best "

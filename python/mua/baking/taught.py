@@ -1,4 +1,4 @@
-"""A bake whose teacher learns, or has learnt, from the pictures of a capture."""
+"""A bake whose teacher learns, or has learnt, from the images of a capture."""
 
 from collections.abc import Mapping
 from functools import partial

@@ -38,7 +38,7 @@ def teach(
     device: DeviceName = "auto",
     listener: Listener | None = None,
 ) -> Path:
-    """Train a teacher on the pictures of a capture, as mua-teach does: minutes to days. Returns the teacher's folder.
+    """Train a teacher on the images of a capture, as mua-teach does: minutes to days. Returns the teacher's folder.
 
     The arguments are the options of mua-teach (docs/training.md) by the same names, and their errors name the options.
     A call that was interrupted goes on where it stopped when the same one is made again. Under torchrun several

@@ -99,7 +99,7 @@ class Counts:
 
 
 def count(device: Device, path: Path) -> Counts:
-    """Errors: InputError where the file holds no clip, or the device cannot hold the avatar or the picture."""
+    """Errors: InputError where the file holds no clip, or the device cannot hold the avatar or the image."""
     buffers = AvatarBuffers(device, path)
     avatar = buffers.avatar
     if not avatar.clips:

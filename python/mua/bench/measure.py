@@ -123,7 +123,7 @@ def _draw_frames(
 ) -> list[float]:
     """Milliseconds of drawing every counted frame.
 
-    Once a picture was drawn, Mesa's lavapipe puts timestamps off to the next barrier: a kernel's time would then count
+    Once an image was drawn, Mesa's lavapipe puts timestamps off to the next barrier: a kernel's time would then count
     for the kernel after it.
     """
     renderer = SplatRenderer(device, IMAGE_FORMAT)
@@ -151,7 +151,7 @@ def _draw(device: Device, renderer: SplatRenderer, splats: SortedSplats, cameras
     """Milliseconds of drawing all eyes side by side."""
     width, height = cameras[0].screen
     size = (len(cameras) * width, height, 1)
-    with naming(f"picture of {size[0]} x {size[1]} pixels"):
+    with naming(f"image of {size[0]} x {size[1]} pixels"):
         target = device.wgpu.create_texture(size=size, format=IMAGE_FORMAT, usage=wgpu.TextureUsage.RENDER_ATTACHMENT)
 
     def record(encoder: wgpu.GPUCommandEncoder, timestamps: Timestamps) -> None:

@@ -1,4 +1,4 @@
-"""Captures: calibrated pictures of a person, with a rigged template and its poses, in a folder with a capture.json."""
+"""Captures: calibrated images of a person, with a rigged template and its poses, in a folder with a capture.json."""
 
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture, CaptureClip

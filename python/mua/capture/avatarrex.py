@@ -1,4 +1,4 @@
-"""Captures in the layout of AvatarReX and THuman4: one calibration in JSON, SMPL-X poses, pictures by camera.
+"""Captures in the layout of AvatarReX and THuman4: one calibration in JSON, SMPL-X poses, images by camera.
 
 Written after the published loaders' file names; untried on real downloads.
 """
@@ -24,7 +24,7 @@ from mua.motion.poses_file import write_poses
 
 CALIBRATIONS = ("calibration_full.json", "calibration.json")
 POSES = "smpl_params.npz"
-FOLDERS = (  # of pictures and masks
+FOLDERS = (  # of images and masks
     ("{camera}", "{camera}/mask/pha"),
     ("images/{camera}", "masks/{camera}"),
     ("imgs/{camera}", "masks/{camera}"),
@@ -52,7 +52,7 @@ def read_avatarrex(
 ) -> Capture:
     """The capture that a folder of this layout is; writes the poses on the template below `folder`.
 
-    Frames of which a camera lacks picture or mask are left out: each run of frames that all have is a clip. The world
+    Frames of which a camera lacks image or mask are left out: each run of frames that all have is a clip. The world
     is turned so that Y is up. Errors: InputError with one sentence.
     """
     poses = read_smplx(source / POSES)
@@ -69,7 +69,7 @@ def read_avatarrex(
     runs = whole_runs(there[begin : begin + len(poses)])
     if not runs:
         raise InputError(
-            f"{source}: no two frames in a row have pictures and masks of all {len(cameras)} cameras; "
+            f"{source}: no two frames in a row have images and masks of all {len(cameras)} cameras; "
             f"looked for {images} and {masks}"
         )
     write_poses(motion, skeleton, clip)
@@ -134,7 +134,7 @@ def _square(value: Any, where: str) -> Array:
 
 
 def _patterns(source: Path, names: Sequence[str]) -> tuple[str, str]:
-    """Of pictures and masks, both as a camera has them that has any."""
+    """Of images and masks, both as a camera has them that has any."""
     for folders in FOLDERS:
         found = [numbered_pattern(source, folder, names) for folder in folders]
         if found[0] is not None and found[1] is None:
@@ -142,4 +142,4 @@ def _patterns(source: Path, names: Sequence[str]) -> tuple[str, str]:
         if found[0] is not None and found[1] is not None:
             return found[0], found[1]
     tried = ", ".join(f"{images}/00000000.jpg" for images, _ in FOLDERS)
-    raise InputError(f"{source}: found no pictures of camera {names[0]}; looked for {tried}")
+    raise InputError(f"{source}: found no images of camera {names[0]}; looked for {tried}")

@@ -1,4 +1,4 @@
-"""Captures that were calibrated with a public tool: a folder of videos or pictures for each camera, and its file."""
+"""Captures that were calibrated with a public tool: a folder of videos or images for each camera, and its file."""
 
 import re
 from collections.abc import Sequence
@@ -18,12 +18,12 @@ from mua.capture.video import VIDEOS, count_frames, video_frame, video_rate
 from mua.errors import InputError
 
 IMAGES, MASKS = ("images", "imgs", "videos", "video"), ("masks", "mask")
-RATE = 30.0  # frames per second of pictures, where it is not given
+RATE = 30.0  # frames per second of images, where it is not given
 
 
 @dataclass(frozen=True)
 class _Filmed:
-    """The pictures or videos of one kind, by camera."""
+    """The images or videos of one kind, by camera."""
 
     folder: Path
     cameras: tuple[str, ...]
@@ -45,7 +45,7 @@ class _Filmed:
         return range(int(files[0].stem), int(files[-1].stem) + 1)
 
     def size(self, camera: str) -> tuple[int, int]:
-        """Width and height of a camera's pictures."""
+        """Width and height of a camera's images."""
         if self.is_video:
             frame = video_frame(self.folder / self.pattern.format(camera=camera), 0)
             return frame.shape[1], frame.shape[0]
@@ -54,7 +54,7 @@ class _Filmed:
             with Image.open(files[0]) as opened:
                 return opened.size
         except OSError as error:
-            raise InputError(f"{files[0]}: cannot be read as a picture: {error}") from error
+            raise InputError(f"{files[0]}: cannot be read as an image: {error}") from error
 
 
 def read_calibrated(
@@ -70,14 +70,14 @@ def read_calibrated(
     height: float | None = None,
     leave_out: Sequence[str] = (),
 ) -> Capture:
-    """The capture of a folder whose pictures or videos lie in images/ or videos/, masks in masks/.
+    """The capture of a folder whose images or videos lie in images/ or videos/, masks in masks/.
 
-    Frames of which a camera lacks picture or mask are left out: each run of frames that all have is a clip.
+    Frames of which a camera lacks image or mask are left out: each run of frames that all have is a clip.
     Errors: InputError with one sentence.
     """
     images, masks = _filmed(source, IMAGES), _filmed(source, MASKS)
     if images is None:
-        raise InputError(f"{source}: found no pictures; looked for videos/cam00.mp4 and images/cam00/000000.jpg")
+        raise InputError(f"{source}: found no images; looked for videos/cam00.mp4 and images/cam00/000000.jpg")
     pairs = _paired(read_cameras(calibration), images, calibration)
     turned = np.eye(3) if axes is None else axes
     cameras = tuple(one.camera(images.size(name), name=name, scale=scale, axes=turned) for one, name in pairs)
@@ -111,7 +111,7 @@ def _filmed(source: Path, folders: Sequence[str]) -> _Filmed | None:
 
 
 def _paired(calibrated: Sequence[Calibrated], images: _Filmed, calibration: Path) -> list[tuple[Calibrated, str]]:
-    """Every camera that has pictures, with their name: by name, or in order where no name is the same."""
+    """Every camera that has images, with their name: by name, or in order where no name is the same."""
     named = {_short(one.name): one for one in calibrated}
     if len(named) < len(calibrated):
         names = [_short(one.name) for one in calibrated]
@@ -123,7 +123,7 @@ def _paired(calibrated: Sequence[Calibrated], images: _Filmed, calibration: Path
     missing = next((name for name in images.cameras if name not in alike), None)
     if missing is not None:
         raise InputError(
-            f"{calibration}: has no camera called {missing}, as pictures in {images.folder} are; "
+            f"{calibration}: has no camera called {missing}, as images in {images.folder} are; "
             f"it has {', '.join(one.name for one in calibrated)}"
         )
     return [(named[_short(name)], name) for name in images.cameras]
@@ -145,7 +145,7 @@ def _clips(images: _Filmed, masks: _Filmed | None, motion: Path) -> tuple[Captur
     runs = whole_runs(there)
     if not runs:
         raise InputError(
-            f"{images.folder}: no two frames in a row have pictures and masks of all {len(images.cameras)} cameras"
+            f"{images.folder}: no two frames in a row have images and masks of all {len(images.cameras)} cameras"
         )
     names = [f"frames_{numbers[first]:06d}" for first, _ in runs] if len(runs) > 1 else ["all"]
     return tuple(

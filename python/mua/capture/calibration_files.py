@@ -26,7 +26,7 @@ BOUND = 1e-3  # what rounding leaves of a rotation
 def read_calibration(
     path: Path,
     *,
-    size: tuple[int, int],  # width, height of the pictures, which TheCaptury's files do not say
+    size: tuple[int, int],  # width, height of the images, which TheCaptury's files do not say
 ) -> tuple[CaptureCamera, ...]:
     """The cameras of a file, by its first line; raises InputError where it is another or a camera has another model."""
     try:
@@ -67,7 +67,7 @@ def _of_block(name: str, said: dict[str, Array], where: str) -> CaptureCamera:
     if said.get("animated", np.zeros(1)).any():
         raise InputError(f"{where}: is animated; expected cameras that stand still")
     if said.get("radial", np.zeros(1)).any():
-        raise InputError(f"{where}: radial is {said['radial'][0]:g}; undistort the pictures first and set it to 0")
+        raise InputError(f"{where}: radial is {said['radial'][0]:g}; undistort the images first and set it to 0")
     intrinsic, extrinsic = said["intrinsic"].reshape(4, 4), said["extrinsic"].reshape(4, 4).copy()
     extrinsic[:3, 3] *= MILLIMETRES
     width, height = said["size"]

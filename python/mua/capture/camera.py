@@ -1,6 +1,6 @@
-"""A calibrated camera of a capture, and what it becomes where its picture is cut or made smaller.
+"""A calibrated camera of a capture, and what it becomes where its image is cut or made smaller.
 
-Cameras have OpenCV's axes: x to the right, y down, z forward. Pixels count from the picture's upper left corner, so the
+Cameras have OpenCV's axes: x to the right, y down, z forward. Pixels count from the image's upper left corner, so the
 first pixel's centre lies at (0.5, 0.5). The world is in metres, right-handed and Y up.
 """
 
@@ -19,7 +19,7 @@ _AXES = np.diag([1.0, -1, -1, 1])  # OpenCV's camera axes and an eye's: y down a
 
 @dataclass(frozen=True, eq=False)
 class CaptureCamera:
-    """One calibrated camera; its distortion is undone where pictures are read."""
+    """One calibrated camera; its distortion is undone where images are read."""
 
     name: str
     size: tuple[int, int]  # width, height, pixels
@@ -49,18 +49,18 @@ class CaptureCamera:
 
     @property
     def field_of_view(self) -> float:
-        """From the left to the right edge of the picture, degrees."""
+        """From the left to the right edge of the image, degrees."""
         left, right = self.centre[0] / self.focal[0], (self.size[0] - self.centre[0]) / self.focal[0]
         return float(np.degrees(np.arctan(left) + np.arctan(right)))
 
     def cropped(self, box: tuple[int, int, int, int]) -> Self:
-        """The camera of a part of its picture: left, upper, right and lower edge in pixels, which may lie outside."""
+        """The camera of a part of its image: left, upper, right and lower edge in pixels, which may lie outside."""
         left, upper, right, lower = box
         centre = (self.centre[0] - left, self.centre[1] - upper)
         return replace(self, size=(right - left, lower - upper), centre=centre)
 
     def resized(self, size: tuple[int, int]) -> Self:
-        """The camera of its whole picture at another size."""
+        """The camera of its whole image at another size."""
         x, y = size[0] / self.size[0], size[1] / self.size[1]
         focal = (self.focal[0] * x, self.focal[1] * y)
         return replace(self, size=size, focal=focal, centre=(self.centre[0] * x, self.centre[1] * y))

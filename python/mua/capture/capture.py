@@ -37,7 +37,7 @@ class CaptureClip:
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """A folder with pictures of a person. Patterns are paths below it that name {clip}, {camera} and {frame}."""
+    """A folder with images of a person. Patterns are paths below it that name {clip}, {camera} and {frame}."""
 
     folder: Path
     name: str
@@ -45,12 +45,12 @@ class Capture:
     template: Path
     cameras: tuple[CaptureCamera, ...]
     clips: tuple[CaptureClip, ...]
-    images: str  # pattern of pictures, or of videos where it names no {frame}
+    images: str  # pattern of images, or of videos where it names no {frame}
     masks: str | None = None  # as images; None: the alpha of the images
-    backgrounds: str | None = None  # pattern of the empty set, a picture for each camera
+    backgrounds: str | None = None  # pattern of the empty set, an image for each camera
     meshes: str | None = None  # pattern of surfaces in the world, metres
     tracks: str | None = None  # pattern of points followed through a clip, in the world
-    tracks_2d: str | None = None  # pattern of points followed through a camera's pictures of a clip
+    tracks_2d: str | None = None  # pattern of points followed through a camera's images of a clip
     template_height: float | None = None  # metres; None: as the file says
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the template that nobody filmed
 
@@ -81,10 +81,10 @@ class Capture:
         crop: bool = False,
         rows: int | None = None,
     ) -> View:
-        """What a camera saw of a frame, without distortion: picture, mask, background and the pinhole that fits them.
+        """What a camera saw of a frame, without distortion: image, mask, background and the pinhole that fits them.
 
-        With `crop` only the box around the mask and a margin; with `rows` as if the whole picture had so many rows.
-        Errors: InputError with one sentence that names the file where a picture is missing or is not the camera's.
+        With `crop` only the box around the mask and a margin; with `rows` as if the whole image had so many rows.
+        Errors: InputError with one sentence that names the file where an image is missing or is not the camera's.
         """
         seen, filmed = self.camera(camera), self.clip(clip)
         if not 0 <= frame < filmed.frames:
@@ -92,7 +92,7 @@ class Capture:
         return read_view(self.files(clip, frame, camera), seen, crop=crop, rows=rows)
 
     def files(self, clip: str, frame: int, camera: str) -> Files:
-        """Where a view's pictures lie."""
+        """Where a view's images lie."""
         image, mask, background = (
             None if pattern is None else self.place(pattern, clip=clip, camera=camera, frame=frame)
             for pattern in (self.images, self.masks, self.backgrounds)
@@ -106,7 +106,7 @@ class Capture:
         return read_surfaces(self.template, size=FigureSize(height=self.template_height), leave_out=self.leave_out)
 
     def character(self) -> Character:
-        """The template with one UV layout and one picture for all its materials; charts are cut where it has none."""
+        """The template with one UV layout and one image for all its materials; charts are cut where it has none."""
         return build_atlas(self.surfaces, uv="auto", size=ATLAS)
 
     def motion(self, clip: str) -> Clip:

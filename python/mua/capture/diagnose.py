@@ -18,7 +18,7 @@ OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apa
 GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask better
 SHIFT_GAIN = 0.03  # the same for all views of a clip together
 FAR = 100.0  # metres from the template to cameras, beyond which lengths have another unit
-FARTHEST_SHIFT = 30  # frames by which pictures and poses may be apart
+FARTHEST_SHIFT = 30  # frames by which images and poses may be apart
 BESIDE = 0.1  # of the template's height, beyond which tracked points are not on it
 TRACKED = 200  # points that are looked at
 TRIED = 6  # views that such shifts are tried on
@@ -33,7 +33,7 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
         return [*told, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
     told += _far(capture, posed)
     unseen = _unseen(views)
-    told += [f"Camera {name} sees nobody: the posed template is outside its picture." for name in unseen]
+    told += [f"Camera {name} sees nobody: the posed template is outside its image." for name in unseen]
     filled = [view for view in filled if view.camera.name not in unseen]
     if shifted := list(_shifted(capture, posed, filled)):
         return told + shifted
@@ -41,7 +41,7 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
     if not apart and filled and mean_overlap(filled) < POOR:
         apart = [
             f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
-            "tried fit better: look at the picture."
+            "tried fit better: look at the image."
         ]
     return told + apart
 
@@ -99,7 +99,7 @@ def _far(capture: Capture, posed: Posed) -> Iterator[str]:
 
 
 def _shifted(capture: Capture, posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
-    """Clips whose pictures fit other poses of their motion, all by the same number of frames."""
+    """Clips whose images fit other poses of their motion, all by the same number of frames."""
     for clip in capture.clips:
         own = [view for view in views if view.clip == clip.name]
         if not own:
@@ -146,7 +146,7 @@ def _apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
 
 
 def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
-    """Whose pictures these may be: those of the camera whose calibration fits them best."""
+    """Whose images these may be: those of the camera whose calibration fits them best."""
     name, told = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
     others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
     fits = {
@@ -155,8 +155,8 @@ def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean:
     }
     best = max(fits, key=lambda other: fits[other])
     if best != name and fits[best] > max(mean + GAIN, POOR):
-        return f"Camera {name}: {told}; its pictures fit the calibration of camera {best} by {fits[best]:.0%}."
-    return f"Camera {name}: {told}; its calibration, or which pictures it has, cannot be right."
+        return f"Camera {name}: {told}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
+    return f"Camera {name}: {told}; its calibration, or which images it has, cannot be right."
 
 
 def _view_apart(posed: Posed, view: Seen, middle: float) -> str:

@@ -12,7 +12,7 @@ from mua.capture.capture import Capture, CaptureClip
 from mua.capture.outline import COVERED, overlap, posed_template, silhouette
 from mua.capture.view import smaller
 
-ROWS = 256  # of the pictures that are compared
+ROWS = 256  # of the images that are compared
 FRAMES = 5  # of each clip that are looked at
 VIEWS = 160  # at most, unless a number of frames is asked for
 
@@ -23,7 +23,7 @@ class Seen:
 
     clip: str
     frame: int
-    camera: CaptureCamera  # of the smaller picture
+    camera: CaptureCamera  # of the smaller image
     mask: Array  # [h, w] bool
     covered: Array  # [h, w] bool
     overlap: float  # 0..1
@@ -45,7 +45,7 @@ class Posed:
         return cls(surfaces, {clip.name: posed_template(surfaces, capture.motion(clip.name)) for clip in clips})
 
     def covers(self, clip: str, frame: int, camera: CaptureCamera) -> Array:
-        """What the template covers of a picture, [h, w] bool."""
+        """What the template covers of an image, [h, w] bool."""
         return silhouette(self.vertices[clip][frame], self.surfaces.faces, camera)
 
 

@@ -1,4 +1,4 @@
-"""Which files of a capture are there, without opening the pictures."""
+"""Which files of a capture are there, without opening the images."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,9 +9,9 @@ from mua.errors import InputError
 
 
 def missing_files(capture: Capture) -> Iterator[str]:
-    """A sentence for each camera of which pictures, masks or the background are not there or end too early."""
+    """A sentence for each camera of which images, masks or the background are not there or end too early."""
     for camera in capture.cameras:
-        for field, what in (("images", "pictures"), ("masks", "masks"), ("backgrounds", "backgrounds")):
+        for field, what in (("images", "images"), ("masks", "masks"), ("backgrounds", "backgrounds")):
             pattern = getattr(capture, field)
             if pattern is not None:
                 yield from (f"Camera {camera.name}: {told}." for told in _missing(capture, pattern, camera.name, what))

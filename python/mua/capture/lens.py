@@ -1,11 +1,11 @@
-"""OpenCV's distortion: where a point that a pinhole would show appears in the picture of a real lens."""
+"""OpenCV's distortion: where a point that a pinhole would show appears in the image of a real lens."""
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 
-ROUNDS = 30  # each leaves about a fifth of the error at the edge of a picture that a lens bends by a fifth
+ROUNDS = 30  # each leaves about a fifth of the error at the edge of an image that a lens bends by a fifth
 
 
 def distorted(
@@ -40,10 +40,10 @@ def undistorted(
 
 def lens_pixels(
     camera: CaptureCamera,
-    columns: Array,  # [...] pixels of the picture without distortion
+    columns: Array,  # [...] pixels of the image without distortion
     rows: Array,  # [...]
 ) -> tuple[Array, Array]:
-    """Columns and rows [...] at which the camera's own picture shows them."""
+    """Columns and rows [...] at which the camera's own image shows them."""
     (fx, fy), (cx, cy) = camera.focal, camera.centre
     x, y = distorted((columns - cx) / fx, (rows - cy) / fy, camera.distortion)
     return fx * x + cx, fy * y + cy

@@ -1,4 +1,4 @@
-"""Pictures that lie in a folder for each camera and are called by their numbers."""
+"""Images that lie in a folder for each camera and are called by their numbers."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +10,7 @@ LEAST_FRAMES = 2  # of a clip
 
 
 def numbered_files(folder: Path) -> list[Path]:
-    """The numbered pictures of a folder, in order."""
+    """The numbered images of a folder, in order."""
     found = [file for file in folder.glob("[0-9]*") if file.stem.isdecimal() and file.suffix.lower() in PICTURES]
     return sorted(found, key=lambda file: int(file.stem))
 
@@ -20,7 +20,7 @@ def numbered_pattern(
     folder: str,  # below it, with {camera}
     cameras: Sequence[str],
 ) -> str | None:
-    """The pattern of the pictures of a folder, by what the first of them is called; None where there are none."""
+    """The pattern of the images of a folder, by what the first of them is called; None where there are none."""
     for camera in cameras:
         for file in numbered_files(source / folder.format(camera=camera)):
             return f"{folder}/{{frame:0{len(file.stem)}d}}{file.suffix}"

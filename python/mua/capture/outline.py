@@ -13,7 +13,7 @@ from mua.teachers.skinning import Skinning
 FINER = 3  # times as fine as pixels triangles are drawn, because drawing widens them by half a step
 COVERED = 0.5  # of a mask, from which on a pixel counts as covered
 POINTS = 1500  # of a surface that stand for it where many poses are tried
-CELLS = 48  # into which the longer side of a picture is divided to compare points with masks
+CELLS = 48  # into which the longer side of an image is divided to compare points with masks
 
 
 def posed_template(surfaces: Surfaces, clip: Clip) -> Array:

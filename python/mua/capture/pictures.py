@@ -1,4 +1,4 @@
-"""One picture of a camera, from a picture file or out of a video."""
+"""One image of a camera, from an image file or out of a video."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def read_picture(
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{path}: cannot be read as a picture: {error}") from error
+        raise InputError(f"{path}: cannot be read as an image: {error}") from error
 
 
 def read_mask(path: Path, *, number: int, size: tuple[int, int]) -> Array:
@@ -49,9 +49,9 @@ def as_mask(
 
 
 def require_size(path: Path, found: tuple[int, int], expected: tuple[int, int]) -> None:
-    """Raises InputError where a picture is not as large as its camera says."""
+    """Raises InputError where an image is not as large as its camera says."""
     if tuple(found) != expected:
         raise InputError(
-            f"{path}: the picture is {found[0]} x {found[1]} pixels; "
+            f"{path}: the image is {found[0]} x {found[1]} pixels; "
             f"capture.json gives its camera {expected[0]} x {expected[1]}"
         )

@@ -36,7 +36,7 @@ OPTIONAL = ("masks", "backgrounds", "meshes", "tracks", "tracks_2d", "template_h
 def open_capture(folder: PathLike) -> Capture:
     """Read the capture.json of a folder.
 
-    Pictures are not opened yet. Errors: InputError with one sentence that names file, field and value where anything
+    Images are not opened yet. Errors: InputError with one sentence that names file, field and value where anything
     that it says cannot be, or where the template or a motion that it names is not there.
     """
     require_capture(path := as_path(folder, "capture"))
@@ -163,7 +163,7 @@ def _distortion(value: Any, where: str) -> tuple[float, ...]:
     model = f"OpenCV's {', '.join(COEFFICIENTS)}"
     if isinstance(value, list) and len(value) not in (0, 4, len(COEFFICIENTS)):
         raise InputError(
-            f"{where}: has {len(value)} coefficients; expected {model}; undistort the pictures of other models first"
+            f"{where}: has {len(value)} coefficients; expected {model}; undistort the images of other models first"
         )
     given = finite_array(value or UNDISTORTED, where, (None,))
     return (*given.tolist(), *UNDISTORTED[len(given) :])

@@ -1,4 +1,4 @@
-"""The picture of a check: the posed template's outline over what some cameras saw."""
+"""The image of a check: the posed template's outline over what some cameras saw."""
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -11,7 +11,7 @@ from mua.capture.outline import COVERED
 from mua.capture.view import person, smaller
 from mua.rendering import to_bytes
 
-CELL = 420  # pixels along the longer side of a picture
+CELL = 420  # pixels along the longer side of an image
 COLUMNS, ROWS = 4, 2
 OUTLINE, MASK = (255, 0, 160), (0, 200, 255)  # of the template and of the mask
 CAPTION = 32  # pixels, of two lines

@@ -1,4 +1,4 @@
-"""Pictures made smaller: each new pixel is the mean of the area that it covers, parts of pixels counted as parts."""
+"""Images made smaller: each new pixel is the mean of the area that it covers, parts of pixels counted as parts."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from mua.arrays import Array
 
 def area_average(
     picture: Array,  # [H, W, C]
-    row_edges: Array,  # [h + 1] ascending, where the new rows begin and end in the picture, 0..H
+    row_edges: Array,  # [h + 1] ascending, where the new rows begin and end in the image, 0..H
     column_edges: Array,  # [w + 1]
 ) -> Array:
-    """The smaller picture [h, w, C] float32."""
+    """The smaller image [h, w, C] float32."""
     rows = _averages(picture.astype(np.float32), row_edges)
     return np.ascontiguousarray(_averages(rows.swapaxes(0, 1), column_edges).swapaxes(0, 1))
 
@@ -22,7 +22,7 @@ def _averages(
     """The mean [n, ...] of the values between neighbouring edges."""
     if np.array_equal(edges, np.arange(len(values) + 1)):
         return values
-    from scipy.sparse import csr_matrix  # not needed for whole pictures
+    from scipy.sparse import csr_matrix  # not needed for whole images
 
     first = np.floor(edges[:-1]).astype(int)
     last = np.minimum(np.ceil(edges[1:]).astype(int), len(values))  # edges are rounded

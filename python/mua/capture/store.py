@@ -1,4 +1,4 @@
-"""Views kept on disk as training reads them: a video is decoded once, a large picture undistorted and shrunk once."""
+"""Views kept on disk as training reads them: a video is decoded once, a large image undistorted and shrunk once."""
 
 import hashlib
 from collections.abc import Iterator
@@ -73,7 +73,7 @@ class ViewStore:
                 yield Filmed(image, cover, clear=False)
 
     def _height(self, camera: CaptureCamera) -> int | None:
-        """Rows of a camera's whole picture."""
+        """Rows of a camera's whole image."""
         return None if self._rows is None else min(self._rows, camera.size[1])
 
     def _is_video(self, clip: str, camera: CaptureCamera) -> bool:
@@ -101,7 +101,7 @@ class ViewStore:
         self._room -= place.stat().st_size
 
     def _box(self, view: View) -> Box:
-        """The part of the whole picture that a view is."""
+        """The part of the whole image that a view is."""
         pinhole = view.pinhole
         camera = self._capture.camera(pinhole.name)
         whole = smaller(camera, self._height(camera))
@@ -120,7 +120,7 @@ class ViewStore:
         return View(values[..., :3], values[..., 3], pinhole, background)
 
     def _read_background(self, name: str) -> Array | None:
-        """The empty set [H, W, 3] as a whole picture."""
+        """The empty set [H, W, 3] as a whole image."""
         camera, pattern = self._capture.camera(name), self._capture.backgrounds
         if pattern is None:
             return None

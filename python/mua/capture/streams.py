@@ -144,7 +144,7 @@ def _masks(source: Path, takes: Sequence[_Take]) -> str:
 
 
 def _of_masks(take: _Take) -> str:
-    """How the masks of a take are called: videos as those of the cameras, or folders of pictures that count from 0."""
+    """How the masks of a take are called: videos as those of the cameras, or folders of images that count from 0."""
     folder, name = take.folder / MASKS, take.videos[0].stem
     for suffix in VIDEOS:
         if (folder / f"{name}{suffix}").is_file():

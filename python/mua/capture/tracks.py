@@ -1,4 +1,4 @@
-"""Points that were followed through the frames of a clip: in the world, or in the pictures of one camera."""
+"""Points that were followed through the frames of a clip: in the world, or in the images of one camera."""
 
 import zipfile
 from dataclasses import dataclass
@@ -96,7 +96,7 @@ def _bind(file: Path, count: int, bind: Array | None) -> Array | None:
 
 def _rays(
     camera: CaptureCamera,
-    pixels: Array,  # [..., 2] of its pictures as they were filmed
+    pixels: Array,  # [..., 2] of its images as they were filmed
 ) -> Array:
     """Unit directions [..., 3] in the world."""
     x, y = np.moveaxis((pixels - camera.centre) / camera.focal, -1, 0)

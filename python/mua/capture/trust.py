@@ -12,7 +12,7 @@ from mua.capture.view import View
 from mua.errors import InputError
 from mua.teachers.skinning import Skinning
 
-ROWS = 128  # of the pictures from which the usual overlap is found
+ROWS = 128  # of the images from which the usual overlap is found
 FULL, NONE = 0.8, 0.5  # of the usual overlap: from the first on a view counts in full, below the second not at all
 
 

@@ -60,7 +60,7 @@ def video_rate(path: Path) -> float:
 
 
 def _ppm(stream: IO[bytes]) -> Array | None:
-    """The next picture of a stream of binary PPM, [H, W, 3] uint8; None at its end."""
+    """The next image of a stream of binary PPM, [H, W, 3] uint8; None at its end."""
     if stream.readline() != b"P6\n":
         return None
     width, height = (int(side) for side in stream.readline().split())

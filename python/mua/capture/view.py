@@ -20,7 +20,7 @@ Box = tuple[int, int, int, int]  # left, upper, right, lower edge in pixels
 
 @dataclass(frozen=True)
 class Files:
-    """Where a view's pictures lie; `number` is its frame where they are videos."""
+    """Where a view's images lie; `number` is its frame where they are videos."""
 
     image: Path
     mask: Path | None  # None: the alpha of the image
@@ -30,16 +30,16 @@ class Files:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture and the pinhole that fits it: `mask` x `image` + (1 - mask) x anything is the person before it."""
+    """An image and the pinhole that fits it: `mask` x `image` + (1 - mask) x anything is the person before it."""
 
     image: Array  # [H, W, 3] float32 sRGB, 0..1, in steps of 8 bits
     mask: Array  # [H, W] float32, 0..1, in steps of 8 bits
-    pinhole: CaptureCamera  # the camera, cut and made smaller as the picture is
+    pinhole: CaptureCamera  # the camera, cut and made smaller as the image is
     background: Array | None = None  # [H, W, 3] float32 sRGB, 0..1: the empty set
 
     @property
     def camera(self) -> Camera:
-        """The pinhole as pictures are drawn with it."""
+        """The pinhole as images are drawn with it."""
         return self.pinhole.camera()
 
 
@@ -61,7 +61,7 @@ def read_view(files: Files, camera: CaptureCamera, *, crop: bool = False, rows: 
 
 
 def filmed(files: Files, camera: CaptureCamera) -> Filmed:
-    """Read picture and mask; raises InputError where there is none."""
+    """Read image and mask; raises InputError where there is none."""
     image = read_picture(files.image, number=files.number, size=camera.size)
     if files.mask is not None:
         mask = read_mask(files.mask, number=files.number, size=camera.size)
@@ -76,7 +76,7 @@ def view_of(
     camera: CaptureCamera,
     *,
     crop: bool,
-    rows: int | None,  # that the whole picture would have
+    rows: int | None,  # that the whole image would have
     background: Array | None = None,  # [H, W, 3] uint8
 ) -> View:
     """The view without distortion."""
@@ -95,7 +95,7 @@ def view_of(
 
 
 def smaller(camera: CaptureCamera, rows: int | None) -> CaptureCamera:
-    """The camera of a whole picture with so many rows."""
+    """The camera of a whole image with so many rows."""
     width, height = camera.size
     return camera if rows is None else camera.resized((max(1, round(width * rows / height)), rows))
 
@@ -103,8 +103,8 @@ def smaller(camera: CaptureCamera, rows: int | None) -> CaptureCamera:
 def look(
     picture: Array,  # [H, W, C] 0..255, as filmed
     camera: CaptureCamera,
-    small: CaptureCamera,  # the same for a smaller picture
-    box: Box,  # of the smaller picture
+    small: CaptureCamera,  # the same for a smaller image
+    box: Box,  # of the smaller image
 ) -> Array:
     """What a pinhole would have seen in a box, [h, w, C] float32 in 0..1."""
     (left, upper, right, lower), scale = box, np.array(camera.size) / small.size
@@ -116,7 +116,7 @@ def look(
 
 
 def person(mask: Array) -> Box:
-    """The box around what a mask [H, W] covers, with a margin; all of the picture where it covers nothing."""
+    """The box around what a mask [H, W] covers, with a margin; all of the image where it covers nothing."""
     height, width = mask.shape
     columns, rows = (np.flatnonzero((mask > COVERED).any(axis=axis)) for axis in (0, 1))
     if not len(rows):

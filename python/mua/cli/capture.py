@@ -26,7 +26,7 @@ def check(
     folder: Annotated[Path, typer.Argument(help="Folder of the capture; it holds a capture.json.")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Picture to write: the template's outline over some of the views."),
+        typer.Option("--output", "-o", help="Image to write: the template's outline over some of the views."),
     ] = None,
     frames: Annotated[
         int | None,

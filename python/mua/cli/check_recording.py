@@ -47,4 +47,4 @@ def _print(console: Console, found: RecordingCheck) -> None:
     for finding in found.findings:
         say(console, f"{'mistake' if finding.certain else 'warning':<8} {finding.sentence}")
     if not found.findings:
-        say(console, "no mistake in units or conventions was found; look at the picture all the same")
+        say(console, "no mistake in units or conventions was found; look at the image all the same")

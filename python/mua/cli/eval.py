@@ -73,7 +73,7 @@ def evaluate(**options: Any) -> None:
     """Compare avatar files and other systems with the teacher of RECORDING, in tables, plots and contact sheets.
 
     Where RECORDING is the folder of a capture, a --teacher, avatar files and systems trained on that teacher are
-    compared with its pictures instead, by the cameras and in the clips that are held out. Every system is also trained
+    compared with its images instead, by the cameras and in the clips that are held out. Every system is also trained
     at the largest size that costs at most as much as ours.
 
     Trained systems are kept in the directory 'work' of the output; the same command does not train them again.
@@ -107,7 +107,7 @@ def evaluate(**options: Any) -> None:
 
 
 def _check_filmed(order: EvaluationOrder) -> None:
-    """Raises InputError for what cannot be compared with pictures."""
+    """Raises InputError for what cannot be compared with images."""
     for name in order.system:
         if name not in (ALL, *SYSTEM_NAMES):
             raise InputError(f"--system {name}: expected one of {', '.join((ALL, *SYSTEM_NAMES))}")
@@ -120,7 +120,7 @@ def _check_filmed(order: EvaluationOrder) -> None:
             raise InputError(f"--train-on {order.train_on}: is what a --system is trained on, and none is given")
         require_recording(order.train_on)
     if order.teacher is None and not order.avatars:
-        raise InputError("give a --teacher or avatar files to compare with the pictures of the capture")
+        raise InputError("give a --teacher or avatar files to compare with the images of the capture")
     if order.teacher is not None:
         require_teacher(order.teacher)
 

@@ -45,7 +45,7 @@ def compare(order: EvaluationOrder) -> None:
         if names:
             with DirectoryLock(output / "work", name=f"-o {output}"):
                 rows += _systems(names, recording, settings, budget=budget, work=output / "work", display=display)
-        display.stage("pictures")
+        display.stage("images")
         results = scores.score(studio, chosen, rows, lpips=lpips, progress=display.step)
         setting = report.Setting(
             recording=order.recording.name,

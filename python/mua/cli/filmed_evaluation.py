@@ -1,4 +1,4 @@
-"""The comparison that mua-eval makes with the pictures of a capture, once its options are known to be good."""
+"""The comparison that mua-eval makes with the images of a capture, once its options are known to be good."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -41,11 +41,11 @@ def compare(order: EvaluationOrder) -> None:
     entries += [filmed.avatar_entry(path, template) for path in order.avatars]
     console = printer()
     with DirectoryLock(work, name=f"-o {order.output}"), Display(console) as display:
-        about = [f"{len(chosen)} pictures of {capture.name}, inside the box around the mask, over white."]
+        about = [f"{len(chosen)} images of {capture.name}, inside the box around the mask, over white."]
         if order.system:
             systems, said = _systems(order, capture, work, display)
             entries, about = [*entries, *systems], [*about, *said]
-        display.stage("pictures")
+        display.stage("images")
         judged = []
         kept = set(filmed_report.sheet_shots(chosen))
         see = ViewStore(capture, work / "views").view

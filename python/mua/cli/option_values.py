@@ -75,7 +75,7 @@ def parse_ipd(metres: float) -> float:
 
 
 def parse_frame(frame: int | None, clip: Clip) -> range:
-    """The frame of a picture; the first if none is given."""
+    """The frame of an image; the first if none is given."""
     index = require_frame(clip, 0 if frame is None else frame)
     return range(index, index + 1)
 
@@ -106,7 +106,7 @@ def require_format(output: Path) -> None:
     kind = Image.registered_extensions().get(output.suffix.lower())
     if kind not in Image.SAVE:
         raise InputError(
-            f"-o is {output}; expected a name that ends like a picture, such as .png, or in {listed(VIDEOS)}"
+            f"-o is {output}; expected a name that ends like an image, such as .png, or in {listed(VIDEOS)}"
         )
 
 

@@ -1,4 +1,4 @@
-"""mua-teach: the pictures of a capture become a teacher that mua-bake distils."""
+"""mua-teach: the images of a capture become a teacher that mua-bake distils."""
 
 import os
 from pathlib import Path
@@ -56,7 +56,7 @@ OPTIONS = {
 def main(**options: Any) -> None:
     """Train a teacher on the videos of CAPTURE: how a person's body and clothes look in any motion.
 
-    Pictures of a camera that is held out are written to the folder 'progress' of the output while it trains. To resume
+    Images of a camera that is held out are written to the folder 'progress' of the output while it trains. To resume
     an interrupted run, give the same command again. Start it with torchrun to train in several processes.
     """
     first = os.environ.get("RANK", "0") == "0"

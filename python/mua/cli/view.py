@@ -1,4 +1,4 @@
-"""mua-view: an avatar in a window, in a browser, or as a picture, a video or an animation."""
+"""mua-view: an avatar in a window, in a browser, or as an image, a video or an animation."""
 
 from pathlib import Path
 from typing import Annotated
@@ -50,13 +50,13 @@ def view(
         typer.Option(
             "--output",
             "-o",
-            help="Picture (.png and others), video (.mp4, .webm) or animation (.gif) to write.",
+            help="Image (.png and others), video (.mp4, .webm) or animation (.gif) to write.",
             show_default="opens a window",
         ),
     ] = None,
     size: Annotated[
         str | None,
-        typer.Option(help="Picture size per eye in pixels: WIDTHxHEIGHT or one number.", show_default=DEFAULTS),
+        typer.Option(help="Image size per eye in pixels: WIDTHxHEIGHT or one number.", show_default=DEFAULTS),
     ] = None,
     azimuth: Annotated[
         float, typer.Option(help="Camera angle around the figure in degrees, towards its left; 0 is its front.")
@@ -125,7 +125,7 @@ def view(
     ] = False,
     no_open: Annotated[bool, typer.Option("--no-open", help="With --web: print the address, open no browser.")] = False,
 ) -> None:
-    """Show FILES in a window or a browser, or write a picture, a video or an animation of one with -o."""
+    """Show FILES in a window or a browser, or write an image, a video or an animation of one with -o."""
     if no_open and not web:
         raise InputError("--no-open: works only with --web, which is not given")
     if web:

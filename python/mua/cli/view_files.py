@@ -1,4 +1,4 @@
-"""The pictures, videos and animations that mua-view writes."""
+"""The images, videos and animations that mua-view writes."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -26,16 +26,16 @@ from mua.player.shot import Look, film, full_turn
 from mua.player.source import Source
 from mua.pose.clip import Clip
 
-Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied picture [H, E W, 4]
+Painter: TypeAlias = Callable[[int, Sequence[Camera]], Array]  # a frame's premultiplied image [H, E W, 4]
 
 
 @dataclass(frozen=True)
 class _Take:
-    """What is painted, picture after picture."""
+    """What is painted, image after image."""
 
     frames: list[int]  # of the clip
     cameras: list[tuple[Camera, ...]]
-    rate: float  # pictures a second
+    rate: float  # images a second
 
 
 def write(
@@ -48,7 +48,7 @@ def write(
     device: str | None,
     reference: bool,  # computed on the CPU
 ) -> None:
-    """Write a picture or a video and say what was written.
+    """Write an image or a video and say what was written.
 
     Errors: InputError where the avatar cannot be read or shown, or holds no such clip, frame or joint.
     """
@@ -71,7 +71,7 @@ def _opened(
         levels = _levels(avatar, look)
         yield avatar, lambda clip: Reference(avatar, clip, levels=levels).picture
         return
-    from mua.gpu import open_device  # here, as all that needs a device: pictures by the CPU do without
+    from mua.gpu import open_device  # here, as all that needs a device: images by the CPU do without
     from mua.player.buffers import AvatarBuffers
     from mua.player.offscreen import Offscreen
 
@@ -109,7 +109,7 @@ def _take(kind: Kind, clip: Clip, avatar: Avatar, source: Source, look: Look, *,
 
 
 def _save(output: Path, pictures: Iterator[Array], take: _Take) -> None:
-    """Write a picture, or a video with a progress bar."""
+    """Write an image, or a video with a progress bar."""
     if is_video(output):
         from mua.player.video import write_video
 
@@ -130,4 +130,4 @@ def _told(output: Path, take: _Take) -> str:
     if not is_video(output):
         return f"{output}: {size}"
     count = len(take.frames)
-    return f"{output}: {count} {'picture' if count == 1 else 'pictures'} of {size}, {count / take.rate:.1f} s"
+    return f"{output}: {count} {'frame' if count == 1 else 'frames'} of {size}, {count / take.rate:.1f} s"

@@ -25,13 +25,13 @@ from mua.player.levels import AUTO, FULL
 from mua.player.shot import Look, Shot
 from mua.player.toggles import parse_toggles
 
-Kind = Literal["window", "picture", "video", "turntable"]
-MEANT = {"window": "the window", "picture": "a picture", "video": "a video", "turntable": "a turntable"}
+Kind = Literal["window", "image", "video", "turntable"]
+MEANT = {"window": "the window", "image": "an image", "video": "a video", "turntable": "a turntable"}
 FITTING: dict[str, tuple[Kind, ...]] = {  # options that do not go with everything
-    "--frame": ("window", "picture", "turntable"),
+    "--frame": ("window", "image", "turntable"),
     "--frames": ("video",),
     "--orbit": ("window", "video", "turntable"),
-    "--reference": ("picture", "video", "turntable"),
+    "--reference": ("image", "video", "turntable"),
 }
 BESIDE = (("--mapping", "--motion"), ("--ipd", "--stereo"))  # options that need another one
 CLOSE_UP = 4.0  # times nearer, where a joint is looked at
@@ -80,7 +80,7 @@ def kind_of(output: Path | None, *, turntable: bool) -> Kind:
     require_format(output)
     if turntable:
         return "turntable"
-    return "video" if is_video(output) else "picture"
+    return "video" if is_video(output) else "image"
 
 
 def check_fitting(kind: Kind, output: Path | None, given: Mapping[str, object]) -> None:
@@ -104,7 +104,7 @@ def check_fitting(kind: Kind, output: Path | None, given: Mapping[str, object]) 
 
 
 def check_inputs(files: list[Path], output: Path | None, motion: Path | None) -> None:
-    """Raises InputError for a file that is not there, or more of them than a picture shows."""
+    """Raises InputError for a file that is not there, or more of them than an image shows."""
     if output is not None and len(files) > 1:
         raise InputError(f"-o is {output}; expected one FILE, found {len(files)}")
     for file in files:

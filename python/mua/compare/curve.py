@@ -1,4 +1,4 @@
-"""The curve of a comparison with pictures: PSNR of every system at every size against what it costs."""
+"""The curve of a comparison with images: PSNR of every system at every size against what it costs."""
 
 import io
 from collections.abc import Callable, Sequence

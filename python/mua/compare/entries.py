@@ -45,7 +45,7 @@ class Entry:
     name: str
     picture: Callable[[WholeFrame], Picture] | None
     cost: Cost = field(default_factory=Cost)
-    own_mesh: bool = False  # its pictures bring a mesh
+    own_mesh: bool = False  # its images bring a mesh
     failure: str = ""
 
 

@@ -1,4 +1,4 @@
-"""How near a teacher, avatars and systems are to the pictures of a capture, by cameras that nobody learnt from.
+"""How near a teacher, avatars and systems are to the images of a capture, by cameras that nobody learnt from.
 
 Over white and inside the box around the mask; PSNR over all pixels and colours, SSIM with the usual window.
 """
@@ -46,7 +46,7 @@ NEAR = 1e-4  # of a skeleton's size: joints that are so near in the bind pose ar
 
 @dataclass(frozen=True)
 class FilmedEntry:
-    """What is compared with the pictures: a teacher, an avatar file or a trained system."""
+    """What is compared with the images: a teacher, an avatar file or a trained system."""
 
     name: str
     show: Show
@@ -67,7 +67,7 @@ class Shot:
 
 @dataclass(frozen=True)
 class Likeness:
-    """What a picture is worth beside the capture's."""
+    """What an image is worth beside the capture's."""
 
     psnr: float  # dB
     ssim: float
@@ -77,7 +77,7 @@ class Likeness:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """One view: the capture's picture, then every entry's by name where pictures are kept, and what these are worth."""
+    """One view: the capture's image, then every entry's by name where images are kept, and what these are worth."""
 
     shot: Shot
     pictures: dict[str, Array]  # [H, W, 3] uint8
@@ -154,7 +154,7 @@ def judge(
     entries: Sequence[FilmedEntry],
     *,
     see: See,
-    kept: Collection[Shot] = (),  # those whose pictures are kept
+    kept: Collection[Shot] = (),  # those whose images are kept
     lpips: Lpips | None = None,
 ) -> Iterator[Judged]:
     """Each view in turn; views of one frame follow each other, so that every entry decodes a frame once."""
@@ -190,7 +190,7 @@ def likeness(
     *,
     lpips: Lpips | None = None,
 ) -> Likeness:
-    """The scores of a picture."""
+    """The scores of an image."""
     image, truth = (np.ascontiguousarray(picture, np.float32) for picture in (image, truth))
     pair = [torch.from_numpy(picture) for picture in (image, truth)]
     differs = flip_evaluator.evaluate(truth, image, "LDR", applyMagma=False, computeMeanError=True)[1]

@@ -1,4 +1,4 @@
-"""What a comparison with a capture's pictures ends with: a table, every view's figures, and contact sheets."""
+"""What a comparison with a capture's images ends with: a table, every view's figures, and contact sheets."""
 
 import csv
 import io
@@ -22,7 +22,7 @@ DIGITS = {"psnr": 2, "ssim": 4, "flip": 4, "lpips": 2}
 HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "flip": "FLIP", "lpips": "LPIPS"}
 COSTS = ("M parameters", "MFLOP")
 NOTHING = "-"
-LEAST_WIDTH = 190  # pixels of a picture under its caption
+LEAST_WIDTH = 190  # pixels of an image under its caption
 SHEET_ROWS = 6
 
 
@@ -101,13 +101,13 @@ def student_of(entries: Sequence[FilmedEntry]) -> FilmedEntry:
 
 
 def sheet_names(entries: Sequence[FilmedEntry], rival: str | None) -> list[str]:
-    """Whose pictures stand beside the image: all that is no system, ours, and the rival."""
+    """Whose images stand beside the captured one: all that is no system, ours, and the rival."""
     shown = [one.name for one in entries if not one.system]
     return list(dict.fromkeys([*shown, student_of(entries).name, *([rival] if rival else [])]))
 
 
 def contact_sheet(judged: Sequence[Judged], split: str, names: Sequence[str], student: str) -> Image.Image | None:
-    """Image, entries and how the student differs from the image, in the views of a split whose pictures are kept."""
+    """Captured image, entries and the student's difference, in the views of a split whose images are kept."""
     shown = [one for one in judged if one.shot.split == split and one.pictures]
     if not shown:
         return None

@@ -1,4 +1,4 @@
-"""The systems of the paper's tables as entries of a comparison with pictures, each at several sizes.
+"""The systems of the paper's tables as entries of a comparison with images, each at several sizes.
 
 All learn the same frames of one teacher. A scale multiplies what a system's textures are made of, so that its numbers
 grow about as the scale does; the coarse mesh, the mean and the hidden layers of every MLP stay as the preset has them.

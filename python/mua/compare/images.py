@@ -1,6 +1,6 @@
-"""Pictures of a recording's frames by the project's player: one rig, one camera, one mesh, any texture.
+"""Images of a recording's frames by the project's player: one rig, one camera, one mesh, any texture.
 
-The picture is square, its background black, its colours display-referred and clipped to 0..1. Cameras stand at equal
+The image is square, its background black, its colours display-referred and clipped to 0..1. Cameras stand at equal
 angles about the vertical, face the root joint and follow it, at one distance for all frames of a recording.
 """
 
@@ -22,7 +22,7 @@ from mua.rig.rig import Rig
 
 FIRST_VIEW = np.radians(30)  # azimuth in the world, from +Z towards +X
 ELEVATION = np.radians(8)
-SMALLEST, LARGEST = 176, 8192  # pixels; MS-SSIM halves a picture four times and then needs 11
+SMALLEST, LARGEST = 176, 8192  # pixels; MS-SSIM halves an image four times and then needs 11
 MOST_VIEWS = 16
 
 
@@ -64,7 +64,7 @@ class Studio:
         *,
         mesh: Array | None = None,  # [V, 3] canonical vertices, metres; the teacher's if left out
     ) -> list[Array]:
-        """One picture [H, W, 3] float32 in 0..1 for each view."""
+        """One image [H, W, 3] float32 in 0..1 for each view."""
         pictures = []
         pose = frame.clip.pose(frame.index)
         for index, camera in enumerate(self.cameras(frame)):

@@ -1,6 +1,6 @@
-"""How far a picture is from the teacher's: the paper's metrics, and two that need no weights.
+"""How far an image is from the teacher's: the paper's metrics, and two that need no weights.
 
-Over the whole picture, as in the paper (Sec. Metrics), background included: PSNR of the squared error over all pixels
+Over the whole image, as in the paper (Sec. Metrics), background included: PSNR of the squared error over all pixels
 and colours; SSIM with the usual Gaussian window of 11 pixels, borders mirrored; MS-SSIM over five scales; FLIP at its
 default viewing distance (67 pixels a degree); LPIPS times 1000, as the paper prints it, where the user gives weights.
 """
@@ -26,7 +26,7 @@ LPIPS_UNIT = 1000
 
 @dataclass(frozen=True)
 class Scores:
-    """What one picture is worth beside the teacher's."""
+    """What one image is worth beside the teacher's."""
 
     psnr: float  # dB; inf where nothing differs
     ssim: float
@@ -44,7 +44,7 @@ def compare(
     *,
     lpips: Lpips | None = None,
 ) -> tuple[Scores, Array]:  # [H, W] FLIP of every pixel in 0..1
-    """The scores of a picture, and where it differs."""
+    """The scores of an image, and where it differs."""
     own, teacher = (torch.from_numpy(np.ascontiguousarray(a.transpose(2, 0, 1)))[None] for a in (image, truth))
     differs = flip_evaluator.evaluate(truth, image, "LDR", applyMagma=False, computeMeanError=False)[0][..., 0]
     ssim = structural_similarity_index_measure(own, teacher, data_range=1.0)
@@ -60,6 +60,6 @@ def compare(
 
 
 def mean(scores: list[Scores]) -> Scores:
-    """The mean of every metric over pictures, nan over none."""
+    """The mean of every metric over images, nan over none."""
     table = np.array([[getattr(one, name) for name in METRICS] for one in scores]).reshape(-1, len(METRICS))
     return Scores(*(float(column.mean()) if len(table) else math.nan for column in table.T))

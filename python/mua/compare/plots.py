@@ -27,8 +27,8 @@ Point = tuple[float, float, str, Colour]  # cost, PSNR, name
 
 PALETTES = ("tab10", "tab20")  # the second where the first has too few colours
 CELL = 300  # pixels along a cell's longer side
-CROP = 6  # the zoomed square has so small a part of a picture's side
-MARGIN = 0.04  # of a picture's side, around the figure
+CROP = 6  # the zoomed square has so small a part of an image's side
+MARGIN = 0.04  # of an image's side, around the figure
 SHEET_FRAMES = 2  # of a kind: the worst and the median
 SHOWN_FLIP = 0.3  # white on the map
 
@@ -72,7 +72,7 @@ def rate_distortion(results: Sequence[Result]) -> bytes:
 
 
 def contact_sheet(studio: Studio, frames: Sequence[WholeFrame], results: Sequence[Result]) -> Image.Image:
-    """For each frame, teacher and entries beside each other; below each picture its worst place and its FLIP map."""
+    """For each frame, teacher and entries beside each other; below each image its worst place and its FLIP map."""
     strips = [_strip(studio, frame, results) for frame in frames]
     widest = max(strip.shape[1] for strip in strips)
     padded = [np.pad(s, ((0, 0), (0, widest - s.shape[1]), (0, 0)), constant_values=255) for s in strips]
@@ -187,7 +187,7 @@ Box = tuple[slice, slice]  # rows, columns
 
 
 def _figure_box(pictures: Sequence[Array]) -> Box:
-    """Rows and columns that hold what is not black in any picture."""
+    """Rows and columns that hold what is not black in any image."""
     lit = np.max([picture.max(axis=2) for picture in pictures], axis=0) > 1 / 255
     sides = []
     for axis, length in enumerate(lit.shape):
@@ -208,7 +208,7 @@ def _worst_box(error: Array) -> Box:
 
 
 def _marked(picture: Array, box: Box) -> Array:
-    """The picture with the square outlined."""
+    """The image with the square outlined."""
     image = Image.fromarray(picture)
     rows, columns = box
     corners = (columns.start, rows.start, columns.stop - 1, rows.stop - 1)
@@ -217,7 +217,7 @@ def _marked(picture: Array, box: Box) -> Array:
 
 
 def _fit(picture: Array, width: int, height: int) -> Array:
-    """The picture as large as it fits, in the middle of a black cell."""
+    """The image as large as it fits, in the middle of a black cell."""
     return np.asarray(ImageOps.pad(Image.fromarray(picture), (width, height), Image.Resampling.LANCZOS, color="black"))
 
 

@@ -36,7 +36,7 @@ class Setting:
     steps: int | None  # of Adam for each system, where it has no seconds
     preset: str
     lpips: str | None  # network
-    covered: float  # share of a picture that the figure covers, mean
+    covered: float  # share of an image that the figure covers, mean
 
 
 def legend(results: Sequence[Result], setting: Setting) -> list[str]:
@@ -49,7 +49,7 @@ def legend(results: Sequence[Result], setting: Setting) -> list[str]:
     views = "1 view" if setting.views == 1 else f"{setting.views} views"
     said = [
         f"Means over {counted} frames of {setting.recording}, from {views} of {setting.size} x {setting.size} pixels, "
-        f"beside the teacher. The figure covers {setting.covered:.0%} of a picture, the rest is black.",
+        f"beside the teacher. The figure covers {setting.covered:.0%} of an image, the rest is black.",
         "Drawn on the teacher's mesh of the frame"
         + (", but for rows that say own mesh." if any(_meshed(result) for result in results) else "."),
     ]
@@ -68,14 +68,14 @@ def legend(results: Sequence[Result], setting: Setting) -> list[str]:
 
 
 def tables(results: Sequence[Result], setting: Setting) -> Group:
-    """For the terminal: how near pictures come, what it costs, what failed, and what the figures mean."""
+    """For the terminal: how near images come, what it costs, what failed, and what the figures mean."""
     failed = [f"{result.entry.name} failed: {result.failure}" for result in results if result.failure]
     said = [Text(sentence) for sentence in (*failed, *legend(results, setting))]
     return Group(_scores_table(results, setting), _costs_table(results), *said)
 
 
 def _scores_table(results: Sequence[Result], setting: Setting) -> Table:
-    shown = _table("system", "poses", *_metrics(setting).values(), title="Pictures beside the teacher's")
+    shown = _table("system", "poses", *_metrics(setting).values(), title="Images beside the teacher's")
     kinds = [(kind, held_out) for kind, held_out in KINDS.items() if setting.frames.get(kind)]
     for result in results:
         if result.failure and not result.samples:
@@ -156,7 +156,7 @@ def as_csv(results: Sequence[Result]) -> str:
 
 
 def as_json(results: Sequence[Result], setting: Setting) -> str:
-    """Everything, every picture's scores included; null where there is no number."""
+    """Everything, every image's scores included; null where there is no number."""
     told = [
         {
             "system": result.entry.name,

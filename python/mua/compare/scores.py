@@ -1,4 +1,4 @@
-"""Draws every entry and the teacher, frame by frame, and scores the pictures."""
+"""Draws every entry and the teacher, frame by frame, and scores the images."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -18,13 +18,13 @@ KINDS = {"training": False, "held out": True}
 
 @dataclass(frozen=True)
 class Sample:
-    """The scores of one picture."""
+    """The scores of one image."""
 
     clip: str
     frame: int  # of the clip
     held_out: bool
     view: int
-    covered: float  # share of the picture that the teacher's figure covers
+    covered: float  # share of the image that the teacher's figure covers
     scores: Scores
 
 
@@ -37,7 +37,7 @@ class Result:
     failure: str = ""
 
     def of(self, held_out: bool) -> Scores:
-        """The mean over pictures of a kind, nan over none."""
+        """The mean over images of a kind, nan over none."""
         return mean([sample.scores for sample in self.samples if sample.held_out == held_out])
 
 

@@ -1,4 +1,4 @@
-"""How a system stands among those that cost at most as much: who is nearest to the pictures, and how surely."""
+"""How a system stands among those that cost at most as much: who is nearest to the images, and how surely."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ class Standing:
     """Of one split; differences are those of PSNR in dB, ours less the rival's."""
 
     split: str
-    rival: str  # the nearest to the pictures of those that cost at most as much
+    rival: str  # the nearest to the images of those that cost at most as much
     difference: float  # mean over views
     ahead: int  # views in which ours is nearer
     views: int
@@ -41,7 +41,7 @@ def sentences(found: Sequence[Standing]) -> list[str]:
     said = []
     for one in found:
         place = "is first" if one.difference > 0 else "is NOT first"
-        how = f"{one.difference:+.2f} dB, nearer in {one.ahead} of {one.views} pictures"
+        how = f"{one.difference:+.2f} dB, nearer in {one.ahead} of {one.views} images"
         said.append(f"{one.split}: among systems that cost at most as much, {OURS} {place}: {how}, than {one.rival}.")
     return said
 

@@ -71,7 +71,7 @@ def _write_stage(
     frames: ExportFrames,
     posed: Iterator[Splats],
     *,
-    texture: str | None,  # name of the picture to write beside the stage
+    texture: str | None,  # name of the image to write beside the stage
 ) -> None:
     from mua.export import usd
     from mua.export.surface import detailed_mesh, skinned_mesh

@@ -26,7 +26,7 @@ SPLAT_SCHEMA = "ParticleField3DGaussianSplat"  # of OpenUSD 26.03 and later
 def write_character(path: Path, frames: ExportFrames, mesh: SkinnedMesh | None, *, texture: str | None = None) -> None:
     """The skeleton with its motion, and the mesh if there is one, which UsdSkel deforms by dual quaternions.
 
-    `texture` is the name of a picture beside the file, which the mesh shows without light; without one it has colours
+    `texture` is the name of an image beside the file, which the mesh shows without light; without one it has colours
     at its vertices.
     """
     stage, name = _stage(path, frames)

@@ -1,4 +1,4 @@
-"""What pictures of a figure stand on: white, and grey for a figure that is itself white."""
+"""What images of a figure stand on: white, and grey for a figure that is itself white."""
 
 from collections.abc import Iterable
 
@@ -14,7 +14,7 @@ MOSTLY = 0.5  # of what the figure covers
 def background_for(
     images: Iterable[Array],  # [H, W, 4] premultiplied sRGB and alpha
 ) -> float:
-    """The grey, 0..1, on which a figure is seen in all of its pictures."""
+    """The grey, 0..1, on which a figure is seen in all of its images."""
     covered = pale = 0
     for image in images:
         solid = image[..., 3] > 0.5

@@ -1,4 +1,4 @@
-"""Pictures by OpenGL without a window, on a GPU or on the CPU; nothing here shares code with how splats are made."""
+"""Images by OpenGL without a window, on a GPU or on the CPU; nothing here shares code with how splats are made."""
 
 import sys
 from collections.abc import Iterator, Sequence
@@ -34,7 +34,7 @@ def opened() -> Iterator[moderngl.Context]:
 
 
 class Canvas:
-    """A picture of premultiplied sRGB and alpha to draw on, and its depth."""
+    """An image of premultiplied sRGB and alpha to draw on, and its depth."""
 
     def __init__(self, context: moderngl.Context, screen: tuple[int, int], *, samples: int, dtype: str) -> None:
         """`samples` are along a side of every pixel; `dtype` is "f1" for eight bits a channel or "f4" for floats."""
@@ -49,7 +49,7 @@ class Canvas:
         self._target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
 
     def read(self) -> Array:
-        """The picture [H, W, 4] float32, each pixel the mean of its samples, its first row at the top."""
+        """The image [H, W, 4] float32, each pixel the mean of its samples, its first row at the top."""
         (width, height), count = self._screen, self._samples
         kind = np.uint8 if self._dtype == "f1" else np.float32
         samples = np.frombuffer(self._target.read(components=4, dtype=self._dtype), kind)

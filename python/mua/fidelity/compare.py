@@ -1,4 +1,4 @@
-"""Draws the source character and its splats in the same poses and views, and compares the pictures."""
+"""Draws the source character and its splats in the same poses and views, and compares the images."""
 
 import itertools
 from collections.abc import Sequence

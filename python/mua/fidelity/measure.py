@@ -1,4 +1,4 @@
-"""Compares two pictures of one pose: overlap of the silhouettes, PSNR of the colours, and the worst place."""
+"""Compares two images of one pose: overlap of the silhouettes, PSNR of the colours, and the worst place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from scipy.ndimage import uniform_filter
 from mua.arrays import Array
 
 COVERED = 0.5  # opacity from which a pixel belongs to the silhouette
-MOST_DECIBELS = 99.0  # of pictures that are equal
-WINDOW = 24  # a worst place is the worst mean over a square of this part of the picture's height
+MOST_DECIBELS = 99.0  # of images that are equal
+WINDOW = 24  # a worst place is the worst mean over a square of this part of the image's height
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """What pictures of one pose have in common, as sums, so that those of several views can be added."""
+    """What images of one pose have in common, as sums, so that those of several views can be added."""
 
     common: int  # pixels that both silhouettes hold
     missing: int  # pixels that only the source's holds
@@ -24,7 +24,7 @@ class Agreement:
 
     @property
     def iou(self) -> float:
-        """Overlap of the silhouettes: common pixels over all pixels of either; 0 where both pictures are empty."""
+        """Overlap of the silhouettes: common pixels over all pixels of either; 0 where both images are empty."""
         either = self.common + self.missing + self.beyond
         return self.common / either if either else 0.0
 
@@ -70,7 +70,7 @@ def worst_place(
     source: Array,  # [H, W, 4] premultiplied sRGB and alpha
     splats: Array,  # [H, W, 4]
 ) -> tuple[int, int, float]:
-    """Column and row about which the pictures differ most, and the mean difference there in 0..1.
+    """Column and row about which the images differ most, and the mean difference there in 0..1.
 
     A pixel that only one silhouette holds differs by 1.
     """

@@ -1,4 +1,4 @@
-"""One picture of the comparison: source, splats and their difference side by side."""
+"""One image of the comparison: source, splats and their difference side by side."""
 
 import numpy as np
 from PIL import Image, ImageDraw

@@ -49,7 +49,7 @@ for name, number in {"REACH": float(REACH), "WEIGHT": WEIGHT}.items():
 
 
 class SplatPainter:
-    """Draws posed splats onto one size of picture."""
+    """Draws posed splats onto one size of image."""
 
     def __init__(self, context: moderngl.Context, screen: tuple[int, int]) -> None:
         self._context = context

@@ -1,4 +1,4 @@
-"""Pictures beside each other in strips under captions, and sheets of such strips."""
+"""Images beside each other in strips under captions, and sheets of such strips."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ GAIN = 4  # a difference is shown this many times as strong
 
 
 def caption(titles: Sequence[str], width: int) -> Array:
-    """A white bar [CAPTION, n width, 3] uint8 with a title over each of n pictures so many pixels wide."""
+    """A white bar [CAPTION, n width, 3] uint8 with a title over each of n images so many pixels wide."""
     bar = Image.new("RGB", (len(titles) * width, CAPTION), "white")
     draw = ImageDraw.Draw(bar)
     for i, title in enumerate(titles):
@@ -21,7 +21,7 @@ def caption(titles: Sequence[str], width: int) -> Array:
 
 
 def difference(one: Array, other: Array) -> Array:
-    """How far pictures are apart, dark on white, in 0..1 and below."""
+    """How far images are apart, dark on white, in 0..1 and below."""
     return np.asarray(1 - GAIN * np.abs(one - other))
 
 

@@ -1,4 +1,4 @@
-"""Draws sorted splats into a texture, and reads pictures of them back."""
+"""Draws sorted splats into a texture, and reads images of them back."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -85,11 +85,11 @@ def image_format(device: Device) -> str:
 def draw_image(device: Device, renderer: SplatRenderer, splats: SortedSplats, cameras: Sequence[Camera]) -> Array:
     """Premultiplied sRGB and alpha [H, E W, 4] float32 of the eyes side by side.
 
-    The renderer's format is one of CHANNEL_TYPES. Errors: InputError where the device cannot hold so large a picture.
+    The renderer's format is one of CHANNEL_TYPES. Errors: InputError where the device cannot hold so large an image.
     """
     width, height = cameras[0].screen
     size = (len(cameras) * width, height, 1)
-    with naming(f"picture of {size[0]} x {size[1]} pixels"):
+    with naming(f"image of {size[0]} x {size[1]} pixels"):
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         target = device.wgpu.create_texture(size=size, format=renderer.color_format, usage=usage)
         encoder = device.wgpu.create_command_encoder()

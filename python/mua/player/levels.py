@@ -13,7 +13,7 @@ Wanted = str | int  # or texels along a side
 
 
 class Levels:
-    """Of one avatar, from picture to picture."""
+    """Of one avatar, from image to image."""
 
     def __init__(self, avatar: Avatar, wanted: Wanted) -> None:
         size = avatar.rig.texels.size
@@ -39,7 +39,7 @@ class Levels:
         translations: Array,  # [J, 3] local joint translations, metres
         cameras: Sequence[Camera],
     ) -> int:
-        """The level for the next picture, 0 being the finest."""
+        """The level for the next image, 0 being the finest."""
         if self.wanted == AUTO:
             root = self._skeleton.world(rotations, translations)[1][self._skeleton.root]
             distance, texel = texel_pixels(self._length, self._bounds + root, cameras)

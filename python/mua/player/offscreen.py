@@ -1,4 +1,4 @@
-"""Pictures without a window, drawn on a device."""
+"""Images without a window, drawn on a device."""
 
 from collections.abc import Sequence
 

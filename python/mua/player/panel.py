@@ -59,7 +59,7 @@ KEYS: dict[str, tuple[str, str, Callable[[Session], None]]] = {
 
 
 def draw_panel(session: Session, *, rate: float) -> None:
-    """Lay out all controls; `rate` is in pictures per second."""
+    """Lay out all controls; `rate` is in frames per second."""
     imgui.set_next_window_pos((0, 0), imgui.Cond_.first_use_ever)
     imgui.set_next_window_size((WIDTH, 0), imgui.Cond_.always)
     imgui.begin("mua-view", None, imgui.WindowFlags_.no_resize)
@@ -118,7 +118,7 @@ def _shown(session: Session) -> None:
 
 def _times(session: Session, rate: float) -> None:
     imgui.separator()
-    imgui.text(f"{rate:.1f} pictures per second")
+    imgui.text(f"{rate:.1f} frames per second")
     _, session.timed = imgui.checkbox("Time the kernels", session.timed)
     if not session.timed:
         return

@@ -1,4 +1,4 @@
-"""Pictures by the CPU reference, and what both ways of drawing share; needs no graphics device."""
+"""Images by the CPU reference, and what both ways of drawing share; needs no graphics device."""
 
 from collections.abc import Sequence
 from functools import cache, lru_cache
@@ -15,7 +15,7 @@ from mua.rendering import render_premultiplied, to_bytes
 
 
 class Reference:
-    """The splats of the same pictures by the CPU reference; each eye sees its own colours."""
+    """The splats of the same images by the CPU reference; each eye sees its own colours."""
 
     def __init__(self, avatar: Avatar, clip: Clip, *, levels: Levels | None = None) -> None:
         """`clip` is at the rate of the avatar's encoding; `levels` choose the level of detail, the finest if None."""

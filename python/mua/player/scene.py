@@ -1,4 +1,4 @@
-"""What one picture shows: background, shadow, geometry or template, splats and skeleton, in this order."""
+"""What one image shows: background, shadow, geometry or template, splats and skeleton, in this order."""
 
 from collections.abc import Sequence
 
@@ -47,7 +47,7 @@ class Scene:
         self._overlays.pose(rotations, translations, ground=ground)
 
     def draw(self, target: wgpu.GPUTexture, cameras: Sequence[Camera], toggles: Toggles) -> None:
-        """Submit the picture of one or two eyes, side by side from the left; the target is as wide as all of them."""
+        """Submit the image of one or two eyes, side by side from the left; the target is as wide as all of them."""
         encoder = self._device.wgpu.create_command_encoder()
         if toggles.shadow:
             self._overlays.draw_mask(encoder)
@@ -99,11 +99,11 @@ class Scene:
 def draw_picture(device: Device, scene: Scene, cameras: Sequence[Camera], toggles: Toggles) -> Array:
     """Premultiplied sRGB and alpha [H, E W, 4] float32 of one or two eyes side by side.
 
-    Errors: InputError where the device cannot hold so large a picture.
+    Errors: InputError where the device cannot hold so large an image.
     """
     width, height = cameras[0].screen
     size = (len(cameras) * width, height, 1)
-    with naming(f"picture of {size[0]} x {size[1]} pixels"):
+    with naming(f"image of {size[0]} x {size[1]} pixels"):
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         target = device.wgpu.create_texture(size=size, format=scene.color_format, usage=usage)
         scene.draw(target, cameras, toggles)

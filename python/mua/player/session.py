@@ -80,7 +80,7 @@ class Session:
         self._clip = named_clip(self._stage.clips, source.clip, source=source.motion or self.file)
         if source.frame is not None:
             self.step(require_frame(self._clip, source.frame))
-        self._step = 0.0  # frames of the clip from one picture to the next, as it plays
+        self._step = 0.0  # frames of the clip from one image to the next, as it plays
         self.view: Viewpoint | None = None  # framed by the first draw
 
     @property
@@ -169,7 +169,7 @@ class Session:
         self.toggles = replace(self.toggles, **{name: not getattr(self.toggles, name)})
 
     def draw(self, target: wgpu.GPUTexture) -> None:
-        """Submit the picture of the present state; a stereo pair shares the width of the target."""
+        """Submit the image of the present state; a stereo pair shares the width of the target."""
         width, height, _ = target.size
         cameras = self._cameras((max(width // 2, 1) if self.stereo else width, height))
         commands = self._device.commands(timed=self.timed and self.can_time)

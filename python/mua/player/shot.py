@@ -17,14 +17,14 @@ from mua.rig.bounds import frame_boxes, root_positions, union
 from mua.rig.rig import Rig
 
 GROUND = np.array([1.0, 0, 1])  # a camera that follows keeps its height
-TURN_SPEED, TURN_RATE = 60.0, 30.0  # degrees and pictures per second of a turntable
+TURN_SPEED, TURN_RATE = 60.0, 30.0  # degrees and images per second of a turntable
 SLOWEST, FASTEST = 1.0, 360.0  # degrees per second: six minutes for a turn, and a second
 Color = tuple[float, float, float]  # sRGB, 0..1
 
 
 @dataclass(frozen=True)
 class Shot:
-    """What a camera does; unless it comes nearer than that, the figure is in the picture at every frame."""
+    """What a camera does; unless it comes nearer than that, the figure is in the image at every frame."""
 
     screen: tuple[int, int]  # width, height of one eye, pixels
     azimuth: float = 0.0  # radians from the figure's front in the first frame, towards its left
@@ -35,12 +35,12 @@ class Shot:
     )
     eyes: float | None = None  # metres between two eyes; one eye if None
     zoom: float = 1.0  # times nearer than all of the figure asks for
-    look_at: str | None = None  # joint or part of the body in the middle of the picture
+    look_at: str | None = None  # joint or part of the body in the middle of the image
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a picture, a video or a window shows of an avatar, and from where."""
+    """What an image, a video or a window shows of an avatar, and from where."""
 
     shot: Shot
     toggles: Toggles
@@ -69,7 +69,7 @@ def eyes_of(view: Viewpoint, screen: tuple[int, int], eyes: float | None) -> tup
 
 
 def _framed(shot: Shot, rig: Rig, clip: Clip) -> tuple[Array, Array]:
-    """The box [2, 3] that is to be in the picture, and where the camera's target goes [F, 3], metres."""
+    """The box [2, 3] that is to be in the image, and where the camera's target goes [F, 3], metres."""
     boxes, roots = frame_boxes(rig, clip), root_positions(rig, clip)
     if shot.look_at is not None:
         places = find_focus(rig, shot.look_at).places(rig.skeleton, clip.rotations, clip.translations)
@@ -79,9 +79,9 @@ def _framed(shot: Shot, rig: Rig, clip: Clip) -> tuple[Array, Array]:
 
 
 def full_turn(shot: Shot) -> tuple[Shot, int, float]:
-    """A shot that goes round once at its speed, how many pictures that takes and how many there are a second.
+    """A shot that goes round once at its speed, how many images that takes and how many there are a second.
 
-    The picture after the last would be the first again. Errors: InputError where it turns too slowly or too fast.
+    The image after the last would be the first again. Errors: InputError where it turns too slowly or too fast.
     """
     speed = np.degrees(shot.turning) or TURN_SPEED
     if not SLOWEST <= abs(speed) <= FASTEST:

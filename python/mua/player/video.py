@@ -1,4 +1,4 @@
-"""Videos and animations from pictures, all of a file or none of it."""
+"""Videos and animations from images, all of a file or none of it."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -28,11 +28,11 @@ WEBM = (
 )
 OPAQUE_WEBM = (*WEBM, "-pix_fmt", "yuv420p")
 CLEAR_WEBM = (*WEBM, "-pix_fmt", "yuva420p", "-auto-alt-ref", "0")  # which VP9 refuses beside transparency
-GIF_RATE = 50  # pictures a second beyond which viewers slow an animation down
-# A palette for every picture: one for all of them would keep the whole video in memory until the last is there.
+GIF_RATE = 50  # images a second beyond which viewers slow an animation down
+# A palette for every image: one for all of them would keep the whole video in memory until the last is there.
 PALETTES = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=sierra2_4a"
 GIF = ("-vf", f"fps=min(source_fps\\,{GIF_RATE}),{PALETTES}", "-loop", "0")
-ENCODINGS = {  # by suffix: of opaque pictures, and of those with transparency
+ENCODINGS = {  # by suffix: of opaque images, and of those with transparency
     ".mp4": (MP4, None),
     ".webm": (OPAQUE_WEBM, CLEAR_WEBM),
     ".gif": (GIF, GIF),
@@ -43,7 +43,7 @@ def write_video(
     path: Path,  # its suffix, one of ENCODINGS, says which kind
     pictures: Iterator[Array],  # [H, W, 3 or 4] uint8, at least one; H and W even but for a GIF; straight alpha
     *,
-    rate: float,  # pictures per second
+    rate: float,  # images per second
 ) -> None:
     """Write a video or an animation that repeats.
 

@@ -14,9 +14,9 @@ from mua.player.shot import Look
 from mua.player.source import Source
 
 EVENTS = ("pointer_down", "pointer_up", "pointer_move", "wheel", "key_down", "key_up", "char", "resize")
-SETTLING = 3  # pictures after an event: the panel answers a click in the one after it
+SETTLING = 3  # images after an event: the panel answers a click in the one after it
 LONGEST_STEP = 0.25  # seconds that a clip goes on at once, so that it does not leap after a pause
-SMOOTHING = 0.1  # share of the newest picture in the rate
+SMOOTHING = 0.1  # share of the newest image in the rate
 LEFT = 1  # mouse button
 NOTCH = 100.0  # of a wheel event
 

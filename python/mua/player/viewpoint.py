@@ -44,7 +44,7 @@ class Viewpoint:
         return replace(self, target=target, azimuth=self.azimuth + angle)
 
     def panned(self, right: float, down: float, *, height: int) -> "Viewpoint":
-        """After a drag of so many pixels in a picture of `height`: what is at the target stays under the mouse."""
+        """After a drag of so many pixels in an image of `height`: what is at the target stays under the mouse."""
         metres = 2 * np.tan(FOV / 2) * self.distance / height
         across, up, _ = self.camera((height, height)).view[:3, :3]
         return replace(self, target=self.target + metres * (down * up - right * across))
@@ -65,7 +65,7 @@ def framing(
     azimuths: Array,  # [N] radians, as mua.camera.orbit: all from which the box is going to be seen
     elevation: float = 0.0,
 ) -> Viewpoint:
-    """At the first azimuth, at the distance from which all of a box is in the picture from each of them."""
+    """At the first azimuth, at the distance from which all of a box is in the image from each of them."""
     target = np.mean(bounds, axis=0)
     places = [orbit(bounds, screen=screen, azimuth=a, elevation=elevation).position for a in np.unique(azimuths)]
     distance = float(np.linalg.norm(np.array(places) - target, axis=-1).max())

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mua.player.shot import Look
     from mua.player.source import Source
 
-MISSING = "a window needs a display and there is none; -o writes a picture or a video instead"
+MISSING = "a window needs a display and there is none; -o writes an image or a video instead"
 
 
 def show(source: "Source", look: "Look", *, device: str | None = None) -> None:

@@ -1,4 +1,4 @@
-"""How an avatar begins: which side is its front, and the picture that stands for it until a browser has drawn it."""
+"""How an avatar begins: which side is its front, and the image that stands for it until a browser has drawn it."""
 
 from contextlib import closing
 from io import BytesIO

@@ -1,4 +1,4 @@
-"""The files of a site that plays avatars: the player's own, a page, the avatars and their picture."""
+"""The files of a site that plays avatars: the player's own, a page, the avatars and their image."""
 
 import html
 import re

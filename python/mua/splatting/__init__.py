@@ -1,1 +1,1 @@
-"""Pictures of splats that can be differentiated: what the reference renderer draws, for training."""
+"""Images of splats that can be differentiated: what the reference renderer draws, for training."""

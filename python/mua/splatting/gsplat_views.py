@@ -1,4 +1,4 @@
-"""Pictures by gsplat's CUDA kernels (https://docs.gsplat.studio), as an alternative to mua.splatting.rasterise."""
+"""Images by gsplat's CUDA kernels (https://docs.gsplat.studio), as an alternative to mua.splatting.rasterise."""
 
 from collections.abc import Sequence
 

@@ -6,7 +6,7 @@
 (dx, dy) from the quad's middle to the pixel's centre. `shapes` are those of mua.splatting.projection.Quads. A pixel is
 done when its transmittance T falls to LEAST_TRANSMITTANCE. The second pass walks back from there and divides T by
 1 - alpha again, so that a pixel keeps two numbers, however many quads lie over it. A third pass finds the
-largest T_i alpha_i of each quad instead of a picture.
+largest T_i alpha_i of each quad instead of an image.
 """
 
 # mypy: disable-error-code="index, operator, attr-defined, no-untyped-def, valid-type, no-untyped-call"

@@ -1,4 +1,4 @@
-"""How alike two pictures are, with gradients: what a training on pictures descends."""
+"""How alike two images are, with gradients: what a training on images descends."""
 
 import torch
 from torch import Tensor
@@ -6,7 +6,7 @@ from torch.nn import functional
 
 WINDOW = 11  # pixels along a side of the window of SSIM, of the given standard deviation
 DEVIATION = 1.5
-C1, C2 = 0.01**2, 0.03**2  # of pictures in 0..1
+C1, C2 = 0.01**2, 0.03**2  # of images in 0..1
 
 
 def structural_similarity(
@@ -29,6 +29,6 @@ def _blur(
     weights = torch.exp(-((away / DEVIATION) ** 2) / 2)
     weights = (weights / weights.sum()).view(1, 1, 1, -1)
     margin = WINDOW // 2
-    mode = "reflect" if min(planes.shape[2:]) > margin else "replicate"  # a mirror needs as much picture as it shows
+    mode = "reflect" if min(planes.shape[2:]) > margin else "replicate"  # a mirror needs as much image as it shows
     planes = functional.pad(planes, (margin,) * 4, mode=mode)
     return functional.conv2d(functional.conv2d(planes, weights), weights.transpose(2, 3))

@@ -1,4 +1,4 @@
-"""The learned perceptual distance of two pictures, to measure and to descend, with weights that the user gives."""
+"""The learned perceptual distance of two images, to measure and to descend, with weights that the user gives."""
 
 import pickle
 from pathlib import Path
@@ -44,12 +44,12 @@ class Lpips:
         self._net.net.load_state_dict(given)
 
     def to(self, device: torch.device) -> Self:
-        """The same on a device, and with gradients to pictures alone."""
+        """The same on a device, and with gradients to images alone."""
         self._net.to(device).requires_grad_(False)
         return self
 
     def distance(self, image: Tensor, truth: Tensor) -> Tensor:
-        """Between two pictures [1, 3, H, W] in 0..1, with gradients."""
+        """Between two images [1, 3, H, W] in 0..1, with gradients."""
         distance: Tensor = self._net(image, truth, normalize=True)
         assert isinstance(distance, Tensor)  # a pair only where every layer is asked for
         return distance.mean()

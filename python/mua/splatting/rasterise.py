@@ -57,7 +57,7 @@ def largest_shares(
     eye: Eye,
     bounds: torch.Tensor,  # [2, 3] world box over which depth is keyed
 ) -> torch.Tensor:
-    """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 of those out of the picture."""
+    """The largest share of any pixel's colour that each splat gives, [N] in 0..1; 0 of those out of the image."""
     quads = project(splats, eye, bounds)
     shapes = quads.shapes.detach().contiguous()
     largest = shapes.new_zeros(len(shapes))

@@ -27,7 +27,7 @@ def picture_loss(
     truth: Bands,
     sensitivities: Bands,  # of one frame, as `mua.student.sensitivity` measures them
 ) -> Tensor:
-    """Mean squared error, each number times what a unit of it changes in pictures: to first order, that of pictures."""
+    """Mean squared error, each number times what a unit of it changes in images: to first order, that of images."""
     errors = [((a - b) * s).square() for a, b, s in zip(predicted, truth, sensitivities, strict=True)]
     return torch.stack([error.sum() for error in errors]).sum() / sum(error.numel() for error in errors)
 

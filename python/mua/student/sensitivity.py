@@ -1,6 +1,6 @@
-"""How much each sample of the subbands changes pictures: what its errors count for in fine-tuning.
+"""How much each sample of the subbands changes images: what its errors count for in fine-tuning.
 
-A picture of random signs, carried back through drawing and posing, holds on average the squared length of each sample's
+An image of random signs, carried back through drawing and posing, holds on average the squared length of each sample's
 derivative: one backward pass measures all samples (Bekas et al. 2007, https://doi.org/10.1016/j.apnum.2007.01.003).
 """
 
@@ -22,14 +22,14 @@ from mua.student.optimise import Progress, Run
 from mua.wavelets import Bands
 
 STAGE = "picture sensitivities"
-SIDE = 256  # pixels of a picture
+SIDE = 256  # pixels of an image
 HIGHEST = 0.4  # radians, from which cameras look down, or up
 GOLDEN = np.pi * (3 - np.sqrt(5))  # radians from one camera to the next
-LEAST = 1e-3  # of an attribute's mean square: what these pictures do not show may be seen in others
+LEAST = 1e-3  # of an attribute's mean square: what these images do not show may be seen in others
 
 
 def measure_sensitivities(recording: Recording, pictures: int, run: Run) -> Bands:
-    """By how much, root mean square over pixels, a unit of each sample changes pictures of training frames.
+    """By how much, root mean square over pixels, a unit of each sample changes images of training frames.
 
     Of one frame; the three bands of a detail level share their numbers, [1, 1, 23, n, n]. Frames are evenly spaced,
     the cameras around them.
@@ -65,7 +65,7 @@ def _squares(
     middle: Bands,  # [23, n, n], ... those that the mean texture stands for
     generator: torch.Generator,
 ) -> Bands:
-    """The squared derivatives of one picture, [23, n, n], [3, 23, n, n] and [3, 23, 2n, 2n]."""
+    """The squared derivatives of one image, [23, n, n], [3, 23, n, n] and [3, 23, 2n, 2n]."""
     clip, frame = place
     channels = slice(0, mean.shape[1])
     away = [

@@ -32,7 +32,7 @@ from mua.teachers.bones import figure_scale
 from mua.wavelets import Bands
 
 BRANCHES = ("geometry", "appearance")
-# What bases learn from pictures holds for unseen motion too, while faster MLPs learn the frames by heart.
+# What bases learn from images holds for unseen motion too, while faster MLPs learn the frames by heart.
 SEEN_BASIS_RATE = 12.0  # learning rate of the bases relative to that of the MLP
 
 
@@ -45,7 +45,7 @@ class Samples:
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
-    sensitivities: Callable[[Run], Bands] | None = None  # of pictures to samples; without them, the paper's loss counts
+    sensitivities: Callable[[Run], Bands] | None = None  # of images to samples; without them, the paper's loss counts
 
     def __len__(self) -> int:
         return len(self.descriptors)
@@ -162,7 +162,7 @@ def fit_branch(
     run: Run,
     parts: Parts | None = None,
     until: StageName | None = None,
-    sensitivities: Bands | None = None,  # of pictures to the samples of all 23 channels, of one frame
+    sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
 ) -> None:
     """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
 
@@ -214,7 +214,7 @@ def start_branch(
     run: Run,
     parts: Parts | None = None,
     until: StageName | None = None,
-    sensitivities: Bands | None = None,  # of pictures to the samples of all 23 channels, of one frame
+    sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
 ) -> Tensor:
     """Closed-form bases, and an MLP taught their coefficients, conditioned for what follows; not if `until` "bases".
 
@@ -271,11 +271,11 @@ def factorize_branch(
     settings: Settings,
     stage: str,
     run: Run,
-    sensitivities: Bands | None = None,  # of pictures to the samples of the branch's channels, of one frame
+    sensitivities: Bands | None = None,  # of images to the samples of the branch's channels, of one frame
 ) -> tuple[Tensor, Tensor]:
     """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C].
 
-    Bases are the best for pictures where sensitivities to its samples are given.
+    Bases are the best for images where sensitivities to its samples are given.
     """
     kept = run.checkpoints.load(stage)
     if kept is not None:
@@ -334,10 +334,10 @@ def factorize_channel(
 
 
 def worth_of(
-    sensitivities: Bands,  # of pictures to the samples of C channels, of one frame
+    sensitivities: Bands,  # of images to the samples of C channels, of one frame
     channel: int,
 ) -> tuple[Tensor, ...]:
-    """What the samples [n, n] of LL, D3 and D2 of a channel count for; alike where pictures show none of them."""
+    """What the samples [n, n] of LL, D3 and D2 of a channel count for; alike where images show none of them."""
     levels = sensitivities.ll[0, channel], sensitivities.d3[0, 0, channel], sensitivities.d2[0, 0, channel]
     return tuple(own / own.mean() if own.any() else torch.ones_like(own) for own in levels)
 

@@ -49,7 +49,7 @@ class SurfaceTexels:
         relief -= SINK * np.exp(surfels.log_scales[:, :2]).min(axis=1, keepdims=True) * surfels.normals
         uv = np.einsum("nk,nkc->nc", barycentrics, mesh.uv[mesh.uv_faces[triangles]])
         albedo = sample_albedo(character.base_color, uv, texels.size)
-        at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the picture of another chart
+        at_home = _at_home(uv, texels) & ~surfels.at_border  # beyond it lies the image of another chart
         albedo[at_home, :3] = _sharp(picture, wanted)[texels.texels[at_home]]
         self._relief, self._rest, self._log_scales, self._albedo = (
             np.ascontiguousarray(rows.T, dtype=np.float32)
@@ -108,7 +108,7 @@ def _at_home(
 
 
 def _sharp(picture: Array, wanted: Sharpness) -> Array:
-    """Colours [S * S, 3] that are as near to the picture as the surfels can show them."""
+    """Colours [S * S, 3] that are as near to the image as the surfels can show them."""
     size = len(picture) // FINER
     opacity = 1 / (1 + np.exp(-MOST_OPAQUE))
     return deconvolved(picture[..., :3], opacity, wanted.spreads.reshape(size, size)).reshape(-1, 3)

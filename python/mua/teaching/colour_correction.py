@@ -16,7 +16,7 @@ class ColourCorrection(nn.Module):
         image: Tensor,  # [H, W, 4] premultiplied sRGB and alpha
         camera: int,
     ) -> Tensor:
-        """The picture [H, W, 4] as that camera shows it."""
+        """The image [H, W, 4] as that camera shows it."""
         own = self.change[camera] - self.change.mean(dim=0)
         return torch.cat([image[..., :3] + image @ own.T, image[..., 3:]], dim=-1)
 

@@ -1,4 +1,4 @@
-"""What a training needs of a capture: its subject, the windows of its frames, and its pictures as tensors."""
+"""What a training needs of a capture: its subject, the windows of its frames, and its images as tensors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

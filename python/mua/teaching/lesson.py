@@ -1,4 +1,4 @@
-"""What a teacher is trained to: pictures like those of the cameras (paper, Preliminaries)."""
+"""What a teacher is trained to: images like those of the cameras (paper, Preliminaries)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from mua.teaching.track_losses import TexelTracks
 from mua.teaching.views import Seen, Views
 from mua.teaching.windows import Window
 
-Perceptual = Callable[[Tensor, Tensor], Tensor]  # of two pictures [1, 3, H, W] in 0..1
+Perceptual = Callable[[Tensor, Tensor], Tensor]  # of two images [1, 3, H, W] in 0..1
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Lesson(nn.Module):
     def forward(
         self,
         rows: Tensor,  # [B] of views
-        backgrounds: Tensor,  # [B, 3] sRGB, where a camera has no picture of the empty set
+        backgrounds: Tensor,  # [B, 3] sRGB, where a camera has no image of the empty set
         moving: bool = True,  # False: the mean texture alone
     ) -> Tensor:
         """The mean loss over the views."""
@@ -117,7 +117,7 @@ class Lesson(nn.Module):
         return self._weights.tracks / (UNIT * self._size) ** 2 * error
 
     def _restraint(self, frame: Frame, index: int) -> Tensor:
-        """Keeps what pictures do not decide near nothing."""
+        """Keeps what images do not decide near nothing."""
         loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
         beside = self.correction.size() + self.looks[index].square().sum()
         if self.refinement is not None:

@@ -22,7 +22,7 @@ from mua.teaching.texels import TexelNets
 from mua.teaching.windows import Window
 
 CONSTANT = slice(11, 14)  # channels of a splat's colour from everywhere
-MOST_RESIDUAL = 20.0  # of a network's output, in units: a splat that is lost does not leave the picture for good
+MOST_RESIDUAL = 20.0  # of a network's output, in units: a splat that is lost does not leave the image for good
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class TeacherModel(nn.Module):
         return Frame(template.canonical[0], texture, added, template.posed[0])
 
     def mean_texture(self) -> Tensor:
-        """[N, 23] the surfels in the mean colours of the pictures."""
+        """[N, 23] the surfels in the mean colours of the images."""
         colours = self.surfels[:, CONSTANT] + self.mean / SH_C0
         return torch.cat([self.surfels[:, : CONSTANT.start], colours, self.surfels[:, CONSTANT.stop :]], dim=1)
 

@@ -1,4 +1,4 @@
-"""Poses that fit the pictures: in every frame small turns of all joints and a small move of the root, both bounded."""
+"""Poses that fit the images: in every frame small turns of all joints and a small move of the root, both bounded."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""How a training looks: pictures of a camera that it does not learn from, beside the teacher's."""
+"""How a training looks: images of a camera that it does not learn from, beside the teacher's."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,17 +21,17 @@ GAIN = 4  # a difference is shown so many times as strong
 
 @dataclass(frozen=True, eq=False)
 class Preview:
-    """Views to look at, and where pictures of them go."""
+    """Views to look at, and where images of them go."""
 
     folder: Path
     seen: Sequence[tuple[Seen, Window]]
 
     def due(self, step: int, steps: int) -> bool:
-        """Whether a picture is made after a step."""
+        """Whether an image is made after a step."""
         return step == steps or step % max(steps // PICTURES, LEAST_STEPS) == 0
 
     def __call__(self, lesson: Lesson, name: str, *, moving: bool) -> float:
-        """Write a picture: each view's image, the teacher's, and how they differ; returns the mean PSNR."""
+        """Write an image: each view's image, the teacher's, and how they differ; returns the mean PSNR."""
         rows, scores = [], []
         look = lesson.looks.detach().mean(dim=0)
         for seen, window in self.seen:
@@ -58,5 +58,5 @@ def picture_of(
 
 
 def psnr(image: Array, truth: Array) -> float:
-    """Decibels over all pixels and colours of pictures in 0..1."""
+    """Decibels over all pixels and colours of images in 0..1."""
     return float(-10 * np.log10(max(np.mean(np.square(image - truth, dtype=np.float64)), 1e-10)))

@@ -29,15 +29,15 @@ class TeacherSettings:
     texels: int  # H = W of the texture
     channels: int  # of the first level of each UNet; every level below has twice as many, up to eight times
     levels: int  # of each UNet
-    rows: int  # of a whole picture, at most
+    rows: int  # of a whole image, at most
     mean: Schedule  # of the mean texture
     texture: Schedule  # of the networks
     window: int = 3  # k, poses that a frame is told from
     code: int = 0  # numbers of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
-    refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the pictures
+    refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the images
     drivable: bool = False  # whether motion deforms the template, or its skin alone
     weights: LossWeights = field(default_factory=LossWeights)
-    rasteriser: Rasteriser = "mua"  # what draws the pictures in training
+    rasteriser: Rasteriser = "mua"  # what draws the images in training
     seed: int = 0
 
 

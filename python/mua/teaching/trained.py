@@ -15,7 +15,7 @@ from mua.teaching.windows import windows
 
 
 class TrainedTeacher:
-    """Frames of any motion on the skeleton of `rig`, as the folder's teacher learnt them from pictures."""
+    """Frames of any motion on the skeleton of `rig`, as the folder's teacher learnt them from images."""
 
     def __init__(self, folder: PathLike, *, moving: bool = True) -> None:
         """Without `moving` only the mean texture on the skinned template, to compare with."""

@@ -8,7 +8,7 @@ WIDEST = 8  # times the channels of the first level
 
 
 class UNet(nn.Module):
-    """From pictures [B, in, H, W] to [B, out, H, W]; before training it gives 0 everywhere."""
+    """From images [B, in, H, W] to [B, out, H, W]; before training it gives 0 everywhere."""
 
     def __init__(self, inputs: int, outputs: int, *, channels: int, levels: int) -> None:
         """H and W are multiples of 2^(levels - 1)."""

@@ -13,7 +13,7 @@ TOGETHER = 2  # views of a frame in one batch: the networks are asked once for b
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A picture of one frame by one camera, cut to the person."""
+    """An image of one frame by one camera, cut to the person."""
 
     image: Tensor  # [H, W, 3] sRGB in 0..1
     mask: Tensor  # [H, W] in 0..1
@@ -29,7 +29,7 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """Pictures of F frames by C cameras."""
+    """Images of F frames by C cameras."""
 
     frames: int
     cameras: int

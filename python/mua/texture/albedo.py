@@ -5,7 +5,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.atlas.filtering import bilinear, bled, reduced
 
-FINER = 2  # points along a texel, at which pictures are looked at that are finer than texels
+FINER = 2  # points along a texel, at which images are looked at that are finer than texels
 
 
 def sample_albedo(

@@ -1,4 +1,4 @@
-"""Colours of texels whose surfels, laid over each other, look most like a picture that is finer than they are."""
+"""Colours of texels whose surfels, laid over each other, look most like an image that is finer than they are."""
 
 import numpy as np
 from scipy import fft
@@ -8,7 +8,7 @@ from mua.texture.albedo import FINER
 
 DIRECTIONS = 8  # from which a surface is seen: the nearer of two surfels lies over the other
 AROUND = 2  # texels beyond which a surfel is not felt
-DAMPING = 0.1  # weight of the picture's own colour at the texel, so that what no surfel can show is not amplified
+DAMPING = 0.1  # weight of the image's own colour at the texel, so that what no surfel can show is not amplified
 LEVELS = 3  # of width, for which the colours of all surfels are sought: between them they are interpolated
 
 
@@ -19,7 +19,7 @@ def deconvolved(
 ) -> Array:
     """Colours [S, S, 3] in 0..1, sRGB, of the texels of an opaque texture.
 
-    The least-squares solution of "what the surfels of a regular grid show is the picture", over points between the
+    The least-squares solution of "what the surfels of a regular grid show is the image", over points between the
     texels and over directions of view. Grid and widths are the same everywhere, so that a Fourier transform solves it,
     once for each of a few widths.
     """

@@ -1,6 +1,6 @@
-"""How narrow the surfels of texels are to be to show a picture, and along which of its lines they are to lie.
+"""How narrow the surfels of texels are to be to show an image, and along which of its lines they are to lie.
 
-Narrow surfels show a fine picture sharply, but let more of what is behind shine through. That is seen where a picture
+Narrow surfels show a fine image sharply, but let more of what is behind shine through. That is seen where an image
 is even, and there wide surfels lose nothing.
 """
 
@@ -13,17 +13,17 @@ from mua.arrays import Array
 from mua.texture.albedo import FINER
 
 SPREAD = 0.62  # standard deviation over the distance of neighbouring texels: between four, 95 % is covered
-WIDE, NARROW = 0.66, 0.5  # of an even picture and of a busy one: 98 and 86 % are covered at the least
+WIDE, NARROW = 0.66, 0.5  # of an even image and of a busy one: 98 and 86 % are covered at the least
 EVEN, BUSY = 5e-4, 1e-2  # mean squared difference of a texel's colour to those of its neighbours, sum of the channels
 LONGER = 0.35  # logarithm of a surfel's length on a line over that of a round one, which it is narrower by as well
 LEAST_LONGER = 0.05  # what is less is no line
-SMOOTHING = 0.6, 0.7  # texels, standard deviations: of the picture, and of the surroundings over which a line is sought
+SMOOTHING = 0.6, 0.7  # texels, standard deviations: of the image, and of the surroundings over which a line is sought
 SOLID = 254 / 255  # opacity of a texel with nothing clear about it
 
 
 @dataclass(frozen=True, eq=False)
 class Sharpness:
-    """What a picture asks of the surfel of each texel."""
+    """What an image asks of the surfel of each texel."""
 
     spreads: Array  # [N] standard deviation over the distance of neighbouring texels
     across: Array  # [N, 2] unit, along u and v: across the line on which the texel lies
@@ -37,7 +37,7 @@ class Sharpness:
 def sharpness(
     picture: Array,  # [FINER S, FINER S, 4] colours and opacities in 0..1, sRGB
 ) -> Sharpness:
-    """What the picture asks for, at all S x S texels row by row; surfels that are not solid are all alike and round."""
+    """What the image asks for, at all S x S texels row by row; surfels that are not solid are all alike and round."""
     size = len(picture) // FINER
     colors = by_texel(picture[..., :3])
     apart = [np.roll(colors, (y, x), (0, 1)) - colors for y in (-1, 0, 1) for x in (-1, 0, 1) if (y, x) != (0, 0)]
@@ -83,7 +83,7 @@ def along_lines(
     extents: Array,  # [N, 2] standard deviations along x and y, metres
     *,
     steps: Array,  # [N, 2, 3] that lead from texel to texel along u and v, metres
-    wanted: Sharpness | None,  # of the N; None: no picture has lines
+    wanted: Sharpness | None,  # of the N; None: no image has lines
 ) -> tuple[Array, Array]:
     """Turns [N] about z, radians, and extents [N, 2] of surfels that are longer along lines, and narrower across.
 

@@ -32,7 +32,7 @@ LEAST = 1e-6  # of the surface's size, of any standard deviation: a texel where 
 class Surfels:
     """The Gaussians of the texels on a surface at rest."""
 
-    rotations: Array  # [N, 4] z along the normal, x along a line of the picture or about along u; unit, wxyz
+    rotations: Array  # [N, 4] z along the normal, x along a line of the image or about along u; unit, wxyz
     log_scales: Array  # [N, 3] along x, y, z; natural logarithms of metres
     smooth: Array  # [N, 4] rotations with x about along u everywhere, one sign over each chart
     aside: Array  # [N, 3] from the texels' points to the centres, metres
@@ -51,7 +51,7 @@ def rest_surfels(
     texels: Array,  # [N] row * size + col
     triangles: Array,  # [N] into the mesh's faces
     barycentrics: Array,  # [N, 3]
-    wanted: Sharpness | None = None,  # by the picture, of these texels
+    wanted: Sharpness | None = None,  # by the image, of these texels
 ) -> Surfels:
     """Lay a surfel on the surface at every texel; frames and footprints run smoothly across triangles of a chart.
 
@@ -59,7 +59,7 @@ def rest_surfels(
     a sheared chart gets rounder surfels, not spikes across its texels. The extents along its axes are those of the
     steps to the neighbouring texels and those of the surface that lies nearest to it: across an edge that smooth
     normals round off, surfels are thick and leave no gap, and where two charts meet they reach the seam. In the middle
-    of a large triangle surfels lie nearly in it: askew, they would hide less of what is behind. The picture may ask for
+    of a large triangle surfels lie nearly in it: askew, they would hide less of what is behind. The image may ask for
     others than those of SPREAD, and for longer ones along its lines.
     """
     weighted, area = _weighted_steps(mesh, size)

@@ -32,7 +32,7 @@ def _camera(key: str, table: dict[str, Any], path: Path) -> Calibrated:
         if needed not in table:
             raise InputError(f"{where}: holds no {needed}")
     if table.get("fisheye"):
-        raise InputError(f"{where}: has a fisheye lens; undistort its pictures first")
+        raise InputError(f"{where}: has a fisheye lens; undistort its images first")
     return Calibrated.of_opencv(
         str(table.get("name", key)),
         where,

@@ -1,4 +1,4 @@
-"""A camera as a calibration file gives it: in any unit, in a world of any axes, perhaps without a size of pictures."""
+"""A camera as a calibration file gives it: in any unit, in a world of any axes, perhaps without a size of images."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -12,7 +12,7 @@ from mua.capture.camera import COEFFICIENTS, CaptureCamera
 from mua.errors import InputError
 
 ROUNDING = 1e-3  # what a few digits leave of a rotation
-SAME_ASPECT = 0.005  # by which sides may differ in proportion in pictures that were only made smaller
+SAME_ASPECT = 0.005  # by which sides may differ in proportion in images that were only made smaller
 OPENCV_PIXEL = 0.5  # from where OpenCV counts, the first pixel's centre, to that pixel's corner
 
 
@@ -61,13 +61,13 @@ class Calibrated:
 
     def camera(
         self,
-        size: tuple[int, int],  # width, height of the pictures
+        size: tuple[int, int],  # width, height of the images
         *,
-        name: str,  # of the pictures
+        name: str,  # of the images
         scale: float,  # metres in one unit of the file
         axes: Array,  # [3, 3] from our world to the file's
     ) -> CaptureCamera:
-        """The camera of pictures, which may be smaller than those that were calibrated."""
+        """The camera of images, which may be smaller than those that were calibrated."""
         matrix = self.world_to_camera.copy()
         matrix[:3, :3] = matrix[:3, :3] @ axes
         matrix[:3, 3] *= scale
@@ -77,7 +77,7 @@ class Calibrated:
         across, down = size[0] / found.size[0], size[1] / found.size[1]
         if abs(across / down - 1) > SAME_ASPECT:
             raise InputError(
-                f"{self.where}: was calibrated for pictures of {found.size[0]} x {found.size[1]}, those of {name} are "
+                f"{self.where}: was calibrated for images of {found.size[0]} x {found.size[1]}, those of {name} are "
                 f"{size[0]} x {size[1]}; expected the same, or both sides smaller by the same factor"
             )
         return found.resized(size)
@@ -89,7 +89,7 @@ def coefficients(values: Any, where: str) -> tuple[float, ...]:
     if found[len(COEFFICIENTS) :].any():
         raise InputError(
             f"{where}: the distortion has {len(found)} coefficients; expected {', '.join(COEFFICIENTS)}. Undistort the "
-            "pictures first"
+            "images first"
         )
     padded = [*found.tolist(), *[0.0] * len(COEFFICIENTS)][: len(COEFFICIENTS)]
     return tuple(float(value) for value in padded)

@@ -117,4 +117,4 @@ def _binary_images(path: Path) -> Iterator[tuple[str, int, Array]]:
 
 def _other_model(where: str, found: str) -> InputError:
     names = ", ".join(NUMBERS)
-    return InputError(f"{where}: the camera model is {found}; expected {names}, or undistort the pictures first")
+    return InputError(f"{where}: the camera model is {found}; expected {names}, or undistort the images first")

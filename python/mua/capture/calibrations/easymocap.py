@@ -47,7 +47,7 @@ def _camera(
 
 
 def _stored(path: Path) -> tuple[dict[str, Array], dict[str, float]]:
-    """The matrices, and the heights and widths of pictures."""
+    """The matrices, and the heights and widths of images."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, ValueError) as error:

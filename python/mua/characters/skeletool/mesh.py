@@ -61,7 +61,7 @@ class _Obj:
 
 
 def read_mesh(path: Path) -> Mesh:
-    """Read a .obj and the pictures of its materials; raises InputError that names file and line."""
+    """Read a .obj and the images of its materials; raises InputError that names file and line."""
     found = _Obj(path)
     for number, text in enumerate(read_lines(path), 1):
         try:
@@ -104,7 +104,7 @@ def _index(word: str, count: int) -> int:
 
 
 def _pictures(path: Path) -> dict[str, Path | None]:
-    """The picture of each material of a .mtl, None where it has none; raises InputError where it cannot be read."""
+    """The image of each material of a .mtl, None where it has none; raises InputError where it cannot be read."""
     found: dict[str, Path | None] = {}
     name = ""
     for text in read_lines(path):

@@ -29,7 +29,7 @@ class Look:
     material: Material
     primvar: str | None = None
     matrix: Array = field(default_factory=lambda: np.eye(2, 3))
-    needed: bool = False  # there is a picture, which the coordinates place
+    needed: bool = False  # there is an image, which the coordinates place
     color_primvar: str | None = None  # of the mesh, multiplied in
     opacity_primvar: str | None = None
 
@@ -170,7 +170,7 @@ def _picture(texture: UsdShade.Shader, path: Path) -> Array:
 
 
 def _with_alpha(image: Array, alpha: Array) -> Array:
-    """The picture [h, w, 4] with the opacity [h', w'], both brought to the larger size."""
+    """The image [h, w, 4] with the opacity [h', w'], both brought to the larger size."""
     height, width = np.maximum(image.shape[:2], alpha.shape)
     color = np.asarray(Image.fromarray(image[..., :3]).resize((width, height), Image.Resampling.BILINEAR))
     opacity = np.asarray(Image.fromarray(alpha).resize((width, height), Image.Resampling.BILINEAR))
