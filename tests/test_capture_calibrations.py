@@ -164,7 +164,10 @@ def test_smaller_pictures_have_a_smaller_camera(tmp_path: Path) -> None:
         (toml(fisheye="true"), "camera cam_01: has a fisheye lens; undistort"),
         (toml(distortions="[0, 0, 0, 0, 0, 1]"), "camera cam_01: the distortion has 6 coefficients; expected k1, k2"),
         (toml(rotation="[1.0, 2.0]"), "camera cam_01: rotation has 2 numbers, expected 3 or 9"),
-        (toml(rotation="[[1, 0, 0], [0, 1, 0], [0, 0, -1]]"), "camera cam_01: rotation is not one"),
+        (
+            toml(rotation="[[1, 0, 0], [0, 1, 0], [0, 0, -1]]"),
+            "camera cam_01: the rotation matrix is not orthonormal and right-handed",
+        ),
         (toml(translation="[1.0, nan, 1.0]"), "camera cam_01: translation"),
         (toml(matrix="[[-61, 0, 1], [0, 61, 1], [0, 0, 1]]"), "focal lengths are -61 and 61, expected above 0"),
         (toml(matrix="[[61, 9, 1], [0, 61, 1], [0, 0, 1]]"), "camera cam_01: the skew is 9, expected 0"),
@@ -261,7 +264,7 @@ def test_what_a_folder_lacks_is_named(given: tuple[object, ...], command: Comman
     calibrated = (*line, "--calibration", calibration, *given)
     assert "found no images; looked for videos/cam00.mp4" in command(*calibrated).sentence
     assert "expected --template and --motion with it" in command(*line, "--calibration", calibration).sentence
-    assert "--axes and --scale are of a --calibration" in command(*line, *given, "--scale", 0.001).sentence
+    assert "--axes and --scale apply to a --calibration" in command(*line, *given, "--scale", 0.001).sentence
     for name in ("cam01", "side"):
         (source / "images" / name).mkdir(parents=True)
         Image.new("RGB", SIZE).save(source / "images" / name / "0.png")

@@ -84,7 +84,7 @@ def test_cameras_see_points_where_the_formula_says(tmp_path: Path, text: str) ->
         (captury(focal=-61), "the focal length is -12.2 and"),
         (captury().replace("\t1\t", "\t0.9\t", 1), "line 3: the pixels' aspect is 0.9, expected 1"),
         (captury().replace("\t1\t", "\t1.1\t", 1), "line 3: the pixels' aspect is 1.1, expected 1"),
-        (skeletool(mirrored=True), "camera 0: its axes are not those of a right-handed camera"),
+        (skeletool(mirrored=True), "camera 0: the rotation matrix is not orthonormal and right-handed"),
         (captury().replace("OpenCV\t", ""), "line 3: has 22 columns, expected 23"),
     ],
 )

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array
+from mua.capture.calibrations.calibrated import rigid
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.errors import InputError
 
@@ -20,7 +21,7 @@ VALUES = {"sensor": 2, "size": 2, "animated": 1, "intrinsic": 16, "extrinsic": 1
 NEEDED = ("size", "intrinsic", "extrinsic")
 # Columns of TheCaptury's: camera, frame, sensor, focal length, aspect, offset, model and its numbers, place, axes.
 COLUMNS = 23
-BOUND = 1e-3  # what rounding leaves of a rotation
+ASPECT_ROUNDING = 1e-3  # by which rounding leaves square pixels
 
 
 def read_calibration(
@@ -68,15 +69,14 @@ def _of_block(name: str, said: dict[str, Array], where: str) -> CaptureCamera:
         raise InputError(f"{where}: is animated; expected cameras that stand still")
     if said.get("radial", np.zeros(1)).any():
         raise InputError(f"{where}: radial is {said['radial'][0]:g}; undistort the images first and set it to 0")
-    intrinsic, extrinsic = said["intrinsic"].reshape(4, 4), said["extrinsic"].reshape(4, 4).copy()
-    extrinsic[:3, 3] *= MILLIMETRES
+    intrinsic, extrinsic = said["intrinsic"].reshape(4, 4), said["extrinsic"].reshape(4, 4)
     width, height = said["size"]
     return CaptureCamera(
         name=name,
         size=(int(width), int(height)),
         focal=(float(intrinsic[0, 0]), float(intrinsic[1, 1])),
         centre=(float(intrinsic[0, 2]) + 0.5, float(intrinsic[1, 2]) + 0.5),
-        world_to_camera=_rigid(extrinsic, where),
+        world_to_camera=rigid(extrinsic[:3, :3], extrinsic[:3, 3] * MILLIMETRES, where),
     )
 
 
@@ -94,26 +94,18 @@ def _captury(path: Path, number: int, line: str, size: tuple[int, int]) -> Captu
     values = _numbers(cells[2:8] + cells[9:], COLUMNS - 3, where)
     sensor, length, aspect, offset = values[:2], values[2], values[3], values[4:6]
     coefficients, origin, up, right = values[6:11], values[11:14], values[14:17], values[17:20]
-    if abs(aspect - 1) > BOUND:
+    if abs(aspect - 1) > ASPECT_ROUNDING:
         raise InputError(f"{where}: the pixels' aspect is {aspect:g}, expected 1")
     if min(sensor) <= 0 or length <= 0:
         raise InputError(f"{where}: the focal length is {length:g} and the sensor {sensor.tolist()}, expected above 0")
     turn = np.stack([right, -up, np.cross(right, -up)])
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = turn, -turn @ origin * MILLIMETRES
+    world_to_camera = rigid(turn, -turn @ origin * MILLIMETRES, where)
     focal = float(length * size[0] / sensor[0])
     middle = np.array(size) * (0.5 + offset / sensor)
     distortion = tuple(coefficients.tolist()) if coefficients.any() else UNDISTORTED
     return CaptureCamera(
-        cells[0], size, (focal, focal), (float(middle[0]), float(middle[1])), _rigid(matrix, where), distortion
+        cells[0], size, (focal, focal), (float(middle[0]), float(middle[1])), world_to_camera, distortion
     )
-
-
-def _rigid(matrix: Array, where: str) -> Array:
-    turn = matrix[:3, :3]
-    if np.abs(turn @ turn.T - np.eye(3)).max() > BOUND or np.linalg.det(turn) < 0:
-        raise InputError(f"{where}: its axes are not those of a right-handed camera at right angles")
-    return matrix
 
 
 def _numbers(values: Sequence[str], count: int, where: str) -> Array:

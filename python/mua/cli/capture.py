@@ -109,7 +109,7 @@ def describe(
         if given is not None:
             require_file(given)
     if calibration is None and (axes != "X,Y,Z" or scale != 1):
-        raise InputError("--axes and --scale are of a --calibration; give one, or leave them out")
+        raise InputError("--axes and --scale apply to a --calibration, and none is given; add it or leave them out")
     require_writable(output / CAPTURE)
 
     from mua.capture import open_capture, write_capture

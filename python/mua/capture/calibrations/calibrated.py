@@ -103,7 +103,7 @@ def rigid(turn: Any, translation: Any, where: str) -> Array:
     matrix = np.eye(4)
     matrix[:3, :3] = values.reshape(3, 3) if len(values) == 9 else _of_vector(values)
     if abs(matrix[:3, :3] @ matrix[:3, :3].T - np.eye(3)).max() > ROUNDING or np.linalg.det(matrix[:3, :3]) < 0:
-        raise InputError(f"{where}: rotation is not one; its rows are not at right angles, of length 1, right-handed")
+        raise InputError(f"{where}: the rotation matrix is not orthonormal and right-handed")
     matrix[:3, 3] = finite_array(np.ravel(translation), f"{where}: translation", (3,))
     return matrix
 
