@@ -120,6 +120,19 @@ def test_empty_masks_are_named(damaged: Capture) -> None:
     assert everything(damaged).problems == ("Camera right: all masks that were looked at (6) are empty.",)
 
 
+def test_masks_that_are_too_wide_everywhere_are_worth_a_remark(
+    small_capture: Capture, damaged: Capture, command: Commands
+) -> None:
+    for image in damaged.folder.glob("images/*/*/*.png"):
+        pixels = np.array(Image.open(image))
+        pixels[distance_transform_edt(pixels[..., 3] == 0) < 1.2, 3] = 255
+        Image.fromarray(pixels).save(image)
+    assert everything(small_capture).remarks == ()
+    ended = command("capture", "check", damaged.folder)
+    assert ended.status == 0, ended.out
+    assert re.search(r"remark: Outlines and masks overlap by [67]\d% on average; 80% or more is usual", ended.out)
+
+
 def test_missing_frames_and_cameras_are_named(damaged: Capture) -> None:
     frame, camera = damaged.files("walk", 2, "front").image, damaged.folder / "images" / "walk" / "above"
     frame.unlink()

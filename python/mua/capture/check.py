@@ -7,7 +7,7 @@ import numpy as np
 
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture
-from mua.capture.diagnose import misplaced_tracks, unlikely
+from mua.capture.diagnose import misplaced_tracks, remarks, unlikely
 from mua.capture.fit import Posed, Seen, chosen_frames, look_at
 from mua.capture.inventory import missing_files
 from mua.errors import InputError
@@ -39,6 +39,7 @@ class Checked:
     capture: Capture
     cameras: tuple[CameraFit, ...]
     problems: tuple[str, ...]  # what cannot be right, a sentence each
+    remarks: tuple[str, ...]  # what may be right but is worth a look, a sentence each
     notes: tuple[str, ...]  # what the reader of the template decided
     posed: Posed
 
@@ -68,7 +69,7 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
         )
         for camera in capture.cameras
     )
-    return Checked(capture, cameras, tuple(problems), capture.surfaces.notes, posed)
+    return Checked(capture, cameras, tuple(problems), tuple(remarks(views)), capture.surfaces.notes, posed)
 
 
 def _posed(capture: Capture, problems: list[str]) -> Posed:

@@ -13,6 +13,7 @@ from mua.capture.outline import POINTS, overlap, posed_template, rough_overlap, 
 from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
 
+GOOD = 0.8  # mean overlap that a skinned template reaches also with loose clothes
 POOR = 0.6  # of overlap, below which outline and mask are not of the same thing
 OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apart from others
 GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask better
@@ -44,6 +45,17 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
             "tried fit better: look at the image."
         ]
     return told + apart
+
+
+def remarks(views: Sequence[Seen]) -> list[str]:
+    """What is possible but worth a look: an overlap between what is wrong and what is good."""
+    mean = mean_overlap(views)
+    if not views or mean >= GOOD:
+        return []
+    return [
+        f"Outlines and masks overlap by {mean:.0%} on average; {GOOD:.0%} or more is usual, also with loose clothes. "
+        "Compare template, poses and masks in the image that -o writes."
+    ]
 
 
 def misplaced_tracks(capture: Capture, posed: Posed) -> Iterator[str]:
