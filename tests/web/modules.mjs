@@ -12,7 +12,7 @@
 //   numbers        half floats, and numbers as sentences have them
 
 import { readFileSync, readSync } from "node:fs";
-import { Arrival } from "../../python/mua/web/arrival.js";
+import { ProgressiveLoad } from "../../python/mua/web/progressive.js";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
@@ -30,7 +30,7 @@ import { groundHeight, shadowArea } from "../../python/mua/web/overlays.js";
 import { Playback } from "../../python/mua/web/playback.js";
 import { texelTiles, texelWords, upsamplingTaps } from "../../python/mua/web/prepare.js";
 import { skinning, world } from "../../python/mua/web/skeleton.js";
-import { boxAround } from "../../python/mua/web/standing.js";
+import { boxAround } from "../../python/mua/web/placement.js";
 import { surfaceMesh } from "../../python/mua/web/surface.js";
 
 const [what, ...given] = process.argv.slice(2);
@@ -204,12 +204,12 @@ async function shown(steps) {
       return entry;
     },
   };
-  const arrival = new Arrival(engine, () => told.push(put.at(-1)));
+  const progressive = new ProgressiveLoad(engine, () => told.push(put.at(-1)));
   const ended = [];
   for (const step of steps) {
     if (step === "ready") resolve();
-    else if (step.startsWith("part")) arrival.show(step);
-    else ended.push(step === "whole" ? arrival.complete(step) : arrival.fail());
+    else if (step.startsWith("part")) progressive.show(step);
+    else ended.push(step === "whole" ? progressive.complete(step) : progressive.fail());
     await new Promise((next) => setTimeout(next));
   }
   await Promise.all(ended);

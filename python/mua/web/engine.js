@@ -1,13 +1,13 @@
 // A player: its avatars and what is looked at, the loop that draws them, and what it does when the device is lost.
 
-import { Arrival } from "./arrival.js";
 import { camerasOf, framing, FOV } from "./camera.js";
 import { AvatarError } from "./error.js";
 import { described, handleOf } from "./handle.js";
 import { load } from "./load.js";
+import { boxAround, gone, groundOf } from "./placement.js";
 import { Playback } from "./playback.js";
+import { ProgressiveLoad } from "./progressive.js";
 import { Renderer } from "./renderer.js";
-import { boxAround, gone, groundOf } from "./standing.js";
 import { VR } from "./vr.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
@@ -98,15 +98,15 @@ export class Engine {
     /** @type {string | ArrayBuffer | File} */ source,
     /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {}, onPart = () => {} } = {},
   ) {
-    const arrival = new Arrival(this, onPart);
+    const progressive = new ProgressiveLoad(this, onPart);
     try {
-      const avatar = await load(source, onProgress, (part) => arrival.show(part));
+      const avatar = await load(source, onProgress, (part) => progressive.show(part));
       onProgress(0.9, "Preparing the graphics device");
-      const handle = await arrival.complete(avatar);
+      const handle = await progressive.complete(avatar);
       onProgress(1, "Ready");
       return handle;
     } catch (error) {
-      await arrival.fail();
+      await progressive.fail();
       throw error;
     }
   }

@@ -3,7 +3,7 @@
 import { roomOf } from "./camera.js";
 import { AvatarError } from "./error.js";
 import { Headset } from "./headset.js";
-import { boxAround, groundOf } from "./standing.js";
+import { boxAround, groundOf } from "./placement.js";
 
 const APART = 1.2; // metres between the reader and what is nearest
 

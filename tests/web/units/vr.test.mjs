@@ -7,7 +7,7 @@ import { read } from "../../../python/mua/web/format/read.js";
 import { handleOf } from "../../../python/mua/web/handle.js";
 import { Headset } from "../../../python/mua/web/headset.js";
 import { Playback } from "../../../python/mua/web/playback.js";
-import { boxAround, groundOf } from "../../../python/mua/web/standing.js";
+import { boxAround, groundOf } from "../../../python/mua/web/placement.js";
 import { VR } from "../../../python/mua/web/vr.js";
 
 const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));

@@ -1,4 +1,4 @@
-// An avatar on its way into an engine: each part that has arrived takes the place of the one before, the whole one the last.
+// Progressive loading: each part of an avatar that has been downloaded replaces the one before, the whole avatar the last.
 
 import { AvatarError } from "./error.js";
 
@@ -6,7 +6,7 @@ import { AvatarError } from "./error.js";
 /** @typedef {import("./engine.js").Entry} Entry */
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
 
-export class Arrival {
+export class ProgressiveLoad {
   constructor(
     /** @type {import("./engine.js").Engine} */ engine,
     /** @type {(avatar: AvatarHandle) => void} */ onPart,
@@ -28,14 +28,14 @@ export class Arrival {
   }
 
   async showNext() {
-    await this.engine.renderer?.projecting.catch(() => {}); // what fails is told where an avatar is put
+    await this.engine.renderer?.projecting.catch(() => {}); // whoever puts an avatar there gets the error
     const part = this.next;
     if (!part) return;
     this.next = null;
     try {
       this.entry = await this.engine.put(part, this.entry, false);
     } catch (error) {
-      if (error instanceof AvatarError) return; // which the whole avatar meets too, and tells
+      if (error instanceof AvatarError) return; // the whole avatar fails with the same error, which is reported
       throw error;
     }
     if (this.engine.entries.includes(this.entry)) this.onPart(this.entry.handle);
@@ -52,7 +52,7 @@ export class Arrival {
   /** Take away what was shown of it. */
   async fail() {
     this.next = null;
-    await this.showing.catch(() => {}); // what failed first is told
+    await this.showing.catch(() => {}); // the first error is reported elsewhere
     this.entry?.handle.remove();
   }
 }

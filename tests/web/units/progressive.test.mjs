@@ -1,13 +1,13 @@
-// An avatar on its way into an engine, part by part.
+// A progressive load into an engine, part by part.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Arrival } from "../../../python/mua/web/arrival.js";
+import { ProgressiveLoad } from "../../../python/mua/web/progressive.js";
 import { AvatarError } from "../../../python/mua/web/error.js";
 
 const settled = () => new Promise((done) => setTimeout(done));
 
-/** An engine that notes what is put into it, and an arrival of which parts are told. */
+/** An engine that notes what is put into it, and a progressive load that lists its parts. */
 function arriving({ projecting = Promise.resolve(), put = async () => {} } = {}) {
   const noted = [];
   const engine = {
@@ -22,25 +22,25 @@ function arriving({ projecting = Promise.resolve(), put = async () => {} } = {})
     },
   };
   const told = [];
-  const arrival = new Arrival(engine, (handle) => told.push(handle));
-  return { arrival, engine, noted, told };
+  const progressive = new ProgressiveLoad(engine, (handle) => told.push(handle));
+  return { progressive, engine, noted, told };
 }
 
 test("each part takes the place of the one before, the whole one the last", async () => {
-  const { arrival, engine, noted, told } = arriving();
+  const { progressive, engine, noted, told } = arriving();
   for (const part of ["mesh", "coarse"]) {
-    arrival.show(part);
+    progressive.show(part);
     await settled();
   }
-  const handle = await arrival.complete("all");
+  const handle = await progressive.complete("all");
   assert.deepEqual(noted, [["mesh", false], ["coarse", false], ["all", true]]);
   assert.deepEqual([engine.entries.length, told], [1, [handle, handle]]);
 });
 
 test("of parts that came before the device can draw, the newest is shown", async () => {
   let ready;
-  const { arrival, noted } = arriving({ projecting: new Promise((done) => (ready = done)) });
-  for (const part of ["mesh", "coarse", "fine"]) arrival.show(part);
+  const { progressive, noted } = arriving({ projecting: new Promise((done) => (ready = done)) });
+  for (const part of ["mesh", "coarse", "fine"]) progressive.show(part);
   await settled();
   assert.deepEqual(noted, []);
   ready();
@@ -50,9 +50,9 @@ test("of parts that came before the device can draw, the newest is shown", async
 
 test("a part that waits is left out once all of it is there", async () => {
   let ready;
-  const { arrival, noted } = arriving({ projecting: new Promise((done) => (ready = done)) });
-  arrival.show("mesh");
-  const whole = arrival.complete("all");
+  const { progressive, noted } = arriving({ projecting: new Promise((done) => (ready = done)) });
+  progressive.show("mesh");
+  const whole = progressive.complete("all");
   ready();
   await whole;
   assert.deepEqual(noted, [["all", true]]);
@@ -60,10 +60,10 @@ test("a part that waits is left out once all of it is there", async () => {
 
 test("the whole avatar waits for the part that is being shown, and takes its place", async () => {
   let shown;
-  const { arrival, engine, noted } = arriving({ put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)) });
-  arrival.show("mesh");
+  const { progressive, engine, noted } = arriving({ put: (avatar) => avatar === "mesh" && new Promise((done) => (shown = done)) });
+  progressive.show("mesh");
   await settled();
-  const whole = arrival.complete("all");
+  const whole = progressive.complete("all");
   await settled();
   assert.deepEqual(noted, [["mesh", false]]);
   shown();
@@ -72,21 +72,21 @@ test("the whole avatar waits for the part that is being shown, and takes its pla
 });
 
 test("a download that fails takes away what was shown of it, also where a part is on its way", async () => {
-  const { arrival, noted } = arriving();
-  arrival.show("mesh");
+  const { progressive, noted } = arriving();
+  progressive.show("mesh");
   await settled();
-  arrival.show("coarse");
-  await arrival.fail();
+  progressive.show("coarse");
+  await progressive.fail();
   assert.deepEqual(noted, [["mesh", false], "removed"]);
   const early = arriving();
-  await early.arrival.fail();
+  await early.progressive.fail();
   assert.deepEqual(early.noted, []);
 });
 
 test("a part that was removed meanwhile is not told", async () => {
-  const { arrival, engine, told } = arriving({ put: async () => void (engine.removing = true) });
+  const { progressive, engine, told } = arriving({ put: async () => void (engine.removing = true) });
   engine.entries.push = () => {};
-  arrival.show("mesh");
+  progressive.show("mesh");
   await settled();
   assert.deepEqual(told, []);
 });
@@ -95,20 +95,20 @@ test("kernels that do not compile are told by the whole avatar, not by its parts
   const refused = async () => {
     throw new AvatarError("The graphics device refused.");
   };
-  const { arrival, told } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
-  arrival.show("mesh");
+  const { progressive, told } = arriving({ projecting: Promise.reject(new Error("compile")), put: refused });
+  progressive.show("mesh");
   await settled();
-  await assert.rejects(arrival.complete("all"), /refused/);
+  await assert.rejects(progressive.complete("all"), /refused/);
   assert.deepEqual(told, []);
 });
 
 test("a part that breaks for another reason fails the whole", async () => {
-  const { arrival } = arriving({
+  const { progressive } = arriving({
     put: async () => {
       throw new TypeError("a fault of ours");
     },
   });
-  arrival.show("mesh");
-  await assert.rejects(arrival.complete("all"), /a fault of ours/);
-  await arrival.fail(); // and takes nothing away
+  progressive.show("mesh");
+  await assert.rejects(progressive.complete("all"), /a fault of ours/);
+  await progressive.fail(); // and takes nothing away
 });
