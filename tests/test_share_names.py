@@ -10,6 +10,7 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.errors import InputError
 from mua.motion.facing import front_of
+from mua.rotation import from_axis_angle, multiply
 from mua.share.folder import write_folder
 from mua.share.poster import front
 from mua.share.server import RANGE, _Handler
@@ -63,8 +64,10 @@ def test_a_folder_that_cannot_be_put_in_place_leaves_the_old_one_there(
 
 def test_a_page_begins_before_the_front_of_the_first_frame() -> None:
     avatar = synthetic_avatar()
-    clip = avatar.clips[0]
+    root, clip = avatar.rig.skeleton.root, avatar.clips[0]
+    clip.rotations[0, root] = multiply(from_axis_angle(np.array([0.0, 1, 0]), 1.0), clip.rotations[0, root])
     wanted = front_of(avatar.rig.skeleton, clip.rotations[0], clip.translations[0])
+    assert abs(wanted) > 0.5
     assert np.radians(front(avatar, clip)) == pytest.approx(float(wanted))
 
 
