@@ -79,8 +79,8 @@ def _influences(
 ) -> tuple[Array, Array]:
     """The nearest nodes [V, K] and their weights.
 
-    The Gaussian is as wide as the nearest node that is left out is far, less its value there: weights fade to zero
-    where a node drops out.
+    A Gaussian whose width is half the way to the nearest node that is left out, less its value there: weights fade to
+    zero where a node drops out.
     """
     order = np.argsort(ways, axis=1, kind="stable")
     kept = order[:, :INFLUENCES]
