@@ -18,8 +18,8 @@ def start() -> None:
 
 
 @contextmanager
-def _without(told: bytes) -> Iterator[None]:
-    """Leave out the lines of standard error that hold `told`, also those that are written past Python."""
+def _without(marker: bytes) -> Iterator[None]:
+    """Leave out the lines of standard error that hold `marker`, also those that are written past Python."""
     try:
         kept = os.dup(2)
     except OSError:  # there is no standard error
@@ -34,5 +34,5 @@ def _without(told: bytes) -> Iterator[None]:
             os.close(kept)
             caught.seek(0)
             for line in caught.readlines():
-                if told not in line:
+                if marker not in line:
                     os.write(2, line)

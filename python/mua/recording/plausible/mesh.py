@@ -40,16 +40,16 @@ class Meshes:
         away = rms(given - self._template)
         if away <= NEAR * self._size:
             return
-        told = f"mesh is {away:.3g} m from the template on average, whose longest side is {self._size:.3g} m"
+        found = f"mesh is {away:.3g} m from the template on average, whose longest side is {self._size:.3g} m"
         mistake = explain(given, self._template)
         if mistake is not None:
-            yield Finding(f"{told}: {mistake.question}", certain=True)
+            yield Finding(f"{found}: {mistake.question}", certain=True)
         elif rms(given - self._posed(pose)) < EXPLAINED * away:
-            yield Finding(f"{told}, and near it in this pose: is it posed? canonical space is expected", certain=True)
+            yield Finding(f"{found}, and near it in this pose: is it posed? canonical space is expected", certain=True)
         elif away > FAR * self._size:
             unit = unit_of(_spread(given) / max(_spread(self._template), 1e-12))
             question = f"are these {unit}?" if unit else "is it another mesh, another order of vertices?"
-            yield Finding(f"{told}: {question}", certain=True)
+            yield Finding(f"{found}: {question}", certain=True)
 
     def _posed(self, pose: Pose) -> Array:
         """The sampled vertices of the template in a pose."""

@@ -41,11 +41,11 @@ class Orientations:
         own = _lie(texture[self._rows], normals)
         if own is None or own > ASKEW:
             return
-        told = f"texture: {100 * own:.0f} % of flat splats lie on the surface"
+        found = f"texture: {100 * own:.0f} % of flat splats lie on the surface"
         for question, some in self._attempts(texture, normals, pose, image):
             lie = _lie(*some)
             if lie is not None and lie > LYING:
-                yield Finding(f"{told}, and {100 * lie:.0f} % {question}", certain=True)
+                yield Finding(f"{found}, and {100 * lie:.0f} % {question}", certain=True)
                 return
 
     def _attempts(
@@ -57,8 +57,8 @@ class Orientations:
         yield "if quaternions are xyzw: are they? wxyz is expected", (some, normals)
         posed = "in posed space: are they posed? canonical space is expected"
         yield posed, (texture[self._rows], self._posed(normals, pose))
-        for told, ordered in self._orders(texture) if image is None else _turned(image, self._rig.texels.texels):
-            yield told, (ordered[self._rows], normals)
+        for found, ordered in self._orders(texture) if image is None else _turned(image, self._rig.texels.texels):
+            yield found, (ordered[self._rows], normals)
 
     def _posed(self, normals: Array, pose: Pose) -> Array:
         rig = self._rig
@@ -76,8 +76,8 @@ class Orientations:
                 ordered = np.empty_like(texture)
                 ordered[np.lexsort(keys[::-1] if by_column else keys)] = texture
                 first = f"column by column{', from the last' if left else ''}" if by_column else "row by row"
-                told = f"{first}{', from the bottom' if up else ''}"
-                yield f"if texels are counted {told}: are they? row by row from the top is expected", ordered
+                found = f"{first}{', from the bottom' if up else ''}"
+                yield f"if texels are counted {found}: are they? row by row from the top is expected", ordered
 
 
 def _turned(

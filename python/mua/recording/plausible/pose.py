@@ -43,12 +43,12 @@ class Poses:
         turned = self._turn(given)
         if turned < TURNED or len(given) < FEW:
             return
-        told = f"pose rotations turn half of all joints by {np.degrees(turned):.0f} degrees or more from the bind pose"
+        found = f"pose rotations turn half of all joints by {np.degrees(turned):.0f} degrees or more from the bind pose"
         if self._turn(np.roll(given, 1, axis=1)) < CALM:
-            yield Finding(f"{told}, and by little if they are xyzw: are they? wxyz is expected", certain=True)
+            yield Finding(f"{found}, and by little if they are xyzw: are they? wxyz is expected", certain=True)
         elif self._turn(self._as_local(given)) < CALM:
             sentence = "are these rotations in the world? local ones, relative to the parent, are expected"
-            yield Finding(f"{told}: {sentence}", certain=True)
+            yield Finding(f"{found}: {sentence}", certain=True)
 
     def _turn(self, rotations: Array) -> float:
         """The median angle of all joints away from the bind pose."""
@@ -73,8 +73,8 @@ class Poses:
         moved = len(bones) >= FEW and rms(own - expected) > MOVED * rms(expected)
         mistake = explain(own, expected) if moved else None
         if mistake is not None or not 1 / OTHER_LENGTH < ratio < OTHER_LENGTH:
-            told = f"pose translations make bones {ratio:.4g} times as long as in the bind pose and move them"
-            yield Finding(f"{told}: {mistake.question if mistake else _question(ratio)}", certain=True)
+            found = f"pose translations make bones {ratio:.4g} times as long as in the bind pose and move them"
+            yield Finding(f"{found}: {mistake.question if mistake else _question(ratio)}", certain=True)
 
     def _standing(self, pose: Pose) -> Iterator[Finding]:
         place = self._root(pose)
@@ -82,9 +82,11 @@ class Poses:
         far, high = max(away[0], away[2]) > FAR * self._reach, away[1] > HIGH * self._reach
         if far or high:
             unit = "millimetres" if away.max() > FAR * self._reach else "centimetres"
-            told = f"pose puts the root joint at {_metres(place)}, where the bind pose has it at {_metres(self._place)}"
+            found = (
+                f"pose puts the root joint at {_metres(place)}, where the bind pose has it at {_metres(self._place)}"
+            )
             remedy = "metres are expected, and what happened far from the origin moved there"
-            yield Finding(f"{told}: are these {unit}? {remedy}", certain=True)
+            yield Finding(f"{found}: are these {unit}? {remedy}", certain=True)
 
     def _root(self, pose: Pose) -> Array:
         """Where the root joint is in the world [3]."""

@@ -72,8 +72,8 @@ def _weights(rig: Rig) -> Iterator[Finding]:
     total = rig.skin_weights.sum(axis=1)
     worst = int(np.argmax(np.abs(total - 1)))
     if rig.skin_weights.min(initial=0) < 0 or abs(total[worst] - 1) > WEIGHT_ERROR:
-        told = f"skin_weights of vertex {worst} sum to {total[worst]:.4g}, the least is {rig.skin_weights.min():.4g}"
-        yield Finding(f"{told}: expected weights from 0 to 1 that sum to 1", certain=True)
+        found = f"skin_weights of vertex {worst} sum to {total[worst]:.4g}, the least is {rig.skin_weights.min():.4g}"
+        yield Finding(f"{found}: expected weights from 0 to 1 that sum to 1", certain=True)
 
 
 def _joints(rig: Rig) -> Iterator[Finding]:
@@ -94,10 +94,10 @@ def _joints(rig: Rig) -> Iterator[Finding]:
     apart = rms(places - skin)
     if apart <= APART * size or len(used) < FEW:
         return
-    told = f"joints are {apart:.3g} m from the skin that they move, on average, of a figure of {size:.3g} m"
+    found = f"joints are {apart:.3g} m from the skin that they move, on average, of a figure of {size:.3g} m"
     mistake = explain(places, skin)
     if mistake is not None:
-        yield Finding(f"{told}: {mistake.question} (of the skeleton, beside the template)", certain=True)
+        yield Finding(f"{found}: {mistake.question} (of the skeleton, beside the template)", certain=True)
         return
     others = {
         "bind_rotations are xyzw: are they? wxyz is expected": _places(
@@ -107,7 +107,7 @@ def _joints(rig: Rig) -> Iterator[Finding]:
     }
     left, question = min((rms(other[used] - skin), question) for question, other in others.items())
     if left < min(NEAR * size, apart / 2):
-        yield Finding(f"{told}, and {left:.3g} m if {question}", certain=True)
+        yield Finding(f"{found}, and {left:.3g} m if {question}", certain=True)
 
 
 def _facing(rig: Rig) -> Iterator[Finding]:
@@ -115,8 +115,8 @@ def _facing(rig: Rig) -> Iterator[Finding]:
     corners = (rig.mesh.vertices - rig.mesh.vertices.mean(axis=0))[rig.mesh.faces]
     volumes = np.einsum("fi,fi->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
     if volumes.sum() < INSIDE_OUT * np.abs(volumes).sum():
-        told = "triangles of the template face inward: are they clockwise, or is the mesh mirrored?"
-        yield Finding(f"{told} Counter-clockwise seen from outside is expected", certain=False)
+        found = "triangles of the template face inward: are they clockwise, or is the mesh mirrored?"
+        yield Finding(f"{found} Counter-clockwise seen from outside is expected", certain=False)
 
 
 def _places(skeleton: Skeleton, rotations: Array) -> Array:

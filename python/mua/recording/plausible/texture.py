@@ -56,14 +56,14 @@ class Textures:
         steps = self._steps(longest)
         if SMALL < steps < LARGE:
             return
-        told = f"texture: half of all splats are longer than {self._length(longest)}, of {_long(self._size)} in all"
+        found = f"texture: half of all splats are longer than {self._length(longest)}, of {_long(self._size)} in all"
         cause = self._scale_cause(some)
         if cause is not None:
-            yield Finding(f"{told}: {cause}", certain=True)
+            yield Finding(f"{found}: {cause}", certain=True)
         else:
             question = "to base 10" if self._fits(longest * np.log(10)) else "right"
             expected = f"natural logarithms of about {_long(self._step)} are expected"
-            yield Finding(f"{told}: are these logarithms {question}? {expected}", certain=False)
+            yield Finding(f"{found}: are these logarithms {question}? {expected}", certain=False)
 
     def _scale_cause(self, some: Array) -> str | None:
         scales = some[:, ATTRIBUTES["scale"]]
@@ -83,7 +83,7 @@ class Textures:
         away = float(np.median(np.linalg.norm(offsets, axis=1)))
         if away <= OFFSET * self._size:
             return
-        told = f"texture: half of all offsets are longer than {_long(away)}, of {_long(self._size)} in all"
+        found = f"texture: half of all offsets are longer than {_long(away)}, of {_long(self._size)} in all"
         surface = np.einsum("nvx,nv->nx", mesh[self._faces], self._barycentrics)
         if len(surface) == len(offsets) and np.median(np.linalg.norm(offsets - surface, axis=1)) < away / 4:
             question = "are these positions? offsets from the mesh are expected"
@@ -91,7 +91,7 @@ class Textures:
             question = SCALES_FIRST
         else:
             question = "are these millimetres? metres are expected"
-        yield Finding(f"{told}: {question}", certain=True)
+        yield Finding(f"{found}: {question}", certain=True)
 
     def _fits(self, logarithms: Array) -> bool:
         """Whether half of all splats would be of a size that is expected."""
@@ -120,8 +120,8 @@ def _empty(
 
 def _opacities(logits: Array) -> Iterator[Finding]:
     if logits.min() >= 0 and logits.max() <= 1 and np.median(logits) > 0.5:
-        told = f"texture: all opacities lie between {logits.min():.3g} and {logits.max():.3g}"
-        yield Finding(f"{told}: are these opacities? logits, before the sigmoid, are expected", certain=False)
+        found = f"texture: all opacities lie between {logits.min():.3g} and {logits.max():.3g}"
+        yield Finding(f"{found}: are these opacities? logits, before the sigmoid, are expected", certain=False)
 
 
 def _colours(
@@ -131,17 +131,17 @@ def _colours(
     other_order = sh.reshape(-1, 3, 4)[:, :, 0]  # as if all coefficients of red came first
     brightness = np.median(np.abs(constant))
     if brightness > BRIGHT:
-        told = f"texture: half of the constant SH coefficients are beyond {brightness:.3g}"
+        found = f"texture: half of the constant SH coefficients are beyond {brightness:.3g}"
         byte = constant.min() >= 0 and constant.max() <= 255
         question = "are these colours from 0 to 255?" if byte else "are these coefficients?"
-        yield Finding(f"{told}: {question} (colour - 0.5) / 0.2821 is expected, colours in 0..1", certain=byte)
+        yield Finding(f"{found}: {question} (colour - 0.5) / 0.2821 is expected, colours in 0..1", certain=byte)
     elif np.abs(other_order[:, 1:]).mean() > max(3 * np.abs(constant[:, 1:]).mean(), 0.2):
-        told = "texture: SH coefficients of degree 1 are larger than the constant ones of green and blue"
+        found = "texture: SH coefficients of degree 1 are larger than the constant ones of green and blue"
         question = "do all four of red come first? the constants of red, green and blue are expected first"
-        yield Finding(f"{told}: {question}", certain=False)
+        yield Finding(f"{found}: {question}", certain=False)
     elif constant.min() >= 0 and constant.max() <= 1 and np.ptp(constant) > 0.5:
-        told = f"texture: the constant SH coefficients lie between {constant.min():.3g} and {constant.max():.3g}"
-        yield Finding(f"{told}: are these colours? (colour - 0.5) / 0.2821 is expected", certain=False)
+        found = f"texture: the constant SH coefficients lie between {constant.min():.3g} and {constant.max():.3g}"
+        yield Finding(f"{found}: are these colours? (colour - 0.5) / 0.2821 is expected", certain=False)
 
 
 def _step(rig: Rig) -> float:
