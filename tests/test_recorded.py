@@ -88,9 +88,8 @@ def test_a_capture_at_another_rate_is_recorded_anew(tmp_path: Path, monkeypatch:
     monkeypatch.setattr(filmed_evaluation, "record_by_workers", lambda *_, **__: None)
     monkeypatch.setattr(filmed_evaluation, "Recording", lambda directory: directory)
     monkeypatch.setattr(filmed_evaluation, "teacher_bytes", lambda _: [b"teacher"])
-    monkeypatch.setattr(filmed_evaluation, "plan", lambda *_, **__: [PLANNED])
-    made = {
-        filmed_evaluation._record(tmp_path, SimpleNamespace(clips=(), rate=rate), 9, tmp_path, Told())  # type: ignore[arg-type]
-        for rate in (25.0, 30.0, 25.0)
-    }
+    monkeypatch.setattr(filmed_evaluation, "plan_headings", lambda *_, **__: [PLANNED])
+    surfaces = SimpleNamespace(skeleton=None)
+    captures = [SimpleNamespace(clips=(), rate=rate, surfaces=surfaces) for rate in (25.0, 30.0, 25.0)]
+    made = {filmed_evaluation._record(tmp_path, one, 9, tmp_path, Told()) for one in captures}  # type: ignore[arg-type]
     assert len(made) == 2

@@ -274,7 +274,8 @@ def test_another_name_for_this_address_is_refused(port: int) -> None:
 
 
 def test_mua_view_serves_until_it_is_interrupted(avatar_file: Path) -> None:
-    code = "import sys; sys.argv[0] = 'mua-view'; from mua.cli.view import run; run()"
+    heeds = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # also in a job in the background
+    code = f"{heeds}; import sys; sys.argv[0] = 'mua-view'; from mua.cli.view import run; run()"
     line = [sys.executable, "-u", "-c", code, str(avatar_file), "--web", "--no-open"]
     line += ["--show", "splats,template", "--stereo", "--clip", "wave"]
     line += ["--azimuth", "30", "--elevation", "10", "--orbit", "-5"]
@@ -296,7 +297,7 @@ def _assert_served(ran: "subprocess.Popen[str]", avatar_file: Path) -> None:
     assert (element["clip"], element["elevation"], element["orbit"]) == ("wave", "10", "-5")
     assert float(element["azimuth"]) == pytest.approx(30 + front(*opening(avatar_file, "wave")), abs=0.06)
     ran.send_signal(signal.SIGINT)
-    assert ran.wait() == 0
+    assert ran.wait(timeout=60) == 0
     assert ran.stderr.read() == ""
 
 
