@@ -37,8 +37,8 @@ def arguments(recording: Path, output: Path) -> list[str]:
 def process(recording: Path, output: Path) -> list[str]:
     """The command line of a process that does the same as `mua_train`, and checkpoints as often."""
     code = (
-        f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import mua.cli, trainings;"
-        "trainings.PRESETS['small'] = trainings.SMALL; trainings.optimise.CHECKPOINT_STEPS = 5; trainings.train.run()"
+        f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import trainings; from mua.cli import train;"
+        "trainings.PRESETS['small'] = trainings.SMALL; trainings.optimise.CHECKPOINT_STEPS = 5; train.run()"
     )
     return [sys.executable, "-c", code, *arguments(recording, output)]
 
