@@ -61,7 +61,6 @@ def load_clips(
     *,
     mapping: Mapping[str, str] | None,
     feet: Feet = "auto",
-    rate: float = RATE,
 ) -> tuple[list[Clip], list[str]]:
     """The clips of `motions` put on the character, or the character's own; and what is worth telling of them.
 
@@ -70,12 +69,12 @@ def load_clips(
     if not motions:
         if not character.clips:
             raise InputError(f"{character.name}: holds no animation; give a file or directory with --motion")
-        return [resample(clip, rate) for clip in character.clips], []
+        return [resample(clip, RATE) for clip in character.clips], []
     clips: list[Clip] = []
     notes: list[str] = []
     for path in motions:
         for loaded in load_motions(
-            path, character.skeleton, mapping=mapping, rate=rate, said=character.roles, feet=feet
+            path, character.skeleton, mapping=mapping, rate=RATE, said=character.roles, feet=feet
         ):
             quality = measure_motion(loaded.source, character.skeleton, loaded.clip, loaded.matches)
             clips.append(loaded.clip)

@@ -68,7 +68,7 @@ def _motion(
         capture = open_capture(order.character)
         own = filmed_clips(capture, RATE)
         held_out = [clip.name for clip in capture.clips if clip.held_out]
-    given, notes = put_on(rig, roles, order.motions, mapping=order.mapping, feet=order.feet, rate=RATE)
+    given, notes = put_on(rig, roles, order.motions, mapping=order.mapping, feet=order.feet)
     for sentence in notes:
         listener.note(sentence)
     clips = unique_names([*own, *given])

@@ -44,7 +44,6 @@ def put_on(
     *,
     mapping: Mapping[str, str] | None = None,
     feet: Feet = "auto",
-    rate: float,
 ) -> tuple[list[Clip], list[str]]:
     """The clips of motion files on a teacher's skeleton, and what is worth telling of them."""
     if not motions:
@@ -58,7 +57,7 @@ def put_on(
         base_color=np.zeros((1, 1, 4), np.uint8),
         roles=roles,
     )
-    return load_clips(moved, motions, mapping=mapping, feet=feet, rate=rate)
+    return load_clips(moved, motions, mapping=mapping, feet=feet)
 
 
 def plan_headings(

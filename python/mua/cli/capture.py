@@ -1,7 +1,7 @@
 """mua-capture: whether a capture is what it should be, before a teacher is trained on it."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -114,11 +114,11 @@ def describe(
 
     from mua.capture import open_capture, write_capture
 
-    left_out = tuple(leave_out or ())
+    beside = _Given(template, motion, rate, height, tuple(leave_out or ()))
     if calibration is None:
-        capture = _described(source, template, output, motion, rate, height, left_out)
+        capture = _described(source, output, beside)
     else:
-        capture = _calibrated(source, calibration, template, output, motion, rate, height, left_out, axes, scale)
+        capture = _calibrated(source, output, calibration, beside, axes=axes, scale=scale)
     written = write_capture(capture)
     open_capture(output)  # which refuses what cannot be
     frames = sum(clip.frames for clip in capture.clips)
@@ -130,62 +130,68 @@ def run() -> None:
     run_commands("Captures: images of a person from calibrated cameras.", check, describe, poses)
 
 
-def _described(
-    source: Path,
-    template: Path | None,
-    folder: Path,
-    motion: Path | None,
-    rate: float | None,
-    height: float | None,
-    leave_out: tuple[str, ...],
-) -> "Capture":
+class _Given(NamedTuple):
+    """What every layout may be given beside its folder."""
+
+    template: Path | None
+    motion: Path | None
+    rate: float | None
+    height: float | None
+    leave_out: tuple[str, ...]
+
+
+def _described(source: Path, folder: Path, given: _Given) -> "Capture":
     """The capture that a folder of another layout is."""
     from mua.capture.avatarrex import RATE, is_avatarrex, read_avatarrex
     from mua.capture.streams import is_streams, read_streams
 
     if is_avatarrex(source):
-        if motion is not None:
-            raise InputError(f"--motion {motion}: {source} has poses of its own; leave the option out")
-        if template is None:
+        if given.motion is not None:
+            raise InputError(f"--motion {given.motion}: {source} has poses of its own; leave the option out")
+        if given.template is None:
             raise InputError(f"{source}: holds no rigged character; give one on SMPL-X with --template")
-        return read_avatarrex(source, folder, template=template, rate=rate or RATE, height=height, leave_out=leave_out)
+        return read_avatarrex(
+            source,
+            folder,
+            template=given.template,
+            rate=given.rate or RATE,
+            height=given.height,
+            leave_out=given.leave_out,
+        )
     if not is_streams(source):
         raise InputError(
             f"{source}: its layout is not known; expected calibration_full.json or calibration.json with "
             "smpl_params.npz, or videos stream*.mp4 with cameras.calib or a .calibration file"
         )
-    return read_streams(source, folder, template=template, motion=motion, rate=rate, height=height, leave_out=leave_out)
+    return read_streams(
+        source,
+        folder,
+        template=given.template,
+        motion=given.motion,
+        rate=given.rate,
+        height=given.height,
+        leave_out=given.leave_out,
+    )
 
 
-def _calibrated(
-    source: Path,
-    calibration: Path,
-    template: Path | None,
-    folder: Path,
-    motion: Path | None,
-    rate: float | None,
-    height: float | None,
-    leave_out: tuple[str, ...],
-    axes: str,
-    scale: float,
-) -> "Capture":
+def _calibrated(source: Path, folder: Path, calibration: Path, given: _Given, *, axes: str, scale: float) -> "Capture":
     """The capture of a folder whose cameras a public tool calibrated."""
     from mua.capture.calibrated_folder import read_calibrated
     from mua.capture.conventions import read_axes
 
-    if template is None or motion is None:
+    if given.template is None or given.motion is None:
         raise InputError(f"--calibration {calibration}: expected --template and --motion with it")
     return read_calibrated(
         source,
         folder,
         calibration=calibration,
-        template=template,
-        motion=motion,
-        rate=rate,
+        template=given.template,
+        motion=given.motion,
+        rate=given.rate,
         scale=scale,
         axes=read_axes(axes),
-        height=height,
-        leave_out=leave_out,
+        height=given.height,
+        leave_out=given.leave_out,
     )
 
 
