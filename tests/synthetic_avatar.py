@@ -13,7 +13,7 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.pose.clip import Clip
-from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig
@@ -25,6 +25,7 @@ RINGS, SPOKES = 4, 3
 RANKS = (4, 3, 2)  # LL, D3, D2
 PCA = 4
 HIDDEN = 16
+COMPONENTS = 20
 
 
 def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4", levels: int = LEVELS) -> Avatar:
@@ -32,7 +33,6 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4", levels: int = L
     rng = np.random.default_rng(seed)
     rig = synthetic_rig()
     encoding = PoseEncoding(joints=(1, 2), rate=24.0, translated=(2,))
-    scale = rng.uniform(0.5, 2, encoding.width).astype(np.float32)
     taps = pywt.Wavelet(wavelet)
     side, texels = SIZE >> levels, len(rig.texels.texels)
     vertices = rig.mesh.vertices.astype(np.float32)
@@ -41,15 +41,27 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4", levels: int = L
         producer="mua tests",
         rig=rig,
         encoding=encoding,
-        normalization=Normalization(_normal(rng, encoding.width, 0.1), scale),
-        coarse=Coarse(_mlp(rng, encoding.width, PCA), vertices, _normal(rng, (PCA, *vertices.shape), 0.01)),
-        geometry=_branch(rng, encoding.width, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], side, texels),
-        appearance=_branch(rng, encoding.width, [0] * 12, side, texels),
+        components=synthetic_components(rng, encoding.width),
+        coarse=Coarse(_mlp(rng, COMPONENTS, PCA), vertices, _normal(rng, (PCA, *vertices.shape), 0.01)),
+        geometry=_branch(rng, COMPONENTS, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], side, texels),
+        appearance=_branch(rng, COMPONENTS, [0] * 12, side, texels),
         wavelet=Wavelet(wavelet, levels, np.array(taps.rec_lo), np.array(taps.rec_hi)),
         clips=(synthetic_clip(rig.skeleton, rng),),
         bounds=np.array([[-1, -1, -1], [1, 2, 1]], dtype=np.float32),
         thumbnail=b"",
         notes="random numbers in the shape of an avatar",
+    )
+
+
+def synthetic_components(rng: np.random.Generator, width: int) -> Components:
+    """Random ones; poses of the clip are within the ranges of some and beyond those of others."""
+    scale = rng.uniform(0.5, 2, width).astype(np.float32)
+    middle, half = _normal(rng, COMPONENTS, 0.5), np.abs(_normal(rng, COMPONENTS, 1.0))
+    return Components(
+        normalization=Normalization(_normal(rng, width, 0.1), scale),
+        directions=_normal(rng, (COMPONENTS, width), 1 / np.sqrt(width)),
+        ranges=np.stack([middle - half, middle + half]),
+        margins=np.abs(_normal(rng, COMPONENTS, 0.3)),
     )
 
 

@@ -14,6 +14,7 @@ from mua.kernels.inverse_dwt import add_static, halve, inverse_dwt
 from mua.kernels.mlp_matmul import mlp_matmul
 from mua.model import Branch, Mlp, Model, Wavelet
 from mua.pose.clip import Clip
+from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
 from mua.pose.resample import sample
 from mua.pose.skeleton import Pose
@@ -52,7 +53,7 @@ def decode(
 ) -> Splats:
     """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
     descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
-    x = ((descriptor - avatar.normalization.mean) / avatar.normalization.scale).astype(dtype)
+    x = read_components(avatar.components, descriptor)[0].astype(dtype)
     canonical = expand_mesh(avatar, x)
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
@@ -75,7 +76,7 @@ def decode_clip_frame(
 
 def expand_mesh(
     avatar: Model,
-    x: Array,  # [k D] normalised descriptor
+    x: Array,  # [K] components of the descriptor
 ) -> Array:
     """Canonical vertices [V, 3]: F_temp, then the PCA basis."""
     coefficients = _mlp(avatar.coarse.mlp, x)
@@ -88,7 +89,7 @@ def expand_mesh(
 def decode_branch(
     branch: Branch,
     wavelet: Wavelet,
-    x: Array,  # [k D] normalised descriptor
+    x: Array,  # [K] components of the descriptor
     *,
     texels: Array,  # [N] row * size + column
 ) -> Array:

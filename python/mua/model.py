@@ -6,7 +6,7 @@ Spatial tensors are channel-first: a GPU reads them plane by plane.
 from dataclasses import dataclass
 
 from mua.arrays import Array
-from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Components, PoseEncoding
 from mua.rig.rig import Rig
 
 
@@ -82,7 +82,7 @@ class Model:
 
     rig: Rig
     encoding: PoseEncoding
-    normalization: Normalization
+    components: Components
     coarse: Coarse
     geometry: Branch
     appearance: Branch

@@ -8,8 +8,9 @@ from mua.model import Branch, Mlp
 
 def parameters(avatar: Avatar) -> dict[str, int]:
     """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison)."""
-    branches = (avatar.geometry, avatar.appearance)
+    branches, components = (avatar.geometry, avatar.appearance), avatar.components
     return {
+        "components of the pose": sum(a.size for a in (components.directions, components.ranges, components.margins)),
         "coefficient MLPs": sum(_weights(mlp) for mlp in (avatar.coarse.mlp, *(b.mlp for b in branches))),
         "PCA mesh": avatar.coarse.mean.size + avatar.coarse.basis.size,
         "LL bases": sum(b.ll_mean.size + b.ll_basis.size for b in branches),
@@ -28,6 +29,7 @@ def flops(avatar: Avatar) -> dict[str, int]:
     taps = len(avatar.wavelet.rec_lo)
     mlps = (avatar.coarse.mlp, *(b.mlp for b in branches))
     return {
+        "components of the pose": 2 * avatar.components.directions.size,
         "coefficient MLPs": 2 * sum(layer.weight.size for mlp in mlps for layer in mlp),
         "PCA mesh": 2 * avatar.coarse.basis.size,
         "LL blend": 2 * sum(b.ll_basis.size for b in branches),

@@ -26,7 +26,7 @@ SCALARS = {
     "double": np.dtype("<f8"),
     **{name: np.dtype("u1") for name in ENUMS},
 }
-VERSION = (3, 0)  # major, minor of the format: the newest that is read
+VERSION = (4, 0)  # major, minor of the format
 DATA_ALIGN = 16  # bytes, of a tensor's data
 MAX_BYTES = 2**31 - 1  # FlatBuffers' offsets are 32 bits, and its builders stop at half of them
 
@@ -140,6 +140,10 @@ def parse(content: bytes) -> Tree:
     if version > VERSION[0]:
         raise FormatError(
             "version", "version_major", f"format version {version} is newer than {VERSION[0]}, update mua"
+        )
+    if version < VERSION[0]:
+        raise FormatError(
+            "version", "version_major", f"format version {version} is older than {VERSION[0]}, bake the avatar again"
         )
     return _Parser(content).table(ROOT, 0, "")
 

@@ -51,6 +51,9 @@ TABLES = {
         Field("mean", "Tensor", required=True),
         Field("scale", "Tensor", required=True),
         Field("translated", "Tensor"),
+        Field("components", "Tensor", required=True),
+        Field("ranges", "Tensor", required=True),
+        Field("margins", "Tensor", required=True),
     ),
     "Template": (
         Field("faces", "Tensor", required=True),

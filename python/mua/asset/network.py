@@ -11,15 +11,13 @@ from mua.asset.tensors import pack, pack_indices
 from mua.rig.rig import Rig
 from mua.rig.texel_map import centre_barycentrics
 
-MAJOR = 3
 COMPUTED = 1e-4  # of a triangle, by which a computed barycentric may be beside the avatar's
 BRANCHES = ("geometry.", "appearance.")
 
 
 def build_packed(tree: Tree, rig: Rig) -> bytes:
     """The bytes of a plain file's tree as one for the network, not yet sealed."""
-    tree = {**tree, "version_major": MAJOR, "version_minor": int("one_sided" in tree["texels"])}
-    tree["texels"] = {**tree["texels"], **_listed(rig)}
+    tree = {**tree, "texels": {**tree["texels"], **_listed(rig)}}
     for _, tensor in tensors(tree):
         tensor.update(packed(tensor))
     return build(tree, _stages(tree))

@@ -14,7 +14,7 @@ from mua.asset.tensors import indices, reals
 from mua.errors import InputError
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE, Clip
-from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
@@ -98,13 +98,15 @@ def decode_tree(tree: Tree) -> Avatar:
     """
     skeleton = _skeleton(tree["skeleton"])
     translated = _translated(tree["skeleton"], "skeleton.translated", skeleton)
-    encoding, normalization = _encoding(tree["encoding"], skeleton, translated)
+    encoding = _encoding(tree["encoding"], skeleton, translated)
+    components = _components(tree["encoding"], encoding.width)
+    inputs = len(components.margins)
     wavelet = _wavelet(tree["wavelet"])
-    coarse = _coarse(tree["coarse"], encoding.width)
+    coarse = _coarse(tree["coarse"], inputs)
     rig = _rig(tree, skeleton, coarse.mean)
     size, count = rig.texels.size, len(rig.texels.texels)
     branches = [
-        _branch(tree[name], name, channels, count=count, width=encoding.width, size=size >> wavelet.levels)
+        _branch(tree[name], name, channels, count=count, inputs=inputs, size=size >> wavelet.levels)
         for name, channels in (("geometry", GEOMETRY_CHANNELS), ("appearance", APPEARANCE_CHANNELS))
     ]
     if size % (1 << wavelet.levels):
@@ -116,7 +118,7 @@ def decode_tree(tree: Tree) -> Avatar:
         producer=tree["producer"],
         rig=rig,
         encoding=encoding,
-        normalization=normalization,
+        components=components,
         coarse=coarse,
         geometry=branches[0],
         appearance=branches[1],
@@ -175,7 +177,7 @@ def _translated(tree: Tree, path: str, skeleton: Skeleton) -> Array:
     return joints
 
 
-def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> tuple[PoseEncoding, Normalization]:
+def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> PoseEncoding:
     joints = indices(tree["joints"], "encoding.joints", (None,), 0, len(skeleton.names))
     if np.any(np.diff(joints) <= 0) or skeleton.root in joints:
         _refuse("encoding.joints", "joints must ascend and leave out the root")
@@ -184,17 +186,29 @@ def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> tuple[PoseEncodin
         _refuse("encoding.translated", "joints must be among the skeleton's translated ones")
     if not 1 <= tree["window"] <= 16:
         _refuse("encoding.window", f"{tree['window']} frames, expected 1 to 16")
-    encoding = PoseEncoding(
+    return PoseEncoding(
         joints=tuple(int(j) for j in joints),
         rate=_rate(tree["rate"], "encoding.rate"),
         window=tree["window"],
         heading=tree["heading"],
         translated=tuple(int(j) for j in translated),
     )
-    scale = reals(tree["scale"], "encoding.scale", (encoding.width,))
+
+
+def _components(tree: Tree, width: int) -> Components:
+    scale = reals(tree["scale"], "encoding.scale", (width,))
     if scale.min() < np.float32(LEAST_SCALE):
         _refuse("encoding.scale", f"{scale.min()}, expected {LEAST_SCALE:g} or more")
-    return encoding, Normalization(mean=reals(tree["mean"], "encoding.mean", (encoding.width,)), scale=scale)
+    directions = reals(tree["components"], "encoding.components", (None, width))
+    ranges = reals(tree["ranges"], "encoding.ranges", (2, len(directions)))
+    swapped = np.flatnonzero(ranges[0] > ranges[1])
+    if swapped.size:
+        _refuse("encoding.ranges", f"the lowest value of component {swapped[0]} is above its highest")
+    margins = reals(tree["margins"], "encoding.margins", (len(directions),))
+    if margins.min(initial=0) < 0:
+        _refuse("encoding.margins", f"{margins.min()}, expected 0 or more")
+    mean = reals(tree["mean"], "encoding.mean", (width,))
+    return Components(Normalization(mean, scale), directions, ranges, margins)
 
 
 def _rate(rate: float, path: str) -> float:
@@ -299,21 +313,21 @@ def _mlp(layers: list[Tree], path: str, first: int, last: int) -> Mlp:
     return tuple(mlp)
 
 
-def _coarse(tree: Tree, width: int) -> Coarse:
+def _coarse(tree: Tree, inputs: int) -> Coarse:
     mean = reals(tree["mean"], "coarse.mean", (None, 3))
     basis = reals(tree["basis"], "coarse.basis", (None, len(mean), 3))
-    return Coarse(mlp=_mlp(tree["mlp"], "coarse.mlp", width, len(basis)), mean=mean, basis=basis)
+    return Coarse(mlp=_mlp(tree["mlp"], "coarse.mlp", inputs, len(basis)), mean=mean, basis=basis)
 
 
-def _branch(tree: Tree, path: str, channels: int, *, count: int, width: int, size: int) -> Branch:
-    """One branch over `count` texels with LL of `size`, driven by descriptors of `width`."""
+def _branch(tree: Tree, path: str, channels: int, *, count: int, inputs: int, size: int) -> Branch:
+    """One branch over `count` texels with LL of `size`, driven by so many components."""
     basis = reals(tree["ll_basis"], f"{path}.ll_basis", (channels, None, size, size))
     details = tuple(
         _detail(band, f"{path}.details[{i}]", channels, size << i) for i, band in enumerate(tree["details"])
     )
     outputs = channels * (basis.shape[1] + sum(band.h.shape[2] for band in details))
     return Branch(
-        mlp=_mlp(tree["mlp"], f"{path}.mlp", width, outputs),
+        mlp=_mlp(tree["mlp"], f"{path}.mlp", inputs, outputs),
         ll_mean=reals(tree["ll_mean"], f"{path}.ll_mean", (channels, size, size)),
         ll_basis=basis,
         details=details,

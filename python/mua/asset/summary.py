@@ -78,4 +78,5 @@ def _descriptor(avatar: Avatar) -> dict[str, Any]:
         "joints": [names[joint] for joint in encoding.joints],
         "translated": [names[joint] for joint in encoding.translated],
         "heading_removed": bool(encoding.heading),
+        "components": len(avatar.components.margins),
     }

@@ -9,7 +9,7 @@ import numpy as np
 from mua.arguments import PathLike, as_path, describe, one_of
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.asset.flatbuffer import Tree, build, parse
+from mua.asset.flatbuffer import VERSION, Tree, build, parse
 from mua.asset.network import build_packed
 from mua.asset.read import decode_tree, parse_checked
 from mua.asset.rounding import rounded
@@ -19,12 +19,10 @@ from mua.errors import InputError
 from mua.files import write_bytes
 from mua.model import Branch, Coarse, DetailBand, Mlp
 from mua.pose.clip import Clip
-from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Components, PoseEncoding
 from mua.pose.skeleton import Skeleton
 from mua.rig.rig import Rig
 from mua.rig.surface import Surface
-
-PLAIN_MAJOR = 2  # of a file without packed tensors
 
 
 def write(path: PathLike, avatar: Avatar, *, storage: Storage = "f16") -> None:
@@ -75,15 +73,15 @@ def seal(content: bytes) -> bytes:
 def _avatar(avatar: Avatar, element: Element) -> Tree:
     translated = _translated(avatar)
     return {
-        "version_major": PLAIN_MAJOR,
-        "version_minor": _minor(avatar),
+        "version_major": VERSION[0],
+        "version_minor": VERSION[1],
         "crc32": 0,
         "axes": "MetresYUpRightHanded",
         "name": avatar.name,
         "producer": avatar.producer,
         "notes": avatar.notes,
         "skeleton": _skeleton(avatar.rig.skeleton, translated),
-        "encoding": _encoding(avatar.encoding, avatar.normalization),
+        "encoding": _encoding(avatar.encoding, avatar.components, element),
         "template": _template(avatar.rig),
         "texels": {
             "size": avatar.rig.texels.size,
@@ -106,13 +104,6 @@ def _avatar(avatar: Avatar, element: Element) -> Tree:
         "thumbnail": np.frombuffer(avatar.thumbnail, np.uint8),
         **_surface(avatar.surface),
     }
-
-
-def _minor(avatar: Avatar) -> int:
-    """Of a plain file's version: that which brought the youngest of its fields."""
-    if avatar.rig.texels.one_sided is not None:
-        return 2
-    return 1 if avatar.surface else 0
 
 
 def _one_sided(texels: Array | None) -> Tree:
@@ -147,7 +138,7 @@ def _skeleton(skeleton: Skeleton, translated: Array) -> Tree:
     }
 
 
-def _encoding(encoding: PoseEncoding, normalization: Normalization) -> Tree:
+def _encoding(encoding: PoseEncoding, components: Components, element: Element) -> Tree:
     return {
         "joints": pack_indices(np.array(encoding.joints, dtype=np.int32)),
         "rotation": "SixD",
@@ -155,8 +146,11 @@ def _encoding(encoding: PoseEncoding, normalization: Normalization) -> Tree:
         "window": encoding.window,
         "rate": encoding.rate,
         "heading": encoding.heading,
-        "mean": pack(normalization.mean),
-        "scale": pack(normalization.scale),
+        "mean": pack(components.normalization.mean),
+        "scale": pack(components.normalization.scale),
+        "components": pack(components.directions, _half(element)),
+        "ranges": pack(components.ranges),
+        "margins": pack(components.margins),
         **_joints(np.array(encoding.translated)),
     }
 

@@ -18,7 +18,7 @@ from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.bounds import playback_bounds
 from mua.rig.rig import Rig
 from mua.rig.triangulate import triangulate
-from mua.student.export import export_branches, export_coarse, export_normalization, export_wavelet
+from mua.student.export import export_branches, export_coarse, export_components, export_wavelet
 from mua.student.model import Student
 
 THUMBNAIL = 256  # pixels
@@ -41,7 +41,7 @@ def assemble(
         producer=f"mua {__version__}",
         rig=rig,
         encoding=encoding,
-        normalization=export_normalization(student),
+        components=export_components(student),
         coarse=export_coarse(student.coarse),
         geometry=geometry,
         appearance=appearance,

@@ -18,7 +18,7 @@ from mua.asset.avatar import Avatar
 from mua.levels import LEVELS
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.pose.clip import Clip
-from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import MAX_INFLUENCES, Mesh
 from mua.rig.rig import Rig
@@ -34,6 +34,7 @@ VALID = 300_000 / 768**2  # of the texels (paper, Animatable Coarse Geometry)
 WAVELET = "bior4.4"
 ENCODING = PoseEncoding(joints=tuple(range(1, JOINTS)), rate=25.0)
 FRAMES = 50  # of the clip
+FARTHEST = 100.0  # of a component
 SWING = 0.02  # radians of one joint; 53 of them bend the tube by at most 60 degrees
 OFFSET, TURN, SPREAD, LOGIT, SHADE = 0.003, 0.05, 0.1, 0.3, 0.2  # deviations of the channels that move
 
@@ -51,7 +52,7 @@ def random_avatar(settings: Settings) -> Avatar:
         producer="mua-bench",
         rig=rig,
         encoding=ENCODING,
-        normalization=Normalization(np.zeros(ENCODING.width, np.float32), np.ones(ENCODING.width, np.float32)),
+        components=_components(rng),
         coarse=Coarse(
             _mlp(rng, ENCODING.width, settings.hidden, settings.components),
             vertices,
@@ -66,6 +67,13 @@ def random_avatar(settings: Settings) -> Avatar:
         notes="random numbers for mua-bench, not a trained avatar",
         surface=triangulate(rig.mesh, rig.texels),
     )
+
+
+def _components(rng: np.random.Generator) -> Components:
+    """As many as the descriptor has numbers, the most that an avatar has; no pose of the clip leaves their ranges."""
+    directions = np.linalg.qr(rng.standard_normal((ENCODING.width, ENCODING.width)))[0].astype(np.float32)
+    zeros, ones = (make(ENCODING.width, np.float32) for make in (np.zeros, np.ones))
+    return Components(Normalization(zeros, ones), directions, FARTHEST * np.stack([-ones, ones]), ones)
 
 
 def _rig(texels: int) -> Rig:

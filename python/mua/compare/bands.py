@@ -154,11 +154,19 @@ class BandNetwork(Network):
     def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
         """Convolutions start from noise, blendshapes as our student's."""
         settings = frames.sizes.settings
-        inputs = self.normalize(frames.motion.descriptors.to(run.device))
+        inputs, components = frames.motion.descriptors.to(run.device), frames.components(run.device)
         for branch, (name, part) in zip(self.branches, PARTS.items(), strict=False):
             source = partial(_bands_from, frames, part.start)
             start_branch(
-                branch, inputs, source, channels=part, settings=settings, name=name, run=run, parts=frames.parts
+                branch,
+                inputs,
+                source,
+                channels=part,
+                components=components,
+                settings=settings,
+                name=name,
+                run=run,
+                parts=frames.parts,
             )
             scale_branch(branch, self.weights[part])
         start_convolutions(self.convolutions, run.generator)
@@ -176,7 +184,7 @@ class BandNetwork(Network):
 
     def band_deviations(self, motion: Motion) -> Bands:
         """Weighted deviations of all subbands from their mean."""
-        inputs = self.normalize(motion.descriptors)
+        inputs = motion.inputs
         ll, d3, d2 = None, None, None
         if self.branches:
             ll, d3, d2 = join(branch.synthesize(branch.split(branch.mlp(inputs))) for branch in self.branches)

@@ -1,6 +1,5 @@
 """The systems that model the texture at full resolution: PCA, blendshapes, separable blendshapes, a linear map."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import torch
@@ -46,7 +45,7 @@ class Basis(nn.Module):
     def __init__(self, channels: slice, rank: int, *, sizes: Sizes) -> None:
         super().__init__()
         self.channels, self.rank = channels, rank
-        self.mlp: nn.Module = build_mlp(sizes.encoding.width, sizes.settings.hidden, rank)
+        self.mlp: nn.Module = build_mlp(sizes.inputs, sizes.settings.hidden, rank)
         self.shapes = nn.Parameter(torch.zeros(rank, channels.stop - channels.start, len(sizes.texels)))
 
     def forward(self, inputs: Tensor) -> Tensor:
@@ -64,12 +63,12 @@ class Blendshapes(FullNetwork):
 
     def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
         for basis in self.bases:
-            start_from_components(basis, self.normalize, frames, run=run)
+            start_from_components(basis, frames, run=run)
         mlps, shapes = [basis.mlp for basis in self.bases], [basis.shapes for basis in self.bases]
         return parameter_groups(mlps, shapes, rate=frames.sizes.settings.finetune.lr)
 
     def deviations(self, motion: Motion) -> Tensor:
-        inputs = self.normalize(motion.descriptors)
+        inputs = motion.inputs
         return torch.cat([basis(inputs) for basis in self.bases], dim=1)
 
     def flops(self) -> int:
@@ -88,9 +87,7 @@ def full_blendshapes(sizes: Sizes) -> Network:
 
 
 @torch.no_grad()
-def start_from_components(
-    basis: Basis, normalize: Callable[[Tensor], Tensor], frames: TrainingFrames, *, run: Run
-) -> None:
+def start_from_components(basis: Basis, frames: TrainingFrames, *, run: Run) -> None:
     """Principal components of the weighted textures, coefficients of unit variance, and an MLP taught these.
 
     By the frames' Gram matrix, which needs one channel in memory at a time.
@@ -118,7 +115,7 @@ def start_from_components(
         directions = (basis.shapes[:kept] / spread[:, None, None]).transpose(1, 2)
         owners = frames.parts.texel_owners(frames.sizes.texels)
         local = sample_locality(frames.parts, directions, owners, fade=frames.sizes.settings.generalisation.fade)
-    basis.mlp = _teach(frames, rows, u * s, expand, locality=local, normalize=normalize, run=run)
+    basis.mlp = _teach(frames, rows, u * s, expand, locality=local, run=run)
 
 
 class SingleLevel(FullNetwork):
@@ -133,12 +130,12 @@ class SingleLevel(FullNetwork):
 
     def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
         for part in self.parts:
-            start_from_quarter(part, self.normalize, frames, run=run)
+            start_from_quarter(part, frames, run=run)
         mlps, factors = [part.mlp for part in self.parts], [f for part in self.parts for f in (part.h, part.w)]
         return parameter_groups(mlps, factors, rate=frames.sizes.settings.finetune.lr)
 
     def deviations(self, motion: Motion) -> Tensor:
-        inputs = self.normalize(motion.descriptors)
+        inputs = motion.inputs
         return torch.cat([part(inputs).flatten(2)[..., self.texels] for part in self.parts], dim=1)
 
     def flops(self) -> int:
@@ -154,7 +151,7 @@ class Separable(nn.Module):
         super().__init__()
         self.channels, self.rank = channels, rank
         count = channels.stop - channels.start
-        self.mlp: nn.Module = build_mlp(sizes.encoding.width, sizes.settings.hidden, count * rank)
+        self.mlp: nn.Module = build_mlp(sizes.inputs, sizes.settings.hidden, count * rank)
         self.h = nn.Parameter(torch.zeros(count, rank, sizes.settings.texels))
         self.w = nn.Parameter(torch.zeros(count, rank, sizes.settings.texels))
 
@@ -165,9 +162,7 @@ class Separable(nn.Module):
 
 
 @torch.no_grad()
-def start_from_quarter(
-    part: Separable, normalize: Callable[[Tensor], Tensor], frames: TrainingFrames, *, run: Run
-) -> None:
+def start_from_quarter(part: Separable, frames: TrainingFrames, *, run: Run) -> None:
     """Alternating least squares on the low-pass quarter-size images, carried to full size.
 
     A recorded texture is the low-pass synthesis of its quarter-size image, which takes outer products to outer
@@ -202,7 +197,7 @@ def start_from_quarter(
             frames.parts, coarse=finer(fine, FINE_TEXELS >> STATIC_LEVELS), fine=finer(fine, FINE_TEXELS >> 1)
         )
         local = texture_locality(parts, stand_in, targets, unit, fade=settings.generalisation.fade)
-    part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, locality=local, normalize=normalize, run=run)
+    part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, locality=local, run=run)
 
 
 def finer(owners: Tensor, times: int) -> Tensor:
@@ -243,7 +238,7 @@ class LinearMap(FullNetwork):
     def _solve(self, frames: TrainingFrames, run: Run) -> None:
         """Reduced-rank ridge regression of the cells' mean deviations."""
         rows = sampled(frames)
-        inputs = self.normalize(frames.motion.descriptors[rows].to(run.device)).double()
+        inputs = frames.motion.inputs[rows].to(run.device).double()
         goal = torch.cat([self._cell_means(frames.deviations(part)) for part in rows.split(FRAMES_AT_ONCE)]).double()
         system = inputs.T @ inputs + RIDGE * len(rows) * torch.eye(self.inputs, dtype=torch.double, device=run.device)
         whole = torch.linalg.solve(system, inputs.T @ goal)
@@ -267,7 +262,7 @@ class LinearMap(FullNetwork):
         return (total / count).flatten(1)
 
     def deviations(self, motion: Motion) -> Tensor:
-        grid = self.grid(self.code(self.normalize(motion.descriptors)))
+        grid = self.grid(self.code(motion.inputs))
         return grid.unflatten(1, (CHANNELS, -1))[..., self.cells]
 
     def flops(self) -> int:
@@ -288,14 +283,14 @@ def _teach(
     expand: Tensor,  # [K, M]
     *,
     locality: Locality | None,
-    normalize: Callable[[Tensor], Tensor],
     run: Run,
 ) -> Conditioned:
     """An MLP to coordinates @ expand, taught as our student's are."""
     settings = frames.sizes.settings
     return regress(
-        normalize(frames.motion.descriptors[rows].to(run.device)),
+        frames.motion.descriptors[rows].to(run.device),
         coordinates,
+        components=frames.components(run.device),
         expand=expand,
         locality=locality,
         hidden=settings.hidden,

@@ -35,7 +35,8 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
     student.to(run.device)
     inputs = student.normalize(samples.descriptors.to(run.device))
     meshes = samples.meshes.to(run.device)
-    fit_coarse(student.coarse, inputs, meshes, settings=settings, run=run, parts=samples.parts)
+    components = student.components
+    fit_coarse(student.coarse, inputs, meshes, components=components, settings=settings, run=run, parts=samples.parts)
     student.requires_grad_(False).cpu()
     frames = len(samples)
     bands = hold(samples.subbands, slice(0, CHANNELS), frames=frames, size=settings.texels)
@@ -48,10 +49,18 @@ def training_frames(recording: Recording, settings: Settings, *, run: Run) -> Tr
     size = figure_scale(recording.rig.mesh.vertices)
     return TrainingFrames(
         rig=recording.rig,
-        sizes=Sizes(settings, student.encoding, len(student.coarse.mean), student.texels, recording.wavelet),
+        sizes=Sizes(
+            settings,
+            student.encoding,
+            len(components),
+            len(student.coarse.mean),
+            student.texels,
+            recording.wavelet,
+        ),
         student=student,
         motion=Motion(
             torch.cat([part.descriptors for part in parts]),
+            torch.cat([part.inputs for part in parts]),
             torch.cat([part.canonical for part in parts]),
             torch.cat([part.posed for part in parts]),
         ),
@@ -79,7 +88,7 @@ def motion_of(
     posed = np.zeros(canonical.shape, np.float32)
     for row, frame in enumerate(frames):
         posed[row] = pose_about_root(rig, canonical[row].numpy(), clip, int(frame), heading=student.encoding.heading)
-    return Motion(descriptors, canonical, torch.from_numpy(posed))
+    return Motion(student.normalize(descriptors), student.read(descriptors), canonical, torch.from_numpy(posed))
 
 
 def pose_about_root(

@@ -1,4 +1,4 @@
-"""What all compared networks share: normalised input, weighted deviations from the training mean, counts, training.
+"""What all compared networks share: weighted deviations from the training mean, counts, training.
 
 A network predicts deviations from the mean of the training frames in units in which every attribute counts alike
 (`mua.student.targets.channel_weights`); the mean texture is among its learnt numbers.
@@ -32,30 +32,21 @@ class Network(nn.Module):
 
     mean_texture: Tensor
     weights: Tensor
-    input_mean: Tensor
-    input_scale: Tensor
     texels: Tensor
 
     def __init__(self, sizes: Sizes) -> None:
         super().__init__()
         self.sizes = sizes
-        self.size, self.inputs = sizes.settings.texels, sizes.encoding.width
+        self.size, self.inputs = sizes.settings.texels, sizes.inputs
         self.register_buffer("texels", sizes.texels.long())
         self.register_buffer("mean_texture", torch.zeros(len(sizes.texels), CHANNELS))
         self.register_buffer("weights", torch.ones(CHANNELS))
-        self.register_buffer("input_mean", torch.zeros(self.inputs))
-        self.register_buffer("input_scale", torch.ones(self.inputs))
 
     def attach(self, frames: TrainingFrames, device: torch.device) -> None:
         """Take over what the training frames give without learning."""
         self.mean_texture.copy_(frames.mean_texture)
         self.weights.copy_(frames.weights)
-        self.input_mean.copy_(frames.student.mean)
-        self.input_scale.copy_(frames.student.scale)
         self.to(device)
-
-    def normalize(self, descriptors: Tensor) -> Tensor:
-        return (descriptors - self.input_mean) / self.input_scale
 
     @abstractmethod
     def start(self, frames: TrainingFrames, *, rate: float, run: Run) -> Groups:
@@ -90,7 +81,7 @@ class NetworkSystem:
         with torch.device("meta"):
             network = build(sizes)
             coarse = Coarse(
-                sizes.vertices, sizes.settings.components, inputs=sizes.encoding.width, hidden=sizes.settings.hidden
+                sizes.vertices, sizes.settings.components, inputs=sizes.inputs, hidden=sizes.settings.hidden
             )
         self.parameters = network.learnt() + coarse_parameters(coarse)
         self.flops = network.flops() + coarse_flops(coarse)

@@ -14,6 +14,7 @@ from torch import Tensor
 from mua.channels import CHANNELS
 from mua.pose.encoding import PoseEncoding
 from mua.rig.rig import Rig
+from mua.student.components import Components
 from mua.student.local import Parts
 from mua.student.model import Coarse, Student, lowpass_texels
 from mua.student.settings import Ranks, Settings
@@ -28,6 +29,7 @@ class Sizes:
 
     settings: Settings  # of our student; the other systems are scaled with it
     encoding: PoseEncoding
+    inputs: int  # components of the descriptor that every MLP reads
     vertices: int
     texels: Tensor  # [N] the valid texels as row * size + col
     wavelet: str
@@ -57,7 +59,8 @@ class Budget:
 class Motion:
     """F frames as the systems see them."""
 
-    descriptors: Tensor  # [F, k D] as `mua.pose.descriptor` makes them
+    descriptors: Tensor  # [F, k D] normalised
+    inputs: Tensor  # [F, K] their components, which every MLP reads
     canonical: Tensor  # [F, V, 3] the coarse mesh before posing, metres
     posed: Tensor  # [F, V, 3] posed, relative to the root joint and its heading, metres
 
@@ -66,10 +69,11 @@ class Motion:
 
     def of(self, rows: Tensor) -> "Motion":
         """Some of the frames."""
-        return Motion(self.descriptors[rows], self.canonical[rows], self.posed[rows])
+        return Motion(self.descriptors[rows], self.inputs[rows], self.canonical[rows], self.posed[rows])
 
     def to(self, device: torch.device) -> "Motion":
-        return Motion(self.descriptors.to(device), self.canonical.to(device), self.posed.to(device))
+        parts = (self.descriptors, self.inputs, self.canonical, self.posed)
+        return Motion(*(part.to(device) for part in parts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +93,11 @@ class TrainingFrames:
 
     def __len__(self) -> int:
         return len(self.motion)
+
+    def components(self, device: torch.device) -> Components:
+        """Of the descriptors, on a device."""
+        own = self.student.components
+        return Components(*(part.to(device) for part in (own.directions, own.ranges, own.margins)))
 
     def band_deviations(self, rows: Tensor, channels: slice = ALL) -> Bands:
         """Weighted deviations of the subbands of some channels and frames from their mean."""

@@ -23,9 +23,10 @@ class ChannelSet:
     """What a decode makes, the window of poses that it is made from, and the level of detail at which."""
 
     level: LevelBuffers
-    descriptor: Buffer
+    components: Buffer  # [K] of the descriptor, as the networks read them
     mesh: Buffer  # [V, 3] canonical vertices
     texel_channels: Buffer  # [6, N, 4] halves; holds the finest level
+    outside: float = 0.0  # share of the pose that training did not show (mua.pose.components)
 
 
 class ChannelDecoder:
@@ -59,16 +60,16 @@ class ChannelDecoder:
         self.textures = tuple(device.buffer(textures[i], name=f"texture {i}") for i in range(2))
 
     def part(self, commands: Commands, channels: ChannelSet, part: int) -> None:
-        """Append one of PARTS, from the descriptor of `channels` to what it makes of it."""
+        """Append one of PARTS, from the components in `channels` to what it makes of it."""
         if part == 0:
             self._branch(commands, self.avatar.geometry, channels.level.geometry, channels, first_row=0)
         else:
             self._coarse(commands, channels)
             self._branch(commands, self.avatar.appearance, channels.level.appearance, channels, first_row=ROWS // 2)
 
-    def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], descriptor: Buffer) -> Buffer:
-        """What the MLP makes of the descriptor; good until the next MLP."""
-        x = descriptor
+    def _mlp(self, commands: Commands, mlp: tuple[LayerBuffers, ...], components: Buffer) -> Buffer:
+        """What the MLP makes of the components; good until the next MLP."""
+        x = components
         for i, layer in enumerate(mlp):
             y = self.activations[i % 2]
             commands.dispatch(
@@ -86,7 +87,7 @@ class ChannelDecoder:
 
     def _coarse(self, commands: Commands, channels: ChannelSet) -> None:
         basis = self.avatar.mesh
-        coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.descriptor)
+        coefficients = self._mlp(commands, self.avatar.coarse_mlp, channels.components)
         commands.dispatch(
             self._mlp_matmul_transposed,
             (groups(basis.outputs, MESH_COLUMNS), 1, 1),
@@ -102,7 +103,7 @@ class ChannelDecoder:
         self, commands: Commands, branch: BranchBuffers, shown: BranchLevel, channels: ChannelSet, *, first_row: int
     ) -> None:
         """Coefficients, LL, level by level as long as there are details; then the valid texels to `channels`."""
-        alpha = self._mlp(commands, branch.mlp, channels.descriptor)
+        alpha = self._mlp(commands, branch.mlp, channels.components)
         levels = len(branch.details)
         size = self.avatar.avatar.rig.texels.size >> self.avatar.avatar.wavelet.levels
         self._blend_low(commands, branch, alpha, size, self.textures[levels % 2])

@@ -11,6 +11,7 @@ from mua.arrays import Array
 from mua.gpu import Buffer, Commands, Device
 from mua.player.buffers import AvatarBuffers, LevelBuffers, RigPlaces
 from mua.player.channels import FLOAT, PARTS, TEXEL_CHANNELS, ChannelDecoder, ChannelSet, groups
+from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
 
 SKINNED = 64  # vertices of a group of BlendVertices
@@ -60,6 +61,11 @@ class AvatarFrame:
         return self._shown.texel_channels
 
     @property
+    def outside(self) -> float:
+        """How far outside of training the pose is that is shown, 0 to 1 (mua.pose.components)."""
+        return self._shown.outside
+
+    @property
     def parts_left(self) -> int:
         """Of the decode that was begun and is not shown."""
         return PARTS - self._decoded
@@ -68,7 +74,7 @@ class AvatarFrame:
         buffer = self._device.buffer
         return ChannelSet(
             level=self.avatar.level(0),
-            descriptor=buffer(FLOAT * self.avatar.avatar.encoding.width, name="descriptor"),
+            components=buffer(FLOAT * len(self.avatar.avatar.components.margins), name="components"),
             mesh=buffer(FLOAT * 3 * self.vertex_count, name="mesh"),
             texel_channels=buffer(TEXEL_CHANNELS * self.avatar.level(0).splat_count, name="texel_channels"),
         )
@@ -129,8 +135,9 @@ class AvatarFrame:
         channels.level = self.avatar.level(level)
         avatar = self.avatar.avatar
         descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
-        normalization = avatar.normalization
-        channels.descriptor.write(((descriptor - normalization.mean) / normalization.scale).astype(np.float32))
+        read, outside = read_components(avatar.components, descriptor)
+        channels.outside = float(outside)
+        channels.components.write(read.astype(np.float32))
 
     def _write_pose(self, rotations: Array, translations: Array, place: Array) -> None:
         avatar, skeleton = self.avatar.avatar, self.avatar.avatar.rig.skeleton

@@ -49,7 +49,21 @@ class PoseEncoding:
 
 @dataclass(frozen=True, eq=False)
 class Normalization:
-    """Mean and scale that a descriptor passes before the first layer: (x - mean) / scale."""
+    """Mean and scale of a descriptor: (d - mean) / scale."""
 
     mean: Array  # [k D]
     scale: Array  # [k D], > 0
+
+
+@dataclass(frozen=True, eq=False)
+class Components:
+    """Principal components of the normalised descriptor, and how far each may go: what the networks read.
+
+    Within `ranges`, where training was, a component is as it is; beyond, it approaches `margins` past the range and
+    never exceeds it. So a network is never asked far from where it was trained, whatever the pose.
+    """
+
+    normalization: Normalization
+    directions: Array  # [K, k D]
+    ranges: Array  # [2, K] lowest and highest value in training
+    margins: Array  # [K], 0 or more

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from mua.student.components import Components
 from mua.student.factorize import truncated_svd
 from mua.student.local import Parts, sample_locality
 from mua.student.model import Coarse
@@ -52,6 +53,7 @@ def fit_coarse(
     inputs: Tensor,  # [F, k D] normalised descriptors
     meshes: Tensor,  # [F, V, 3] canonical vertices, metres
     *,
+    components: Components,
     settings: Settings,
     run: Run,
     parts: Parts | None = None,
@@ -62,6 +64,7 @@ def fit_coarse(
     mlp = regress(
         inputs,
         pca.coefficients,
+        components=components,
         locality=None if parts is None else sample_locality(parts, pca.basis, parts.vertices, fade=fade),
         hidden=settings.hidden,
         criterion=absolute_error,

@@ -15,6 +15,7 @@ from mua import __version__
 from mua.arrays import Array
 from mua.checkpoint import Checkpoints, run_key
 from mua.errors import InputError
+from mua.pose.components import principal_components
 from mua.pose.descriptor import choose_joints, choose_translated, describe, normalization, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
@@ -74,7 +75,7 @@ def distil(
 
 
 def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]:
-    """A student that is not trained yet, its normalisation set, and what it is to be trained on.
+    """A student that is not trained yet, its components set, and what it is to be trained on.
 
     Raises InputError where the recording has another texture size than `settings`, or no training frame.
     """
@@ -93,16 +94,17 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
         translated=choose_translated(skeleton, training, used),
     )
     descriptors = describe_frames(recording, encoding)
+    units = units_of(encoding, figure_scale(recording.rig.mesh.vertices))
+    components = principal_components(descriptors, normalization(descriptors, units), units)
     student = Student(
         settings,
         encoding=encoding,
+        inputs=len(components.margins),
         vertices=len(recording.rig.mesh.vertices),
         texels=torch.from_numpy(recording.rig.texels.texels),
         wavelet=recording.wavelet,
     )
-    normal = normalization(descriptors, units_of(encoding, figure_scale(recording.rig.mesh.vertices)))
-    student.mean.copy_(torch.from_numpy(normal.mean))
-    student.scale.copy_(torch.from_numpy(normal.scale))
+    student.set_components(components)
     parts = body_parts(recording.rig, encoding) if settings.generalisation.fade < 1 else None
     measure = partial(measure_sensitivities, recording, settings.pictures) if settings.pictures else None
     return student, replace(_samples(recording, descriptors), parts=parts, sensitivities=measure)

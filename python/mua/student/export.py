@@ -10,7 +10,7 @@ from mua import model
 from mua.arrays import Array
 from mua.channels import APPEARANCE, GEOMETRY
 from mua.levels import LEVELS
-from mua.pose.encoding import Normalization
+from mua.pose.encoding import Components, Normalization
 from mua.student.model import Branch, Coarse, Detail, Student, linear_layers
 from mua.wavelets import filters
 
@@ -23,8 +23,9 @@ def export_wavelet(student: Student) -> model.Wavelet:
     return model.Wavelet(student.wavelet, LEVELS, np.asarray(bank.rec_lo), np.asarray(bank.rec_hi))
 
 
-def export_normalization(student: Student) -> Normalization:
-    return Normalization(_array(student.mean), _array(student.scale))
+def export_components(student: Student) -> Components:
+    normalization = Normalization(_array(student.mean), _array(student.scale))
+    return Components(normalization, _array(student.directions), _array(student.ranges), _array(student.margins))
 
 
 def export_coarse(coarse: Coarse) -> model.Coarse:

@@ -62,7 +62,7 @@ def _scale(branch: Branch, weights: Tensor) -> None:
 
 def finetune(
     branch: Branch,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, K] components of descriptors
     bands: Callable[[Tensor], Bands],  # the subbands of a batch of frames
     *,
     weights: Tensor,  # [C]

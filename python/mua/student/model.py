@@ -8,7 +8,9 @@ from torch import Tensor, nn
 
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.levels import COARSE_TEXELS, STATIC_LEVELS
+from mua.pose.encoding import Components as StoredComponents
 from mua.pose.encoding import PoseEncoding
+from mua.student.components import Components
 from mua.student.settings import Ranks, Settings
 from mua.wavelets import Bands, synthesise_lowpass, waverec2
 
@@ -109,7 +111,7 @@ class Branch(nn.Module):
         return tuple(own)
 
     def forward(self, inputs: Tensor) -> Bands:
-        """The subbands of normalised descriptors [F, k D]."""
+        """The subbands of components [F, K]."""
         return self.synthesize(self.split(self.mlp(inputs)))
 
 
@@ -126,29 +128,41 @@ class Coarse(nn.Module):
         self.register_buffer("basis", torch.zeros(components, vertices, 3))
 
     def forward(self, inputs: Tensor) -> Tensor:
-        """Canonical vertices [F, V, 3], metres, of normalised descriptors [F, k D]."""
+        """Canonical vertices [F, V, 3], metres, of components [F, K]."""
         return torch.einsum("fk,kvx->fvx", self.mlp(inputs), self.basis) + self.mean
 
 
 class Student(nn.Module):
-    """The whole student; descriptors enter as `mua.pose.descriptor` makes them and are normalised here."""
+    """The whole student; descriptors enter as `mua.pose.descriptor` makes them, and the MLPs read their components."""
 
     mean: Tensor
     scale: Tensor
+    directions: Tensor
+    ranges: Tensor
+    margins: Tensor
     static: Tensor
     texels: Tensor
 
     def __init__(
-        self, settings: Settings, *, encoding: PoseEncoding, vertices: int, texels: Tensor, wavelet: str
+        self,
+        settings: Settings,
+        *,
+        encoding: PoseEncoding,
+        inputs: int,  # components of the descriptor that the MLPs read
+        vertices: int,
+        texels: Tensor,  # [N] the valid texels as row * size + col
+        wavelet: str,
     ) -> None:
-        """`texels` [N] are the valid texels as row * size + col."""
         super().__init__()
         self.size = settings.texels
         self.encoding = encoding
         self.wavelet = wavelet
-        inputs, width, coarsest = encoding.width, settings.hidden, settings.texels // COARSE_TEXELS
-        self.register_buffer("mean", torch.zeros(inputs))
-        self.register_buffer("scale", torch.ones(inputs))
+        width, coarsest = settings.hidden, settings.texels // COARSE_TEXELS
+        self.register_buffer("mean", torch.zeros(encoding.width))
+        self.register_buffer("scale", torch.ones(encoding.width))
+        self.register_buffer("directions", torch.zeros(inputs, encoding.width))
+        self.register_buffer("ranges", torch.zeros(2, inputs))
+        self.register_buffer("margins", torch.zeros(inputs))
         self.register_buffer("texels", texels.long())
         self.register_buffer("static", torch.zeros(CHANNELS, len(texels)))
         self.coarse = Coarse(vertices, settings.components, inputs=inputs, hidden=width)
@@ -159,16 +173,38 @@ class Student(nn.Module):
     def branches(self) -> tuple[Branch, Branch]:
         return self.geometry, self.appearance
 
+    @property
+    def components(self) -> Components:
+        """Of normalised descriptors."""
+        return Components(self.directions, self.ranges, self.margins)
+
+    def set_components(self, components: StoredComponents) -> None:
+        """Take over what the training descriptors give."""
+        normalization = components.normalization
+        self.mean.copy_(torch.from_numpy(normalization.mean))
+        self.scale.copy_(torch.from_numpy(normalization.scale))
+        self.directions.copy_(torch.from_numpy(components.directions))
+        self.ranges.copy_(torch.from_numpy(components.ranges))
+        self.margins.copy_(torch.from_numpy(components.margins))
+
+    def read_buffers(self) -> dict[str, Tensor]:
+        """What a descriptor passes before the MLPs."""
+        return {name: getattr(self, name) for name in ("mean", "scale", "directions", "ranges", "margins")}
+
     def normalize(self, descriptors: Tensor) -> Tensor:
         return (descriptors - self.mean) / self.scale
 
+    def read(self, descriptors: Tensor) -> Tensor:
+        """What the MLPs read [F, K] of descriptors [F, k D]."""
+        return self.components.hold(self.components(self.normalize(descriptors)))
+
     def mesh(self, descriptors: Tensor) -> Tensor:
         """Canonical vertices [F, V, 3], metres."""
-        return self.coarse(self.normalize(descriptors))
+        return self.coarse(self.read(descriptors))
 
     def coefficients(self, descriptors: Tensor) -> tuple[Alphas, Alphas]:
         """What the MLPs predict, geometry and appearance."""
-        inputs = self.normalize(descriptors)
+        inputs = self.read(descriptors)
         return self.geometry.split(self.geometry.mlp(inputs)), self.appearance.split(self.appearance.mlp(inputs))
 
     def synthesize(self, alphas: tuple[Alphas, Alphas]) -> Bands:

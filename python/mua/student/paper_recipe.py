@@ -25,7 +25,7 @@ BASIS_START = 0.1  # of a channel's spread
 
 def fit_coarse_from_noise(
     coarse: Coarse,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, K] components of descriptors
     meshes: Tensor,  # [F, V, 3] canonical vertices, metres
     *,
     settings: Settings,
@@ -48,7 +48,7 @@ def fit_coarse_from_noise(
 
 def fit_branch_from_noise(
     branch: Branch,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, K] components of descriptors
     source: Source,  # of the branch's channels, counted from 0
     *,
     channels: slice,  # which of the 23 these are
@@ -73,7 +73,7 @@ def fit_branch_from_noise(
 
 def start_from_noise(
     branch: Branch,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, K] components of descriptors
     source: Source,  # of the branch's channels, counted from 0
     *,
     channels: slice,  # which of the 23 these are

@@ -9,30 +9,44 @@ of another. With points there too, the MLP follows the function where unseen mot
 import torch
 from torch import Tensor
 
-from mua.student.conditioned import Whitening
+from mua.student.components import Components
 from mua.student.settings import Generalisation
 
+FARTHEST = 16.0  # times a point's own distance from the mean
 BLEND = 0.5  # points lie up to this far on the way to a frame
 RADII = 4  # what is exchanged is a joint with those near it: random, fewer than this many joints away
 
 
 def draw_points(
     inputs: Tensor,  # [F, k D] normalised descriptors
-    white: Whitening,
+    components: Components,
     count: int,
     *,
     steps: Tensor | None,  # [P, k D] int64, joints between a part and each entry; without them no part is exchanged
     generalisation: Generalisation,
     generator: torch.Generator,
 ) -> Tensor:
-    """Random whitened points [count, k D]: frames, some with a part of another, moved towards a third, and noise."""
-    z = white(inputs)
+    """Random points [count, K]: frames, some with a part of another, moved towards a third, and noise; some far out."""
+    z = components(inputs)
     exchanged = 0 if steps is None else round(generalisation.exchanged * count)
     around = scatter(pick(z, count - exchanged, generator=generator), z, generalisation.noise, generator=generator)
-    if steps is None or not exchanged:
-        return around
-    mixed = white(exchange(inputs, steps, exchanged, generator=generator))
-    return torch.cat([around, scatter(mixed, z, generalisation.exchanged_noise, generator=generator)])
+    if steps is not None and exchanged:
+        mixed = components(exchange(inputs, steps, exchanged, generator=generator))
+        around = torch.cat([around, scatter(mixed, z, generalisation.exchanged_noise, generator=generator)])
+    outward(around, round(generalisation.outside * count), generator=generator)
+    return components.hold(around)
+
+
+def outward(
+    points: Tensor,  # [count, K]
+    number: int,
+    *,
+    generator: torch.Generator,
+) -> None:
+    """Move so many of the points away from the mean, up to FARTHEST times as far as they are."""
+    chosen = torch.randperm(len(points), generator=generator)[:number].to(points.device)
+    times = FARTHEST ** torch.rand(number, 1, generator=generator).to(points)
+    points[chosen] *= times
 
 
 def exchange(
@@ -52,7 +66,7 @@ def exchange(
 
 def scatter(
     points: Tensor,  # [count, D]
-    z: Tensor,  # [F, D] whitened descriptors
+    z: Tensor,  # [F, D] of the frames
     noise: float,  # up to this share of the spread of each direction
     *,
     generator: torch.Generator,

@@ -8,8 +8,10 @@ from functools import cache
 import torch
 from torch import Tensor, nn
 
+from mua.pose.components import INPUT_FLOOR
 from mua.processes import Share
-from mua.student.conditioned import Conditioned, Whitening, whitening
+from mua.student.components import Components
+from mua.student.conditioned import Conditioned
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Run, optimise
@@ -29,6 +31,7 @@ def regress(
     inputs: Tensor,  # [F, k D] normalised descriptors
     targets: Tensor,  # [F, K]
     *,
+    components: Components,
     hidden: int,
     criterion: Callable[[Tensor, Tensor], Tensor],
     schedule: Schedule,
@@ -38,14 +41,13 @@ def regress(
     locality: Locality | None = None,
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
-    """An MLP from normalised descriptors to targets, or to targets @ expand, taught the smooth function through them.
+    """An MLP from components to targets, or to targets @ expand, taught the smooth function through them.
 
     It learns the values of that function at points around the frames. With `locality` the function is a sum over body
     parts, each of the joints near it, and the points go where parts are as in different frames.
     """
     schedule = schedule.over(len(inputs))
-    white = Whitening(**run.once(f"{stage} whitening", lambda: vars(whitening(inputs))))
-    z = white(inputs)
+    z = components(inputs)
     unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
@@ -54,10 +56,10 @@ def regress(
     @cache  # and not at all where a finished stage is taken up
     def lesson() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
-        smooth = fit_local(inputs, z, goal, white, locality, generator=generator)
+        smooth = fit_local(inputs, goal, components, locality, generator=generator)
         points = draw_points(
             inputs,
-            white,
+            components,
             count,
             steps=None if locality is None else locality.steps,
             generalisation=generalisation,
@@ -79,7 +81,7 @@ def regress(
     optimise(mlp, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
     if expand is None:
         expand = torch.eye(goal.shape[1], device=goal.device)
-    return Conditioned(white, mlp, unit * expand)
+    return Conditioned(mlp, unit * expand)
 
 
 def _values(smooth: Callable[[Tensor], Tensor], points: Tensor, *, width: int) -> Tensor:
@@ -92,25 +94,32 @@ def _values(smooth: Callable[[Tensor], Tensor], points: Tensor, *, width: int) -
 
 def fit_local(
     inputs: Tensor,  # [F, k D] normalised descriptors
-    z: Tensor,  # [F, k D] whitened
     goal: Tensor,  # [F, K]
-    white: Whitening,
+    components: Components,
     locality: Locality | None,
     *,
     generator: torch.Generator,
 ) -> Callable[[Tensor], Tensor]:
-    """The smooth function of z through `goal`; with `locality` a sum over parts, each as it sees the descriptor."""
+    """The smooth function of components through `goal`; with `locality` a sum over parts, as each sees the pose."""
+    z, back = components(inputs), components.back()
     if locality is None:
         return fit_smoother(z, goal, generator=generator)
     turns, smoothers = [], []
     for reach, share in zip(locality.reach, locality.shares, strict=True):
-        own = whitening(inputs * reach)
-        turn = torch.linalg.solve(white.turn.double(), reach[:, None].double() * own.turn.double()).to(z)
+        turn = (back * reach) @ whitening(inputs * reach)
         turn = turn[:, leading(z @ turn)]
         one = fit_smoother(z @ turn, goal, generator=generator)
         turns.append(turn)
         smoothers.append(replace(one, values=one.values @ share))
     return Sum(tuple(turns), tuple(smoothers))
+
+
+def whitening(
+    inputs: Tensor,  # [F, k D]
+) -> Tensor:
+    """The turn [k D, k D] to directions that vary alike, but for a floor that does not raise noise to their level."""
+    variance, directions = torch.linalg.eigh(torch.cov(inputs.double().T, correction=0).reshape(inputs.shape[1], -1))
+    return (directions / (variance.clamp(min=0) + INPUT_FLOOR).sqrt()).to(inputs)
 
 
 def leading(

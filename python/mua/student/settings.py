@@ -60,6 +60,7 @@ class Generalisation:
     noise: float = 0.3  # of the points that the regression teaches at around frames, in spreads of each direction
     exchanged: float = 0.5  # share of those points where a body part is as in another frame
     exchanged_noise: float = 1.0  # of these
+    outside: float = 0.2  # share of all points that lie outside of training, where the function fades to the mean
     weight_decay: float = 1e-3  # of the MLPs
     heading: bool = True  # whether the descriptor is turned back by the heading
 

@@ -15,6 +15,7 @@ from mua.memory import release_memory
 from mua.processes import ALONE, Processes
 from mua.student.branches import each_branch, side_by_side
 from mua.student.coarse import fit_coarse
+from mua.student.components import Components
 from mua.student.conditioned import fold
 from mua.student.factorize import blendshapes, separable_blendshapes
 from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
@@ -62,7 +63,7 @@ def train(
     only: StageName | None = None,
     processes: Processes = ALONE,
 ) -> None:
-    """Train `student` (its normalisation set) in place on `samples`; resumes from `checkpoints`.
+    """Train `student` (its components set) in place on `samples`; resumes from `checkpoints`.
 
     Several `processes` share the work and end with the same student; the first of them reports and keeps checkpoints.
     With `only` one stage is run up to its checkpoints, which any later run takes up; the student is then unfinished.
@@ -76,16 +77,18 @@ def train(
     size = figure_scale(samples.meshes[0].numpy())
     run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes, size)
     student.to(device)
-    inputs = student.normalize(samples.descriptors.to(device))
+    student.load_state_dict(run.once("components", student.read_buffers), strict=False)
+    descriptors, components = samples.descriptors.to(device), student.components
     random = settings.start == "random"
-    start = fit_coarse_from_noise if random else partial(fit_coarse, parts=samples.parts)
+    inputs = student.read(descriptors) if random else student.normalize(descriptors)
+    start = fit_coarse_from_noise if random else partial(fit_coarse, components=components, parts=samples.parts)
     if only in (None, "coarse"):
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
     release_memory()
     if only == "coarse":
         return
     seen = None if random else _sensitivities(samples, run.alone(SENSITIVITIES))
-    learn = partial(fit_branch, parts=samples.parts, until=only, sensitivities=seen)
+    learn = partial(fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen)
     fit = fit_branch_from_noise if random else learn
 
     def teach(name: str, branch: Branch, channels: slice, run: Run) -> None:
@@ -123,16 +126,16 @@ def _silent(_: Progress) -> None:
 def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
     """The stages of a recipe in order, and the names of the checkpoints that each leaves."""
     if settings.start == "random":
-        coarse = ("coarse components", "coarse mesh")
+        coarse = ("components", "coarse components", "coarse mesh")
         return {"coarse": coarse, "fine-tuning": tuple(f"{name} descent" for name in BRANCHES)}
     endings: dict[StageName, tuple[str, ...]] = {
         "bases": ("bases",),
-        "regression": ("targets", "coefficients whitening", "coefficients"),
+        "regression": ("targets", "coefficients"),
         "fine-tuning": ("fine-tuning",),
     }
     kept = {stage: tuple(f"{name} {end}" for end in ends for name in BRANCHES) for stage, ends in endings.items()}
     kept["bases"] = (SENSITIVITIES, *kept["bases"])
-    return {"coarse": ("coarse components", "coarse mesh whitening", "coarse mesh"), **kept}
+    return {"coarse": ("components", "coarse components", "coarse mesh"), **kept}
 
 
 def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoints) -> None:
@@ -157,6 +160,7 @@ def fit_branch(
     source: Source,  # of the branch's channels, counted from 0
     *,
     channels: slice,
+    components: Components,
     settings: Settings,
     name: str,
     run: Run,
@@ -173,6 +177,7 @@ def fit_branch(
         inputs,
         source,
         channels=channels,
+        components=components,
         settings=settings,
         name=name,
         run=run,
@@ -190,7 +195,7 @@ def fit_branch(
     stage = f"{name} fine-tuning"
     finetune(
         branch,
-        inputs,
+        components.hold(components(inputs)),
         lambda rows: source(slice(0, branch.channels), rows),
         weights=weights,
         schedule=settings.finetune,
@@ -209,6 +214,7 @@ def start_branch(
     source: Source,  # of the branch's channels, counted from 0
     *,
     channels: slice,
+    components: Components,
     settings: Settings,
     name: str,
     run: Run,
@@ -250,6 +256,7 @@ def start_branch(
     branch.mlp = regress(
         inputs,
         targets.coordinates,
+        components=components,
         expand=targets.expand,
         locality=local,
         hidden=settings.hidden,

@@ -37,7 +37,10 @@ namespace Mua.Format
             new Field("heading", Kind.Flag),
             new Field("mean", Kind.Table, required: true, table: Tensor),
             new Field("scale", Kind.Table, required: true, table: Tensor),
-            new Field("translated", Kind.Table, table: Tensor));
+            new Field("translated", Kind.Table, table: Tensor),
+            new Field("components", Kind.Table, required: true, table: Tensor),
+            new Field("ranges", Kind.Table, required: true, table: Tensor),
+            new Field("margins", Kind.Table, required: true, table: Tensor));
 
         public static readonly Layout Template = new Layout(
             new Field("faces", Kind.Table, required: true, table: Tensor),

@@ -34,6 +34,9 @@ export const TABLES = {
     { name: "mean", kind: "Tensor", required: true },
     { name: "scale", kind: "Tensor", required: true },
     { name: "translated", kind: "Tensor" },
+    { name: "components", kind: "Tensor", required: true },
+    { name: "ranges", kind: "Tensor", required: true },
+    { name: "margins", kind: "Tensor", required: true },
   ],
   Template: [
     { name: "faces", kind: "Tensor", required: true },
