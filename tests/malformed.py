@@ -77,6 +77,13 @@ def poke(path: str, at: int, value: float) -> Callable[[Tree], None]:
     return edit
 
 
+def fewer_components(tree: Tree) -> None:
+    """One component less than the first layers read."""
+    own = tree["encoding"]
+    own["components"] = pack(np.zeros((19, 72)))
+    own["ranges"], own["margins"] = pack(np.zeros((2, 19))), pack(np.zeros(19))
+
+
 def drop(path: str) -> Callable[[Tree], None]:
     def edit(tree: Tree) -> None:
         container, last = child(tree, path)
@@ -142,7 +149,8 @@ def empty(*shape: int) -> Tree:
 
 NAN = float("nan")
 MALFORMED = [
-    ("version", "version_major", put("version_major", 4)),
+    ("version", "version_major", put("version_major", 5)),
+    ("version", "version_major", put("version_major", 3)),
     ("missing", "skeleton", drop("skeleton")),
     ("missing", "geometry.mlp", drop("geometry.mlp")),
     ("value", "skeleton.parents", poke("skeleton.parents", 1, 2)),
@@ -179,6 +187,18 @@ MALFORMED = [
     *[("value", "encoding.scale", poke("encoding.scale", at, scale)) for at, scale in ((0, 0), (5, -1), (9, 9e-7))],
     ("value", "encoding.scale", poke("encoding.scale", 3, 65536)),
     ("finite", "encoding.mean", poke("encoding.mean", 0, NAN)),
+    ("missing", "encoding.components", drop("encoding.components")),
+    ("missing", "encoding.margins", drop("encoding.margins")),
+    ("shape", "encoding.components.shape", put("encoding.components", pack(np.zeros((20, 71))))),
+    ("shape", "coarse.mlp[0].weight.shape", fewer_components),
+    ("finite", "encoding.components", poke("encoding.components", 7, NAN)),
+    ("shape", "encoding.ranges.shape", put("encoding.ranges", pack(np.zeros((2, 19))))),
+    ("shape", "encoding.ranges.shape", put("encoding.ranges", pack(np.zeros((20, 2))))),
+    ("value", "encoding.ranges", poke("encoding.ranges", 4, 100)),
+    ("finite", "encoding.ranges", poke("encoding.ranges", 23, float("inf"))),
+    ("shape", "encoding.margins.shape", put("encoding.margins", pack(np.zeros(21)))),
+    ("value", "encoding.margins", poke("encoding.margins", 19, -1e-3)),
+    ("finite", "encoding.margins", poke("encoding.margins", 3, NAN)),
     ("range", "template.faces", poke("template.faces", 0, 12)),
     ("range", "template.faces", poke("template.faces", 0, -1)),
     ("range", "template.uv_faces", poke("template.uv_faces", 2, 99)),

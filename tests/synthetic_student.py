@@ -8,6 +8,8 @@ from torch import Tensor
 
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.checkpoint import Checkpoints
+from mua.pose.components import principal_components
+from mua.pose.descriptor import normalization, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.student.model import Student
@@ -18,7 +20,8 @@ from mua.wavelets import Bands
 
 SIZE = 48  # LL 3 x 3
 ENCODING = PoseEncoding(joints=(), rate=30.0, window=1)
-INPUTS = ENCODING.width
+WIDTH = ENCODING.width
+INPUTS = 7  # components that the MLPs read
 VERTICES = 7
 FRAMES = 60
 SPREAD = {"offset": 0.01, "rotation": 0.1, "scale": 0.2, "opacity": 1.0, "SH": 0.3}
@@ -43,8 +46,10 @@ def quick(settings: Settings = SETTINGS) -> Settings:
     )
 
 
-def new_student(settings: Settings = SETTINGS) -> Student:
-    return Student(settings, encoding=ENCODING, vertices=VERTICES, texels=valid_texels(), wavelet="bior4.4")
+def new_student(settings: Settings = SETTINGS, *, inputs: int = INPUTS) -> Student:
+    return Student(
+        settings, encoding=ENCODING, inputs=inputs, vertices=VERTICES, texels=valid_texels(), wavelet="bior4.4"
+    )
 
 
 def random_student(seed: int = 0) -> Student:
@@ -56,6 +61,8 @@ def random_student(seed: int = 0) -> Student:
             if tensor.is_floating_point():
                 tensor.normal_(0, 0.3, generator=generator)
         student.scale.abs_().add_(0.5)
+        student.ranges.copy_(student.ranges.sort(dim=0).values)
+        student.margins.abs_()
     return student.requires_grad_(False)
 
 
@@ -66,8 +73,8 @@ def valid_texels() -> Tensor:
 def bands_of_frames(frames: int = FRAMES, *, rank: int = 4, seed: int = 0) -> tuple[Tensor, Bands]:
     """Descriptors [F, k D] and subbands of all 23 channels, `rank` hidden factors driving all of them."""
     generator = torch.Generator().manual_seed(seed)
-    descriptors = torch.randn(frames, INPUTS, generator=generator)
-    hidden = torch.tanh(descriptors @ torch.randn(INPUTS, rank, generator=generator) / 3)
+    descriptors = torch.randn(frames, WIDTH, generator=generator)
+    hidden = torch.tanh(descriptors @ torch.randn(WIDTH, rank, generator=generator) / 3)
     unit = torch.empty(CHANNELS)
     for name, channels in ATTRIBUTES.items():
         unit[channels] = SPREAD[name]
@@ -93,6 +100,15 @@ def samples(frames: int = FRAMES) -> Samples:
     )
 
 
+def student_of(data: Samples, settings: Settings = SETTINGS) -> Student:
+    """A student that is not trained yet, with the components of the samples' descriptors."""
+    descriptors, units = data.descriptors.double().numpy(), units_of(ENCODING, 1.0)
+    components = principal_components(descriptors, normalization(descriptors, units), units)
+    student = new_student(settings, inputs=len(components.margins))
+    student.set_components(components)
+    return student
+
+
 def train_in(
     directory: Path,
     settings: Settings = SETTINGS,
@@ -102,9 +118,8 @@ def train_in(
     processes: Processes = ALONE,
 ) -> Student:
     """A student of `samples`, or of other data, trained with checkpoints in a directory."""
-    student, data = new_student(settings), data or samples()
-    student.mean.copy_(data.descriptors.mean(0))
-    student.scale.copy_(data.descriptors.std(0))
+    data = data or samples()
+    student = student_of(data, settings)
     cpu, checkpoints = torch.device("cpu"), Checkpoints(directory, "key")
     train(student, data, settings=settings, checkpoints=checkpoints, device=cpu, report=report, processes=processes)
     return student

@@ -68,7 +68,7 @@ def by_hand(name: str) -> tuple[int, int]:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_costs_at_the_paper_setting_equal_sums_by_hand(name: str) -> None:
-    sizes = Sizes(preset("paper"), ENCODING, VERTICES, torch.arange(VALID), "bior4.4")
+    sizes = Sizes(preset("paper"), ENCODING, INPUTS, VERTICES, torch.arange(VALID), "bior4.4")
     system = SYSTEMS[name](sizes)
     mesh_size, mesh_cost = mlp_size(128)
     size, cost = by_hand(name)

@@ -11,13 +11,14 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.count import flops, parameters
 from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
-from mua.pose.encoding import PoseEncoding
+from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.student.settings import Ranks, preset
 
 PAPER = preset("paper")
 PAPER_PARAMETERS = 26.67e6  # paper, Tab. Comparison
 PAPER_FLOPS = 0.52e9
 PAPER_TEXELS = 300_000  # paper, Animatable Coarse Geometry
+PAPER_INPUTS = 981  # as many components as the descriptor has numbers: the most that there can be
 PAPER_VERTICES = 5_514  # template of the family's released character
 
 
@@ -50,13 +51,19 @@ def paper_avatar() -> Avatar:
     return dataclasses.replace(
         synthetic_avatar(),
         encoding=encoding,
+        components=Components(
+            Normalization(blank(encoding.width), blank(encoding.width)),
+            blank(PAPER_INPUTS, encoding.width),
+            blank(2, PAPER_INPUTS),
+            blank(PAPER_INPUTS),
+        ),
         coarse=Coarse(
-            mlp(encoding.width, PAPER.hidden, PAPER.hidden, PAPER.components),
+            mlp(PAPER_INPUTS, PAPER.hidden, PAPER.hidden, PAPER.components),
             blank(PAPER_VERTICES, 3),
             blank(PAPER.components, PAPER_VERTICES, 3),
         ),
-        geometry=paper_branch(11, PAPER.geometry, encoding.width),
-        appearance=paper_branch(12, PAPER.appearance, encoding.width),
+        geometry=paper_branch(11, PAPER.geometry, PAPER_INPUTS),
+        appearance=paper_branch(12, PAPER.appearance, PAPER_INPUTS),
         wavelet=Wavelet("bior4.4", 4, np.array(taps.rec_lo), np.array(taps.rec_hi)),
     )
 

@@ -6,7 +6,8 @@ from synthetic_student import INPUTS, bands_of_frames, random_student
 
 from mua import model
 from mua.arrays import Array
-from mua.student.export import LARGEST_ROW, export_branches, export_coarse, export_normalization
+from mua.pose.components import read_components
+from mua.student.export import LARGEST_ROW, export_branches, export_coarse, export_components
 from mua.student.model import linear_layers
 
 RELATIVE = 1e-5  # the project's bound for a float32 asset against the torch student
@@ -37,10 +38,9 @@ def assert_close(found: Array, expected: torch.Tensor) -> None:
 def test_subbands_of_the_avatar_are_the_students() -> None:
     student = random_student()
     descriptors, _ = bands_of_frames(5)
-    normalization = export_normalization(student)
-    x = (descriptors.double().numpy() - normalization.mean) / normalization.scale
+    x = read_components(export_components(student), descriptors.double().numpy())[0]
     for exported, branch in zip(export_branches(student), student.branches, strict=True):
-        expected = branch(student.normalize(descriptors))
+        expected = branch(student.read(descriptors))
         for found, band in zip(numpy_bands(exported, x), expected, strict=True):
             assert_close(found, band)
 

@@ -15,6 +15,7 @@ from synthetic_student import SETTINGS, new_student
 from mua.pose.encoding import PoseEncoding
 from mua.recording import Recording
 from mua.student.coarse import mesh_pca
+from mua.student.components import Components
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
 from mua.student.local import (
@@ -143,10 +144,15 @@ def test_shares_of_the_mesh_follow_its_vertices() -> None:
 
 def smooth(inputs: torch.Tensor, shown: torch.Tensor, fade: float) -> Callable[[torch.Tensor], torch.Tensor]:
     """What the MLP is taught of `inputs`, as a function of other inputs."""
-    white = whitening(inputs)
-    z = white(inputs)
-    found = fit_local(inputs, z, shown, white, limbs_apart(fade), generator=torch.Generator().manual_seed(0))
-    return lambda x: found(white(x))
+    components = boundless(inputs)
+    found = fit_local(inputs, shown, components, limbs_apart(fade), generator=torch.Generator().manual_seed(0))
+    return lambda x: found(components(x))
+
+
+def boundless(inputs: torch.Tensor) -> Components:
+    """Whitened components that nothing bounds."""
+    turn = whitening(inputs).T
+    return Components(turn, torch.zeros(2, len(turn)), torch.full((len(turn),), torch.inf))
 
 
 def test_a_far_joint_moves_a_part_the_less_the_more_it_fades() -> None:
@@ -164,10 +170,9 @@ def test_a_far_joint_moves_a_part_the_less_the_more_it_fades() -> None:
 
 def test_parts_that_do_not_fade_make_the_function_of_the_whole() -> None:
     inputs, shown = two_limbs(100, seed=2, together=True)
-    white = whitening(inputs)
-    z = white(inputs)
-    whole = fit_local(inputs, z, shown, white, None, generator=torch.Generator().manual_seed(0))
-    assert torch.allclose(smooth(inputs, shown, 1.0)(inputs), whole(z), atol=1e-3)
+    components = boundless(inputs)
+    whole = fit_local(inputs, shown, components, None, generator=torch.Generator().manual_seed(0))
+    assert torch.allclose(smooth(inputs, shown, 1.0)(inputs), whole(components(inputs)), atol=1e-3)
 
 
 def test_local_parts_carry_over_to_limbs_that_move_apart() -> None:

@@ -8,13 +8,13 @@ import torch
 from limbs import limb_steps, limbs_apart, two_limbs
 
 from mua.checkpoint import Checkpoints
-from mua.student.conditioned import Whitening
+from mua.student.components import Components
 from mua.student.optimise import Run
 from mua.student.points import BLEND, RADII, draw_points, exchange, scatter
 from mua.student.regress import regress, squared_error
 from mua.student.settings import Generalisation, Schedule
 
-PLAIN = Whitening(torch.zeros(6), torch.eye(6))
+PLAIN = Components(torch.eye(6), 1e6 * torch.tensor([[-1.0], [1.0]]).expand(2, 6), torch.ones(6))
 
 
 def seeded(seed: int = 0) -> torch.Generator:
@@ -57,7 +57,7 @@ def test_scattered_points_lie_on_the_way_to_a_frame_but_for_noise() -> None:
 @pytest.mark.parametrize(("share", "expected"), [(0.0, 0), (0.75, 750), (1.0, 1000)])
 def test_a_share_of_the_points_exchanges_parts(share: float, expected: int) -> None:
     frames = torch.arange(40.0)[:, None].expand(-1, 6)
-    own = Generalisation(noise=0.0, exchanged=share, exchanged_noise=0.0)
+    own = Generalisation(noise=0.0, exchanged=share, exchanged_noise=0.0, outside=0.0)
     points = draw_points(frames, PLAIN, 1000, steps=limb_steps(), generalisation=own, generator=seeded(3))
     assert len(points) == 1000
     together = (points[:, 0] - points[:, 3]).abs() < 1e-4
@@ -77,6 +77,7 @@ def test_an_mlp_taught_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp
         mlp = regress(
             inputs,
             shown,
+            components=PLAIN,
             hidden=64,
             criterion=squared_error,
             schedule=schedule,

@@ -29,6 +29,7 @@ def parameters(settings: Settings, *, vertices: int, texels: int, encoding: Pose
         student = Student(
             settings,
             encoding=encoding,
+            inputs=encoding.width,
             vertices=vertices,
             texels=torch.zeros(texels, dtype=torch.long),
             wavelet="bior4.4",

@@ -4,8 +4,11 @@ import math
 import threading
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+import synthetic_student
 import torch
 from synthetic_student import (
     FRAMES,
@@ -23,14 +26,15 @@ from synthetic_student import (
 from trainings import one_by_one
 
 from mua.channels import APPEARANCE, GEOMETRY
+from mua.pose.components import INPUT_FLOOR, principal_components
+from mua.pose.encoding import Components
 from mua.student import coarse, targets
-from mua.student import regress as regression
 from mua.student import source as sources
-from mua.student.conditioned import INPUT_FLOOR, Conditioned, Whitening, fold, whitening
+from mua.student.conditioned import Conditioned, fold
 from mua.student.factorize import truncated_svd
 from mua.student.model import Branch, build_mlp
 from mua.student.optimise import Progress
-from mua.student.regress import leading
+from mua.student.regress import leading, whitening
 from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
 from mua.student.targets import joint_targets
@@ -79,6 +83,14 @@ def test_resumes_to_the_same_bytes_after_a_kill(tmp_path: Path, monkeypatch: pyt
     assert same(train_in(tmp_path / "killed", quick()), train_in(tmp_path / "whole", quick()))
 
 
+def turned_components(*given: Any) -> Components:
+    """Half of the directions the other way."""
+    found = principal_components(*given)
+    signs = np.where(np.arange(len(found.margins)) % 2, 1, -1).astype(np.float32)
+    ranges = np.sort(found.ranges * signs, axis=0)
+    return replace(found, directions=found.directions * signs[:, None], ranges=ranges)
+
+
 @pytest.mark.parametrize(
     ("stage", "part"), [("coarse mesh", "coarse."), ("geometry coefficients", "geometry."), ("appearance bases", "geo")]
 )
@@ -93,10 +105,12 @@ def test_goes_on_where_directions_come_out_the_other_way(
         train_in(tmp_path / "killed", quick(), kill_at(stage, 3))
     monkeypatch.setattr(coarse, "truncated_svd", turned)
     monkeypatch.setattr(targets, "truncated_svd", turned)
-    monkeypatch.setattr(regression, "whitening", lambda inputs: Whitening(inputs.mean(0), -whitening(inputs).turn))
+    monkeypatch.setattr(synthetic_student, "principal_components", turned_components)
     found = train_in(tmp_path / "killed", quick()).state_dict()
     assert all(torch.equal(found[name], whole[name]) for name in whole if name.startswith(part))
-    assert not torch.equal(found["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
+    assert torch.equal(found["directions"], whole["directions"])
+    anew = train_in(tmp_path / "anew", quick()).state_dict()
+    assert not torch.equal(anew["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
 
 
 def test_branches_side_by_side_end_in_the_bytes_of_one_after_the_other(
@@ -197,8 +211,7 @@ def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
 
 def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
     inputs = torch.randn(500, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([3.0, 1.0, 1e-4])
-    white = whitening(inputs)
-    spread = white(inputs).std(0).sort().values
+    spread = (inputs @ whitening(inputs)).std(0).sort().values
     variance = torch.linalg.eigvalsh(torch.cov(inputs.T))
     assert torch.allclose(spread, (variance / (variance + INPUT_FLOOR)).sqrt(), atol=0.01)
 
@@ -227,10 +240,9 @@ def test_what_tells_frames_apart_is_kept() -> None:
 
 
 def conditioned() -> Conditioned:
-    """One of three descriptor entries and two coordinates to seven outputs, every part of it away from its start."""
+    """One of three components and two coordinates to seven outputs, every part of it away from its start."""
     torch.manual_seed(0)
-    inputs = torch.randn(50, 3) * torch.tensor([3.0, 1.0, 0.1]) + 2
-    module = Conditioned(whitening(inputs), build_mlp(3, 5, 2), torch.randn(2, 7))
+    module = Conditioned(build_mlp(3, 5, 2), torch.randn(2, 7))
     torch.nn.init.normal_(module.expand.bias)
     return module
 

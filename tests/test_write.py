@@ -20,7 +20,6 @@ from mua.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
 GOLDEN = ROOT / "tests" / "golden" / "synthetic.muaavatar"
-VERSION_1 = GOLDEN.with_name("version_1.muaavatar")
 F16_RELATIVE = 2.0**-11  # half a unit in the last place of 11 significant bits
 F16_SMALLEST = 2.0**-25  # half the spacing of subnormals
 
@@ -120,27 +119,7 @@ def test_golden_file_reads_and_writes_back_to_the_same_bytes() -> None:
     assert encode(read(GOLDEN), storage="f32") == content
 
 
-def test_a_file_of_version_1_reads_and_moves_the_root_alone() -> None:
-    assert (load(VERSION_1)["version_major"], load(GOLDEN)["version_major"]) == (1, 2)
-    avatar = read(VERSION_1)
-    assert avatar.encoding.translated == ()
-    bound = avatar.rig.skeleton.bind_translations[1:]
-    for clip in avatar.clips:
-        np.testing.assert_array_equal(clip.translations[:, 1:], np.tile(bound, (len(clip), 1, 1)))
-        assert np.ptp(clip.translations[:, 0], axis=0).any()
-
-
-def test_an_avatar_whose_joints_only_turn_holds_no_more_than_version_1() -> None:
-    content = bytearray(VERSION_1.read_bytes())
-    at, checksum = (parse(bytes(content))["_at"][name] for name in ("version_major", "crc32"))
-    content[at] = 2
-    content[checksum : checksum + 4] = bytes(4)
-    written = bytearray(encode(read(VERSION_1), storage="f32"))
-    written[checksum : checksum + 4] = bytes(4)
-    assert written == content
-
-
-def test_a_surface_comes_back_and_is_what_makes_a_file_one_of_2_1() -> None:
+def test_a_surface_comes_back() -> None:
     avatar = with_surface(synthetic_avatar())
     content = encode(avatar)
     found = decode_tree(parse_checked(content))
@@ -149,8 +128,7 @@ def test_a_surface_comes_back_and_is_what_makes_a_file_one_of_2_1() -> None:
     np.testing.assert_array_equal(found.surface.runs, avatar.surface.runs)
     np.testing.assert_array_equal(found.surface.strips, avatar.surface.strips)
     assert encode(found) == content
-    versions = [parse(encode(each))["version_minor"] for each in (avatar, replace(avatar, surface=None))]
-    assert versions == [1, 0]
+    assert decode_tree(parse_checked(encode(replace(avatar, surface=None)))).surface is None
 
 
 @pytest.mark.parametrize("storage", ["f16", "packed"])
@@ -165,12 +143,17 @@ def test_which_texels_are_one_sided_comes_back(count: int, storage: Storage) -> 
     assert decode_tree(parse_checked(encode(synthetic_avatar(), storage=storage))).rig.texels.one_sided is None
 
 
-def test_one_sided_texels_raise_the_minor_version_alone() -> None:
-    """Older readers skip the field, and draw all splats."""
-    plain, one_sided = synthetic_avatar(), sparse_avatar(0)
-    kinds: tuple[Storage, ...] = ("f16", "packed")
-    trees = [parse(encode(avatar, storage=kind)) for kind in kinds for avatar in (plain, one_sided)]
-    assert [(tree["version_major"], tree["version_minor"]) for tree in trees] == [(2, 0), (2, 2), (3, 0), (3, 1)]
+@pytest.mark.parametrize("storage", ["f32", "f16", "i8", "packed"])
+def test_every_file_says_the_one_version(storage: Storage) -> None:
+    for avatar in (synthetic_avatar(), sparse_avatar(0)):
+        tree = parse(encode(avatar, storage=storage))
+        assert (tree["version_major"], tree["version_minor"]) == (4, 0)
+
+
+@pytest.mark.parametrize(("storage", "kind"), [("f32", "F32"), ("f16", "F16"), ("i8", "F16"), ("packed", "F16")])
+def test_components_are_stored_as_finely_as_hidden_layers(storage: Storage, kind: str) -> None:
+    encoding = parse(encode(synthetic_avatar(), storage=storage))["encoding"]
+    assert [encoding[name]["type"] for name in ("components", "ranges", "margins")] == [kind, "F32", "F32"]
 
 
 def test_translations_of_joints_come_back(tmp_path: Path) -> None:

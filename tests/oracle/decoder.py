@@ -169,7 +169,7 @@ def six(q: Array) -> Array:
 
 
 def descriptor(avatar: Tree, window: list[Pose]) -> Array:
-    """3.2, 3.4, 3.5: x [k D]; `window` is newest first."""
+    """3.2, 3.4, 3.5: z [K]; `window` is newest first."""
     skeleton, encoding = avatar["skeleton"], avatar["encoding"]
     root, bind = skeleton["root"], (unit(skeleton["bind_rotations"]), skeleton["bind_translations"])  # 2.1
     turned0 = world(skeleton, bind)[0][root]
@@ -182,7 +182,24 @@ def descriptor(avatar: Tree, window: list[Pose]) -> Array:
         numbers += [rotate(back, places[root] - placed[0][1][root]), six(times(back, turn))]
         numbers += [six(local[j]) for j in encoding["joints"]]
         numbers += [moved[j] - bind[1][j] for j in encoding.get("translated", ())]
-    return np.asarray((np.concatenate(numbers) - encoding["mean"]) / encoding["scale"])
+    return np.asarray(encoding["components"] @ ((np.concatenate(numbers) - encoding["mean"]) / encoding["scale"]))
+
+
+def bounded(avatar: Tree, z: Array) -> Array:
+    """3.6: x [K]"""
+    (low, high), m, x = avatar["encoding"]["ranges"], avatar["encoding"]["margins"], z.copy()
+    for k in range(len(z)):
+        if z[k] > high[k]:
+            x[k] = high[k] + (z[k] - high[k]) * m[k] / (z[k] - high[k] + m[k])
+        elif z[k] < low[k]:
+            x[k] = low[k] - (low[k] - z[k]) * m[k] / (low[k] - z[k] + m[k])
+    return x
+
+
+def outside(avatar: Tree, z: Array) -> float:
+    """3.7"""
+    length = float(np.linalg.norm(z))
+    return float(np.linalg.norm(z - bounded(avatar, z))) / length if length else 0.0
 
 
 def mlp(layers: list[Tree], x: Array) -> Array:
@@ -247,7 +264,7 @@ def decode(avatar: Tree, frames: list[Pose], n: int) -> Splats:
     """Frame n of poses at the rate of the encoding: 3 to 6."""
     skeleton, template, texels = avatar["skeleton"], avatar["template"], avatar["texels"]
     window = [frames[max(n - age, 0)] for age in range(avatar["encoding"]["window"])]  # 3.1
-    x = descriptor(avatar, window)
+    x = bounded(avatar, descriptor(avatar, window))
     coarse = avatar["coarse"]
     canonical = coarse["mean"] + np.einsum("k,kvi->vi", mlp(coarse["mlp"], x), coarse["basis"])  # 4.2
     texture = np.concatenate([branch_texture(avatar, avatar[name], x) for name in ("geometry", "appearance")]).T

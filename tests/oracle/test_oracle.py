@@ -26,6 +26,8 @@ from mua.camera import orbit
 from mua.coarser import coarsest
 from mua.decode import decode_clip_frame
 from mua.kernels.splat_draw import splat_colors
+from mua.pose.components import read_components
+from mua.pose.descriptor import describe_window
 from mua.pose.encoding import PoseEncoding
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
@@ -137,8 +139,22 @@ def test_a_root_without_twist_has_no_heading(tmp_path: Path, turn: list[float]) 
     assert_decodes_alike(path, frames=3)
 
 
-def test_files_of_version_1_decode_alike() -> None:
-    assert_decodes_alike(Path(__file__).parents[1] / "golden" / "version_1.muaavatar", frames=3)
+@pytest.mark.parametrize("reach", [0.0, 0.5, 3.0])
+def test_poses_outside_of_training_are_held_alike(tmp_path: Path, reach: float) -> None:
+    """Random turns of every joint, at 0 the bind pose; how far outside is the same number."""
+    avatar, rng = turned_avatar(heading=True, rate=24.0), np.random.default_rng(7)
+    write(tmp_path / "a.muaavatar", avatar, storage="f32")
+    tree, bind = decoder.read(tmp_path / "a.muaavatar"), avatar.rig.skeleton.bind_rotations
+    turns = rotation.from_axis_angle(rotation.normalize(rng.normal(size=(3, 3, 3))), reach * rng.normal(size=(3, 3)))
+    window = [(turn, avatar.rig.skeleton.bind_translations) for turn in rotation.multiply(turns, bind)]
+    rotations, translations = (np.stack(part) for part in zip(*window, strict=True))
+    described = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
+    x, outside = read_components(avatar.components, described)
+    z = decoder.descriptor(tree, window)
+    np.testing.assert_allclose(decoder.bounded(tree, z), x, rtol=0, atol=POSITION)
+    assert decoder.outside(tree, z) == pytest.approx(float(outside), abs=POSITION)
+    low, high = avatar.components.ranges
+    assert ((x >= low - avatar.components.margins) & (x <= high + avatar.components.margins)).all()
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -91,8 +91,8 @@ def predict(
     """The samples [G, S] at `points`, each by the function of its part."""
     found = torch.zeros(len(points), values.shape[1])
     for part in owners.unique().tolist():
-        white = whitening(inputs * reach[part])
-        z, at = (white(x * reach[part]) for x in (inputs, points))
+        turn = whitening(inputs * reach[part])
+        z, at = ((x * reach[part]) @ turn for x in (inputs, points))
         function = fit_smoother(z, values[:, owners == part], generator=torch.Generator().manual_seed(0))
         found[:, owners == part] = function(at)
     return found

@@ -32,7 +32,7 @@ class Avatar(Model):
     clips: tuple[Clip, ...]
     thumbnail: bytes  # PNG, may be empty
     notes: str  # e.g. that the teacher is a simulated stand-in
-    surface: Surface | None = None  # triangles over the texels, which a file before version 2.1 does not hold
+    surface: Surface | None = None  # triangles over the texels
 
     def decode(
         self,
