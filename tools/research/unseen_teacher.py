@@ -1,0 +1,168 @@
+"""A character's simulated teacher on motion that an avatar has not been trained on; its frames are kept on disk.
+
+Motion of all kinds is cut to its most active seconds. A live rig with a broken joint and random joint angles are made
+from the walk that the avatar was trained on.
+"""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+from mua.atlas.detail import read_detail
+from mua.baking.sources import RATE, load_character
+from mua.errors import InputError
+from mua.files import replacing
+from mua.motion.load import load_motions
+from mua.pose.clip import Clip
+from mua.recording.encode import align_rotations
+from mua.rig.character import Character
+from mua.teachers.simulated import SimulatedTeacher
+from mua.teachers.teacher import TeacherFrame
+
+LONGEST = 4.0  # seconds of a motion
+RUN_UP = 0.5  # seconds that are simulated and not measured: a teacher's cloth is at rest when a clip begins
+EVERY, MOST = 5, 24  # of the frames after that, one in so many is measured, and no more than so many
+RANDOM_FRAMES = 100
+SPIN, JUMP = 2.0, 120.0  # turns per second of a joint that spins, degrees of one that jumps
+LIVELY = 12  # joints that carry the most skin, of which the broken ones are chosen
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A clip on the avatar's skeleton, and which frames are measured."""
+
+    clip: Clip
+    sound: bool  # false for broken rigs and random angles, whose teacher need not make sense
+
+    @property
+    def frames(self) -> Array:
+        """[F] ascending; the last one always, so that a clip of any length has some."""
+        start = min(round(RUN_UP * self.clip.rate), len(self.clip) // 3)
+        return np.arange(len(self.clip) - 1, start - 1, -EVERY)[:MOST][::-1]
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What the teacher shows in one frame."""
+
+    frame: int
+    mesh: Array  # [V, 3] canonical vertices, metres
+    texture: Array  # [N, 23] raw channels, rotations aligned to a recording's reference
+
+
+def motions_of(character: Character, paths: Sequence[Path]) -> Iterator[Motion]:
+    """Every clip of the files, cut to its most active part; says which files the character cannot follow."""
+    for path in paths:
+        try:
+            loaded = load_motions(path, character.skeleton, mapping=None, rate=RATE, said=character.roles)
+        except InputError as error:
+            print(f"left out: {error}")
+            continue
+        for one in loaded:
+            name = path.stem if len(loaded) == 1 else f"{path.stem} {one.clip.name}"
+            yield Motion(most_active(replace(one.clip, name=name)), sound=True)
+
+
+def most_active(clip: Clip, *, seconds: float = LONGEST) -> Clip:
+    """The part of a clip, at most so long, in which its joints turn most."""
+    length = round(seconds * clip.rate)
+    if len(clip) <= length:
+        return clip
+    between = np.abs(np.einsum("fjc,fjc->fj", clip.rotations[1:], clip.rotations[:-1])).clip(0, 1)
+    turned = np.cumsum(np.r_[0.0, (2 * np.arccos(between)).sum(axis=1)])  # from the first frame to each
+    start = int(np.argmax(turned[length - 1 :] - turned[: len(turned) - length + 1]))
+    return clip.cut(slice(start, start + length))
+
+
+def broken_rigs(avatar: Avatar, *, seed: int = 0) -> Iterator[Motion]:
+    """The avatar's first clip with a joint that spins, one turned by 180 degrees, one that jumps; and random angles."""
+    rng, walk = np.random.default_rng(seed), avatar.clips[0]
+    spun, turned, jumping = rng.choice(_lively(avatar), 3, replace=False)
+    axes = _axes(rng, 3)
+    time = np.arange(len(walk))
+    yield _broken(walk, "joint that spins", spun, axes[0], 2 * np.pi * SPIN / walk.rate * time)
+    yield _broken(walk, "joint turned by 180 degrees", turned, axes[1], np.full(len(walk), np.pi))
+    yield _broken(walk, "joint that jumps", jumping, axes[2], np.radians(JUMP) * (time % 2))
+    skeleton = avatar.rig.skeleton
+    count = (RANDOM_FRAMES, len(skeleton.names))
+    angles, axes = rng.uniform(0, np.pi, count), _axes(rng, *count)
+    random = rotation.multiply(np.broadcast_to(skeleton.bind_rotations, (*count, 4)), _turns(axes, angles))
+    places = np.broadcast_to(skeleton.bind_translations, (*count, 3)).copy()
+    yield Motion(Clip("random joint angles", walk.rate, random, places), sound=False)
+
+
+class Teacher:
+    """Teacher frames of a character, simulated where no earlier run has kept them in `cache`.
+
+    They are found again by the character's file and the motion: empty the directory after changing the simulation.
+    """
+
+    def __init__(self, path: Path | None, cache: Path, *, texels: int, seed: int = 0) -> None:
+        """Load the character at `path`, or the procedural one, as a bake does."""
+        detail = None if path is None else read_detail((), uv="auto")
+        self.character = load_character(path, uv="auto", seed=seed, detail=detail)
+        content = b"procedural" if path is None else path.read_bytes()
+        self._key = hashlib.sha256(f"{texels} {seed}".encode() + content)
+        self._cache, self._texels, self._seed = cache, texels, seed
+        self._simulated: SimulatedTeacher | None = None
+
+    def shown(
+        self,
+        motion: Motion,
+        reference: Array,  # [N, 23] whose hemispheres the rotations are brought to
+    ) -> Iterator[Shown]:
+        """The frames of a motion that are measured, its cloth in motion since the first frame of the clip."""
+        key = self._key.copy()
+        for array in (motion.clip.rotations, motion.clip.translations, motion.frames):
+            key.update(array.tobytes())
+        path = self._cache / f"{key.hexdigest()[:16]}.npz"
+        if not path.exists():
+            self._keep(path, motion)
+        with np.load(path) as kept:
+            meshes, textures = kept["meshes"], kept["textures"]
+        for frame, mesh, texture in zip(motion.frames, meshes, textures, strict=True):
+            yield Shown(int(frame), mesh, align_rotations(texture.astype(np.float32), reference))
+
+    def _keep(self, path: Path, motion: Motion) -> None:
+        if self._simulated is None:
+            bare = replace(self.character, clips=(), source=None)
+            self._simulated = SimulatedTeacher(bare, texels=self._texels, seed=self._seed)
+        shown = self._simulated.frames(motion.clip, frozenset(motion.frames.tolist()))
+        whole = [frame for frame in shown if isinstance(frame, TeacherFrame)]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as temporary:
+            textures = np.stack([frame.texture for frame in whole]).astype(np.float16)
+            np.savez(temporary, meshes=np.stack([frame.mesh for frame in whole]), textures=textures)
+
+
+def _broken(walk: Clip, name: str, joint: int, axis: Array, angles: Array) -> Motion:
+    rotations = walk.rotations.astype(np.float64)
+    turns = _turns(np.broadcast_to(axis, (len(walk), 3)), angles)
+    rotations[:, joint] = rotation.multiply(rotations[:, joint], turns)
+    return Motion(replace(walk, name=name, rotations=rotations), sound=False)
+
+
+def _lively(avatar: Avatar) -> Array:
+    """The joints that move and carry the most skin, the root aside."""
+    rig = avatar.rig
+    skin = np.bincount(rig.skin_indices.ravel(), rig.skin_weights.ravel(), minlength=len(rig.skeleton.names))
+    joints = np.array([joint for joint in avatar.encoding.joints if joint != rig.skeleton.root])
+    return joints[np.argsort(-skin[joints], kind="stable")][:LIVELY]
+
+
+def _axes(rng: np.random.Generator, *count: int) -> Array:
+    """Unit vectors [..., 3], all directions alike."""
+    axes = rng.normal(size=(*count, 3))
+    return np.asarray(axes / np.linalg.norm(axes, axis=-1, keepdims=True))
+
+
+def _turns(axes: Array, angles: Array) -> Array:
+    """Quaternions [..., 4] of turns about axes [..., 3] by angles [...], radians."""
+    half = np.asarray(angles)[..., None] / 2
+    return np.concatenate([np.cos(half), np.sin(half) * axes], axis=-1)
