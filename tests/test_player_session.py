@@ -9,6 +9,7 @@ import pytest
 import wgpu
 
 from mua import rotation
+from mua.asset.read import read
 from mua.cli.view_options import Asked, look_of
 from mua.errors import InputError
 from mua.gpu import Device
@@ -49,6 +50,19 @@ def test_rests_at_the_frame_asked_for(device: Device, avatar_files: tuple[Path, 
     assert (resting.index, resting.playing) == (3, False)
     with pytest.raises(InputError, match="--frame is 7; clip 'wave' has frames 0 to 6"):
         session(device, Source(avatar_files, frame=7))
+
+
+def test_says_how_far_outside_of_training_the_pose_is(device: Device, avatar_files: tuple[Path, ...]) -> None:
+    resting, avatar = session(device, Source(avatar_files)), read(avatar_files[0])
+    usage = wgpu.TextureUsage.RENDER_ATTACHMENT
+    target = device.wgpu.create_texture(size=(32, 32, 1), format="rgba8unorm", usage=usage)
+    found = []
+    for index in (0, 3, 5):
+        resting.step(index - resting.index)
+        resting.draw(target)
+        found.append(resting.outside)
+        assert resting.outside == pytest.approx(avatar.decode(resting.clip, index).outside, abs=1e-6)
+    assert len(set(found)) == 3
 
 
 def test_keeps_what_it_looks_at_in_the_middle(device: Device, avatar_files: tuple[Path, ...]) -> None:

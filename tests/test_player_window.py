@@ -98,6 +98,7 @@ def test_the_panel_says_of_how_many_splats_the_figure_is(window: Driven, monkeyp
     monkeypatch.setattr("mua.player.panel.imgui.text_disabled", said.append)
     window.picture()
     assert f"{window.session.splats:,} splats, {window.session.level}" in said
+    assert f"outside of training: {window.session.outside:.0%}" in said
 
 
 def test_orbits_pans_and_zooms_by_mouse(window: Driven) -> None:

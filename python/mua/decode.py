@@ -1,6 +1,6 @@
 """From an avatar and a window of poses to posed splats, by the reference kernels."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,7 @@ class Splats:
     sh: Array  # [N, 12] degree 1, canonical space
     texel_dq: Array  # [N, 8] bind pose to world; the real part is R_tex
     bounds: Array  # [2, 3] lowest and highest corner of the box over which depth is keyed
+    outside: float = 0.0  # share of the pose that training did not show (schemas/README.md, 3.7)
     normals: Array | None = None  # [N, 3] of the triangles of one-sided texels, of any length, 0 of others; None: all 0
 
     def __len__(self) -> int:
@@ -53,13 +54,15 @@ def decode(
 ) -> Splats:
     """Decode the newest frame of a window of poses; float64 is the reference of the reference."""
     descriptor = describe_window(avatar.rig.skeleton, avatar.encoding, rotations, translations)
-    x = read_components(avatar.components, descriptor)[0].astype(dtype)
+    read, outside = read_components(avatar.components, descriptor)
+    x = read.astype(dtype)
     canonical = expand_mesh(avatar, x)
     geometry = decode_branch(avatar.geometry, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     appearance = decode_branch(avatar.appearance, avatar.wavelet, x, texels=avatar.rig.texels.texels)
     texture = np.concatenate([geometry, appearance]).T
     pose = Pose(rotations[0], translations[0])
-    return pose_splats(avatar.rig, canonical, texture=texture, pose=pose, bounds=avatar.bounds)
+    splats = pose_splats(avatar.rig, canonical, texture=texture, pose=pose, bounds=avatar.bounds)
+    return replace(splats, outside=float(outside))
 
 
 def decode_clip_frame(

@@ -55,7 +55,7 @@ def moved(frame: Splats, place: Array) -> Splats:
 
 def joined(frames: Sequence[Splats]) -> Splats:
     """Frames as one, the box around all of theirs."""
-    names = [field.name for field in fields(Splats) if field.name != "normals"]  # none is one-sided
+    names = [field.name for field in fields(Splats) if field.name not in ("normals", "outside")]  # none is one-sided
     whole = Splats(**{name: np.concatenate([getattr(frame, name) for frame in frames]) for name in names})
     return replace(whole, bounds=box_of(whole.bounds))
 

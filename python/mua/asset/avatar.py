@@ -46,7 +46,7 @@ class Avatar(Model):
         `clip` is the name of one of the avatar's clips, a `Clip` of its skeleton at any rate, or a window of poses,
         newest first: as many as `avatar.encoding.window` says, `1 / avatar.encoding.rate` seconds apart. `frame` counts
         from 0 at the avatar's rate, `avatar.encoding.rate` frames per second; a window has no other frame than 0.
-        `dtype` is float32 or float64.
+        `dtype` is float32 or float64. `outside` of the splats says how much of the pose training did not show, 0 to 1.
 
         Errors: InputError for a clip or frame that is not there, and for poses of another skeleton's shape.
 

@@ -82,6 +82,7 @@ def _sources(session: Session) -> None:
     if changed:
         session.choose_clip(session.clips[chosen])
     imgui.text_disabled(f"{session.splats:,} splats, {session.level}")
+    imgui.text_disabled(f"outside of training: {session.outside:.0%}")
     for sentence in filter(None, (session.failure, *session.notes)):
         imgui.push_style_color(imgui.Col_.text, WARNING)
         imgui.text_wrapped(sentence)

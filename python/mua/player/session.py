@@ -115,6 +115,11 @@ class Session:
         return f"{levels.wanted} level: {shown} texels" if isinstance(levels.wanted, str) else f"{shown} texels"
 
     @property
+    def outside(self) -> float:
+        """Share of the pose shown that training did not show, 0 to 1."""
+        return self._stage.frame.avatars[0].outside
+
+    @property
     def can_time(self) -> bool:
         """Whether the device has timestamps."""
         return self._device.timestamps
