@@ -7,6 +7,7 @@ import pytest
 from captures import make_capture
 from commands import Commands
 from taught import FEW
+from trainings import FINISHED
 
 import mua
 from mua.student.settings import PRESETS as STUDENTS
@@ -34,7 +35,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
     given = ("--preset", "tiny", "--jobs", "1")
     motion = capture / "walk.bvh"
     whole = command("bake", capture, "--motion", motion, "-o", tmp_path / "whole.muaavatar", *given)
-    assert whole.status == 0, whole
+    assert whole.status in FINISHED, whole
     assert "taught from the images of a capture" in whole.out
     avatar = mua.load(tmp_path / "whole.muaavatar")
     assert avatar.name == "figure"
@@ -47,7 +48,7 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
 
     teacher = tmp_path / "whole.work" / "teacher"
     apart = command("bake", "--teacher", teacher, "--motion", motion, "-o", tmp_path / "apart.muaavatar", *given)
-    assert apart.status == 0, apart
+    assert apart.status in FINISHED, apart
     avatar = mua.load(tmp_path / "apart.muaavatar")
     assert [clip.name for clip in avatar.clips] == ["walk"]
     assert not avatar.encoding.heading

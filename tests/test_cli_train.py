@@ -10,7 +10,7 @@ import torch
 from recordings import FormulaTeacher, clip
 from rich.console import Console
 from synthetic_avatar import synthetic_rig
-from trainings import STAGE_NAMES, Training
+from trainings import FINISHED, STAGE_NAMES, Training
 
 from mua.asset import read
 from mua.baking.report import UNSAID
@@ -62,7 +62,7 @@ def test_stages_one_by_one_end_in_the_same_bytes(
     for stage in ("regression", "fine-tuning"):
         assert mua_train(written, "--stage", stage).status == 0
         assert not (tmp_path / "a.muaavatar").exists()
-    assert mua_train(written).status == 0
+    assert mua_train(written).status in FINISHED
     assert (tmp_path / "a.muaavatar").read_bytes() == trained.read_bytes()
 
 

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 import torch
 from recordings import write
-from trainings import STAGE_NAMES, Training, one_by_one, process
+from trainings import FINISHED, STAGE_NAMES, Training, one_by_one, process
 
 from mua.arrays import Array
 from mua.checkpoint import Checkpoints
@@ -249,5 +249,5 @@ def test_removes_what_a_killed_run_left(
         left = left.format(killed.pid)
     shutil.copytree(trained.with_suffix(".work"), tmp_path / "a.work")
     (tmp_path / left).write_bytes(b"half")
-    assert mua_train(written).status == 0
+    assert mua_train(written).status in FINISHED
     assert not (tmp_path / left).exists()

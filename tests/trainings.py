@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 from commands import Ended
 
+from mua.cli.display import UNEXPLAINED
 from mua.student import optimise
 from mua.student.settings import PRESETS, Ranks, Schedule
 
+FINISHED = (0, UNEXPLAINED)  # statuses of a training that wrote its avatar: one of a few steps explains little
 Training = Callable[..., Ended]  # the fixture `mua_train`
 SMALL = replace(
     PRESETS["tiny"],

@@ -70,6 +70,11 @@ class Baked:
     sheet: Path | None = None
     figures: Path | None = None
 
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """Sentences on the held-out clips of which less than nothing is explained."""
+        return tuple(report.shortfalls(self.errors))
+
 
 def choose_device(name: DeviceName) -> torch.device:
     """The device of that name; raises InputError where it is a GPU and there is none."""

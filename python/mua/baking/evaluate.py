@@ -48,6 +48,7 @@ class Picture:
 
     texture: Array  # [N, 23] raw channels
     mesh: Array | None = None  # [V, 3] canonical vertices, metres
+    outside: float = 0.0  # share of the pose that training did not show
 
 
 @dataclass
@@ -55,6 +56,7 @@ class Errors:
     """Sums of squared errors of one group of frames by attribute and image."""
 
     frames: int = 0
+    outside: float = 0.0  # shares of the poses that training did not show
     squares: dict[tuple[str, str], float] = field(default_factory=dict)
     vectors: dict[str, int] = field(default_factory=dict)
 
@@ -62,6 +64,7 @@ class Errors:
         """Count one frame."""
         self.frames += 1
         for name, picture in pictures.items():
+            self.outside += picture.outside
             by_channel = np.square(picture.texture - frame.texture, dtype=np.float64).sum(axis=0)
             for attribute, channels in ATTRIBUTES.items():
                 self._count(attribute, name, float(by_channel[channels].sum()))
@@ -81,7 +84,12 @@ class Errors:
             squares[key] = squares.get(key, 0.0) + square
         for attribute, count in other.vectors.items():
             vectors[attribute] = vectors.get(attribute, 0) + count
-        return Errors(self.frames + other.frames, squares, vectors)
+        return Errors(self.frames + other.frames, self.outside + other.outside, squares, vectors)
+
+    @property
+    def mean_outside(self) -> float:
+        """Mean share of a pose that training did not show."""
+        return self.outside / self.frames if self.frames else 0.0
 
     def rms(self, attribute: str, picture: str) -> float:
         """Root mean square error of a vector (all components of the attribute together) in its unit."""
@@ -150,7 +158,7 @@ class _Comparer:
                 "mean": self.mean,
                 "bands": Picture(bands[i]),
                 "best": Picture(best[i]),
-                "student": Picture(posed.texture, posed.canonical),
+                "student": Picture(posed.texture, posed.canonical, posed.outside),
             }
 
     @torch.no_grad()

@@ -27,7 +27,10 @@ SHORT = (
 SHORT_LEGEND = (
     "Explained: share of the variance about the mean texture of the training frames. Errors are root mean squares."
 )
+FAR = 0.25  # outside of training: from here on, the pose is the cause
 HELD_OUT = "all held out"
+ROUNDING = 0.01  # in an attribute's unit
+NAMES = {"SH": "colour"}
 HEADINGS = ("frames", "attribute", "unit", "mean", "best", "student", "explained")
 
 
@@ -83,6 +86,29 @@ def _figure(value: float) -> str:
     return f"{value:#.3g}".rstrip(".")
 
 
+def shortfalls(groups: Mapping[str, Errors]) -> list[str]:
+    """A sentence for each group of frames of which the student explains less than nothing, and why."""
+    found = []
+    for name, errors in groups.items():
+        shares = {attribute: errors.explained(attribute) for attribute in UNITS if seen(errors, attribute)}
+        below = [f"{NAMES.get(name, name)} ({percent(share)})" for name, share in shares.items() if share < 0]
+        if below:
+            found.append(f"{name}: the mean texture is nearer to the teacher in {', '.join(below)}: {_cause(errors)}")
+    return found
+
+
+def seen(errors: Errors, attribute: str) -> bool:
+    """Whether an attribute varies by more than rounding."""
+    return errors.rms(attribute, "mean") > ROUNDING
+
+
+def _cause(errors: Errors) -> str:
+    if errors.mean_outside > FAR:
+        outside = percent(errors.mean_outside)
+        return f"{outside} of its poses lies outside of training; add motion of that kind with --motion"
+    return "its poses are like those of training, but too few frames show what moves; add motion or raise --frames"
+
+
 def said(*, teacher: str) -> tuple[str, ...]:
     """What holds for all of the table, in sentences."""
     return SHORT_LEGEND, f"{teacher[:1].upper()}{teacher[1:]}."
@@ -120,6 +146,7 @@ def as_json(groups: Mapping[str, Errors], *, teacher: str, held_out: Mapping[str
 def _figures(errors: Errors) -> dict[str, object]:
     return {
         "frames": errors.frames,
+        "outside": errors.mean_outside,
         "rms": {a: {p: errors.rms(a, p) for p in PICTURES} for a in ATTRIBUTES},
         "explained": {a: {p: errors.explained(a, p) for p in PICTURES} for a in ATTRIBUTES},
         "mesh mm": {p: errors.rms(MESH, p) for p in ("mean", "student")},

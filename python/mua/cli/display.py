@@ -1,8 +1,10 @@
 """What a long job shows while it runs: bars on a terminal, lines of text anywhere else."""
 
+import sys
 import time
 from typing import TYPE_CHECKING
 
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
@@ -11,6 +13,7 @@ from mua.cli.console import say
 if TYPE_CHECKING:  # torch takes seconds to load, and a check needs none of it
     from mua.baking.distillation import Baked
 
+UNEXPLAINED = 3  # exit status where an avatar is written that explains less than nothing of some frames
 LINE_SECONDS = 30.0  # between two lines of one stage where there is no terminal
 
 
@@ -102,7 +105,10 @@ class Display:
 
 
 def show(console: Console, baked: "Baked") -> None:
-    """Print what a bake or a training ends with: the table of errors, and what was written where."""
+    """Print what a bake or a training ends with: the table of errors, what was written where, and what fell short.
+
+    Ends the command with status UNEXPLAINED where less than nothing of some frames is explained.
+    """
     from mua.baking.report import closing, said, table
 
     lines = [closing(baked.stored, baked.output)]
@@ -115,3 +121,7 @@ def show(console: Console, baked: "Baked") -> None:
         lines.append(f"{baked.figures}, {baked.figures.with_suffix('.json')}: errors of every attribute")
     for line in lines:
         say(console, line)
+    for sentence in baked.shortfalls:
+        print(f"warning: {sentence}", file=sys.stderr)
+    if baked.shortfalls:
+        raise typer.Exit(UNEXPLAINED)
