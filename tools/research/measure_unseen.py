@@ -23,17 +23,17 @@ from scipy.spatial import cKDTree
 from unseen_teacher import Motion, Shown, Teacher, broken_rigs, motions_of
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
+from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.baking.evaluate import MESH, UNITS, Errors, Picture
 from mua.baking.portrait import portrait
-from mua.channels import ATTRIBUTES, CHANNELS, SH_C0
+from mua.channels import ATTRIBUTES, SH_C0
 from mua.decode import Splats, decode_clip_frame, pose_splats
 from mua.fidelity.background import background_for, over
 from mua.fidelity.strips import caption, sheet
 from mua.files import write_bytes
-from mua.pose.skeleton import Pose
 from mua.recording import Recording, WholeFrame
 from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.texel_map import TexelMap
@@ -44,6 +44,7 @@ BLOCK, LEAST = 16, 32  # texels along a block of the texture; valid ones that ma
 CONSTANT = 0.01  # RMS about the mean, in the attribute's unit: what varies less is not explained or missed
 CELL = (288, 416)  # pixels of an image
 PICTURED = 3  # motions
+LOOKED_UP = 256  # points at a time
 
 
 @dataclass
@@ -58,6 +59,7 @@ class Result:
     size: float = 0.0  # texels, the largest standard deviation
     teacher_size: float = 0.0
     colour: float = 0.0  # /255
+    mean_colour: float = 0.0  # /255, of the mean texture of the training frames in place of the student's
     worst: int = 0  # the frame that is farthest over a bar
     explained: dict[str, float | None] = field(default_factory=dict)  # by attribute; None where nothing varies
 
@@ -74,12 +76,18 @@ class Result:
         return missed + [name for name, share in self.explained.items() if share is not None and not share >= EXPLAINED]
 
     def line(self) -> str:
+        """A row of the table."""
         shares = [self.explained[name] for name in (*ATTRIBUTES, MESH)]
-        shown = " | ".join("-" if share is None else f"{share:.0%}" for share in shares)
-        return (
-            f"| {self.name} | {self.frames} | {100 * self.distance:.1f} ({100 * self.apart:.1f}) "
-            f"| {self.size:.1f} ({self.teacher_size:.1f}) | {self.colour:.0f} | {shown} | {', '.join(self.fails)} |"
-        )
+        cells = [
+            self.name,
+            str(self.frames),
+            f"{100 * self.distance:.1f} ({100 * self.apart:.1f})",
+            f"{self.size:.1f} ({self.teacher_size:.1f})",
+            f"{self.colour:.0f} ({self.mean_colour:.0f})",
+            *("-" if share is None else f"{share:.0%}" for share in shares),
+            ", ".join(self.fails),
+        ]
+        return f"| {' | '.join(cells)} |"
 
 
 class Ruler:
@@ -89,8 +97,6 @@ class Ruler:
         rig, mean = avatar.rig, avatar.coarse.mean.reshape(-1, 3).astype(np.float32)
         self._rig, self._mean = rig, mean
         self._figure = figure_scale(rig.mesh.vertices)
-        self._bare = np.zeros((len(rig.texels.texels), CHANNELS), np.float32)
-        self._bare[:, ATTRIBUTES["rotation"].start] = 1
         self._texel = texel_length(mean, rig.mesh.faces, len(rig.texels.texels))
         self._blocks = blocks(rig.texels)
 
@@ -98,7 +104,6 @@ class Ruler:
         self,
         splats: Splats,
         mesh: Array,  # [V, 3] the teacher's canonical vertices
-        pose: Pose,
     ) -> tuple[float, float]:
         """How far centres are at most from the posed template, and from the teacher's mesh alone; metres on a person.
 
@@ -106,11 +111,14 @@ class Ruler:
         """
         if not np.isfinite(splats.centres).all():
             return math.inf, math.inf
-        mean, own = (
-            cKDTree(pose_splats(self._rig, one, texture=self._bare, pose=pose).centres).query(splats.centres)[0]
-            for one in (self._mean, mesh)
-        )
-        return float(np.minimum(mean, own).max()) / self._figure, float(own.max()) / self._figure
+        surfaces = [self._posed(one, splats.texel_dq) for one in (self._mean, mesh)]
+        return farthest(splats.centres, surfaces) / self._figure, farthest(splats.centres, surfaces[1:]) / self._figure
+
+    def _posed(self, mesh: Array, texel_dq: Array) -> Array:
+        """The points [N, 3] of canonical vertices [V, 3] where the texels are, in the world."""
+        texels = self._rig.texels
+        corners = mesh[self._rig.mesh.faces[texels.triangles]]
+        return rotation.dual_transform(texel_dq, np.einsum("nk,nkc->nc", texels.barycentrics, corners))
 
     def size(self, splats: Splats) -> float:
         """The largest standard deviation in texels."""
@@ -127,6 +135,23 @@ class Ruler:
         count = np.bincount(self._blocks)
         sums = np.stack([np.bincount(self._blocks, column) for column in colours.T], axis=1)
         return np.asarray(sums[count >= LEAST] / count[count >= LEAST, None])
+
+
+def farthest(
+    points: Array,  # [N, 3]
+    surfaces: Sequence[Array],  # [N, 3] each; a point's own place on it is the one of the same row
+) -> float:
+    """The largest distance of any of the points from the nearest point of any of the surfaces.
+
+    A point is no farther than from its own places, so that few are looked up.
+    """
+    bounds = np.min([np.linalg.norm(points - surface, axis=1) for surface in surfaces], axis=0)
+    trees, found = [cKDTree(surface) for surface in surfaces], 0.0
+    for some in np.array_split(np.argsort(-bounds), max(len(points) // LOOKED_UP, 1)):
+        if bounds[some[0]] <= found:
+            break
+        found = max(found, float(np.min([tree.query(points[some])[0] for tree in trees], axis=0).max()))
+    return found
 
 
 def not_nan(value: float) -> float:
@@ -163,7 +188,7 @@ class Measurement:
             one = self._one(motion, shown, errors)
             if one.badness > worst:
                 worst, result.worst = one.badness, shown.frame
-            for name in ("distance", "apart", "size", "teacher_size", "colour"):
+            for name in ("distance", "apart", "size", "teacher_size", "colour", "mean_colour"):
                 setattr(result, name, max(getattr(result, name), getattr(one, name)))
         result.explained = {name: explained(errors, name) for name in (*ATTRIBUTES, MESH)}
         return result
@@ -190,11 +215,10 @@ class Measurement:
 
     def _one(self, motion: Motion, shown: Shown, errors: Errors) -> Result:
         """One frame alone; its errors are added to those of the motion."""
-        pose = motion.clip.pose(shown.frame)
         teacher, student = self.posed(motion, shown)
         whole = WholeFrame(motion.clip, shown.frame, shown.mesh, shown.texture)  # type: ignore[arg-type]
         errors.add(whole, {"mean": self._mean, "student": Picture(student.texture, student.canonical)})
-        distance, apart = self._ruler.distances(student, shown.mesh, pose)
+        distance, apart = self._ruler.distances(student, shown.mesh)
         return Result(
             motion.clip.name,
             motion.sound,
@@ -204,6 +228,7 @@ class Measurement:
             size=self._ruler.size(student),
             teacher_size=self._ruler.size(teacher),
             colour=self._ruler.colour(student.texture, shown.texture),
+            mean_colour=self._ruler.colour(self._mean.texture, shown.texture),
         )
 
 
@@ -275,7 +300,7 @@ def report(results: Sequence[Result], path: Path | None) -> None:
     """Print a line for each motion, then the summary; write the figures."""
     units = "".join(f" {name} |" for name in (*ATTRIBUTES, MESH))
     print(
-        "| motion | frames | distance, cm (from the teacher) | size, texels (teacher) | colour, /255 |"
+        "| motion | frames | distance, cm (from the teacher) | size, texels (teacher) | colour, /255 (mean) |"
         + units
         + " misses |"
     )
