@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from synthetic_avatar import synthetic_avatar, with_surface
+from training import outside_of_training
 
 from mua.asset import write
 from mua.model import Layer
@@ -89,6 +90,7 @@ def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Stor
     told = story("IsPlain")
     assert told["plain"] == ["Empty '' 0 '' 0"]
     assert told["clip"] == ["0 of 0, 0 of 0, 0"]
+    assert told["outside"] == ["0"]
     assert told["plays"] == ["True 1, Splats, Shadow, Automatic"]
     assert told["bounds"] == ["1 2 3 0"]
     assert told["log"] == []
@@ -112,6 +114,14 @@ def test_an_application_chooses_clip_frame_and_speed(story: Story, folder: Path)
     missing = f"the avatar has no clip nobody's; its clips are {clip.name}, shorter, later."
     assert told["picked"] == [f"0 {missing}", "2 "]
     assert [line.rpartition(": ")[2] for line in told["log"]] == [missing]
+
+
+def test_an_avatar_says_how_far_outside_of_training_its_pose_is(story: Story, folder: Path) -> None:
+    told, file = story("LeavesTraining", "first"), folder / "first.muaavatar"
+    expected = [outside_of_training(file, frame) for frame in (2, 5, 0)]
+    assert min(np.abs(np.diff(expected))) > 0.01
+    assert [float(number) for number in told["outside"]] == pytest.approx(expected, rel=1e-6)
+    assert told["loading"] == ["0"]
 
 
 def test_a_load_asks_once_for_the_packages_resources(story: Story) -> None:

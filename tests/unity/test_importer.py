@@ -12,6 +12,7 @@ from csharp import PROGRAMS, ROOT, CSharp
 from malformed import DAMAGED, MALFORMED, malformed
 from PIL import Image
 from synthetic_avatar import synthetic_avatar, with_surface
+from training import outside_of_training
 
 from mua.asset import write
 from mua.asset.write import encode
@@ -190,12 +191,18 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     write(path, replace(avatar, clips=(avatar.clips[0], replace(avatar.clips[0], name="nod"))), storage="f16")
     told = story("Scrubs", path)
     last = len(avatar.clips[0]) - 1
-    first, chosen, scrubbed, failed = (line for [line] in told["gui"])
+    first, chosen, scrubbed, playing, failed = (line for [line] in told["gui"])
     assert first == f"popup wave of wave, nod; slider 0 of 0 to {last}"
     assert chosen == first
     assert told["clip"] == [["1", "True"]]
     assert scrubbed == f"popup nod of wave, nod; slider 0 of 0 to {last}"
     assert told["frame"] == [["3"]]
+    outside = 100 * outside_of_training(path, 3)
+    assert playing.split("; ")[1:] == [
+        "toggle Playing True",
+        f"slider 3 of 0 to {last}",
+        f"value Outside Training: {outside:.0f} %",
+    ]
     assert failed.startswith("property nod; Error ")
     assert told["alive"] == [["0"]]
 

@@ -18,14 +18,16 @@ from mua.asset.tensors import Storage
 from mua.asset.write import write
 from mua.model import Layer, Mlp
 from mua.pose.clip import Clip
+from mua.pose.components import read_components
 from mua.pose.descriptor import describe
-from mua.pose.encoding import Normalization, PoseEncoding
+from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
 
 BOUND = 2048 * np.finfo(float).eps  # some hundred operations, each rounded once, on numbers up to ten
 ROUNDING = np.finfo(np.float32).eps  # what the kernels read is rounded to float32 in the end
 PLACE = rotation.dual_from_rigid(np.array([0.8, 0, 0.6, 0]), np.array([1, -2, 0.5]))
+COMPONENTS = 9
 SECONDS = (0.0, 0.04, 0.2, 0.5, 1.0, 12.345, 1e6, -0.01, -3.3)
 
 
@@ -36,8 +38,13 @@ def program(csharp: CSharp) -> Path:
     return csharp.build([PROGRAMS / "MotionProgram.cs"], references=[file, motion])
 
 
-def avatar_of(*, heading: bool, window: int, rate: float, clips: Sequence[tuple[float, int]]) -> Avatar:
-    """The synthetic avatar on a skeleton whose root joint has a turned parent, with clips of (rate, frames)."""
+def avatar_of(
+    *, heading: bool, window: int, rate: float, clips: Sequence[tuple[float, int]], reach: float = 1, roam: float = 1
+) -> Avatar:
+    """The synthetic avatar on a skeleton whose root joint has a turned parent, with clips of (rate, frames).
+
+    Training showed components up to `reach`; joints roam so many metres.
+    """
     avatar = synthetic_avatar()
     rng = np.random.default_rng(window)
     skeleton = replace(
@@ -47,29 +54,40 @@ def avatar_of(*, heading: bool, window: int, rate: float, clips: Sequence[tuple[
         root=1,
     )
     encoding = PoseEncoding(joints=(0, 2), rate=rate, window=window, heading=heading, translated=(2,))
-    mean, scale = rng.normal(size=encoding.width), rng.uniform(0.5, 2, encoding.width)
     return replace(
         avatar,
         rig=replace(avatar.rig, skeleton=skeleton),
         encoding=encoding,
-        normalization=Normalization(mean, scale),
-        coarse=replace(avatar.coarse, mlp=widened(avatar.coarse.mlp, encoding.width)),
-        geometry=replace(avatar.geometry, mlp=widened(avatar.geometry.mlp, encoding.width)),
-        appearance=replace(avatar.appearance, mlp=widened(avatar.appearance.mlp, encoding.width)),
-        clips=tuple(random_clip(skeleton, rng, r, frames) for r, frames in clips),
+        components=random_components(rng, encoding.width, reach),
+        coarse=replace(avatar.coarse, mlp=widened(avatar.coarse.mlp, COMPONENTS)),
+        geometry=replace(avatar.geometry, mlp=widened(avatar.geometry.mlp, COMPONENTS)),
+        appearance=replace(avatar.appearance, mlp=widened(avatar.appearance.mlp, COMPONENTS)),
+        clips=tuple(random_clip(skeleton, rng, r, frames, roam) for r, frames in clips),
     )
+
+
+def random_components(rng: np.random.Generator, width: int, reach: float) -> Components:
+    """Some of which training showed but one value, some that may not go beyond it, and one that reads nothing."""
+    directions = rng.normal(size=(COMPONENTS, width)) / np.sqrt(width)
+    directions[2] = 0
+    ranges = reach * np.sort(rng.uniform(-1, 1, (2, COMPONENTS)), axis=0)
+    ranges[:, :3] = ranges[:, 3:6].mean(axis=0)
+    margins = rng.uniform(0, 0.5, COMPONENTS)
+    margins[::4] = 0
+    normalization = Normalization(rng.normal(size=width), rng.uniform(0.5, 2, width))
+    return Components(normalization, directions, ranges, margins)
 
 
 def widened(mlp: Mlp, width: int) -> Mlp:
     return (Layer(np.zeros((len(mlp[0].bias), width), np.float32), mlp[0].bias), *mlp[1:])
 
 
-def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frames: int) -> Clip:
+def random_clip(skeleton: Skeleton, rng: np.random.Generator, rate: float, frames: int, roam: float) -> Clip:
     rotations = rotation.normalize(rng.normal(size=(frames, len(skeleton.names), 4)))
     if frames > 2:
         rotations[2] = rotations[1]  # a slerp between equals
         rotations[1] *= -1
-    return Clip(f"{rate} Hz", rate, rotations, rng.normal(size=(frames, len(skeleton.names), 3)))
+    return Clip(f"{rate} Hz", rate, rotations, roam * rng.normal(size=(frames, len(skeleton.names), 3)))
 
 
 def upside_down() -> Avatar:
@@ -91,6 +109,11 @@ CASES = {
     "halves": (avatar_of(heading=True, window=2, rate=24, clips=[(24, 6), (60, 13)]), "f16"),
     "no heading": (avatar_of(heading=False, window=3, rate=30, clips=[(24, 7)]), "f32"),
     "one frame": (avatar_of(heading=True, window=1, rate=30, clips=[(30, 4)]), "f32"),
+    "within training": (avatar_of(heading=True, window=3, rate=24, clips=[(24, 9)], reach=1e3), "f32"),
+    "far outside of training": (
+        avatar_of(heading=True, window=3, rate=24, clips=[(24, 60)], reach=0.1, roam=50),
+        "f32",
+    ),
     "longest window": (avatar_of(heading=True, window=16, rate=24, clips=[(24, 20)]), "f32"),
 }
 
@@ -133,7 +156,7 @@ def play(csharp: CSharp, program: Path, path: Path, seconds: Sequence[float] = S
         if name in ("frames", "at", "allocated"):
             found[name].append(int(value))
         else:
-            kind = "<f4" if name in ("descriptor", "skinning") else "<f8"
+            kind = "<f4" if name in ("components", "skinning") else "<f8"
             found[name].append(np.frombuffer(bytes.fromhex(value), kind))
     return found
 
@@ -144,10 +167,12 @@ def expected_numbers(avatar: Avatar, clip: Clip) -> dict[str, Array]:
     windows = np.array([encoding.frames(frame) for frame in range(len(clip))])
     turned, placed = skeleton.world(clip.rotations, clip.translations)
     descriptors = describe(skeleton, encoding, clip.rotations, clip.translations)
+    components, outside = read_components(avatar.components, descriptors)
     return {
         "rotations": clip.rotations[windows],
         "translations": clip.translations[windows],
-        "descriptor": (descriptors - avatar.normalization.mean) / avatar.normalization.scale,
+        "components": components,
+        "outside": outside,
         "turned": turned,
         "placed": placed,
         "skinning": rotation.dual_multiply(PLACE, skeleton.skinning(clip.rotations, clip.translations)),

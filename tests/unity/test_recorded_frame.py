@@ -1,7 +1,7 @@
 """The package's own frames, run by mono over stand-ins that record them and replayed on Vulkan, against decode()."""
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +9,7 @@ import pytest
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from replay import Replayed, replay
 from synthetic_avatar import synthetic_avatar
+from training import outside_of_training
 
 from mua import rotation
 from mua.arrays import Array
@@ -20,6 +21,7 @@ from mua.decode import Splats, decode_clip_frame
 from mua.gpu import Device
 from mua.kernels.splat_project import HIDDEN, LAST_KEY
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
+from mua.pose.clip import Clip
 from mua.rendering import render_premultiplied
 from mua.rig.bounds import root_positions
 
@@ -42,6 +44,7 @@ from test_frame import (
 from test_splats import joined, moved
 
 MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
+POSES = 12
 VISIBLE_WORD = 4  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
 PLACES = (  # Unity's position, then rotation (x, y, z, w)
@@ -222,6 +225,39 @@ def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
     np.testing.assert_array_equal(
         kept["crowd order"][: len(visible)], visible[np.argsort(keys[visible], kind="stable")]
     )
+
+
+def test_poses_of_all_kinds_are_those_of_the_reference(
+    csharp: CSharp, program: Path, device: Device, tmp_path: Path
+) -> None:
+    """Random angles of all joints, of an avatar that was trained on hardly any motion: far outside of it."""
+    avatar, rng = synthetic_avatar(1), np.random.default_rng(7)
+    shape = (POSES, len(avatar.rig.skeleton.names))
+    turns = rotation.normalize(rng.normal(size=(*shape, 4)))
+    places = np.broadcast_to(avatar.rig.skeleton.bind_translations, (*shape, 3)) + rng.normal(size=(*shape, 3)) / 4
+    narrow = replace(avatar.components, ranges=avatar.components.ranges / 100, margins=avatar.components.margins / 10)
+    file = tmp_path / "wild.muaavatar"
+    write(file, replace(avatar, components=narrow, clips=(Clip("wild", 24.0, turns, places),)), storage="f32")
+    avatar = read(file)
+    assert min(outside_of_training(file, frame) for frame in range(POSES)) > 0.5
+    exact = [decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64) for frame in range(POSES)]
+    spans = [np.stack([splats.centres.min(axis=0), splats.centres.max(axis=0)]) for splats in exact]
+    camera = orbit(np.stack([np.min(spans, axis=(0, 1)), np.max(spans, axis=(0, 1))]), screen=(64, 48))
+    lines = ["screen {} {} {} 1".format(*camera.screen, NEAR)]
+    numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])
+    lines.append("eye " + " ".join(repr(float(number)) for number in numbers))
+    for frame in range(POSES):
+        place = " ".join(map(repr, (*PLACES[0], 0)))
+        lines += [f"decode 0 {(frame + 0.2) / 24!r} {place}", f"sort {frame}"]
+    scenario = tmp_path / "scenario.txt"
+    scenario.write_text("\n".join([*lines, ""]))
+    csharp.run(program, ROOT / "ComputeShaders", tmp_path / "recording", scenario, file)
+    kept = replay(device, tmp_path / "recording").kept
+    for frame, splats in enumerate(exact):
+        found = unpacked(kept[f"{frame} splats"])[: len(splats)]
+        assert np.abs(found["centre"] - splats.centres).max() < POSITION_BOUND
+        seen = (found["deviations"] if "deviations" in found.dtype.names else found["minors"]).max(axis=1) > 0
+        assert np.abs(opacities_of(found) - splats.opacities)[seen].max() < OPACITY_BOUND
 
 
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.label)

@@ -33,6 +33,7 @@ class Shown:
     sets: int  # of channels
     dispatches: list[int]
     kept: list[tuple[Array, Array]]  # mesh and channels
+    outside: list[str]  # how far outside of training what is shown is
     shadows: list[bool]  # whether it falls from the mesh that is shown
 
 
@@ -60,17 +61,16 @@ class Watched:
         told = [line.split("\t", 1) for line in said.splitlines()]
         assert ["alive", "0"] in told
         sets = [int(value) for name, value in told if name == "sets"]
-        spread, at_once = (
-            self._shown(name, [int(value) for label, value in told if label == name], count)
-            for name, count in zip((SPREAD, AT_ONCE), sets, strict=True)
-        )
+        spread, at_once = (self._shown(name, told, count) for name, count in zip((SPREAD, AT_ONCE), sets, strict=True))
         return spread, at_once
 
-    def _shown(self, name: str, dispatches: list[int], sets: int) -> Shown:
+    def _shown(self, name: str, told: list[list[str]], sets: int) -> Shown:
+        dispatches = [int(value) for label, value in told if label == name]
+        outside = [value for label, value in told if label == f"outside {name}"]
         recording = self._folder / f"first {name}"
         kept = replay(self._device, recording).kept
         pairs = [(kept[f"{i} mesh"], kept[f"{i} texel_channels"]) for i in range(FRAMES)]
-        return Shown(sets, dispatches, pairs, _shadows(recording.with_suffix(".json")))
+        return Shown(sets, dispatches, pairs, outside, _shadows(recording.with_suffix(".json")))
 
 
 def _shadows(recording: Path) -> list[bool]:
@@ -105,6 +105,8 @@ def test_a_clip_shows_in_every_displayed_frame_what_is_due_and_no_frame_decodes_
     spread, at_once = watched.play(story)
     assert changes(at_once) >= FRAMES // 3 - 1
     assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
+    assert spread.outside == at_once.outside
+    assert len(set(at_once.outside)) >= FRAMES // 3 - 1
     assert max(at_once.dispatches) == len(FRAME_ORDER)
     assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))  # the first decode is at once
     assert (spread.sets, at_once.sets) == (2, 1)
@@ -142,6 +144,7 @@ def test_a_rig_is_shown_one_displayed_frame_late(watched: Watched) -> None:
     assert alike(spread.kept[0], at_once.kept[0])
     late = zip(spread.kept[1:], at_once.kept, strict=False)
     assert [alike(*pair) for pair in late] == [True] * (FRAMES - 1)
+    assert spread.outside[1:] == at_once.outside[:-1]
     assert max(spread.dispatches[1:]) == POSED + max(map(len, PARTS_ORDER))
 
 

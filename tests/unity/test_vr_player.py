@@ -8,6 +8,7 @@ import pytest
 from csharp import PROGRAMS, ROOT, CSharp
 from synthetic_avatar import synthetic_avatar, with_surface
 from test_compiles import Compiler, assemblies
+from training import outside_of_training
 
 from mua.asset import write
 
@@ -220,8 +221,10 @@ def test_a_headset_gives_pose_floor_and_rate(story: Story) -> None:
     assert told["back"] == ["0.00 1.80 -2.20 looks 0.00 0.00 1.00"]  # wherever in the room the user stands
 
 
-def test_the_panel_says_what_is_shown_and_how_fast(story: Story) -> None:
+def test_the_panel_says_what_is_shown_and_how_fast(story: Story, folder: Path) -> None:
     told = story("Panel")
+    outside = outside_of_training(folder / "persistent/avatars/first.muaavatar", 3)
+    assert outside > 0.01
     assert told["first"][0].startswith("72 fps   13.9 ms a frame")
     assert "|loading 0 %|" in told["first"][0]
     assert told["panel"][0].split("|") == [
@@ -234,6 +237,7 @@ def test_the_panel_says_what_is_shown_and_how_fast(story: Story) -> None:
         "avatar 1/2   first",
         "clip 1/2   wave",
         "frame 4/7   paused",
+        f"outside of training {100 * outside:.0f} %",
         "shown: splats shadow",
         "",
     ]

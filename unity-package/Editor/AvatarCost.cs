@@ -30,8 +30,12 @@ namespace Mua.Editor
             DetailBand[] bands = branches.SelectMany(branch => branch.Details).ToArray();
             long still = branches.Sum(branch => (long)branch.StaticOffset.Count);
             long basis = avatar.Coarse.Basis.Count, ll = branches.Sum(branch => (long)branch.LlBasis.Count);
+            PoseEncoding pose = avatar.Encoding;
             return new[]
             {
+                new AvatarCost(
+                    "components of the pose", (long)pose.Components.Count + pose.Ranges.Length + pose.Margins.Length,
+                    2L * pose.Components.Count),
                 new AvatarCost(
                     "coefficient MLPs", layers.Sum(layer => (long)layer.Weight.Count + layer.Bias.Count),
                     2 * layers.Sum(layer => (long)layer.Weight.Count)),

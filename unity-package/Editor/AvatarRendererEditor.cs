@@ -10,6 +10,10 @@ namespace Mua.Editor
     [CustomEditor(typeof(AvatarRenderer)), CanEditMultipleObjects]
     internal sealed class AvatarRendererEditor : UnityEditor.Editor
     {
+        private static readonly GUIContent Outside = new GUIContent(
+            "Outside Training",
+            "Share of the pose that the avatar's training did not show; 0 % is a pose like those of training.");
+
         private SerializedProperty clip;
 
         private void OnEnable()
@@ -71,6 +75,10 @@ namespace Mua.Editor
             if (shown.State == AvatarState.Ready && shown.FrameCount > 1 && shown.Rig == null)
             {
                 Scrub(shown);
+            }
+            if (shown.State == AvatarState.Ready && Application.isPlaying)
+            {
+                EditorGUILayout.LabelField(Outside, new GUIContent((100 * shown.OutsideTraining).ToString("F0") + " %"));
             }
         }
 

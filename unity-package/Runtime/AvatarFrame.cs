@@ -19,7 +19,7 @@ namespace Mua
         private readonly DqSkinning dqSkinning;
         private readonly Descriptor describe;
         private readonly SkeletonPose skeleton;
-        private readonly float[] descriptorValues;
+        private readonly float[] componentValues; // [K]
         private readonly Vector4[] jointValues; // [2 J]
         private readonly BufferSet buffers = new BufferSet();
         private ChannelDecoder decoder;
@@ -34,7 +34,7 @@ namespace Mua
             AvatarFile file = avatar.Avatar;
             describe = new Descriptor(file.Skeleton, file.Encoding);
             skeleton = new SkeletonPose(file.Skeleton);
-            descriptorValues = new float[describe.Width];
+            componentValues = new float[describe.Count];
             jointValues = new Vector4[2 * file.Skeleton.JointCount];
             try
             {
@@ -74,6 +74,9 @@ namespace Mua
 
         /// <summary>Whether a decode is shown: until then the buffers hold nothing.</summary>
         public bool IsDecoded { get; private set; }
+
+        /// <summary>How far outside of training the pose is that is shown, 0 to 1.</summary>
+        public double Outside => shown.Outside;
 
         /// <summary>Of the decode that was begun and is not shown.</summary>
         public int PartsLeft => ChannelDecoder.Parts - decoded;
@@ -127,7 +130,7 @@ namespace Mua
         /// </summary>
         public void Begin(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level = 0)
         {
-            hidden = hidden ?? new ChannelSet(Avatar, describe.Width);
+            hidden = hidden ?? new ChannelSet(Avatar, describe.Count);
             Begin(hidden, rotations, translations, level);
             decoded = 0;
         }
@@ -176,7 +179,7 @@ namespace Mua
         private void CreateBuffers(AvatarResources resources)
         {
             decoder = new ChannelDecoder(resources, Avatar);
-            shown = new ChannelSet(Avatar, describe.Width);
+            shown = new ChannelSet(Avatar, describe.Count);
             Joints = buffers.Structured("joints", jointValues.Length, 4 * sizeof(float));
             VertexDq = buffers.Structured("vertex_dq", 2L * Avatar.VertexCount, 4 * sizeof(float));
         }
@@ -185,8 +188,8 @@ namespace Mua
             ChannelSet channels, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, int level)
         {
             channels.Level = Avatar.Levels[level];
-            describe.Write(rotations, translations, descriptorValues);
-            channels.Descriptor.SetData(descriptorValues);
+            channels.Outside = describe.Write(rotations, translations, componentValues);
+            channels.Components.SetData(componentValues);
         }
 
         private void WritePose(

@@ -188,6 +188,12 @@ namespace Mua
             set => spreadDecode = value;
         }
 
+        /// <summary>
+        /// Share of the pose that training did not show, from 0 to 1, of the pose decoded last; 0 until the avatar is ready.
+        /// What lies outside is held near the poses of training, so that the avatar stays whole but follows less exactly.
+        /// </summary>
+        public float OutsideTraining => shown == null || shown.Decoded == null ? 0 : (float)shown.Decoded.Outside;
+
         /// <summary>Box of the last pose in Unity's world, metres.</summary>
         public Bounds Bounds =>
             shown == null ? new Bounds(transform.position, Vector3.zero) : shown.Bounds;

@@ -43,7 +43,7 @@ namespace Mua
             }
         }
 
-        /// <summary>Appends one of Parts, from the descriptor of `channels` to what it makes of it.</summary>
+        /// <summary>Appends one of Parts, from the components in `channels` to what it makes of them.</summary>
         public void Part(CommandBuffer commands, ChannelSet channels, int part)
         {
             if (part == 0)
@@ -76,10 +76,10 @@ namespace Mua
             }
         }
 
-        /// <summary>What the MLP makes of the descriptor; good until the next MLP.</summary>
-        private GraphicsBuffer Mlp(CommandBuffer commands, LayerBuffers[] mlp, GraphicsBuffer descriptor)
+        /// <summary>What the MLP makes of the components; good until the next MLP.</summary>
+        private GraphicsBuffer Mlp(CommandBuffer commands, LayerBuffers[] mlp, GraphicsBuffer components)
         {
-            GraphicsBuffer x = descriptor;
+            GraphicsBuffer x = components;
             for (int i = 0; i < mlp.Length; i++)
             {
                 GraphicsBuffer y = activations[i % 2];
@@ -92,7 +92,7 @@ namespace Mua
         private void Coarse(CommandBuffer commands, ChannelSet channels)
         {
             commands.BeginSample(AvatarStages.CoarseMesh);
-            GraphicsBuffer coefficients = Mlp(commands, avatar.CoarseMlp, channels.Descriptor);
+            GraphicsBuffer coefficients = Mlp(commands, avatar.CoarseMlp, channels.Components);
             mlpMatmul.Transposed(commands, avatar.Mesh, coefficients, channels.Mesh);
             commands.EndSample(AvatarStages.CoarseMesh);
         }
@@ -104,7 +104,7 @@ namespace Mua
             CommandBuffer commands, BranchBuffers branch, BranchLevel shown, ChannelSet channels, int firstRow)
         {
             commands.BeginSample(AvatarStages.Texture);
-            GraphicsBuffer alpha = Mlp(commands, branch.Mlp, channels.Descriptor);
+            GraphicsBuffer alpha = Mlp(commands, branch.Mlp, channels.Components);
             int levels = branch.Details.Length, size = avatar.Avatar.Texels.Size >> avatar.Avatar.Wavelet.Levels;
             blendSubbands.Low(commands, branch, alpha, size, textures[levels % 2]);
             int offset = branch.Channels * branch.Rank;

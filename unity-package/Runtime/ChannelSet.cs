@@ -11,12 +11,12 @@ namespace Mua
         private readonly BufferSet buffers = new BufferSet();
 
         /// <summary>InvalidOperationException where a buffer is more than the device holds.</summary>
-        public ChannelSet(AvatarBuffers avatar, int descriptorWidth)
+        public ChannelSet(AvatarBuffers avatar, int componentCount)
         {
             Level = avatar.Levels[0];
             try
             {
-                Descriptor = buffers.Structured("descriptor", descriptorWidth, sizeof(float));
+                Components = buffers.Structured("components", componentCount, sizeof(float));
                 Mesh = buffers.Structured("mesh", 3L * avatar.VertexCount, sizeof(float));
                 TexelChannels = buffers.Structured("texel_channels", (long)ChannelRows * Level.SplatCount, 2 * sizeof(uint));
             }
@@ -30,7 +30,11 @@ namespace Mua
         /// <summary>The buffers hold the finest.</summary>
         public LevelBuffers Level { get; set; }
 
-        public GraphicsBuffer Descriptor { get; }
+        /// <summary>[K] of the descriptor, as the networks read them.</summary>
+        public GraphicsBuffer Components { get; }
+
+        /// <summary>Share of the pose that training did not show, 0 to 1.</summary>
+        public double Outside { get; set; }
 
         /// <summary>[V, 3] canonical vertices, metres.</summary>
         public GraphicsBuffer Mesh { get; }

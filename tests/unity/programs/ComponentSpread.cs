@@ -92,6 +92,7 @@ namespace Mua
                     int before = Recorder.Dispatches;
                     PlayerLoop.Frame(step);
                     Say(label, Recorder.Dispatches - before);
+                    Say("outside " + label, shown.OutsideTraining);
                     Recorder.Keep(shown.Decoded.Mesh, i + " mesh");
                     Recorder.Keep(shown.Decoded.TexelChannels, i + " texel_channels");
                 }

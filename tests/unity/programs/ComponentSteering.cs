@@ -16,10 +16,25 @@ namespace Mua
             shown.ClipIndex = 1;
             shown.Frame = 3;
             shown.Seconds = 2;
+            Say("outside", shown.OutsideTraining);
             Say("plain", shown.State + " '" + shown.Message + "' " + shown.Progress + " '" + shown.AvatarName + "' " + shown.SplatCount);
             Say("clip", shown.ClipIndex + " of " + shown.Clips.Count + ", " + shown.Frame + " of " + shown.FrameCount + ", " + shown.Seconds);
             Say("plays", shown.IsPlaying + " " + shown.Speed + ", " + shown.Views + ", " + shown.Level);
             Say("bounds", shown.Bounds.center.x + " " + shown.Bounds.center.y + " " + shown.Bounds.center.z + " " + shown.Bounds.size.magnitude);
+        }
+
+        private static void LeavesTraining()
+        {
+            AvatarRenderer shown = Begin(files[0]);
+            Say("loading", shown.OutsideTraining);
+            Until(shown);
+            shown.IsPlaying = false;
+            foreach (int frame in new[] { 2, 5, 0 })
+            {
+                shown.Frame = frame;
+                Frames(2);
+                Say("outside", shown.OutsideTraining);
+            }
         }
 
         private static void Steers()

@@ -211,6 +211,8 @@ internal static class FormatProgram
         Print("encoding.window", new[] { avatar.Encoding.Window, avatar.Encoding.Heading ? 1 : 0 });
         Print("encoding.mean", avatar.Encoding.Mean);
         Print("encoding.scale", avatar.Encoding.Scale);
+        Print("encoding.ranges", avatar.Encoding.Ranges);
+        Print("encoding.margins", avatar.Encoding.Margins);
         Print("wavelet.name", avatar.Wavelet.Name);
         Print("wavelet.levels", new[] { avatar.Wavelet.Levels });
         Print("wavelet.rec_lo", avatar.Wavelet.RecLo);
@@ -246,6 +248,7 @@ internal static class FormatProgram
         add("texels.texels", avatar.Texels.Indices);
         add("texels.triangles", avatar.Texels.Triangles);
         add("texels.barycentrics", avatar.Texels.Barycentrics);
+        add("encoding.components", avatar.Encoding.Components);
         add("coarse.mean", avatar.Coarse.Mean);
         add("coarse.basis", avatar.Coarse.Basis);
         AddMlp("coarse", avatar.Coarse.Mlp, add);

@@ -129,6 +129,7 @@ namespace Mua.Editor
         {
             Place(files);
             AvatarRenderer shown = AvatarObject.Create(AvatarObject.Find(), null, Vector3.zero).GetComponent<AvatarRenderer>();
+            new GameObject("camera").AddComponent<Camera>();
             var inspector = Inspectors.Open<AvatarRendererEditor>(shown);
             AvatarFrame decoded = shown.Decoded;
             Show(inspector);
@@ -141,6 +142,9 @@ namespace Mua.Editor
             Show(inspector);
             PlayerLoop.Frame(1);
             Say("frame", shown.Frame);
+            Machine.Playing(true);
+            Show(inspector);
+            Machine.Playing(false);
             shown.Load("nowhere.muaavatar");
             Show(inspector);
             UnityEngine.Object.DestroyImmediate(shown.gameObject);

@@ -21,7 +21,7 @@ internal static class MotionProgram
         int joints = avatar.Skeleton.JointCount, window = avatar.Encoding.Window;
         var rotations = new double[4 * joints * window];
         var translations = new double[3 * joints * window];
-        var inputs = new float[avatar.Encoding.Width];
+        var inputs = new float[avatar.Encoding.ComponentCount];
         var skinning = new float[8 * joints];
         var descriptor = new Descriptor(avatar.Skeleton, avatar.Encoding);
         var pose = new SkeletonPose(avatar.Skeleton);
@@ -31,10 +31,12 @@ internal static class MotionProgram
             Console.WriteLine("frames " + sampler.FrameCount);
             for (int frame = 0; frame < sampler.FrameCount; frame++)
             {
-                Play(sampler, frame, window, rotations, translations, inputs, skinning, descriptor, pose);
+                double outside = Play(
+                    sampler, frame, window, rotations, translations, inputs, skinning, descriptor, pose);
                 Print("rotations", rotations);
                 Print("translations", translations);
-                Print("descriptor", inputs);
+                Print("components", inputs);
+                Print("outside", new[] { outside });
                 Print("turned", pose.Turned);
                 Print("placed", pose.Placed);
                 Print("skinning", skinning);
@@ -54,14 +56,15 @@ internal static class MotionProgram
         }
     }
 
-    private static void Play(
+    private static double Play(
         ClipSampler sampler, int frame, int window, double[] rotations, double[] translations, float[] inputs,
         float[] skinning, Descriptor descriptor, SkeletonPose pose)
     {
         sampler.ReadWindow(frame, window, rotations, translations);
-        descriptor.Write(rotations, translations, inputs);
+        double outside = descriptor.Write(rotations, translations, inputs);
         pose.Set(rotations, translations);
         pose.WriteSkinning(Place, skinning);
+        return outside;
     }
 
     private static void Print(string name, Array values)

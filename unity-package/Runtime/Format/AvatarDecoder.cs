@@ -37,14 +37,14 @@ namespace Mua.Format
             avatar.Skeleton = rig.Skeleton(tree.Child("skeleton"));
             avatar.Encoding = Encoding(tree.Child("encoding"), avatar.Skeleton, rig);
             avatar.Wavelet = model.Wavelet(tree.Child("wavelet"));
-            int width = avatar.Encoding.Width, levels = avatar.Wavelet.Levels;
-            avatar.Coarse = model.Coarse(tree.Child("coarse"), width);
+            int inputs = avatar.Encoding.ComponentCount, levels = avatar.Wavelet.Levels;
+            avatar.Coarse = model.Coarse(tree.Child("coarse"), inputs);
             int vertices = avatar.Coarse.Mean.Shape[0];
             avatar.Template = rig.Template(tree.Child("template"), vertices, avatar.Skeleton.JointCount);
             avatar.Texels = rig.Texels(tree.Child("texels"), content, avatar.Template);
             int size = avatar.Texels.Size, count = avatar.Texels.Count, side = size >> levels;
-            avatar.Geometry = model.Geometry(tree.Child("geometry"), count, width, side);
-            avatar.Appearance = model.Appearance(tree.Child("appearance"), count, width, side);
+            avatar.Geometry = model.Geometry(tree.Child("geometry"), count, inputs, side);
+            avatar.Appearance = model.Appearance(tree.Child("appearance"), count, inputs, side);
             if (size % (1 << levels) != 0)
             {
                 throw Refusal.Of("texels.size", "{0} does not halve {1} times", size, levels);
@@ -81,6 +81,13 @@ namespace Mua.Format
             encoding.Window = (int)window;
             encoding.Rate = Rate(tree, "encoding.rate");
             encoding.Heading = tree.Number("heading") != 0;
+            ReadComponents(encoding, tree);
+            return encoding;
+        }
+
+        /// <summary>Normalisation, principal components and their bounds.</summary>
+        private void ReadComponents(PoseEncoding encoding, Table tree)
+        {
             encoding.Scale = tensors.Reals(tree.Child("scale"), "encoding.scale", encoding.Width).ToFloats();
             foreach (float scale in encoding.Scale)
             {
@@ -89,8 +96,27 @@ namespace Mua.Format
                     throw Refusal.Of("encoding.scale", "{0}, expected {1} or more", scale, LeastScale);
                 }
             }
+            encoding.Components = tensors.Reals(
+                tree.Child("components"), "encoding.components", Any, encoding.Width);
+            int count = encoding.Components.Shape[0];
+            encoding.Ranges = tensors.Reals(tree.Child("ranges"), "encoding.ranges", 2, count).ToFloats();
+            for (int i = 0; i < count; i++)
+            {
+                if (encoding.Ranges[i] > encoding.Ranges[count + i])
+                {
+                    throw Refusal.Of(
+                        "encoding.ranges", "the lowest value of component {0} is above its highest", i);
+                }
+            }
+            encoding.Margins = tensors.Reals(tree.Child("margins"), "encoding.margins", count).ToFloats();
+            foreach (float margin in encoding.Margins)
+            {
+                if (margin < 0)
+                {
+                    throw Refusal.Of("encoding.margins", "{0}, expected 0 or more", margin);
+                }
+            }
             encoding.Mean = tensors.Reals(tree.Child("mean"), "encoding.mean", encoding.Width).ToFloats();
-            return encoding;
         }
 
         private static float Rate(Table tree, string path)

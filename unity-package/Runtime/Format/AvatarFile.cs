@@ -43,7 +43,7 @@ namespace Mua.Format
         /// <summary>A PNG, or nothing.</summary>
         public ArraySegment<byte> Thumbnail { get; internal set; }
 
-        /// <summary>Triangles over the texels; null where the file, older than version 2.1, holds none.</summary>
+        /// <summary>Triangles over the texels; null where the file holds none.</summary>
         public Surface Surface { get; internal set; }
 
         /// <summary>The avatar in `content`, which it keeps; AvatarFormatException says what is wrong with a bad one.</summary>

@@ -57,23 +57,23 @@ namespace Mua.Format
             return new Wavelet { Name = tree.Text("name"), Levels = (int)levels, RecLo = low, RecHi = high };
         }
 
-        public Coarse Coarse(Table tree, int width)
+        public Coarse Coarse(Table tree, int inputs)
         {
             Tensor mean = tensors.Reals(tree.Child("mean"), "coarse.mean", Any, 3);
             Tensor basis = tensors.Reals(tree.Child("basis"), "coarse.basis", Any, mean.Shape[0], 3);
-            Layer[] mlp = Mlp(tree.Children("mlp"), "coarse.mlp", width, basis.Shape[0]);
+            Layer[] mlp = Mlp(tree.Children("mlp"), "coarse.mlp", inputs, basis.Shape[0]);
             return new Coarse { Mlp = mlp, Mean = mean, Basis = basis };
         }
 
-        /// <summary>Over `count` texels with an LL of `side`, driven by descriptors of `width`, as Appearance is.</summary>
-        public Branch Geometry(Table tree, int count, int width, int side)
+        /// <summary>Over `count` texels with an LL of `side`, driven by so many components, as Appearance is.</summary>
+        public Branch Geometry(Table tree, int count, int inputs, int side)
         {
-            return Branch(tree, "geometry", GeometryChannels, count, width, side);
+            return Branch(tree, "geometry", GeometryChannels, count, inputs, side);
         }
 
-        public Branch Appearance(Table tree, int count, int width, int side)
+        public Branch Appearance(Table tree, int count, int inputs, int side)
         {
-            return Branch(tree, "appearance", AppearanceChannels, count, width, side);
+            return Branch(tree, "appearance", AppearanceChannels, count, inputs, side);
         }
 
         private Layer[] Mlp(Table[] tree, string path, long width, long outputs)
@@ -95,7 +95,7 @@ namespace Mua.Format
             return layers;
         }
 
-        private Branch Branch(Table tree, string path, int channels, int count, int width, int side)
+        private Branch Branch(Table tree, string path, int channels, int count, int inputs, int side)
         {
             Tensor basis = tensors.Reals(tree.Child("ll_basis"), path + ".ll_basis", channels, Any, side, side);
             Table[] bands = tree.Children("details");
@@ -109,7 +109,7 @@ namespace Mua.Format
             }
             return new Branch
             {
-                Mlp = Mlp(tree.Children("mlp"), path + ".mlp", width, channels * ranks),
+                Mlp = Mlp(tree.Children("mlp"), path + ".mlp", inputs, channels * ranks),
                 LlMean = tensors.Reals(tree.Child("ll_mean"), path + ".ll_mean", channels, side, side),
                 LlBasis = basis,
                 Details = details,

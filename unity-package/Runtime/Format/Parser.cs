@@ -11,7 +11,7 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Parser
     {
-        public const int Major = 3;
+        public const int Major = 4;
 
         private const int OffsetWidth = 4;
         private static readonly UTF8Encoding Utf8 = new UTF8Encoding(false, true);
@@ -40,12 +40,12 @@ namespace Mua.Format
                     throw Fault("identifier", "", "the file has no identifier " + identifier + ": it is no .muaavatar");
                 }
             }
-            new Parser(content).RefuseNewer();
+            new Parser(content).RequireVersion();
             return new Parser(content).ReadTable(Layouts.Root, 0, "");
         }
 
         /// <summary>Looks at the version before anything else is trusted.</summary>
-        private void RefuseNewer()
+        private void RequireVersion()
         {
             Layout root = Layouts.Root;
             int slot = root.Slot("version_major");
@@ -56,6 +56,12 @@ namespace Mua.Format
                 throw Fault(
                     "version", "version_major",
                     "format version " + version + " is newer than " + Major + ", update com.mua.avatar");
+            }
+            if (version < Major)
+            {
+                throw Fault(
+                    "version", "version_major",
+                    "format version " + version + " is older than " + Major + ", bake the avatar again");
             }
         }
 

@@ -1,6 +1,6 @@
 namespace Mua.Format
 {
-    /// <summary>How a window of poses becomes the descriptor that the MLPs read (schemas/README.md, step 1).</summary>
+    /// <summary>How a window of poses becomes what the MLPs read (schemas/README.md, section 3).</summary>
     public sealed class PoseEncoding
     {
         private const int RootNumbers = 9, JointNumbers = 6, TranslationNumbers = 3;
@@ -25,6 +25,18 @@ namespace Mua.Format
 
         /// <summary>[Width] what it is divided by then.</summary>
         public float[] Scale { get; internal set; }
+
+        /// <summary>[K, Width] principal components of the descriptor so normalised.</summary>
+        public Tensor Components { get; internal set; }
+
+        /// <summary>[2, K] lowest and highest value of each component in training.</summary>
+        public float[] Ranges { get; internal set; }
+
+        /// <summary>[K] how far beyond its range a component may go.</summary>
+        public float[] Margins { get; internal set; }
+
+        /// <summary>K: numbers that the MLPs read.</summary>
+        public int ComponentCount => Margins.Length;
 
         /// <summary>Numbers that one frame adds to a descriptor.</summary>
         public int FrameWidth => RootNumbers + JointNumbers * Joints.Length + TranslationNumbers * Translated.Length;

@@ -4,7 +4,8 @@ using Mua.Format;
 namespace Mua.Motion
 {
     /// <summary>
-    /// The normalised motion descriptor of a window of poses; the same numbers as python/mua/pose/descriptor.py.
+    /// The motion descriptor of a window of poses, and its components, which the networks read; the same numbers as
+    /// python/mua/pose/descriptor.py and components.py.
     /// </summary>
     public sealed class Descriptor
     {
@@ -13,6 +14,8 @@ namespace Mua.Motion
         private readonly Skeleton skeleton;
         private readonly PoseEncoding encoding;
         private readonly QuaternionD bindBack;
+        private readonly Components components;
+        private readonly double[] normal; // the descriptor, normalised
 
         public Descriptor(Skeleton skeleton, PoseEncoding encoding)
         {
@@ -20,16 +23,31 @@ namespace Mua.Motion
             this.encoding = encoding;
             RootWorld(skeleton.BindRotations, skeleton.BindTranslations, out QuaternionD bind, out Vector3D _);
             bindBack = bind.Conjugate;
+            components = new Components(encoding);
+            normal = new double[encoding.Width];
         }
 
-        /// <summary>Numbers that Write fills.</summary>
-        public int Width => encoding.Width;
+        /// <summary>K: numbers that Write fills.</summary>
+        public int Count => encoding.ComponentCount;
 
         /// <summary>
         /// From local rotations [k, J, 4], unit, and local translations [k, J, 3], metres, both newest first, to
-        /// `target` [Width], what the first layers read.
+        /// `target` [K], what the first layers read; the share of the pose that training did not show, 0 to 1.
         /// </summary>
-        public void Write(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, Span<float> target)
+        public double Write(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, Span<float> target)
+        {
+            Describe(rotations, translations);
+            return components.Read(normal, target);
+        }
+
+        /// <summary>The twist about Y; identity where a rotation has none (swing-twist decomposition).</summary>
+        public static QuaternionD HeadingOf(QuaternionD turn)
+        {
+            var twist = new QuaternionD(turn.W, 0, turn.Y, 0);
+            return twist.Length < NoTwist ? QuaternionD.Identity : twist.Normalized();
+        }
+
+        private void Describe(ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations)
         {
             int joints = skeleton.JointCount, at = 0;
             var origin = new Vector3D();
@@ -51,24 +69,17 @@ namespace Mua.Motion
                     moved = back.Rotate(moved);
                     turn = back * turn;
                 }
-                Put(moved, target, ref at);
-                PutColumns(turn, target, ref at);
+                Put(moved, ref at);
+                PutColumns(turn, ref at);
                 foreach (int joint in encoding.Joints)
                 {
-                    PutColumns(QuaternionD.Load(pose, joint), target, ref at);
+                    PutColumns(QuaternionD.Load(pose, joint), ref at);
                 }
                 foreach (int joint in encoding.Translated)
                 {
-                    Put(Vector3D.Load(offsets, joint) - Vector3D.Load(skeleton.BindTranslations, joint), target, ref at);
+                    Put(Vector3D.Load(offsets, joint) - Vector3D.Load(skeleton.BindTranslations, joint), ref at);
                 }
             }
-        }
-
-        /// <summary>The twist about Y; identity where a rotation has none (swing-twist decomposition).</summary>
-        public static QuaternionD HeadingOf(QuaternionD turn)
-        {
-            var twist = new QuaternionD(turn.W, 0, turn.Y, 0);
-            return twist.Length < NoTwist ? QuaternionD.Identity : twist.Normalized();
         }
 
         /// <summary>World rotation and position of the root joint alone.</summary>
@@ -87,23 +98,23 @@ namespace Mua.Motion
         }
 
         /// <summary>The first two columns of the rotation's matrix (Zhou et al. 2019, https://arxiv.org/abs/1812.07035).</summary>
-        private void PutColumns(QuaternionD q, Span<float> target, ref int at)
+        private void PutColumns(QuaternionD q, ref int at)
         {
             double w = q.W, x = q.X, y = q.Y, z = q.Z;
-            Put(new Vector3D(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)), target, ref at);
-            Put(new Vector3D(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)), target, ref at);
+            Put(new Vector3D(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)), ref at);
+            Put(new Vector3D(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)), ref at);
         }
 
-        private void Put(Vector3D v, Span<float> target, ref int at)
+        private void Put(Vector3D v, ref int at)
         {
-            Put(v.X, target, ref at);
-            Put(v.Y, target, ref at);
-            Put(v.Z, target, ref at);
+            Put(v.X, ref at);
+            Put(v.Y, ref at);
+            Put(v.Z, ref at);
         }
 
-        private void Put(double value, Span<float> target, ref int at)
+        private void Put(double value, ref int at)
         {
-            target[at] = (float)((value - encoding.Mean[at]) / encoding.Scale[at]);
+            normal[at] = (value - encoding.Mean[at]) / encoding.Scale[at];
             at++;
         }
     }

@@ -95,6 +95,7 @@ namespace Mua.Samples.VrPlayer
             else if (shown.State == AvatarState.Ready)
             {
                 AddClip();
+                text.Add("outside of training ").Add(100 * shown.OutsideTraining, 0).Add(" %").Line();
             }
             AddViews();
         }

@@ -31,6 +31,10 @@ namespace UnityEditor
         {
             Gui.Write(style == EditorStyles.boldLabel ? "title" : "label", label);
         }
+        public static void LabelField(GUIContent label, GUIContent label2, params GUILayoutOption[] options)
+        {
+            Gui.Write("value", label.text + ": " + label2.text);
+        }
         public static void HelpBox(string message, MessageType type) { Gui.Write(type.ToString(), message); }
         public static Rect GetControlRect(params GUILayoutOption[] options) { return new Rect(); }
         public static bool PropertyField(SerializedProperty property, params GUILayoutOption[] options)

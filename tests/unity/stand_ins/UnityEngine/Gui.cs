@@ -1,4 +1,5 @@
-// Stand-in. Source: Unity 6000.0 scripting reference, GUI, GUILayout, GUILayoutUtility, GUIStyle: nothing is drawn.
+// Stand-in. Source: Unity 6000.0 scripting reference, GUI, GUILayout, GUILayoutUtility, GUIStyle,
+// GUIContent: nothing is drawn.
 namespace UnityEngine
 {
     public enum ScaleMode { StretchToFill, ScaleAndCrop, ScaleToFit }
@@ -11,6 +12,15 @@ namespace UnityEngine
         public GUIStyle(GUIStyle other) { wordWrap = other.wordWrap; }
 
         public bool wordWrap { get; set; }
+    }
+
+    public class GUIContent
+    {
+        public GUIContent(string text) : this(text, "") { }
+        public GUIContent(string text, string tooltip) { this.text = text; this.tooltip = tooltip; }
+
+        public string text { get; set; }
+        public string tooltip { get; set; }
     }
 
     public static class GUI
