@@ -18,7 +18,8 @@ from mua.errors import InputError
 from mua.pose.descriptor import describe
 from mua.pose.skeleton import Pose
 from mua.recording import Recording, TeacherWriter
-from mua.student.distil import distil, moving_joints
+from mua.rig.moving import moving_joints
+from mua.student.distil import distil
 from mua.student.model import Student
 from mua.student.settings import Settings
 

@@ -27,8 +27,8 @@ from mua.pose.descriptor import choose_joints, choose_translated, describe
 from mua.pose.encoding import PoseEncoding
 from mua.rig.build import build_rig
 from mua.rig.character import Character, Mesh
+from mua.rig.moving import moving_joints
 from mua.rig.rig import Rig
-from mua.student.distil import moving_joints
 from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Progress
 from mua.teachers.surface import SimulatedSurface

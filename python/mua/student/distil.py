@@ -20,7 +20,7 @@ from mua.pose.descriptor import choose_joints, choose_translated, describe, norm
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
-from mua.rig.rig import Rig
+from mua.rig.moving import moving_joints
 from mua.student.local import body_parts
 from mua.student.model import Student
 from mua.student.optimise import Progress
@@ -116,16 +116,6 @@ def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: b
     skeleton = recording.rig.skeleton
     described = [describe(skeleton, encoding, clip.rotations, clip.translations)[clip.recorded] for clip in clips]
     return np.concatenate([np.zeros((0, encoding.width)), *described])
-
-
-def moving_joints(rig: Rig) -> Array:
-    """Which joints [J] move the mesh themselves or through a descendant."""
-    moving = np.zeros(len(rig.skeleton.names), dtype=bool)
-    moving[np.unique(rig.skin_indices[rig.skin_weights > 0])] = True
-    for joint in range(len(moving) - 1, -1, -1):  # parents come before children
-        if moving[joint] and rig.skeleton.parents[joint] >= 0:
-            moving[rig.skeleton.parents[joint]] = True
-    return moving
 
 
 def _samples(recording: Recording, descriptors: Array) -> Samples:

@@ -15,8 +15,8 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.descriptor import choose_joints, choose_translated
 from mua.pose.encoding import PoseEncoding
+from mua.rig.moving import moving_joints
 from mua.splatting.projection import Eye
-from mua.student.distil import moving_joints
 from mua.teachers.bones import figure_scale
 from mua.teachers.still import StillTeacher
 from mua.teaching.lesson import Material, Perceptual
