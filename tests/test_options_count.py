@@ -26,6 +26,7 @@ BAKE = {
     "texels": 64,
     "mapping": {"hips": "pelvis"},
     "feet": "keep",
+    "motion_range": "none",
     "leave_out": ["hat"],
     "uv": "unwrap",
     "detail": {"head": 2},

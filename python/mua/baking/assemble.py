@@ -32,6 +32,7 @@ def assemble(
     encoding: PoseEncoding,
     clips: Sequence[Clip],  # all that the character is known to do
     notes: str,
+    bounded: Sequence[Clip] | None = None,  # what the bounds hold; None: the clips
     stored: Sequence[Clip] | None = None,  # those of them to store for playback; None: all
 ) -> Avatar:
     """Everything that a player needs, as one avatar."""
@@ -47,7 +48,7 @@ def assemble(
         appearance=appearance,
         wavelet=export_wavelet(student),
         clips=tuple(clips if stored is None else stored),
-        bounds=playback_bounds(rig, clips),
+        bounds=playback_bounds(rig, clips if bounded is None else bounded),
         thumbnail=b"",
         notes=notes,
         surface=triangulate(rig.mesh, rig.texels),

@@ -8,7 +8,7 @@ from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode
 from mua.baking.listener import Listener, Log
 from mua.baking.options import read_order
-from mua.baking.order import DeviceName
+from mua.baking.order import DeviceName, MotionRange
 from mua.extras import naming_extras
 from mua.motion.planted_feet import Feet
 
@@ -30,6 +30,7 @@ def bake(
     leave_out: str | Sequence[str] = (),
     mapping: PathLike | Mapping[str, str] | None = None,
     feet: Feet = "auto",
+    motion_range: MotionRange = "full",
     uv: UvMode = "auto",
     detail: Mapping[str, float] | Sequence[str] = (),
     scale: float | None = None,

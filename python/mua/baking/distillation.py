@@ -111,16 +111,18 @@ def finish(order: Distillation, student: Student, recording: Recording, listener
     listener.stage("avatar")
     clips = playback.whole_clips(recording.clips) if order.clips is None else order.clips
     starts = playback.held_out(recording.clips)
+    shown = [*clips, *playback.range_clips(recording.clips, clips)]
     avatar = assemble(
         student,
         recording.rig,
         name=order.name,
         encoding=student.encoding,
         clips=clips,
+        bounded=shown,
         stored=playback.choose(clips, order.playback),
         notes=f"{order.teacher}; {playback.held_out_sentence(starts)}",
     )
-    avatar = with_one_sided(avatar, clips, progress=listener.step)
+    avatar = with_one_sided(avatar, shown, progress=listener.step)
     write(order.output, avatar, storage=order.storage)
     tree = load(order.output)
     avatar = decode_tree(tree)  # what a user gets, not what was trained

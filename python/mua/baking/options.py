@@ -9,7 +9,7 @@ from typing import Any, get_args
 from mua.arguments import PathLike, as_names, as_path, as_paths, finite_array, one_of, whole_number
 from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode, read_detail
-from mua.baking.order import DeviceName, Order
+from mua.baking.order import DeviceName, MotionRange, Order
 from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
 from mua.files import missing_directory
@@ -46,6 +46,7 @@ def read_order(options: Mapping[str, Any]) -> Order:
         hold_out=as_names(options["hold_out"], "hold_out"),
         mapping=_joints(options["mapping"]),
         feet=one_of(options["feet"], "feet", get_args(Feet)),
+        motion_range=one_of(options["motion_range"], "motion_range", get_args(MotionRange)),
         leave_out=as_names(options["leave_out"], "leave_out"),
         uv=uv,
         detail=read_detail(_written(options["detail"]), uv=uv),

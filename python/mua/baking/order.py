@@ -14,6 +14,7 @@ from mua.teaching.settings import TeacherSettings
 
 ALL, NONE = "all", "none"  # of the clips
 DeviceName = Literal["auto", "cpu", "cuda"]
+MotionRange = Literal["full", "none"]
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class Order:
     hold_out: tuple[str, ...] = ()  # names of clips; none: the end of every clip
     mapping: Mapping[str, str] | None = None  # target joint to source joint
     feet: Feet = "auto"  # whether feet are held where the motion's feet stand
+    motion_range: MotionRange = "full"  # whether a range of motion made for the rig is recorded too
     leave_out: tuple[str, ...] = ()  # meshes, nodes or materials of the file that are no part of the character
     uv: UvMode = "auto"
     detail: Detail = field(default_factory=dict)  # beyond what is finer by default

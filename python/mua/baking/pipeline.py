@@ -14,9 +14,10 @@ from mua.baking.options import check_output
 from mua.baking.order import Order
 from mua.baking.plan import plan, split
 from mua.baking.playback import choose
+from mua.baking.ranges import clips_of, planned_range
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
-from mua.baking.sources import load_clips, ordered_character
+from mua.baking.sources import ordered_character
 from mua.baking.taught import bake_taught
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity
@@ -48,12 +49,14 @@ def bake(order: Order, listener: Listener) -> Baked:
 def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
     listener.stage("character")
     character = ordered_character(order)
-    clips, notes = load_clips(character, order.motions, mapping=order.mapping, feet=order.feet)
+    clips, notes = clips_of(order, character)
     for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):
         listener.note(sentence)
     training, held = split(clips, order.hold_out)
     planned = plan(training, held, frames=order.settings.frames)
     choose(clips, order.clips)  # before hours of work
+    recorded_frames = sum(len(clip.wanted) for clip in planned if not clip.held_out)
+    planned += planned_range(order, character, clips, recorded_frames)
 
     require_writable(order.output)
     fidelity = _fidelity(character, clips, order.settings.texels, listener)

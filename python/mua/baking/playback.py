@@ -6,6 +6,7 @@ import numpy as np
 
 from mua.baking.order import ALL, NONE
 from mua.baking.plan import ENDING
+from mua.baking.ranges import is_range
 from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.recording import RecordedClip
@@ -16,13 +17,22 @@ LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is p
 def whole_clips(recorded: Iterable[RecordedClip]) -> list[Clip]:
     """The clips of a recording, each with its held-out end joined to it again; those held out come last.
 
-    A player begins with the first one, and what a teacher's program holds out is often a piece of a second.
+    A player begins with the first one, and what a teacher's program holds out is often a piece of a second. The
+    built-in range of motion is for training, unless there is nothing else.
     """
+    recorded = list(recorded)
+    recorded = [clip for clip in recorded if not is_range(clip.name)] or recorded
     clips = {clip.name: clip for clip in sorted(recorded, key=lambda clip: clip.held_out) if len(clip)}
     ends = {name: beginning for name, clip in clips.items() if (beginning := _beginning(clip, clips)) is not None}
     joined = {beginning.name: clips[name] for name, beginning in ends.items()}
     plain = [Clip(name, own.rate, own.rotations, own.translations) for name, own in clips.items() if name not in ends]
     return [clip.then(joined[clip.name]) if clip.name in joined else clip for clip in plain]
+
+
+def range_clips(recorded: Iterable[RecordedClip], clips: Sequence[Clip]) -> list[Clip]:
+    """The recorded clips of the built-in range of motion, where it is none of `clips`, those for playback."""
+    own = {clip.name for clip in clips}
+    return [clip for clip in recorded if is_range(clip.name) and not own & {clip.name, clip.name.removesuffix(ENDING)}]
 
 
 def choose(clips: Sequence[Clip], wanted: Sequence[str]) -> tuple[Clip, ...]:

@@ -8,6 +8,7 @@ import typer
 from mua.atlas.detail import UvMode
 from mua.baking.bake import bake as mua_bake
 from mua.baking.options import read_order
+from mua.baking.order import MotionRange
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.cli.options import in_panels, lent_by
@@ -75,6 +76,12 @@ OPTIONS = {
             help="Whether standing feet are held in place: auto (if they would slide), keep (never) or plant (always)."
         ),
     ],
+    "motion_range": Annotated[
+        MotionRange,
+        typer.Option(
+            help="Whether a built-in range of motion is trained on beside the character's motion: full or none."
+        ),
+    ],
     "uv": Annotated[UvMode, typer.Option(help="Keep the character's UVs, unwrap new ones, or choose automatically.")],
     "detail": Annotated[
         list[str],
@@ -99,7 +106,7 @@ OPTIONS = {
 }
 PANELS = {
     "Character": ("scale", "height", "leave_out", "uv", "detail"),
-    "Motion": ("mapping", "feet", "hold_out", "clips"),
+    "Motion": ("mapping", "feet", "motion_range", "hold_out", "clips"),
     "Training": ("frames", "texels", "recipe", "storage", "seed", "device", "jobs", "work"),
 }
 

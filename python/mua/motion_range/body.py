@@ -35,12 +35,13 @@ THUMB_HIGHER = 0.05  # metres
 
 
 def _rows() -> list[tuple[str, str, str, Array]]:
-    rows = [(name, role, parent, np.array(place, dtype=float)) for name, role, parent, place in _TRUNK]
+    rows: list[tuple[str, str, str, Array]] = []
+    rows += [(name, role, parent, np.array(place, dtype=float)) for name, role, parent, place in _TRUNK]
     trunk = {name for name, *_ in _TRUNK}
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
-        for name, role, parent, place in _LIMBS:
+        for name, role, parent, begin in _LIMBS:
             above = parent if parent in trunk else f"{side} {parent}"
-            rows.append((f"{side} {name}", f"{side} {role}", above, np.array(place) * [out, 1, 1]))
+            rows.append((f"{side} {name}", f"{side} {role}", above, np.array(begin) * [out, 1, 1]))
         for finger in FINGERS:
             above = f"{side} hand"
             for number, height in _KNUCKLES:

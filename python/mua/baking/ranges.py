@@ -1,0 +1,40 @@
+"""The built-in range of motion in a bake: what of it is recorded, and which clips are of it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from mua.baking.order import Order
+from mua.baking.plan import plan
+from mua.baking.sources import load_clips
+from mua.motion_range import PREFIX, motion_range
+from mua.pose.clip import Clip
+from mua.recording import PlannedClip
+from mua.rig.character import Character
+
+SHARE = 4  # a quarter as many frames of the range as the user asks for of their own motion
+SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the range too, up to a third of those asked
+FEWEST = 135  # for, or to so many
+
+
+def clips_of(order: Order, character: Character) -> tuple[list[Clip], list[str]]:
+    """The clips that a bake is of, and notes: those of the files, else the character's, else the range of motion."""
+    if order.motions or character.clips or order.motion_range == "none":
+        return load_clips(character, order.motions, mapping=order.mapping, feet=order.feet)
+    clips = motion_range(character, (), frames=order.settings.frames, seed=order.settings.seed)
+    note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
+    return clips, [f"{note}. --motion adds motion of your own."]
+
+
+def planned_range(order: Order, character: Character, clips: Sequence[Clip], frames: int) -> list[PlannedClip]:
+    """What is recorded of the range of motion beside `frames` training frames of `clips`; none of it is kept whole."""
+    if order.motion_range == "none" or any(is_range(clip.name) for clip in clips):
+        return []
+    asked = order.settings.frames
+    count = max(asked // SHARE, min(asked - frames, max(asked // SHORT_SHARE, FEWEST)), 1)
+    made = motion_range(character, clips, frames=count, seed=order.settings.seed)
+    return [replace(planned, whole=frozenset()) for planned in plan(made, [], frames=count)]
+
+
+def is_range(name: str) -> bool:
+    """Whether a clip of that name is of the built-in range of motion."""
+    return name.startswith(PREFIX)
