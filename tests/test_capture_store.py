@@ -238,17 +238,25 @@ def test_half_a_mask_counts_less(tmp_path: Path) -> None:
     assert 0 < trust.weight("walk", 0, capture.view("walk", 0, "front")) < 0.95
 
 
-@pytest.mark.parametrize(("cut", "full"), [(10, False), (15, True)])
-def test_how_masks_usually_fit_is_what_most_of_all_clips_views_do(tmp_path: Path, cut: int, full: bool) -> None:
-    """A mask without its upper third counts in full where more than half of the 24 are no better."""
+@pytest.mark.parametrize(("cut", "full"), [(5, False), (7, True)])
+def test_how_masks_usually_fit_is_what_most_of_the_training_views_do(tmp_path: Path, cut: int, full: bool) -> None:
+    """A mask without its upper third counts in full where more than half of the 12 are no better.
+
+    What is held out is spoilt where that would change the result: it does not count.
+    """
     capture = make_capture(tmp_path)
-    for frame, camera in list(product(range(FRAMES["walk"]), capture.cameras))[:cut]:
-        image = capture.files("walk", frame, camera.name).image
+    learnt = [camera for camera in capture.cameras if not camera.held_out]
+    views = [("walk", *one) for one in product(range(FRAMES["walk"]), learnt)][:cut]
+    if not full:
+        views += [("reach", *one) for one in product(range(FRAMES["reach"]), capture.cameras)]
+        views += [("walk", frame, capture.camera("above")) for frame in range(FRAMES["walk"])]
+    for clip, frame, camera in views:
+        image = capture.files(clip, frame, camera.name).image
         with Image.open(image) as opened:
             picture = np.array(opened)
         rows = np.flatnonzero(picture[..., 3].any(axis=1))
         picture[: rows[len(rows) * 35 // 100], :, 3] = 0
         Image.fromarray(picture).save(image)
     trust = MaskTrust(capture)
-    weights = [trust.weight("walk", 0, capture.view("walk", 0, camera.name)) for camera in capture.cameras]
+    weights = [trust.weight("walk", 0, capture.view("walk", 0, camera.name)) for camera in learnt]
     assert (min(weights) > 0.99) == full

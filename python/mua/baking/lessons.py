@@ -1,6 +1,7 @@
 """The stages of a teacher's training; each leaves its result in the teacher's folder and goes on from there."""
 
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 
 import torch
@@ -64,12 +65,14 @@ def carry_out(
 
 def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None, material: Material) -> str:
     """Changes with everything that a training depends on but the images themselves."""
-    clips = [torch.from_numpy(values) for clip in filmed.clips for values in (clip.rotations, clip.translations)]
-    points = [values for of in material.tracks for values in (of.tracks.points, of.tracks.weights)]
+    rig = filmed.subject.rig
+    skin = (rig.mesh.vertices, rig.mesh.faces, rig.skin_indices, rig.skin_weights, rig.skeleton.bind_inverse)
+    poses = [values for clip in filmed.clips for values in (clip.rotations, clip.translations)]
+    points = [values for of in material.tracks for values in (*vars(of.tracks).values(), of.texels)]
     said = filmed.capture.file.read_bytes()
     return run_key(
-        (__version__, settings, said, None if weights is None else weights.name),
-        [filmed.subject.surfels, *clips, *points],
+        (__version__, settings, said, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
+        [filmed.subject.surfels, *map(torch.as_tensor, (*skin, *poses)), *(one for one in points if one is not None)],
     )
 
 

@@ -20,7 +20,7 @@ class MaskTrust:
     """Weights of views; the usual overlap is the median over some of them."""
 
     def __init__(self, capture: Capture) -> None:
-        """Look at a few frames of each clip in all cameras; raises InputError where no mask shows the template."""
+        """Look at a few of the frames that are trained on; raises InputError where no mask shows the template."""
         surfaces = capture.surfaces
         some = slice(None, None, max(1, len(surfaces.vertices) // POINTS))
         self._points = surfaces.vertices[some]
@@ -30,7 +30,8 @@ class MaskTrust:
         found = [*_some(capture, self._overlap)]
         self.usual = float(np.median(found or [0]))
         if found and not any(found):
-            clip, camera = capture.clips[0], capture.cameras[0]
+            clip = next(clip for clip in capture.clips if not clip.held_out)
+            camera = next(camera for camera in capture.cameras if not camera.held_out)
             files = capture.files(clip.name, chosen_frames(capture, clip, None)[0], camera.name)
             raise InputError(
                 f"{files.mask or files.image}: none of {len(found)} masks that were looked at, of which this is the "
@@ -48,10 +49,11 @@ class MaskTrust:
 
 
 def _some(capture: Capture, overlap: Callable[[str, int, View], float]) -> Iterator[float]:
-    """Overlaps of a few views; those that cannot be read are told where they are needed."""
-    for clip in capture.clips:
+    """Overlaps of a few views that are trained on; those that cannot be read are told where they are needed."""
+    cameras = [camera for camera in capture.cameras if not camera.held_out]
+    for clip in (clip for clip in capture.clips if not clip.held_out):
         for frame in chosen_frames(capture, clip, None):
-            for camera in capture.cameras:
+            for camera in cameras:
                 with suppress(InputError):
                     view = capture.view(clip.name, frame, camera.name, crop=True, rows=min(ROWS, camera.size[1]))
                     yield overlap(clip.name, frame, view)
