@@ -1,6 +1,7 @@
 """AvatarReX and THuman4: SMPL-X poses land on the template where the set's own cameras see them."""
 
 import json
+import struct
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from mua.motion.read import read_motion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
-FRAMES, SIDE = 5, 24
+FRAMES, SIZE = 5, (24, 20)  # width, height
 LENS = [0.01, -0.02, 1e-3, 2e-3, 0.03]
 JOINTS = [name for name, _, _ in NOMINAL[55]]
 PIXEL_BOUND = 1e-3  # float32 positions of a template some metres away, at a focal length of 1200
@@ -76,11 +77,11 @@ def write_source(folder: Path, world: Any) -> Path:
         matrix[:3, :3] = matrix[:3, :3] @ turn.as_matrix().T
         k = [[1200.0, 0, 350], [0, 1180, 512.5], [0, 0, 1]]
         camera = {"K": np.ravel(k).tolist(), "R": matrix[:3, :3].ravel().tolist(), "T": matrix[:3, 3].tolist()}
-        cameras[name] = camera | {"imgSize": [SIDE, SIDE], "distCoeff": LENS}
+        cameras[name] = camera | {"imgSize": list(SIZE), "distCoeff": LENS}
         for frame in range(FRAMES):
             for place in (f"{name}/{frame:08d}.jpg", f"{name}/mask/pha/{frame:08d}.jpg"):
                 (folder / place).parent.mkdir(parents=True, exist_ok=True)
-                Image.new("RGB", (SIDE, SIDE), (9 * frame, 200, 100)).save(folder / place)
+                Image.new("RGB", SIZE, (9 * frame, 200, 100)).save(folder / place)
     (folder / "calibration_full.json").write_text(json.dumps(cameras))
     (folder.parent / "template.glb").write_bytes(skinned_file())
     return folder
@@ -125,7 +126,7 @@ def test_joints_are_where_the_sets_own_cameras_see_them(source: Path, command: C
         found, depth = pixels(camera, at[:, order])
         assert (depth > 1).all()
         np.testing.assert_allclose(found, joints_seen(source, camera.name), atol=PIXEL_BOUND)
-        assert camera.distortion == tuple(LENS)
+        assert (camera.size, camera.distortion) == (SIZE, tuple(LENS))
     assert (at[:, skeleton.names.index("head"), 1] > at[:, skeleton.names.index("pelvis"), 1]).all()
 
 
@@ -215,6 +216,28 @@ def test_the_template_is_as_tall_and_as_whole_as_asked(tmp_path: Path, command: 
     assert "--leave-out hat" in ended.sentence
 
 
+def with_a_second_mesh(path: Path, name: str) -> None:
+    """Show the mesh of a .glb again, by a node of another name."""
+    content = path.read_bytes()
+    (length,) = struct.unpack_from("<I", content, 12)
+    said, rest = json.loads(content[20 : 20 + length]), content[20 + length :]
+    (shown,) = (node for node in said["nodes"] if "mesh" in node)
+    said["scenes"][0]["nodes"].append(len(said["nodes"]))
+    said["nodes"].append(shown | {"name": name})
+    text = json.dumps(said).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sIII4s", b"glTF", 2, 20 + len(text) + len(rest), len(text), b"JSON")
+    path.write_bytes(head + text + rest)
+
+
+def test_what_nobody_filmed_of_the_template_is_left_out(tmp_path: Path, command: Commands) -> None:
+    source = write_source(tmp_path / "set", WORLDS["y"])
+    alone = len(open_capture(described(source, command)).surfaces.vertices)
+    with_a_second_mesh(tmp_path / "template.glb", "hat")
+    assert len(open_capture(described(source, command)).surfaces.vertices) > alone
+    assert len(open_capture(described(source, command, "--leave-out", "hat")).surfaces.vertices) == alone
+
+
 def test_thumans_names_are_known_too(tmp_path: Path, command: Commands) -> None:
     source = write_source(tmp_path / "set", WORLDS["y"])
     (source / "calibration_full.json").rename(source / "calibration.json")
@@ -225,7 +248,7 @@ def test_thumans_names_are_known_too(tmp_path: Path, command: Commands) -> None:
         (source / camera / "mask").rmdir()
         (source / camera).rename(source / "images" / camera)
     capture = open_capture(described(source, command))
-    assert capture.view("frames_000000", 1, "22010708").image.shape == (SIDE, SIDE, 3)
+    assert capture.view("frames_000000", 1, "22010708").image.shape == (SIZE[1], SIZE[0], 3)
 
 
 FAULTS: dict[str, tuple[dict[str, Any], str]] = {
@@ -273,7 +296,7 @@ def test_a_lens_of_another_model_is_refused(tmp_path: Path, command: Commands, c
 
 def test_braces_in_the_name_of_the_folder_are_no_fields(tmp_path: Path, command: Commands) -> None:
     source = write_source(tmp_path / "{clip} of {me}", WORLDS["y"])
-    assert open_capture(described(source, command)).view("frames_000000", 1, "22010708").image.shape[0] == SIDE
+    assert open_capture(described(source, command)).view("frames_000000", 1, "22010708").image.shape[0] == SIZE[1]
 
 
 def test_poses_are_read_as_they_were_written(tmp_path: Path) -> None:

@@ -87,7 +87,8 @@ def colmap_binary(folder: Path) -> None:
     content = struct.pack("<Q", len(NAMES))
     for number, (name, matrix) in enumerate(zip(NAMES, MATRICES, strict=True)):
         content += struct.pack("<i7di", number, *quaternion(matrix), *matrix[:3, 3], 7) + f"{name}.png\0".encode()
-        content += struct.pack("<Q", number) + number * struct.pack("<ddq", 1, 2, -1)
+        points = 2 - number
+        content += struct.pack("<Q", points) + points * struct.pack("<ddq", 1, 2, -1)
     (folder / "images.bin").write_bytes(content)
 
 
@@ -125,6 +126,75 @@ def test_cameras_see_points_where_the_formula_says(tmp_path: Path, kind: str) ->
         np.testing.assert_allclose(depth, seen[:, 2], atol=ROUNDING)
         assert (camera.size, camera.distortion) == (SIZE, (*LENS, 0.0))
         assert (one.size is None) == (kind == "easymocap without sizes")
+
+
+@pytest.mark.parametrize("points", ["", " ", "1.0 2.0 -1 "])
+@pytest.mark.parametrize("last_line", [True, False], ids=["whole", "without its last line"])
+def test_images_of_colmap_without_points_are_cameras_too(tmp_path: Path, points: str, last_line: bool) -> None:
+    """A model of known poses has no points: each second line is empty, and an editor may have cut the last one off."""
+    colmap(tmp_path)
+    text = (tmp_path / "images.txt").read_text().replace("1.0 2.0 -1 ", points)
+    (tmp_path / "images.txt").write_text(text if last_line else text.removesuffix(f"{points}\n"))
+    cameras = read_cameras(tmp_path)
+    assert [one.name for one in cameras] == [f"{name}/000000" for name in NAMES]
+    np.testing.assert_allclose([one.world_to_camera for one in cameras], MATRICES, atol=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("model", "number", "parameters", "focal", "distortion"),
+    [
+        ("SIMPLE_PINHOLE", 0, (61.0, 19.7, 11.6), (61.0, 61.0), (0, 0, 0, 0, 0)),
+        ("PINHOLE", 1, (61.0, 60.0, 19.7, 11.6), (61.0, 60.0), (0, 0, 0, 0, 0)),
+        ("SIMPLE_RADIAL", 2, (61.0, 19.7, 11.6, 0.1), (61.0, 61.0), (0.1, 0, 0, 0, 0)),
+        ("RADIAL", 3, (61.0, 19.7, 11.6, 0.1, 0.2), (61.0, 61.0), (0.1, 0.2, 0, 0, 0)),
+        ("OPENCV", 4, (61.0, 60.0, 19.7, 11.6, 0.1, 0.2, 0.3, 0.4), (61.0, 60.0), (0.1, 0.2, 0.3, 0.4, 0)),
+        (
+            "FULL_OPENCV",
+            6,
+            (61.0, 60.0, 19.7, 11.6, 0.1, 0.2, 0.3, 0.4, 0.5, 0, 0, 0),
+            (61.0, 60.0),
+            (0.1, 0.2, 0.3, 0.4, 0.5),
+        ),
+    ],
+)
+@pytest.mark.parametrize("binary", [False, True])
+def test_every_model_of_colmap_is_read(
+    tmp_path: Path,
+    model: str,
+    number: int,
+    parameters: tuple[float, ...],
+    focal: tuple[float, float],
+    distortion: tuple[float, ...],
+    binary: bool,
+) -> None:
+    if binary:
+        colmap_binary(tmp_path)
+        other = struct.pack("<iiQQd", 6, 0, 9, 9, 5.0) + struct.pack("<dd", 4, 4)  # before it: sizes of models differ
+        lens = struct.pack(f"<iiQQ{len(parameters)}d", 7, number, 40, 24, *parameters)
+        (tmp_path / "cameras.bin").write_bytes(struct.pack("<Q", 2) + other + lens)
+    else:
+        colmap(tmp_path)
+        (tmp_path / "cameras.txt").write_text(f"7 {model} 40 24 {' '.join(map(str, parameters))}\n")
+    cameras = read_cameras(tmp_path)
+    assert len(cameras) == len(NAMES)
+    for one in cameras:
+        assert (one.size, one.focal, one.centre, one.distortion) == (SIZE, focal, (19.7, 11.6), distortion)
+
+
+def test_cameras_that_a_toml_ignores_are_left_out(tmp_path: Path) -> None:
+    first, second = toml().split("[cam_02]")
+    (tmp_path / "Calib.toml").write_text(f"{first}ignore = true\n[cam_02]\nignore = false{second}")
+    assert [one.name for one in read_cameras(tmp_path / "Calib.toml")] == ["cam_02"]
+
+
+def test_cameras_of_easymocap_need_one_rotation_and_no_distortion(tmp_path: Path) -> None:
+    easymocap(tmp_path)
+    for file, key in (("extri.yml", "R"), ("intri.yml", "dist")):
+        text = (tmp_path / file).read_text()
+        (tmp_path / file).write_text(text.replace(f"{key}_cam", f"other_{key}_cam"))
+    cameras = read_cameras(tmp_path)
+    np.testing.assert_allclose([one.world_to_camera for one in cameras], MATRICES, atol=ROUNDING)
+    assert [one.distortion for one in cameras] == [(0.0,) * 5] * 2
 
 
 def test_unit_and_axes_of_the_world_are_taken_back(tmp_path: Path) -> None:
@@ -255,6 +325,25 @@ def test_pictures_become_clips_without_those_that_a_camera_lacks(
     assert said["rate"] == 50
     image = open_capture(tmp_path / "out").view("frames_000007", 1, NAMES[0]).image
     assert image[SIZE[1] // 2, SIZE[0] // 2, 0] == pytest.approx(160 / 255, abs=0.01)
+
+
+def test_cameras_are_those_of_their_name_whatever_the_order_of_the_file(
+    given: tuple[object, ...], command: Commands, tmp_path: Path
+) -> None:
+    source, calibration = tmp_path / "anna", write(tmp_path, "anipose")
+    first, second = calibration.read_text().removesuffix("[metadata]\nerror = 0.1\n").split("[cam_02]")
+    calibration.write_text(f"[cam_02]{second}{first}")
+    for name in NAMES:
+        (source / "images" / name).mkdir(parents=True)
+        for number in range(2):
+            Image.new("RGB", SIZE).save(source / "images" / name / f"{number}.png")
+    line = ("capture", "describe", source, *given, "--calibration", calibration, "-o", tmp_path / "out")
+    ended = command(*line, "--height", 1.5, "--leave-out", "hat", "--leave-out", "shoes")
+    assert ended.status == 0, ended
+    capture = open_capture(tmp_path / "out")
+    for name, matrix in zip(NAMES, MATRICES, strict=True):
+        np.testing.assert_allclose(capture.camera(name).world_to_camera, matrix, atol=ROUNDING)
+    assert (capture.template_height, capture.leave_out) == (1.5, ("hat", "shoes"))
 
 
 def test_what_a_folder_lacks_is_named(given: tuple[object, ...], command: Commands, tmp_path: Path) -> None:

@@ -14,10 +14,11 @@ from PIL import Image
 from mua.arrays import Array
 from mua.capture import Capture, CaptureCamera, video
 from mua.capture.lens import distorted, undistort
+from mua.capture.outline import pixels
 from mua.capture.pictures import as_mask
 from mua.capture.smaller import area_average
 from mua.capture.video import video_frames
-from mua.capture.view import person
+from mua.capture.view import Filmed, person, view_of
 from mua.errors import InputError
 from mua.kernels.splat_project import eye_ellipses
 from mua.player.video import write_video
@@ -105,6 +106,19 @@ def test_cutting_and_shrinking_move_the_camera_with_the_picture(small_capture: C
     window = np.s_[corner[1] : corner[1] + height, corner[0] : corner[0] + width]
     np.testing.assert_array_equal(part.image, whole.image[window])
     np.testing.assert_array_equal(part.mask, whole.mask[window])
+
+
+def test_a_wide_picture_stays_as_wide_where_it_is_made_smaller() -> None:
+    """A square of the world is one in the smaller image, and lies where the smaller camera says."""
+    wide = replace(CAMERA, distortion=(0.0,) * 5)
+    picture = np.zeros((120, 160, 4), np.uint8)
+    picture[40:80, 100:140] = 255
+    view = view_of(Filmed(picture[..., :3], picture[..., 3:], clear=False), wide, crop=False, rows=30)
+    assert (view.pinhole.size, view.image.shape, view.mask.shape) == ((40, 30), (30, 40, 3), (30, 40))
+    np.testing.assert_array_equal(np.argwhere(view.mask), np.argwhere(picture[::4, ::4, 3]))
+    corner = np.array([[(100 - wide.centre[0]) / wide.focal[0], (40 - wide.centre[1]) / wide.focal[1], 1.0]])
+    seen = view.pinhole.world_to_camera[:3, :3].T @ (corner[0] - view.pinhole.world_to_camera[:3, 3])
+    np.testing.assert_allclose(pixels(view.pinhole, seen[None])[0], [[25, 10]])
 
 
 def test_the_box_holds_the_whole_person_with_a_margin(small_capture: Capture) -> None:
