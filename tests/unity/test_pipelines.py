@@ -9,7 +9,7 @@ import itertools
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -95,7 +95,14 @@ def cameras() -> tuple[Camera, Camera]:
     centres = decode_clip_frame(avatar, avatar.clips[0], frame=MOVED, dtype=np.float64).centres
     box = np.stack([centres.min(axis=0), centres.max(axis=0)])
     left, right = stereo(orbit(box, screen=EYE, azimuth=0.7, elevation=0.3), EYE_DISTANCE)
-    return left, right
+    return skewed(left, -0.1), skewed(right, 0.12)
+
+
+def skewed(camera: Camera, skew: float) -> Camera:
+    """Sees farther to one side, as an eye of a headset does to its own."""
+    projection = camera.projection.copy()
+    projection[0, 2] = skew
+    return replace(camera, projection=projection)
 
 
 @dataclass(frozen=True)
@@ -235,14 +242,15 @@ def test_the_device_is_told_of_eyes_instances_and_pixels(recorded: Recorded) -> 
 
 def test_each_pass_is_given_its_eyes(recorded: Recorded) -> None:
     """In the kernels' right-handed world; a single eye stands in both places."""
-    mode, views = recorded.mode, [camera.view for camera in cameras()]
+    mode = recorded.mode
     expected = [[0, 1]] if mode.eyes == 2 else [[eye, eye] for eye in range(mode.passes)]
     if mode.passes == 2 and mode.eyes == 2:
         expected = [[0, 1]] * 2  # the engine says which is drawn
-    given = recorded.constants("moved", "SplatProject", "view")
-    for found, eyes in zip(given, expected, strict=True):
-        for matrix, eye in zip(found.reshape(2, 4, 4), eyes, strict=True):
-            np.testing.assert_allclose(matrix.T, views[eye], atol=1e-6)
+    for name in ("view", "projection"):
+        given = recorded.constants("moved", "SplatProject", name)
+        for found, eyes in zip(given, expected, strict=True):
+            for matrix, eye in zip(found.reshape(2, 4, 4), eyes, strict=True):
+                np.testing.assert_allclose(matrix.T, getattr(cameras()[eye], name), atol=1e-6)
 
 
 def test_pixels_are_those_of_a_scaled_target(recorded: Recorded) -> None:

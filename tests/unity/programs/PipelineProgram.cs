@@ -45,8 +45,8 @@ namespace Mua
             }
             if (arguments[2] == "urp")
             {
-                AvatarUrp.Install();
-                AvatarUrp.Install(); // as in the editor
+                PlayerLoop.StartGame();
+                PlayerLoop.StartGame(); // again, in the same domain
                 universal = new Universal();
             }
             file = arguments[5];
@@ -319,11 +319,11 @@ namespace Mua
                     main.nearClipPlane = Number(words, 3);
                     continue;
                 }
-                main.projectionMatrix = Matrix(words, 17);
-                Eyes.Look(eye++, Matrix(words, 1));
+                Eyes.Look(eye++, Matrix(words, 1), Matrix(words, 17));
                 if (eye == 1)
                 {
                     main.worldToCameraMatrix = Matrix(words, 1);
+                    main.projectionMatrix = Matrix(words, 17);
                 }
             }
         }

@@ -51,6 +51,19 @@ namespace StandIns
     {
         private static readonly List<Behaviour> Running = new List<Behaviour>();
 
+        /// <summary>
+        /// Enters play mode without a reload of the domain: statics stay as they are, but for what methods that ask to be called
+        /// then set anew.
+        /// </summary>
+        public static void StartGame()
+        {
+            foreach (Assembly assembly in AppDomain.CurrentDomain.GetAssemblies())
+                foreach (Type type in assembly.GetTypes())
+                    foreach (MethodInfo method in type.GetMethods(BindingFlags.Static | BindingFlags.Public | BindingFlags.NonPublic | BindingFlags.DeclaredOnly))
+                        if (Attribute.IsDefined(method, typeof(RuntimeInitializeOnLoadMethodAttribute)))
+                            method.Invoke(null, null);
+        }
+
         /// <summary>One frame of so many seconds, and its cameras.</summary>
         public static void Frame(float seconds)
         {

@@ -88,7 +88,7 @@ namespace StandIns
     public static class Eyes
     {
         private const float HalfDistance = 0.0315f;
-        private static readonly Matrix4x4?[] Views = new Matrix4x4?[2];
+        private static readonly Matrix4x4?[] Views = new Matrix4x4?[2], Projections = new Matrix4x4?[2];
 
         public static bool IsWorn { get; private set; }
 
@@ -105,14 +105,18 @@ namespace StandIns
             UnityEngine.XR.XRSettings.eyeTextureHeight = height;
         }
 
-        /// <summary>Where an eye is; half the eyes' distance from the camera where nobody says.</summary>
-        public static void Look(int eye, Matrix4x4 view) { Views[eye] = view; }
+        /// <summary>Where an eye is and what it sees; half the eyes' distance from the camera, as that does, where nobody says.</summary>
+        public static void Look(int eye, Matrix4x4 view, Matrix4x4 projection)
+        {
+            Views[eye] = view;
+            Projections[eye] = projection;
+        }
 
         public static Matrix4x4 View(Camera camera, int eye)
         {
             return Views[eye] ?? Matrix4x4.Translate(new Vector3(eye == 0 ? HalfDistance : -HalfDistance, 0, 0)) * camera.worldToCameraMatrix;
         }
 
-        public static Matrix4x4 Projection(Camera camera, int eye) { return camera.projectionMatrix; }
+        public static Matrix4x4 Projection(Camera camera, int eye) { return Projections[eye] ?? camera.projectionMatrix; }
     }
 }
