@@ -40,6 +40,7 @@ def program(csharp: CSharp) -> Path:
         PROGRAMS / "shared",
         PROGRAMS / "ComponentProgram.cs",
         PROGRAMS / "ComponentLevels.cs",
+        PROGRAMS / "ComponentLife.cs",
         PROGRAMS / "ComponentRig.cs",
         PROGRAMS / "ComponentSteering.cs",
     ]
@@ -91,7 +92,7 @@ def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Stor
     assert told["plain"] == ["Empty '' 0 '' 0"]
     assert told["clip"] == ["0 of 0, 0 of 0, 0"]
     assert told["outside"] == ["0"]
-    assert told["plays"] == ["True 1, Splats, Shadow, Automatic"]
+    assert told["plays"] == ["True 1, Splats, Shadow, Automatic, True"]
     assert told["bounds"] == ["1 2 3 0"]
     assert told["log"] == []
 
@@ -284,8 +285,83 @@ def test_an_avatar_that_has_no_room_beside_others_goes_alone(story: Story) -> No
     assert "splats" in told["message"][0]
 
 
-def test_a_game_that_starts_without_a_reload_keeps_its_avatars(story: Story) -> None:
-    assert story("StartsWithoutReload", "first")["draws"] == ["10"]
+def test_a_game_that_starts_without_a_reload_keeps_its_avatars_and_says_anew_what_is_wrong(story: Story) -> None:
+    told = story("StartsWithoutReload", "first")
+    assert told["draws"] == ["10"]
+    assert len(told["log"]) == 2  # once in each game
+    assert all("nowhere.muaavatar" in line for line in told["log"])
+
+
+def test_an_avatar_that_one_eye_sees_is_drawn_for_both(story: Story) -> None:
+    told, sorting = story("IsSeenByOneEye", "first"), len(FRAME_ORDER) - FRAME_ORDER.index("SplatProject")
+    assert told["seen"] == [f"True {sorting} True", f"True {sorting} True", "False 0 False"]
+
+
+def test_an_avatar_stands_where_its_parents_carry_it(story: Story) -> None:
+    told = story("HasParent", "first")
+    before, moved, turned = (np.array(line.split(), float) for line in told["box"])
+    np.testing.assert_allclose(moved, np.add(before, [5, 1, 0, 0, 0, 0]), atol=1e-5)
+    x, y, z, *_ = before
+    np.testing.assert_allclose(turned[:3], [5 + z, 1 + y, -x], atol=1e-5)
+    np.testing.assert_allclose(turned[3:], before[[5, 4, 3]], atol=1e-5)
+    assert int(told["turned"][0]) == len(FRAME_ORDER) - FRAME_ORDER.index("BlendVertices")
+    assert "which avatars ignore" in told["message"][0]  # the parent's scale
+
+
+def test_one_avatar_takes_the_place_of_another(story: Story) -> None:
+    told, first, second = story("ShowsOneAfterAnother", "first", "second"), counts(1)[0], counts(2)[0]
+    assert told["shown"] == [
+        f"Ready {first} False",
+        f"Ready {second} True",
+        f"Ready {first} False",
+        "Failed 0 False",
+        f"Ready {first} False",
+        "Empty 0 False",
+        f"Ready {second} True",
+    ]
+    assert told["message"][0].endswith("it is no avatar.")
+
+
+def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
+    assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Mesh Half False True"]
+
+
+def test_each_avatar_starts_over_where_its_own_clip_ends(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(2)
+    clip = avatar.clips[0]
+    short = replace(clip, rotations=clip.rotations[:3], translations=clip.translations[:3])
+    write(folder / "short.muaavatar", replace(avatar, clips=(short,)), storage="f16")
+    told = story("EndsEarly", "short", "first")
+    frames = len(synthetic_avatar(1).clips[0])
+    assert told["counts"] == [f"3 {frames}"]
+    assert told["frames"] == [f"{at % 3} {at % frames}" for at in (4, 8, 12)]  # 12 displayed frames are 4 of a clip
+
+
+def test_a_clip_holds_its_last_frame_until_it_starts_over(story: Story) -> None:
+    assert story("StaysAtItsEnd", "first")["at"] == ["last", "last", "last", "first", ""]
+
+
+def test_a_clip_stands_still_in_an_editor_that_does_not_play(story: Story) -> None:
+    still, playing = (float(seconds) for seconds in story("StandsStillInEditor", "first")["seconds"])
+    assert still == 0.1
+    assert playing == pytest.approx(0.1 + 10 / SECOND)
+
+
+def test_a_joint_that_is_destroyed_returns_to_its_bind_pose(story: Story) -> None:
+    """Of two objects of one name the first is followed."""
+    skeleton, clip = synthetic_avatar(1).rig.skeleton, synthetic_avatar(1).clips[0]
+    found = [np.array(line.split(), float) for line in story("LosesJoint", "first")["last"]]
+    for rotation, expected in zip(found, (clip.rotations[2, -1], skeleton.bind_rotations[-1]), strict=True):
+        assert abs(rotation @ expected) == pytest.approx(1, abs=1e-5)
+
+
+def test_cameras_and_lights_are_told_the_layer_of_each_avatar(story: Story) -> None:
+    """All avatars are drawn together where the layer of one is drawn."""
+    told = story("LiesOnLayers", "first", "second")
+    assert told["drawn"] == ["1", "1", "0"]
+    layer, away = told["shadow"][0].split()
+    assert (layer, float(away)) == ("7", pytest.approx(0, abs=1e-5))
+    assert float(told["shadow size"][0]) == pytest.approx(1, abs=1e-5)
 
 
 def test_transforms_give_the_pose_wherever_their_root_stands(story: Story) -> None:
@@ -391,6 +467,15 @@ def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
     assert told["free"] == [f"{first[0]} {second[0]}"]
     assert told["allocated"] == ["0"]
     assert told["log"] == []
+
+
+def test_a_level_that_is_picked_in_the_inspector_is_checked(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(1)
+    taps = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
+    write(folder / "long.muaavatar", replace(avatar, wavelet=replace(avatar.wavelet, **taps)), storage="f16")
+    told = story("LevelIsPicked", "long")
+    assert told["message"] == ["", "the avatar has no such level of detail; it is shown at full size."]
+    assert told["budget"] == ["0 0"]
 
 
 def test_an_avatar_without_levels_says_so_once_and_shows_all(story: Story, folder: Path) -> None:

@@ -88,6 +88,7 @@ namespace Mua
         [Tooltip("Level of detail: how many texels are shown. Automatic shows fewer when the avatar is seen from afar.")]
         private AvatarLevel level = AvatarLevel.Automatic;
 
+        [SerializeField]
         [Tooltip("Spread the decoding of a pose over several displayed frames, so that no single frame takes long.")]
         private bool spreadDecode = true;
 

@@ -113,6 +113,22 @@ namespace Mua
             Say("message", shown.Message);
         }
 
+        /// <summary>A level that is picked in the inspector, of an avatar that has none.</summary>
+        private static void LevelIsPicked()
+        {
+            AvatarRenderer shown = Begin(files[0]);
+            shown.Level = AvatarLevel.Full;
+            Until(shown);
+            Say("message", shown.Message);
+            typeof(AvatarRenderer).GetField("level", Hidden).SetValue(shown, AvatarLevel.Quarter);
+            StandIns.Messages.Send(shown, "OnValidate");
+            Frames(1);
+            Say("message", shown.Message);
+            var budget = Make("budget").AddComponent<AvatarBudget>();
+            budget.Splats = -5;
+            Say("budget", budget.Splats + " " + AvatarBudget.Limit);
+        }
+
         private static int Full(AvatarRenderer avatar)
         {
             return avatar.Decoded.Avatar.SplatCounts[0];

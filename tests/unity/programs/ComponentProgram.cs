@@ -293,16 +293,6 @@ namespace Mua
             Say("shown", AvatarWorld.Current.Draws.Count);
         }
 
-        private static void StartsWithoutReload()
-        {
-            Show(files[0]);
-            Frames(2);
-            typeof(AvatarWorld).GetMethod("Restart", BindingFlags.Static | BindingFlags.NonPublic).Invoke(null, null);
-            int draws = Recorder.Draws;
-            Frames(10);
-            Say("draws", Recorder.Draws - draws);
-        }
-
         /// <summary>Of so many frames.</summary>
         private static int Dispatches(int frames)
         {

@@ -19,7 +19,7 @@ namespace Mua
             Say("outside", shown.OutsideTraining);
             Say("plain", shown.State + " '" + shown.Message + "' " + shown.Progress + " '" + shown.AvatarName + "' " + shown.SplatCount);
             Say("clip", shown.ClipIndex + " of " + shown.Clips.Count + ", " + shown.Frame + " of " + shown.FrameCount + ", " + shown.Seconds);
-            Say("plays", shown.IsPlaying + " " + shown.Speed + ", " + shown.Views + ", " + shown.Level);
+            Say("plays", shown.IsPlaying + " " + shown.Speed + ", " + shown.Views + ", " + shown.Level + ", " + shown.SpreadDecode);
             Say("bounds", shown.Bounds.center.x + " " + shown.Bounds.center.y + " " + shown.Bounds.center.z + " " + shown.Bounds.size.magnitude);
         }
 

@@ -103,6 +103,9 @@ namespace StandIns
         public static int Dispatches { get; private set; }
         public static int Draws { get; private set; }
         public static int Renders { get; private set; }
+
+        /// <summary>What was last given to the lights.</summary>
+        public static RenderParams LastRender { get; private set; }
         public static long UploadedBytes { get; private set; }
         public static bool IsOn { get { return lines != null; } }
 
@@ -225,6 +228,7 @@ namespace StandIns
             indices.CheckUsable("RenderPrimitivesIndexed");
             bool isShadow = parameters.shadowCastingMode == UnityEngine.Rendering.ShadowCastingMode.ShadowsOnly;
             Renders++;
+            LastRender = parameters;
             WriteDraw(parameters.material, parameters.matProps, isShadow ? 3 : 0, count, instances, null, indices);
         }
 
