@@ -144,6 +144,7 @@ class Recorded:
         """What a kernel was given, each time in a frame."""
         (frame,) = self.frames(name)
         dispatches = [event for event in frame if event.get("kernel") == kernel]
+        assert dispatches, f"{kernel} does not run in {name}"
         return [content(*event["constants"][constant]) for event in dispatches]
 
 
@@ -384,7 +385,9 @@ def test_the_picture_is_that_of_the_cpu_rasteriser(
     (frame,) = recorded.frames("moved")
     before = itertools.takewhile(lambda event: event is not frame[0], recorded.events)
     first = sum(event["event"] == "draw" for event in before)
-    for index, drawn in enumerate(replay(device, recorded.path).draws[first : first + mode.passes]):
+    draws = replay(device, recorded.path).draws[first : first + mode.passes]
+    assert len(draws) == mode.passes
+    for index, drawn in enumerate(draws):
         seen = cameras() if mode.eyes == 2 else (cameras()[index],)
         assert drawn.arguments[1] == mode.instances
         image = draw_image(device, SplatRenderer(device, image_format(device)), uploaded(device, drawn), seen)
