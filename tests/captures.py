@@ -27,6 +27,7 @@ STRIDE = {"walk": 4, "reach": 20}  # frames of the character's own clips from on
 MIDDLE = np.array([0.0, 0.85, 0.0])  # of the figure, metres
 DISTANCE = 3.2  # of the cameras, metres
 ANGLES = {"front": 0.1, "left": 1.8, "right": 4.0, "above": 5.4}  # radians round the figure; the last is held out
+RISES = {"front": 0.0, "left": -0.1, "right": 0.15, "above": 0.5}  # radians; a level camera's rotation is its inverse
 
 
 def make_capture(folder: Path, *, distortion: tuple[float, ...] = (0.0,) * 5) -> Capture:
@@ -67,7 +68,7 @@ def ring() -> list[CaptureCamera]:
             size=(SIDE, SIDE),
             focal=(92.0, 90.0),
             centre=(SIDE / 2 + 2, SIDE / 2 - 1),
-            world_to_camera=looking(MIDDLE + DISTANCE * _direction(angle, 0.5 * (name == "above")), MIDDLE),
+            world_to_camera=looking(MIDDLE + DISTANCE * _direction(angle, RISES[name]), MIDDLE),
             held_out=name == "above",
         )
         for name, angle in ANGLES.items()
