@@ -41,13 +41,20 @@ class Heard:
         self.steps.append((done, total))
 
 
-def recording(directory: Path, *, training: int = 2) -> Recording:
-    """`training` clips and a held-out one whose values are far off; every second frame is recorded."""
+def recording(directory: Path, *, training: int = 2, held: int = 0, still: int | None = None) -> Recording:
+    """`training` clips and a held-out one whose values are far off; every second frame is recorded.
+
+    `held` is the seed of the held-out clip, which alone moves the joint `still`, in its place too.
+    """
     rig, rng = synthetic_rig(), np.random.default_rng(0)
     with TeacherWriter(directory, rig, rate=24.0) as writer:
         for number in range(training + 1):
             held_out = number == training
+            rng = np.random.default_rng([held, 1]) if held_out else rng
             clip = synthetic_clip(rig.skeleton, rng, frames=9)
+            if still is not None and not held_out:
+                clip.rotations[:, still] = rig.skeleton.bind_rotations[still]
+                clip.translations[:, still] = rig.skeleton.bind_translations[still]
             writer.start_clip(f"clip {number}", held_out=held_out)
             for frame in range(len(clip)):
                 pose = Pose(clip.rotations[frame], clip.translations[frame])
@@ -76,6 +83,19 @@ def test_learns_from_the_training_frames_alone(tmp_path: Path) -> None:
     assert source.count() == 2 * 4
     mean = (student.mean_lowpass() + student.static).T
     assert np.abs(mean.numpy() - source.mean_texture()).max() < 1e-3  # half precision of the subbands' mean
+
+
+def test_held_out_clips_change_nothing_in_a_student(tmp_path: Path) -> None:
+    """Not what it reads of a pose, nor its normalisation, means, bases or weights."""
+    students = []
+    for held in (1, 2):
+        source = recording(tmp_path / f"recording {held}", held=held, still=2)
+        students.append(distilled(source, tmp_path / f"student {held}", Heard()))
+    first, second = students
+    assert first.encoding == second.encoding
+    assert first.encoding.joints == (1,)
+    assert first.encoding.translated == ()
+    assert same(first, second)
 
 
 def test_a_second_run_repeats_nothing_and_gives_the_same_student(tmp_path: Path) -> None:
