@@ -3,6 +3,7 @@
 import io
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,8 @@ from synthetic_avatar import synthetic_rig
 from trainings import FINISHED, STAGE_NAMES, Training
 
 from mua.asset import read
+from mua.asset.read import load
+from mua.asset.summary import storage_of
 from mua.baking.report import UNSAID
 from mua.cli import display
 from mua.cli.display import Display
@@ -77,6 +80,25 @@ def test_a_repeated_command_repeats_no_step(written: Path, trained: Path, mua_tr
     assert "avatar" in told
     assert not set(told) & set(STAGE_NAMES)
     assert trained.read_bytes() == before
+
+
+def test_what_is_stored_is_chosen_without_training_again(
+    written: Path, trained: Path, tmp_path: Path, mua_train: Training
+) -> None:
+    shutil.copytree(trained.with_suffix(".work"), tmp_path / "elsewhere")
+    ended = mua_train(
+        written, "--work", tmp_path / "elsewhere", "--storage", "i8", "--clips", "turn", "--clips", "walk"
+    )
+    assert not set(ended.out.splitlines()) & set(STAGE_NAMES)
+    made = tmp_path / "a.muaavatar"
+    assert {clip.name for clip in read(made).clips} == {"turn", "walk"}
+    assert storage_of(load(made)) == "i8"
+    assert not made.with_suffix(".work").exists()
+
+
+def test_another_seed_is_another_training(written: Path, trained: Path, tmp_path: Path, mua_train: Training) -> None:
+    shutil.copytree(trained.with_suffix(".work"), tmp_path / "a.work")
+    assert "coarse mesh" in mua_train(written, "--stage", "coarse", "--seed", 1).out.splitlines()
 
 
 def test_a_recording_without_whole_frames_gives_an_avatar_and_says_so(tmp_path: Path, mua_train: Training) -> None:

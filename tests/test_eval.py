@@ -277,6 +277,38 @@ def test_the_command_writes_tables_plots_and_sheets(
     assert "no [place] left" in capsys.readouterr().out
 
 
+class Weighed:
+    """Stands in for LPIPS: a distance that the file of weights says."""
+
+    network = "alex"
+
+    def __init__(self, path: Path) -> None:
+        self._said = float(path.read_text())
+
+    def __call__(self, image: Tensor, truth: Tensor) -> float:
+        return self._said
+
+
+def test_every_option_of_the_images_counts(
+    recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mua.cli.evaluation.Lpips", Weighed)
+    (tmp_path / "weights").write_text("0.25")
+    command.evaluate(
+        recording=recording.directory, avatars=[saved(tmp_path)], frames=2, views=3, size=SIZE, own_mesh=True,
+        lpips_weights=tmp_path / "weights", output=tmp_path / "out",
+    )  # fmt: skip
+    told = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert [row["system"] for row in told["systems"]] == ["mean texture", "played", "played, own mesh"]
+    for row in told["systems"]:
+        assert [(one["clip"], one["view"]) for one in row["pictures"]] == [
+            (name, view) for name in ("walk", "walk", "turn", "turn") for view in range(3)
+        ]
+        assert row["mean"]["training"]["lpips"] == row["mean"]["held out"]["lpips"] == 250
+    with pytest.raises(InputError, match="no such device here"):
+        command.evaluate(recording=recording.directory, device="no such device here", output=tmp_path / "other")
+
+
 def test_a_trained_system_is_not_trained_again(
     recording: Recording, tmp_path: Path, faked: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -26,6 +26,7 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
+from mua.recording import Recording
 from mua.student.settings import PRESETS as STUDENTS
 from mua.teachers.procedural import procedural_character
 from mua.teachers.still import StillTeacher
@@ -78,7 +79,9 @@ def test_what_drew_the_pictures_is_nearly_all_there(capture: Path) -> None:
     opened = open_capture(capture)
     chosen = shots(opened, 1)
     see = partial(opened.view, crop=True)
-    for one in judge(opened, chosen, [FilmedEntry("own", show)], see=see, kept=chosen[:1]):
+    found = list(judge(opened, chosen, [FilmedEntry("own", show)], see=see, kept=chosen[:1]))
+    assert [one.shot for one in found] == chosen
+    for one in found:
         assert list(one.pictures) == (["image", "own"] if one.shot == chosen[0] else [])
         assert one.scores["own"].psnr > MADE_SO
         assert one.scores["own"].ssim > 0.99
@@ -118,10 +121,15 @@ def nothing(clip: Clip, frame: int) -> Splats:
 
 
 def test_the_command_compares_a_teacher_with_the_pictures(
-    capture: Path, teacher: Path, tmp_path: Path, command: Commands
+    capture: Path, teacher: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = command("eval", capture, "--teacher", teacher, "-o", tmp_path / "evaluation", "--frames", "1")
+    monkeypatch.setattr("mua.cli.filmed_evaluation.Lpips", lambda path: lambda image, truth: float(path.read_text()))
+    (tmp_path / "weights").write_text("0.25")
+    given = ("--teacher", teacher, "--frames", "1", "--lpips-weights", tmp_path / "weights")
+    ended = command("eval", capture, *given, "-o", tmp_path / "evaluation")
     assert ended.status == 0, ended
+    lines = list(csv.DictReader((tmp_path / "evaluation" / "results.csv").read_text().splitlines()))
+    assert {(line["camera"], float(line["lpips"])) for line in lines} == {("above", 250.0)}
     text = (tmp_path / "evaluation" / "results.md").read_text()
     assert f"| {filmed.BASELINE} |" in text
     assert f"| {filmed.TEACHER} |" in text
@@ -147,7 +155,10 @@ def test_the_command_trains_systems_at_several_sizes_and_once(
     (equal,) = (one for one in told["entries"] if one["system"] == "linear" and one["scale"] not in (0.5, 1))
     assert equal["parameters"] <= rows["ours"]["parameters"]
     assert equal["flops"] <= rows["ours"]["flops"]
-    assert {one["rival"] for one in told["standings"]} == {equal["name"]}
+    within = {name for name, one in rows.items() if one["system"] == "linear" and one["flops"] <= rows["ours"]["flops"]}
+    assert {equal["name"], "linear"} <= within
+    assert {one["rival"] for one in told["standings"]} <= within
+    assert len(told["standings"]) == len(filmed.SPLITS)
     assert "learnt" not in rows["ours"]
     assert "on 3 frames of the teacher at 64 texels" in (output / "results.md").read_text()
     with Image.open(output / "curve.png") as plot:
@@ -160,6 +171,7 @@ def test_the_command_trains_systems_at_several_sizes_and_once(
     assert (output / "results.json").read_bytes() == before
 
     (recording,) = (output / "work").glob("recording-*")
+    assert {clip.name.split(" (")[0] for clip in Recording(recording).clips} == {"walk"}, "reach is held out"
     monkeypatch.setitem(STUDENTS, "tiny", replace(QUICK, frames=2))  # what is not recorded again does not follow it
     few = (capture, "--teacher", teacher, "--system", "linear", "--steps", "1", "--preset", "tiny", "--frames", "1")
     assert command("eval", *few, "--train-on", recording, "-o", tmp_path / "given").status == 0
