@@ -54,6 +54,7 @@ def test_the_template_is_where_the_files_matrices_have_it(capture: Path) -> None
     said = Said.of(*(character.with_suffix(end) for end in (".skeleton", ".obj", ".skin")))
     truth = sway(FRAMES["training"] + 9)[FIRST["training"] :]
     posed = posed_template(found.surfaces, found.motion("training"))
+    assert len(posed) == found.clip("training").frames > 1
     for frame, vertices in enumerate(posed):
         np.testing.assert_allclose(vertices[found.surfaces.faces], said.skinned(REST, truth[frame]), atol=CORNER_BOUND)
 

@@ -39,6 +39,7 @@ def test_subbands_of_the_avatar_are_the_students() -> None:
     student = random_student()
     descriptors, _ = bands_of_frames(5)
     x = read_components(export_components(student), descriptors.double().numpy())[0]
+    assert len(student.branches) == 2
     for exported, branch in zip(export_branches(student), student.branches, strict=True):
         expected = branch(student.read(descriptors))
         for found, band in zip(numpy_bands(exported, x), expected, strict=True):

@@ -100,10 +100,10 @@ def test_quaternions_do_not_jump_from_key_to_key(
     flipped = mua.Clip(clip.name, clip.rate, clip.rotations * signs, clip.translations)
     mua.save(avatar_file, replace(stored, clips=(flipped,)))
     found = ReadGlb(exported(command, avatar_file, tmp_path, "skeleton"))
-    for sampler in found.json["animations"][0]["samplers"]:
-        keys = found.array(sampler["output"])
-        if keys.shape[1] == 4:
-            assert np.sum(keys[1:] * keys[:-1], axis=1).min() > 0.9
+    keys = [found.array(sampler["output"]) for sampler in found.json["animations"][0]["samplers"]]
+    turns = [own for own in keys if own.shape[1] == 4]
+    assert [len(own) for own in turns] == [FRAMES] * len(clip.rotations[0])
+    assert min(np.sum(own[1:] * own[:-1], axis=1).min() for own in turns) > 0.9
 
 
 def test_the_mesh_at_rest_is_the_template_and_then_follows_its_joints(

@@ -62,8 +62,11 @@ def test_the_folder_is_a_capture_of_the_same_poses(order: Order, folder: Path) -
 def test_true_surfaces_are_those_of_the_poses(folder: Path) -> None:
     capture = open_capture(folder)
     character = build_atlas(capture.surfaces, uv="keep", size=16)
+    assert capture.clips
     for clip in capture.clips:
-        for frame, moved in enumerate(SkinnedSurface(character).frames(capture.motion(clip.name))):
+        surfaces = list(SkinnedSurface(character).frames(capture.motion(clip.name)))
+        assert len(surfaces) == clip.frames
+        for frame, moved in enumerate(surfaces):
             file = capture.place(str(capture.meshes), clip=clip.name, frame=frame)
             np.testing.assert_allclose(read_vertices(file), moved.places, atol=1e-4)
 
@@ -72,8 +75,10 @@ def test_true_tracks_follow_points_of_the_surface(folder: Path) -> None:
     capture = open_capture(folder)
     mesh = capture.character().mesh
     triangles, barycentrics = spread_points(mesh, TRACKED)
+    assert capture.clips
     for clip in capture.clips:
         (tracks,) = read_tracks(capture, clip.name)
+        assert tracks.points.shape == (clip.frames, TRACKED, 3)
         assert tracks.bind is not None
         np.testing.assert_allclose(tracks.bind, interpolate(mesh.vertices, mesh.faces[triangles], barycentrics))
         for frame, points in enumerate(tracks.points):

@@ -151,6 +151,7 @@ def test_vertices_follow_nodes_that_move_as_they_do(rig: Rig) -> None:
 
 def test_the_same_graph_at_every_call(rig: Rig) -> None:
     one, two = build_graph(rig, nodes=20), build_graph(rig, nodes=20)
+    assert vars(one)
     for name in vars(one):
         np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
 

@@ -157,6 +157,7 @@ def test_best_coefficients_give_back_what_the_bases_span() -> None:
     alphas = branch.split(torch.randn(3, branch.channels * branch.ranks.total, generator=torch.Generator()))
     bands = branch.synthesize(alphas)
     again = branch.synthesize(BestCoefficients(branch)(bands))
+    assert [len(band) for band in bands] == [3, 3, 3]
     for found, band in zip(again, bands, strict=True):
         assert torch.allclose(found, band, atol=1e-3 * float(band.abs().max()))
 
@@ -166,6 +167,7 @@ def test_best_coefficients_are_no_worse_than_any_others() -> None:
     bands = bands_of_frames(4)[1].of(GEOMETRY)
     best = branch.synthesize(BestCoefficients(branch)(bands))
     predicted = branch(torch.zeros(4, INPUTS))
+    assert [len(band) for band in bands] == [4, 4, 4]
     for found, other, band in zip(best, predicted, bands, strict=True):
         assert (found - band).square().sum() <= (other - band).square().sum()
 
