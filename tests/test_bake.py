@@ -22,6 +22,7 @@ from mua.baking.distillation import Baked
 from mua.baking.order import Order
 from mua.baking.pipeline import bake, parts
 from mua.baking.plan import HeldOut, plan, split
+from mua.baking.ranges import is_range
 from mua.baking.recorded import recording_key
 from mua.baking.sources import RATE, load_character
 from mua.channels import ATTRIBUTES
@@ -29,7 +30,8 @@ from mua.errors import InputError
 from mua.locks import DirectoryLock
 from mua.pose.clip import Clip, Stretches
 from mua.pose.resample import resample
-from mua.recording import PlannedClip
+from mua.recording import PlannedClip, Recording
+from mua.rig.bounds import playback_bounds
 from mua.student.settings import Ranks, Schedule, preset
 
 SMALL = dataclasses.replace(
@@ -72,6 +74,59 @@ def test_the_file_holds_triangles_over_its_texels(baked: Baked) -> None:
     assert avatar.surface
     texels = avatar.rig.texels
     assert len(np.unique(avatar.surface.triangles(texels))) > 0.9 * len(texels.texels)
+
+
+def recording_of(directory: Path) -> Recording:
+    (found,) = (path for path in (directory / "work").glob("recording-*") if path.is_dir())
+    return Recording(found)
+
+
+def test_the_range_of_motion_is_trained_on_and_nothing_else(baked: Baked) -> None:
+    """Neither measured, pictured nor played; but the bounds hold it."""
+    recording, avatar = recording_of(baked.output.parent), read(baked.output)
+    ranged = [clip for clip in recording.clips if is_range(clip.name)]
+    assert sum(len(clip.recorded) for clip in ranged) == recording.count() - SMALL.frames == SMALL.frames // 4
+    assert not any(clip.held_out for clip in ranged)
+    assert not any(is_range(frame.clip.name) for frame in recording.whole_frames())
+    assert not any(is_range(clip.name) for clip in avatar.clips)
+    measured = {clip.name for clip in recording.clips if clip.held_out and len(clip.recorded)}
+    assert set(baked.errors) == {"training", *measured}
+    assert baked.errors["training"].frames == SMALL.frames
+    box, own = playback_bounds(recording.rig, ranged), playback_bounds(recording.rig, avatar.clips)
+    assert (avatar.bounds[0] <= box[0]).all()
+    assert (avatar.bounds[1] >= box[1]).all()
+    assert (own[0] > box[0]).any()
+    assert (own[1] < box[1]).any()
+
+
+def test_without_the_range_the_same_is_recorded_of_the_users_motion(
+    baked: Baked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Enough(Exception):
+        pass
+
+    def stop(*_: object) -> None:
+        raise Enough
+
+    monkeypatch.setattr("mua.baking.pipeline.teach", stop)
+    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", motion_range="none")
+    with pytest.raises(Enough):
+        bake(order, Silent())
+    one, other = recording_of(tmp_path), recording_of(baked.output.parent)
+    character = load_character(None, uv="auto", seed=0)
+    training, held = split([resample(clip, RATE) for clip in character.clips], ())
+    planned = plan(training, held, frames=SMALL.frames)
+    assert one.directory.name == f"recording-{recording_key(parts(order, character), planned)}"
+    assert one.count() == SMALL.frames
+    for kind in (False, True):
+        rows = range(one.count(kind))
+        np.testing.assert_array_equal(one.meshes(rows, held_out=kind), other.meshes(rows, held_out=kind))
+        for a, b in zip(*(which.subbands(slice(None), rows, held_out=kind) for which in (one, other)), strict=True):
+            np.testing.assert_array_equal(a, b)
+    for a, b in zip(one.clips, other.clips, strict=False):
+        assert a.name == b.name
+        np.testing.assert_array_equal(a.recorded, b.recorded)
+        np.testing.assert_array_equal(a.rotations, b.rotations)
 
 
 def test_the_file_says_what_was_held_out(baked: Baked) -> None:

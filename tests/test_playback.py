@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mua.baking.playback import choose, held_out, held_out_sentence, typical_frame, whole_clips
+from mua.baking.playback import choose, held_out, held_out_sentence, range_clips, typical_frame, whole_clips
 from mua.errors import InputError
 from mua.pose.clip import Clip, Stretches
 from mua.recording import RecordedClip
@@ -105,3 +105,16 @@ def test_clips_joined_keep_what_each_stretches() -> None:
     assert joined.stretches is not None
     np.testing.assert_array_equal(joined.stretches.matrices, matrices)
     np.testing.assert_array_equal(joined.translations, walk.translations)
+
+
+def test_the_range_of_motion_is_not_played_beside_other_clips() -> None:
+    ranged = [recorded("range of motion: walk", 6), recorded("range of motion: any pose", 6)]
+    assert [c.name for c in whole_clips([*CUT, *ranged])] == [c.name for c in whole_clips(CUT)]
+    assert [c.name for c in range_clips([*CUT, *ranged], whole_clips(CUT))] == [c.name for c in ranged]
+
+
+def test_the_range_of_motion_is_played_where_there_is_nothing_else() -> None:
+    ranged = [recorded("range of motion: walk", 6), recorded("range of motion: walk (end)", 2, held=True, start=6)]
+    (walk,) = whole_clips(ranged)
+    assert (walk.name, len(walk)) == ("range of motion: walk", 8)
+    assert range_clips(ranged, [walk]) == []

@@ -29,10 +29,14 @@ def planned_range(order: Order, character: Character, clips: Sequence[Clip], fra
     """What is recorded of the range of motion beside `frames` training frames of `clips`; none of it is kept whole."""
     if order.motion_range == "none" or any(is_range(clip.name) for clip in clips):
         return []
-    asked = order.settings.frames
-    count = max(asked // SHARE, min(asked - frames, max(asked // SHORT_SHARE, FEWEST)), 1)
+    count = range_frames(order.settings.frames, frames)
     made = motion_range(character, clips, frames=count, seed=order.settings.seed)
     return [replace(planned, whole=frozenset()) for planned in plan(made, [], frames=count)]
+
+
+def range_frames(asked: int, own: int) -> int:
+    """How many frames of the range are recorded where `asked` were asked for and the user's motion gives `own`."""
+    return max(asked // SHARE, min(asked - own, max(asked // SHORT_SHARE, FEWEST)), 1)
 
 
 def is_range(name: str) -> bool:

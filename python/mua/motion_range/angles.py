@@ -76,5 +76,8 @@ def mirrored(angles: Angles) -> Angles:
 
 def table(poses: Sequence[Angles]) -> Array:
     """Angles [P, A] of poses, those of somebody at ease where a pose says none."""
-    ease = both(**NEUTRAL)
-    return np.array([[(ease | pose).get(name, 0.0) for name in NAMES] for pose in poses])
+    angles = np.zeros((len(poses), len(NAMES)))
+    for row, pose in zip(angles, poses, strict=True):
+        for name, angle in (both(**NEUTRAL) | pose).items():
+            row[INDEX[name]] = angle
+    return angles

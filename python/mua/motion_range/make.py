@@ -7,6 +7,7 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.motion.load import unique_names
 from mua.motion.match import Matches, match_joints
 from mua.motion.retarget import retarget
 from mua.motion.source import SourceMotion
@@ -49,22 +50,13 @@ def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, se
         else:
             joints = [int(joint) for joint in moving if joint != skeleton.root]
             made += _shortened(_any_rig(skeleton, joints, rest, own), frames)
-    return [replace(clip, name=name) for clip, name in zip(made, _names(made), strict=True)]
+    return unique_names([replace(clip, name=f"{PREFIX}{clip.name}") for clip in made])
 
 
 def _shortened(clips: Sequence[Clip], frames: int) -> list[Clip]:
     """The beginnings of clips, where so few `frames` are recorded that playing all of them would take most time."""
     share = min(PLAYED * frames / sum(len(clip) for clip in clips), 1.0)
     return [clip.cut(slice(max(round(share * len(clip)), 1))) for clip in clips]
-
-
-def _names(clips: Sequence[Clip]) -> list[str]:
-    seen: dict[str, int] = {}
-    names = []
-    for clip in clips:
-        seen[clip.name] = seen.get(clip.name, 0) + 1
-        names.append(f"{PREFIX}{clip.name}" + (f" {seen[clip.name]}" if seen[clip.name] > 1 else ""))
-    return names
 
 
 def _person(number: int, rng: np.random.Generator) -> list[Clip]:

@@ -9,8 +9,9 @@ from mua.motion_range.played import clip_of
 from mua.pose.clip import Clip
 from mua.pose.joint_names import SIDES
 
-POSES = 30  # of a clip
+POSES = 24  # of a clip
 QUICKEST, SLOWEST = 0.1, 0.6  # seconds in which a pose is reached
+FASTEST = 500.0  # degrees a second of an angle between two poses; a joint of several angles turns twice as fast
 TRIES = 24  # of each pose, of which the one is taken whose limbs are the least within the body
 UPRIGHT = 0.75  # of the poses; the others lean, lie or stand on their heads
 LEANS = {True: 18.0, False: 100.0}  # degrees, by whether it is upright
@@ -23,15 +24,17 @@ _THIGH = ("thigh", "shin", 0.08)
 
 def mixed(name: str, rng: np.random.Generator) -> Clip:
     """A clip of random poses, each of which is as likely anywhere within the limits of its angles."""
+    poses = random_poses(rng)
     seconds = np.exp(rng.uniform(np.log(QUICKEST), np.log(SLOWEST), POSES))
-    return clip_of(name, seconds, _poses(rng))
+    seconds[1:] = np.maximum(seconds[1:], abs(np.diff(poses, axis=0)).max(axis=1) / FASTEST)
+    return clip_of(name, seconds, poses)
 
 
-def _poses(rng: np.random.Generator) -> Array:
-    """Angles [P, A] of poses that keep their limbs out of the body as well as the best of TRIES does."""
-    tried = _anything(rng, POSES * TRIES)
-    depth = within(tried).reshape(POSES, TRIES)
-    return tried.reshape(POSES, TRIES, -1)[np.arange(POSES), np.argmin(depth, axis=1)]
+def random_poses(rng: np.random.Generator, tries: int = TRIES) -> Array:
+    """Angles [P, A] of poses that keep their limbs out of the body as well as the best of `tries` does."""
+    tried = _anything(rng, POSES * tries)
+    depth = within(tried).reshape(POSES, tries)
+    return tried.reshape(POSES, tries, -1)[np.arange(POSES), np.argmin(depth, axis=1)]
 
 
 def _anything(rng: np.random.Generator, count: int) -> Array:
@@ -51,8 +54,7 @@ def _anything(rng: np.random.Generator, count: int) -> Array:
 
 def within(angles: Array) -> Array:
     """How deep limbs are within trunk, head and each other [N], in metres, summed over the limbs of poses [N, A]."""
-    turned, at = BODY.world(rotations(angles), BODY.with_root(np.zeros((len(angles), 3))))
-    del turned
+    _, at = BODY.world(rotations(angles), BODY.with_root(np.zeros((len(angles), 3))))
     depth = np.zeros(len(angles))
     for side, other in (SIDES, SIDES[::-1]):
         thighs = [(f"{one} {_THIGH[0]}", f"{one} {_THIGH[1]}", _THIGH[2]) for one in SIDES]
