@@ -156,6 +156,13 @@ def test_whoever_walks_stands_on_the_floor_and_gets_ahead() -> None:
     assert at[-1, 0, 2] - at[0, 0, 2] > 0.5
 
 
+def test_whoever_lies_or_stands_on_the_hands_touches_the_floor() -> None:
+    skeleton = RIGS["T-pose"]
+    clips = {clip.name: clip for clip in motion_range(character(skeleton), (), frames=FRAMES, seed=0)}
+    lowest = world(skeleton, clips[f"{PREFIX}floor"])[1][..., 1].min(axis=1)
+    assert -0.1 < lowest.min() <= lowest.max() < 0.2
+
+
 def test_no_pose_is_beyond_the_limits_of_its_joints() -> None:
     for name, keys in MOVES.items():
         for number, key in enumerate(keys):
