@@ -236,8 +236,13 @@ def test_an_avatar_destroyed_while_it_is_read_leaves_nothing(story: Story) -> No
     assert story("GoesMidRead", "first")["log"] == []
 
 
-def test_a_file_is_found_in_both_folders_and_in_an_asset(story: Story) -> None:
-    assert story("FindsFiles", "first")["state"] == ["Ready"] * 3
+def test_a_file_is_found_in_both_folders_and_in_an_asset(story: Story, folder: Path) -> None:
+    """Persistent data before what came with the application."""
+    (folder / "others").mkdir()
+    write(folder / "others" / "first.muaavatar", replace(synthetic_avatar(2), name="another"), storage="f16")
+    told = story("FindsFiles", "first")
+    assert told["state"] == ["Ready"] * 3
+    assert told["of both"] == [synthetic_avatar(1).name]
 
 
 def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
@@ -270,6 +275,7 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
 def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: str) -> None:
     told = story(name, file)
     assert told["state"] == ["Failed"]
+    assert told["held"] == ["0"]
     assert len(told["log"]) == 1, told["log"]
     assert told["log"][0].startswith("Error MUA: ")
     assert words in told["log"][0]
@@ -353,6 +359,10 @@ def test_a_joint_that_is_destroyed_returns_to_its_bind_pose(story: Story) -> Non
     found = [np.array(line.split(), float) for line in story("LosesJoint", "first")["last"]]
     for rotation, expected in zip(found, (clip.rotations[2, -1], skeleton.bind_rotations[-1]), strict=True):
         assert abs(rotation @ expected) == pytest.approx(1, abs=1e-5)
+
+
+def test_an_inactive_joint_counts_as_missing(story: Story) -> None:
+    assert synthetic_avatar(1).rig.skeleton.names[-1] in story("HasInactiveJoint", "first")["missing"][0]
 
 
 def test_cameras_and_lights_are_told_the_layer_of_each_avatar(story: Story) -> None:
@@ -476,6 +486,16 @@ def test_a_level_that_is_picked_in_the_inspector_is_checked(story: Story, folder
     told = story("LevelIsPicked", "long")
     assert told["message"] == ["", "the avatar has no such level of detail; it is shown at full size."]
     assert told["budget"] == ["0 0"]
+
+
+def test_an_avatar_that_lacks_the_level_asked_for_is_shown_at_full_size(story: Story, folder: Path) -> None:
+    """Not at the coarsest that it has."""
+    avatar = synthetic_avatar(1, levels=3)
+    write(folder / "two.muaavatar", avatar, storage="f16")
+    assert avatar.at_level(1) is not None
+    told = story("LevelIsPicked", "two")
+    assert told["message"][1].startswith("the avatar has no such level of detail")
+    assert told["splats"] == [str(len(avatar.rig.texels.texels))]
 
 
 def test_an_avatar_without_levels_says_so_once_and_shows_all(story: Story, folder: Path) -> None:

@@ -230,13 +230,18 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
     """A wall so little behind a facet hides it, a wall farther behind does not."""
     scene, camera = painter.scene, painter.scene.cameras[0]
     mesh = placed(posed(scene.avatar).mesh)
-    middles = mesh[scene.avatar.rig.mesh.faces].mean(axis=1) @ camera.view[:3, :3].T + camera.view[:3, 3]
+    corners = mesh[scene.avatar.rig.mesh.faces] @ camera.view[:3, :3].T + camera.view[:3, 3]
+    middles = corners.mean(axis=1)
     clip = middles @ camera.projection[:, :3].T + camera.projection[:, 3]
     columns, rows = ((clip[:, :2] / clip[:, 3:] * [1, -1] + 1) / 2 * SCREEN).astype(int).T
     facet = np.argmin(np.where(columns < SCREEN[0] // 2 - 2, -middles[:, 2], np.inf))  # the nearest before the wall
+    place, focal = np.array([columns[facet], rows[facet]]) + 0.5, np.diagonal(camera.projection)[:2]
+    ray = np.append(((2 * place / SCREEN - 1) * [1, -1] + camera.projection[:2, 2]) / focal, -1)  # a metre deep
+    normal = np.cross(*(corners[facet, 1:] - corners[facet, 0]))
+    depth = middles[facet] @ normal / (ray @ normal)  # of the pixel's middle on the facet
     seen = []
     for behind in (0.005, 0.015):
-        image = painter.unity("Mesh", plane=depth_at(camera, behind - middles[facet, 2]))
+        image = painter.unity("Mesh", plane=depth_at(camera, depth + behind))
         seen.append(bool(image[rows[facet], columns[facet], 3]))
     assert seen == [False, True]
 

@@ -124,6 +124,7 @@ namespace Mua
             StandIns.Messages.Send(shown, "OnValidate");
             Frames(1);
             Say("message", shown.Message);
+            Say("splats", Splats(shown));
             var budget = Make("budget").AddComponent<AvatarBudget>();
             budget.Splats = -5;
             Say("budget", budget.Splats + " " + AvatarBudget.Limit);

@@ -201,6 +201,15 @@ namespace Mua
             SayLast(pose, avatar);
         }
 
+        /// <summary>A rig one of whose joints is inactive.</summary>
+        private static void HasInactiveJoint()
+        {
+            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
+            Transform[] rig = MakeRig(avatar);
+            rig[rig.Length - 1].gameObject.SetActive(false);
+            Say("missing", new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform).Missing);
+        }
+
         /// <summary>The rotation of the last joint.</summary>
         private static void SayLast(AvatarPose pose, AvatarFile avatar)
         {

@@ -214,6 +214,8 @@ namespace Mua
             Say("state", Show(name).State);
             Machine.Paths("/nowhere", folder);
             Say("state", Show(name).State);
+            Machine.Paths(Path.Combine(folder, "others"), folder);
+            Say("of both", Show(name).AvatarName);
             var asset = AvatarAsset.Create(File.ReadAllBytes(files[0]));
             AvatarRenderer shown = Make("avatar").AddComponent<AvatarRenderer>();
             shown.Load(asset);
@@ -227,6 +229,7 @@ namespace Mua
             Frames(20);
             Say("state", shown.State);
             Say("message", shown.Message);
+            Say("held", Recorder.AliveCount + Requests.Open);
         }
 
         private static void FailsInEditor()

@@ -247,6 +247,8 @@ namespace UnityEngine
 
         private static void Collect<T>(Transform at, List<T> found)
         {
+            if (!at.gameObject.activeInHierarchy)
+                return;
             foreach (Component component in at.gameObject.Components)
                 if (component is T)
                     found.Add((T)(object)component);
