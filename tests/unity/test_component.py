@@ -361,6 +361,10 @@ def test_a_joint_that_is_destroyed_returns_to_its_bind_pose(story: Story) -> Non
         assert abs(rotation @ expected) == pytest.approx(1, abs=1e-5)
 
 
+def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
+    assert story("IsNotDrawnYet", "first")["shadows"] == ["Ready 0", "Ready 2"]  # of three frames
+
+
 def test_an_inactive_joint_counts_as_missing(story: Story) -> None:
     assert synthetic_avatar(1).rig.skeleton.names[-1] in story("HasInactiveJoint", "first")["missing"][0]
 

@@ -96,7 +96,7 @@ def test_letters_are_drawn_by_a_shader_that_tests_depth(story: Story) -> None:
 def test_keys_do_what_the_table_says(story: Story) -> None:
     told = story("Keys")
     assert told == {
-        "Space": ["playing True; frame -", "playing False; frame 3"],
+        "Space": ["playing True; frame -", "playing False; frame 3", "playing True; frame -"],
         "Period": ["frame 4"],
         "Comma": ["frame 3", "frame 2"],
         "RightBracket": ["frame 0; clip 1"],
@@ -114,7 +114,7 @@ def test_keys_do_what_the_table_says(story: Story) -> None:
         "R": ["user 0.00 0.21 -2.20"],
         "F": ["user 0.00 0.00 -2.20"],
         "E": ["avatar faces -0.22 0.00 -0.98"],
-        "RightArrow": ["frame 6"],
+        "RightArrow": ["frame 6", "playing False; frame 3"],
         "LeftArrow": ["frame 0"],
         "UpArrow": ["user 0.00 0.15 -2.00; size 0.908"],
         "Backspace": [

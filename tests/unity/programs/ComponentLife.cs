@@ -201,6 +201,19 @@ namespace Mua
             SayLast(pose, avatar);
         }
 
+        /// <summary>An avatar that no camera has drawn yet, then one does.</summary>
+        private static void IsNotDrawnYet()
+        {
+            Camera camera = Scene[0].GetComponent<Camera>();
+            camera.enabled = false;
+            AvatarRenderer shown = Show(files[0]);
+            Frames(3);
+            Say("shadows", shown.State + " " + Recorder.Renders);
+            camera.enabled = true;
+            Frames(3);
+            Say("shadows", shown.State + " " + Recorder.Renders);
+        }
+
         /// <summary>A rig one of whose joints is inactive.</summary>
         private static void HasInactiveJoint()
         {

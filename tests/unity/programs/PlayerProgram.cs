@@ -91,7 +91,7 @@ namespace Mua.Samples.VrPlayer
             {
                 "Space", "Space", "Period", "Comma", "Comma", "RightBracket", "LeftBracket", "LeftBracket", "Digit1", "Digit2", "Digit3",
                 "Digit4", "Digit5", "H", "H", "W", "S", "D", "A", "R", "F", "E", "RightArrow", "LeftArrow", "UpArrow", "Backspace",
-                "Q", "DownArrow", "Backspace", "PageDown", "PageUp", "PageUp",
+                "Q", "DownArrow", "Backspace", "PageDown", "PageUp", "PageUp", "Space", "RightArrow",
             })
             {
                 StandIns.Keys.Press(key);
