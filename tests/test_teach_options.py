@@ -14,6 +14,7 @@ import pytest
 import torch
 from captures import FRAMES, make_capture
 from commands import Commands
+from PIL import Image
 from taught import FEW, material, teacher
 from taught import SETTINGS as SMALL
 from torch import Tensor
@@ -161,13 +162,20 @@ def followed_elsewhere(folder: Path) -> None:
         np.savez(tracks_of(folder, "left"), points=file["points"] + 3, bind=file["bind"])
 
 
-def other_focal(folder: Path) -> None:
+def other_pictures(folder: Path) -> None:
+    """Those of another folder, of which capture.json alone tells."""
     given = open_capture(folder)
-    cameras = tuple(replace(camera, focal=(1.02 * camera.focal[0], camera.focal[1])) for camera in given.cameras)
-    write_capture(replace(given, cameras=cameras))
+    for file in folder.glob("images/**/*.png"):
+        place = folder / "light" / file.relative_to(folder / "images")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with Image.open(file) as opened:
+            picture = np.array(opened)
+        picture[..., :3] = 255 - picture[..., :3] // 2
+        Image.fromarray(picture).save(place)
+    write_capture(replace(given, images=given.images.replace("images/", "light/")))
 
 
-@pytest.mark.parametrize("change", [faster, followed_elsewhere, other_focal])
+@pytest.mark.parametrize("change", [faster, followed_elsewhere, other_pictures])
 def test_another_capture_is_another_training(
     made: Path, capture: Path, lpips: Path, tmp_path: Path, change: Callable[[Path], None]
 ) -> None:
