@@ -1,5 +1,6 @@
 // A stand-in for player.js with the same interface and no WebGPU: what the page does can be tested without an engine.
-// A file is JSON: {name, clips, splats}; anything else is refused. Every picture is a disc at the clip's time.
+// A file is JSON: {name, clips, splats, far}; anything else is refused. Every picture is a disc at the clip's time, and leaves
+// `far` times a tenth of the seconds as how far outside of training the pose is.
 
 import { AvatarError } from "./error.js";
 
@@ -57,7 +58,7 @@ class Fake {
     } catch {
       throw new AvatarError(`${name}: not an avatar.`);
     }
-    const handle = { notes: "", splats: 1, levels: [768, 384, 192], place: [0, 0, 0], bounds: [[-0.5, 0, -0.2], [0.5, 1.8, 0.2]], ...held };
+    const handle = { notes: "", splats: 1, outsideTraining: 0, levels: [768, 384, 192], place: [0, 0, 0], bounds: [[-0.5, 0, -0.2], [0.5, 1.8, 0.2]], ...held };
     handle.remove = () => (this.avatars = this.avatars.filter((each) => each !== handle));
     this.avatars = [...this.avatars, handle];
     this.clip ??= handle.clips[0]?.name ?? null;
@@ -78,6 +79,7 @@ class Fake {
     this.context.beginPath();
     this.context.arc(width / 2, height / 2, height / 5, 0, 6.3);
     this.context.fill();
+    for (const one of this.avatars) one.outsideTraining = (this.time / 10) * (one.far ?? 1);
     this.drawn += 1;
   }
 

@@ -3,7 +3,7 @@
 //   mutants        the same of files on the standard input, each after its length as four bytes, that also arrive in steps;
 //                  and the most bytes that this process has taken by then
 //   measured RUNS  of a file that is read so often: processor seconds of each, and the most bytes that the first took
-//   values FRAMES  of the file's first clip, those frames: descriptors, joints, boxes; and what the kernels read
+//   values FRAMES  of the file's first clip, those frames: descriptors, components, joints, boxes; and what the kernels read
 //   stages STEP    of a file that arrives in such steps: how much was there, and what it shows, or code and field of the fault
 //   soon TOTAL BYTES...  whether the rest of so many bytes is expected soon, after so many more every 100 ms; 0: none came
 //   shown STEPS    which avatars an engine is given while one arrives: "part 1", "ready" once it can draw, "whole", "fail"
@@ -18,6 +18,7 @@ import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
 import { coarserTexture, coarsest, levelCounts, texelLength, textureOf } from "../../python/mua/web/coarser.js";
 import { Download } from "../../python/mua/web/download.js";
+import { readComponents } from "../../python/mua/web/components.js";
 import { describe } from "../../python/mua/web/descriptor.js";
 import { orderOf } from "../../python/mua/web/early.js";
 import { general, scientific, shortest } from "../../python/mua/web/format/numbers.js";
@@ -73,11 +74,14 @@ function values(avatar, frames) {
   const { skeleton, encoding, clips, texels, wavelet, geometry, surface } = avatar;
   const { rate } = encoding;
   const posed = frames.map((frame) => sample(skeleton, clips[0], frame, rate));
+  const described = frames.map((frame) => describe(skeleton, encoding, window(skeleton, clips[0], frame, encoding)));
   return {
     frames: framesAt(clips[0], rate),
     rotations: posed.map((pose) => list(pose.rotations)),
     translations: posed.map((pose) => list(pose.translations)),
-    descriptors: frames.map((frame) => list(describe(skeleton, encoding, window(skeleton, clips[0], frame, encoding)))),
+    descriptors: described.map(list),
+    components: described.map((one) => list(readComponents(encoding, one).held)),
+    outside: described.map((one) => readComponents(encoding, one).outside),
     joints: posed.map((pose) => list(skinning(skeleton, world(skeleton, pose)))),
     boxes: posed.map((pose) => frameBox(avatar, pose)),
     ground: groundHeight(avatar, clips[0]),
@@ -97,7 +101,7 @@ function values(avatar, frames) {
 
 /** What plays after each change. */
 function played(avatar, changes) {
-  const handle = handleOf(avatar, () => {});
+  const handle = handleOf(avatar, { remove() {}, outside: () => 0 });
   handle.place = [10, 20, 30];
   const playback = new Playback(() => handle.clips);
   playback.begin(0);

@@ -19,9 +19,9 @@ LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
 } });"""
 
 
-def avatar(name: str, clips: Sequence[object] = CLIPS) -> bytes:
+def avatar(name: str, clips: Sequence[object] = CLIPS, **more: object) -> bytes:
     """An avatar as the stand-in reads it."""
-    return json.dumps({"name": name, "clips": clips}).encode()
+    return json.dumps({"name": name, "clips": clips, **more}).encode()
 
 
 def fake_site(attributes: dict[str, str] | None = None, **files: Content) -> dict[str, Content]:

@@ -4,6 +4,7 @@ import base64
 import io
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,9 @@ from PIL import Image
 from synthetic_avatar import synthetic_avatar, with_surface
 from web.browser import Browser, Page, Serve
 
+from mua import rotation
 from mua.arrays import Array
+from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.write import encode
 from mua.camera import EYE_DISTANCE, Camera, stereo
@@ -39,6 +42,8 @@ START = """(async () => {
   globalThis.faults = [];
   player.onerror = (error) => faults.push(error.message);
 })()"""
+SHARE = 1e-6  # rounding of a clip's quaternions as a file stores them
+FAR = 0.9  # outside of training
 SPLATS = Toggles()
 Open = Callable[..., Page]
 
@@ -293,6 +298,51 @@ def test_a_handle_says_what_the_file_holds(opened: Open, small: Path) -> None:
     clips = [{"name": avatar.clips[0].name, "frames": frames, "seconds": frames / rate}]
     assert (told["name"], told["clips"], told["clip"]) == (avatar.name, clips, avatar.clips[0].name)
     assert told["splats"] == len(avatar.rig.texels.texels)
+
+
+def test_a_handle_says_how_far_outside_of_training_the_pose_is(opened: Open, small: Path) -> None:
+    one, other = read(small), synthetic_avatar(3)
+    page = opened(a=small.read_bytes(), b=encode(other, storage="f32"))
+    assert load(page) == load(page, '"b.muaavatar"') == ""
+    assert page.evaluate("player.avatars.map((one) => one.outsideTraining)") == [0, 0]
+    found = []
+    for frame in (3, 5):
+        show(page, SPLATS, frame, one.encoding.rate)
+        page.evaluate("player.draw()")
+        found.append(page.evaluate("player.avatars.map((one) => one.outsideTraining)"))
+        expected = [avatar.decode(avatar.clips[0], frame).outside for avatar in (one, other)]
+        assert found[-1] == pytest.approx(expected, abs=SHARE)
+    assert len({share for pair in found for share in pair}) == 4
+    page.evaluate("player.renderer.lookAhead(player.posed().map((one) => ({ ...one, following: 3 })))")
+    assert page.evaluate("player.avatars.map((one) => one.outsideTraining)") == found[1], "of what is shown"
+    assert page.evaluate("(avatar.remove(), avatar.outsideTraining)") == 0
+
+
+def test_poses_far_outside_of_training_look_as_on_the_desktop(opened: Open, device: Device, tmp_path: Path) -> None:
+    """Every joint turned at random; networks that read such a pose as it is would throw splats out of the image."""
+    file = tmp_path / "a.muaavatar"
+    file.write_bytes(encode(with_random_poses(synthetic_avatar()), storage="f32"))
+    page, avatar = opened(a=file.read_bytes()), read(file)
+    assert load(page) == ""
+    page.evaluate("player.camera.distance *= 1.5")
+    for frame in range(len(avatar.clips[0])):
+        show(page, SPLATS, frame, avatar.encoding.rate)
+        assert psnr(screenshot(page), desktop(device, file, page, frame)) > LEAST_PSNR
+        expected = avatar.decode(avatar.clips[0], frame).outside
+        assert page.evaluate("avatar.outsideTraining") == pytest.approx(expected, abs=SHARE)
+        assert expected > FAR
+        covered = transparent(page)[..., 3] > 0.2
+        assert covered.any()
+        assert not covered[:, [0, -1]].any()
+        assert not covered[[0, -1]].any()
+
+
+def with_random_poses(avatar: Avatar) -> Avatar:
+    """With a clip of random turns of all joints, and networks whose components are a hundred times as large."""
+    rng, clip, own = np.random.default_rng(1), avatar.clips[0], avatar.components
+    shape = (3, *clip.rotations.shape[1:])
+    turned = replace(clip, rotations=rotation.normalize(rng.normal(size=shape)), translations=clip.translations[:3])
+    return replace(avatar, clips=(turned,), components=replace(own, directions=100 * own.directions))
 
 
 def test_playing_moves_the_time_and_the_picture(opened: Open, small: Path) -> None:

@@ -18,7 +18,8 @@ import { MlpMatmul, MlpMatmulTransposed } from "./wgsl/mlp_matmul.js";
 /**
  * @typedef {object} ChannelSet what a decode makes, and of what
  * @property {LevelBuffers} level of detail
- * @property {GPUBuffer} descriptor of the window of poses
+ * @property {GPUBuffer} components [K] of the descriptor, as the networks read them
+ * @property {number} outside share of the pose that training did not show
  * @property {GPUBuffer} mesh [V, 3] canonical vertices
  * @property {GPUBuffer} texelChannels [6, N, 4] halves; holds the finest level
  */
@@ -77,7 +78,7 @@ export class ChannelDecoder {
     this.textures = [0, 1].map((i) => memory.buffer(Math.max(...branches.map((b) => texture(b, i))), `texture ${i}`));
   }
 
-  /** Append one of PARTS, from the descriptor of `channels` to what it makes of it. */
+  /** Append one of PARTS, from the components in `channels` to what it makes of them. */
   part(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels, /** @type {number} */ part) {
     const { geometry, appearance } = this.buffers;
     if (part > 0) this.coarse(pass, channels);
@@ -85,9 +86,9 @@ export class ChannelDecoder {
     else this.branch(pass, appearance, channels.level.appearance, channels, ROWS / 2);
   }
 
-  /** What the MLP makes of the descriptor; good until the next MLP. */
-  mlp(/** @type {GPUComputePassEncoder} */ pass, /** @type {Mlp} */ mlp, /** @type {GPUBuffer} */ descriptor) {
-    let x = descriptor;
+  /** What the MLP makes of the components; good until the next MLP. */
+  mlp(/** @type {GPUComputePassEncoder} */ pass, /** @type {Mlp} */ mlp, /** @type {GPUBuffer} */ components) {
+    let x = components;
     mlp.forEach((layer, i) => {
       const y = this.activations[i % 2];
       this.layer(pass, this.kernels.MlpMatmul, layer, { x, y }, LAYER_ROWS, i < mlp.length - 1);
@@ -118,7 +119,7 @@ export class ChannelDecoder {
 
   coarse(/** @type {GPUComputePassEncoder} */ pass, /** @type {ChannelSet} */ channels) {
     const { coarseMlp, mesh } = this.buffers;
-    const x = this.mlp(pass, coarseMlp, channels.descriptor);
+    const x = this.mlp(pass, coarseMlp, channels.components);
     this.layer(pass, this.kernels.MlpMatmulTransposed, mesh, { x, y: channels.mesh }, MESH_COLUMNS, false);
   }
 
@@ -128,7 +129,7 @@ export class ChannelDecoder {
    * @param {number} firstRow
    */
   branch(pass, branch, shown, channels, firstRow) {
-    const alpha = this.mlp(pass, branch.mlp, channels.descriptor);
+    const alpha = this.mlp(pass, branch.mlp, channels.components);
     const { texels, wavelet } = this.buffers.avatar;
     const { textures } = this;
     const levels = branch.details.length;

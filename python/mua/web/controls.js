@@ -32,6 +32,7 @@ export class Controls {
     this.follow = /** @type {HTMLInputElement} */ (find(".follow"));
     this.level = /** @type {HTMLSelectElement} */ (find(".level"));
     this.avatars = find(".avatars");
+    this.outside = find(".outside");
     this.times = /** @type {HTMLDetailsElement} */ (find(".times"));
     this.rate = find(".rate");
     this.stages = find(".times tbody");
@@ -159,8 +160,16 @@ export class Controls {
     this.avatars.replaceChildren(...rows);
   }
 
+  /** Say how far outside of training the poses are that are shown, in the order of the avatars. */
+  showOutside() {
+    const shares = this.avatar.avatars.map(({ outsideTraining }) => `${Math.round(100 * outsideTraining)} %`);
+    const said = shares.length ? `Outside of training: ${shares.join(", ")}` : "";
+    if (this.outside.textContent !== said) this.outside.textContent = said;
+  }
+
   /** What changes with every picture. */
   tick() {
+    this.showOutside();
     const player = this.avatar.player;
     const clip = player?.clips.find(({ name }) => name === player.clip);
     if (!player || !clip) return;

@@ -1,4 +1,4 @@
-// The motion descriptor: what the networks read of a window of poses. Reference: python/mua/pose/descriptor.py, and
+// The motion descriptor: a window of poses in numbers. Reference: python/mua/pose/descriptor.py, and
 // section 3 of schemas/README.md.
 
 import { conjugate, multiply, rotate, sixNumbers } from "./rotation.js";
@@ -7,7 +7,7 @@ import { conjugate, multiply, rotate, sixNumbers } from "./rotation.js";
 /** @typedef {import("./format/rig.js").Skeleton} Skeleton */
 /** @typedef {import("./format/read.js").Encoding} Encoding */
 
-/** The normalised descriptor [k D] of one window, newest pose first. */
+/** The descriptor [k D] of one window, newest pose first. */
 export function describe(
   /** @type {Skeleton} */ skeleton,
   /** @type {Encoding} */ encoding,
@@ -25,7 +25,7 @@ export function describe(
     ...sixNumbers(multiply(back, turns[age])),
     ...jointNumbers(skeleton, encoding, pose),
   ]);
-  return Float32Array.from(numbers, (value, i) => (value - encoding.mean[i]) / encoding.scale[i]);
+  return Float64Array.from(numbers);
 }
 
 /** Local rotations and translations of the encoded joints. */

@@ -15,6 +15,7 @@
 //   elevation   degrees above the horizon
 //   orbit       degrees per second by which the camera goes round while it plays, unless less motion is wanted
 //
+// `outsideTraining` tells how far the pose last drawn is from those of training, 0 to 1.
 // Events: `load` when an avatar is shown, `error` with the error in `detail`, `picture` when the first one is drawn.
 
 import { adopt, ASKABLE, FOLLOWED, levelNamed } from "./attributes.js";
@@ -57,6 +58,7 @@ export class MuaAvatar extends HTMLElementOrNone {
   #stage = new Stage(this);
   #loop = new Loop(this, {
     tick: (seconds) => this.#tick(seconds),
+    drawn: () => this.#controls.showOutside(),
     fail: (error) => this.#loading.fail(error),
   });
 
@@ -131,6 +133,11 @@ export class MuaAvatar extends HTMLElementOrNone {
   set speed(speed) {
     if (this.player) this.player.speed = speed;
     this.#redraw();
+  }
+
+  /** Share of the pose of the first avatar, as last drawn, that training did not show, 0 to 1. */
+  get outsideTraining() {
+    return this.avatars[0]?.outsideTraining ?? 0;
   }
 
   /** The level of detail that is asked for. @returns {import("./player.js").Level} */

@@ -117,7 +117,7 @@ export class Engine {
     if (!renderer) throw new AvatarError(AWAY);
     const slot = await renderer.add(avatar);
     if (this.renderer !== renderer) throw new AvatarError(AWAY); // lost meanwhile
-    const entry = part ?? { avatar, slot, grounds: new Map(), handle: handleOf(avatar, (one) => this.remove(one)) };
+    const entry = part ?? { avatar, slot, grounds: new Map(), handle: handleOf(avatar, this) };
     if (!part) this.entries.push(entry);
     else if (this.entries.includes(part)) renderer.replace(part.slot, slot);
     else renderer.remove(slot); // its part was taken away meanwhile
@@ -128,8 +128,18 @@ export class Engine {
     return entry;
   }
 
+  /** @param {AvatarHandle} handle @returns {Entry | undefined} */
+  entryOf(handle) {
+    return this.entries.find((one) => one.handle === handle);
+  }
+
+  /** How far outside of training the pose is that is shown of an avatar, 0 to 1. */
+  outside(/** @type {AvatarHandle} */ handle) {
+    return this.entryOf(handle)?.slot.frame.outside ?? 0;
+  }
+
   remove(/** @type {AvatarHandle} */ handle) {
-    const entry = this.entries.find((one) => one.handle === handle);
+    const entry = this.entryOf(handle);
     if (!entry) return;
     this.entries = this.entries.filter((one) => one !== entry);
     this.renderer?.remove(entry.slot);

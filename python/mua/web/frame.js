@@ -2,6 +2,7 @@
 // several displayed frames beside the channels that are shown meanwhile. Reference: python/mua/player/frame.py.
 
 import { ChannelDecoder, FLOAT, PARTS, TEXEL_CHANNELS, groups } from "./channels.js";
+import { readComponents } from "./components.js";
 import { describe } from "./descriptor.js";
 import { kernelsOf } from "./kernel.js";
 import { dualFromRigid, dualMultiply, dualTransform } from "./rotation.js";
@@ -39,7 +40,8 @@ export class AvatarFrame {
     const level = this.buffers.level(0);
     return {
       level,
-      descriptor: memory.buffer(FLOAT * avatar.encoding.width, "descriptor"),
+      components: memory.buffer(FLOAT * avatar.encoding.margins.length, "components"),
+      outside: 0,
       mesh: memory.buffer(FLOAT * 3 * this.vertexCount, "mesh"),
       texelChannels: memory.buffer(TEXEL_CHANNELS * level.splatCount, "texel_channels"),
     };
@@ -50,6 +52,11 @@ export class AvatarFrame {
     return this.shown.level.splatCount;
   }
 
+  /** How far outside of training the pose is that is shown, 0 to 1. */
+  get outside() {
+    return this.shown.outside;
+  }
+
   /** Parts of the decode that was begun and is not shown. */
   get partsLeft() {
     return PARTS - this.decoded;
@@ -57,7 +64,7 @@ export class AvatarFrame {
 
   /**
    * Append all parts of a decode, whose channels are shown from then on.
-   * The descriptor is written to the device at once: submit before the next decode.
+   * The components are written to the device at once: submit before the next decode.
    * @param {GPUComputePassEncoder} pass @param {Pose[]} window newest first @param {number} level of detail, 0 being the finest
    */
   decode(pass, window, level) {
@@ -86,7 +93,9 @@ export class AvatarFrame {
   take(/** @type {ChannelSet} */ channels, /** @type {Pose[]} */ window, /** @type {number} */ level) {
     const { skeleton, encoding } = this.buffers.avatar;
     channels.level = this.buffers.level(level);
-    this.device.write(channels.descriptor, describe(skeleton, encoding, window));
+    const { held, outside } = readComponents(encoding, describe(skeleton, encoding, window));
+    channels.outside = outside;
+    this.device.write(channels.components, Float32Array.from(held));
   }
 
   /**

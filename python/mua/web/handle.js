@@ -7,10 +7,20 @@ import { sizesOf } from "./levels.js";
 /** @typedef {import("./player.js").ClipInfo} ClipInfo */
 /** @typedef {import("./format/read.js").Avatar} Avatar */
 
-/** @param {Avatar} avatar @param {(handle: AvatarHandle) => void} remove @returns {AvatarHandle} */
-export function handleOf(avatar, remove) {
+/** @typedef {{remove: (handle: AvatarHandle) => void, outside: (handle: AvatarHandle) => number}} Asks what a handle asks of its player */
+
+/** @param {Avatar} avatar @param {Asks} asks @returns {AvatarHandle} */
+export function handleOf(avatar, asks) {
   /** @type {AvatarHandle} */
-  const handle = { ...described(avatar), whole: false, place: [0, 0, 0], remove: () => remove(handle) };
+  const handle = {
+    ...described(avatar),
+    whole: false,
+    place: [0, 0, 0],
+    get outsideTraining() {
+      return asks.outside(handle);
+    },
+    remove: () => asks.remove(handle),
+  };
   return handle;
 }
 

@@ -3,7 +3,7 @@
 const LONGEST_STEP = 0.25; // seconds that count for one picture, so that nothing leaps after a pause
 
 /** @typedef {import("./element.js").MuaAvatar} MuaAvatar */
-/** @typedef {{tick: (seconds: number) => void, fail: (error: unknown) => void}} Asks tick: with every picture while it plays */
+/** @typedef {{tick: (seconds: number) => void, drawn: () => void, fail: (error: unknown) => void}} Asks tick: with every picture while it plays; drawn: after one while it does not */
 
 export class Loop {
   #drawing = false;
@@ -60,6 +60,7 @@ export class Loop {
   async draw() {
     this.#changed = false;
     await this.avatar.player?.draw();
+    this.asks.drawn();
   }
 
   async #drawChanged() {

@@ -31,6 +31,7 @@ export const MARKUP = `
   <label class="row">Level of detail <select class="level"></select></label>
   <h2>Avatars</h2>
   <ul class="avatars"></ul>
+  <p class="outside"></p>
   <div class="row">
     <button type="button" class="open">Open a file…</button>
     <button type="button" class="reset">Reset the view</button>

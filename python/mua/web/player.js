@@ -44,6 +44,8 @@ export { AvatarError, offersVR };
  * @property {number[]} levels of detail: texels along a side of the texture, the finest first
  * @property {boolean} whole false while only a part of its file is there, whose checksum nobody knows yet
  * @property {[number, number, number]} place where it stands, world, metres; may be set
+ * @property {number} outsideTraining share of the pose last decoded that training did not show, 0 to 1; 0 before the first
+ *   picture. Beyond about a half, folds and colours are close to their mean
  * @property {() => void} remove gives its memory back; may be called twice
  */
 

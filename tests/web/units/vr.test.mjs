@@ -20,7 +20,7 @@ function engineOf(...places) {
   const told = { vr: [], failed: [], drawn: 0, submitted: [] };
   const engine = {
     told,
-    entries: places.map((place) => ({ avatar, grounds: new Map(), handle: { ...handleOf(avatar, () => {}), place } })),
+    entries: places.map((place) => ({ avatar, grounds: new Map(), handle: { ...handleOf(avatar, { remove() {}, outside: () => 0 }), place } })),
     camera: { azimuth: 0.7 },
     drawn: "what the canvas shows",
     way: [0, 0, 0],

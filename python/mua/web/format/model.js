@@ -49,11 +49,11 @@ export function readWavelet(/** @type {Tree} */ tree) {
 
 /** @typedef {ReturnType<typeof readCoarse>} Coarse */
 
-export function readCoarse(/** @type {Tree} */ tree, /** @type {number} */ width) {
+export function readCoarse(/** @type {Tree} */ tree, /** @type {number} */ inputs) {
   const mean = realTensor(tree.mean, "coarse.mean", [null, 3]);
   const vertices = mean.shape[0];
   const basis = realTensor(tree.basis, "coarse.basis", [null, vertices, 3]);
-  const mlp = readMlp(tree.mlp, "coarse.mlp", width, basis.shape[0]);
+  const mlp = readMlp(tree.mlp, "coarse.mlp", inputs, basis.shape[0]);
   return { mlp, mean, basis, vertices, places: reals(tree.mean, "coarse.mean", [null, 3]).values };
 }
 
@@ -77,12 +77,12 @@ function readMlp(
 }
 
 /**
- * One branch over `count` texels with LL of `size`, driven by descriptors of `width`.
+ * One branch over `count` texels with LL of `size`, driven by so many components.
  * @param {Tree} tree @param {string} path @param {number} channels
- * @param {{count: number, width: number, size: number}} of
+ * @param {{count: number, inputs: number, size: number}} of
  * @returns {Branch}
  */
-export function readBranch(tree, path, channels, { count, width, size }) {
+export function readBranch(tree, path, channels, { count, inputs, size }) {
   const llBasis = realTensor(tree.ll_basis, `${path}.ll_basis`, [channels, null, size, size]);
   const details = /** @type {Tree[]} */ (tree.details).map((band, i) =>
     readDetail(band, `${path}.details[${i}]`, channels, size * 2 ** i),
@@ -90,7 +90,7 @@ export function readBranch(tree, path, channels, { count, width, size }) {
   const rank = llBasis.shape[1];
   const outputs = channels * details.reduce((all, band) => all + band.rank, rank);
   return {
-    mlp: readMlp(tree.mlp, `${path}.mlp`, width, outputs),
+    mlp: readMlp(tree.mlp, `${path}.mlp`, inputs, outputs),
     llMean: realTensor(tree.ll_mean, `${path}.ll_mean`, [channels, size, size]),
     llBasis,
     details,

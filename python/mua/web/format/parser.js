@@ -7,7 +7,7 @@ import { ENUMS, IDENTIFIER, ROOT, TABLES } from "./layout.js";
 /** @typedef {Record<string, any>} Tree */
 /** @typedef {{name: string, kind: string, vector?: boolean, required?: boolean, align?: number}} Field */
 
-const MAJOR = 3; // version of the format
+const MAJOR = 4; // version of the format
 /** @type {Record<string, number>} */
 const WIDTHS = { bool: 1, ubyte: 1, ushort: 2, uint: 4, float: 4, double: 8 };
 /** @type {Record<string, new (content: ArrayBufferLike, at: number, count: number) => ArrayBufferView>} */
@@ -33,6 +33,8 @@ export function parse(content) {
   const version = new Parser(content).rootScalar("version_major");
   if (version > MAJOR)
     throw fault("version", "version_major", `format version ${version} is newer than ${MAJOR}, update mua`);
+  if (version < MAJOR)
+    throw fault("version", "version_major", `format version ${version} is older than ${MAJOR}, bake the avatar again`);
   const parser = new Parser(content);
   const tree = parser.table(ROOT, 0, "");
   return { tree, crcAt: parser.crcAt };

@@ -71,12 +71,13 @@ function decode(/** @type {Tree} */ tree) {
   const skeleton = readSkeleton(tree.skeleton);
   const joints = skeleton.names.length;
   const encoding = readEncoding(tree.encoding, skeleton);
+  const inputs = encoding.margins.length;
   const wavelet = readWavelet(tree.wavelet);
-  const coarse = readCoarse(tree.coarse, encoding.width);
+  const coarse = readCoarse(tree.coarse, inputs);
   const template = readTemplate(tree.template, coarse.vertices, joints);
   const texels = readTexels(tree.texels, template);
   const side = Math.floor(texels.size / 2 ** wavelet.levels);
-  const of = { count: texels.texels.length, width: encoding.width, size: side };
+  const of = { count: texels.texels.length, inputs, size: side };
   const geometry = readBranch(tree.geometry, "geometry", GEOMETRY_CHANNELS, of);
   const appearance = readBranch(tree.appearance, "appearance", APPEARANCE_CHANNELS, of);
   if (texels.size % 2 ** wavelet.levels)
@@ -103,12 +104,27 @@ function readEncoding(/** @type {Tree} */ tree, /** @type {Skeleton} */ skeleton
     throw refuse("encoding.window", `${window} frames, expected 1 to ${MAX_WINDOW}`);
   const rate = readRate(tree, "encoding.rate");
   const width = window * (9 + 6 * joints.length + 3 * moved.length);
+  const components = readComponents(tree, width);
+  return { joints, translated: moved, window, rate, heading: Boolean(tree.heading), ...components };
+}
+
+/** Of the descriptor: its scale, its principal components, and how far each may go. */
+function readComponents(/** @type {Tree} */ tree, /** @type {number} */ width) {
   const scale = reals(tree.scale, "encoding.scale", [width]).values;
   const least = scale.reduce((a, b) => Math.min(a, b), Infinity);
   if (least < Math.fround(LEAST_SCALE))
     throw refuse("encoding.scale", `${shortest(least)}, expected ${scientificWhole(LEAST_SCALE)} or more`);
+  const { values: directions, shape } = reals(tree.components, "encoding.components", [null, width]);
+  const count = shape[0];
+  const ranges = reals(tree.ranges, "encoding.ranges", [2, count]).values;
+  const swapped = ranges.subarray(0, count).findIndex((low, k) => low > ranges[count + k]);
+  if (swapped >= 0)
+    throw refuse("encoding.ranges", `the lowest value of component ${swapped} is above its highest`);
+  const margins = reals(tree.margins, "encoding.margins", [count]).values;
+  const smallest = margins.reduce((a, b) => Math.min(a, b), 0);
+  if (smallest < 0) throw refuse("encoding.margins", `${shortest(smallest)}, expected 0 or more`);
   const mean = reals(tree.mean, "encoding.mean", [width]).values;
-  return { joints, translated: moved, window, rate, heading: Boolean(tree.heading), width, mean, scale };
+  return { mean, scale, directions, ranges, margins };
 }
 
 const scientificWhole = (/** @type {number} */ value) => general(value, 6);
