@@ -21,9 +21,10 @@ def frames(seed: int = 0) -> Array:
     return np.column_stack([free, free[:, 0] + 0.05 * rng.normal(size=FRAMES), free[:, 1] - free[:, 2]])
 
 
-def components(columns: Array, units: Array | None = None) -> Components:
+def components(columns: Array, units: Array | None = None, joints: Array | None = None) -> Components:
     units = np.ones(columns.shape[1]) if units is None else units
-    return principal_components(columns, normalization(columns, units), units)
+    joints = np.zeros(columns.shape[1]) if joints is None else joints
+    return principal_components(columns, normalization(columns, units), units, joints)
 
 
 def one_component(low: float, high: float, margin: float) -> Components:
@@ -62,6 +63,20 @@ def test_frames_that_do_not_move_have_one_component(still: Array) -> None:
     x, outside = read_components(own, still)
     assert not x.any()
     assert not outside.any()
+
+
+def test_a_joint_in_a_new_pose_bounds_no_other_joint() -> None:
+    columns, joints = frames(), np.array([-1, -1, 4, 4, 7, 7])
+    own = components(columns, joints=joints)
+    used = [set(joints[direction != 0]) for direction in own.directions]
+    assert all(len(one) == 1 for one in used)
+    assert set.union(*used) == {-1, 4, 7}
+    moved = columns[:5].copy()
+    moved[:, 2:4] += 30
+    legs = [joint != {4} for joint in used]
+    before, after = (read_components(own, rows)[0] for rows in (columns[:5], moved))
+    np.testing.assert_array_equal(before[:, legs], after[:, legs])
+    assert np.abs(after - before).max() > 1e-3
 
 
 @pytest.mark.parametrize("size", [1.0, 10.0, 1e3, 1e6])

@@ -6,8 +6,8 @@ from dataclasses import replace
 from mua.baking.order import Order
 from mua.baking.plan import plan
 from mua.baking.sources import load_clips
-from mua.motion_range import PREFIX, motion_range
-from mua.pose.clip import Clip
+from mua.motion_range import motion_range
+from mua.pose.clip import Clip, is_range
 from mua.recording import PlannedClip
 from mua.rig.character import Character
 
@@ -37,8 +37,3 @@ def planned_range(order: Order, character: Character, clips: Sequence[Clip], fra
 def range_frames(asked: int, own: int) -> int:
     """How many frames of the range are recorded where `asked` were asked for and the user's motion gives `own`."""
     return max(asked // SHARE, min(asked - own, max(asked // SHORT_SHARE, FEWEST)), 1)
-
-
-def is_range(name: str) -> bool:
-    """Whether a clip of that name is of the built-in range of motion."""
-    return name.startswith(PREFIX)

@@ -17,13 +17,12 @@ from mua.motion_range.body import BODY, ROLES
 from mua.motion_range.mixed import mixed
 from mua.motion_range.moves import MOVES, other_side
 from mua.motion_range.played import RATE, played
-from mua.pose.clip import Clip
+from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.pose.joint_names import SIDES
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character
 from mua.rig.moving import moving_joints
 
-PREFIX = "range of motion: "  # of the names of these clips
 ROUND = 160  # frames recorded of all clips, after which another round of them shows more than more of these
 PLAYED = 16  # frames for each that is recorded, at most: a teacher plays them all
 UPRIGHT = 0.7  # cosine of the lean of a person's trunk in the bind pose
@@ -50,7 +49,7 @@ def motion_range(character: Character, clips: Sequence[Clip], *, frames: int, se
         else:
             joints = [int(joint) for joint in moving if joint != skeleton.root]
             made += _shortened(_any_rig(skeleton, joints, rest, own), frames)
-    return unique_names([replace(clip, name=f"{PREFIX}{clip.name}") for clip in made])
+    return unique_names([replace(clip, name=f"{RANGE_OF_MOTION}{clip.name}") for clip in made])
 
 
 def _shortened(clips: Sequence[Clip], frames: int) -> list[Clip]:

@@ -13,6 +13,9 @@ from mua.pose.skeleton import Pose
 LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second that a file may say
 
 
+RANGE_OF_MOTION = "range of motion: "  # names of clips of the built-in range of motion begin so
+
+
 @dataclass(frozen=True, eq=False)
 class Stretches:
     """What rigid joints cannot carry: some scale or shear the surface about themselves, before they move it."""
@@ -64,3 +67,8 @@ class Clip:
         rotations = np.concatenate([self.rotations, other.rotations])
         translations = np.concatenate([self.translations, other.translations])
         return replace(self, rotations=rotations, translations=translations, stretches=stretches)
+
+
+def is_range(name: str) -> bool:
+    """Whether a clip of that name is of the built-in range of motion."""
+    return name.startswith(RANGE_OF_MOTION)

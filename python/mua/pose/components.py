@@ -1,7 +1,7 @@
 """Principal components of the motion descriptor, held within what training showed: what the networks read.
 
 ReLU networks extrapolate linearly, and live motion always leaves the poses of training. Along the principal components
-of the training descriptors the range of training is a tight box, also where joints move together.
+of what a joint does in a window the range of training is a tight box.
 """
 
 import numpy as np
@@ -19,14 +19,16 @@ def principal_components(
     descriptors: Array,  # [N, k D] of the training frames
     normalization: Normalization,
     units: Array,  # [k D] as of `mua.pose.descriptor.units_of`
+    joints: Array,  # [k D] the joint of each number, as of `mua.pose.descriptor.joints_of`
 ) -> Components:
     """The whitened components of training descriptors and their ranges, rounded as a file stores them.
 
     A window's poses are nearly alike; velocities are its weak directions, and a network that sees the descriptor as it
-    is learns them last. The floor keeps directions that hold only noise from being raised to the others' level.
+    is learns them last. The floor keeps directions that hold only noise from being raised to the others' level. Every
+    joint has components of its own, so that an arm in a new pose bounds nothing of the legs.
     """
     normal = (descriptors - normalization.mean) / normalization.scale
-    variance, directions = np.linalg.eigh(np.cov(normal.T, bias=True).reshape(normal.shape[1], -1))
+    variance, directions = _directions(normal, joints)
     kept = np.sqrt(np.maximum(variance, 0)) > LEAST_SPREAD * np.sqrt(max(variance.max(), 0))
     kept |= np.arange(len(kept)) == len(kept) - 1  # the largest, where nothing moves
     turn = (directions[:, kept] / np.sqrt(np.maximum(variance[kept], 0) + INPUT_FLOOR)).T[::-1].astype(np.float16)
@@ -35,6 +37,22 @@ def principal_components(
     jitter = np.linalg.norm(turn.astype(float) * (JITTER * units / normalization.scale), axis=1)
     margins = MARGIN * (ranges[1] - ranges[0]) + jitter
     return Components(normalization, *(part.astype(np.float32) for part in (turn, ranges, margins)))
+
+
+def _directions(
+    normal: Array,  # [N, k D]
+    joints: Array,  # [k D]
+) -> tuple[Array, Array]:
+    """Variances [k D], ascending, and directions [k D, k D] of the numbers of each joint."""
+    variances: Array = np.zeros(len(joints))
+    directions: Array = np.zeros((len(joints), len(joints)))
+    for joint in np.unique(joints):
+        own = np.flatnonzero(joints == joint)
+        variances[own], directions[np.ix_(own, own)] = np.linalg.eigh(
+            np.cov(normal[:, own].T, bias=True).reshape(len(own), -1)
+        )
+    order = np.argsort(variances, kind="stable")
+    return variances[order], directions[:, order]
 
 
 def read_components(

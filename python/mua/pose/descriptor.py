@@ -94,6 +94,12 @@ def units_of(
     return np.tile(units, encoding.window)
 
 
+def joints_of(encoding: PoseEncoding) -> Array:
+    """The joint [k D] that each column of a descriptor is of; -1 for the root."""
+    joints = [-1 if part.joint is None else part.joint for part in encoding.parts for _ in range(part.width)]
+    return np.tile(joints, encoding.window)
+
+
 def heading_of(turn: Array) -> Array:
     """The twist about Y [..., 4] of rotations [..., 4]; identity where they have none (swing-twist decomposition)."""
     twist = turn * np.array([1.0, 0, 1, 0])

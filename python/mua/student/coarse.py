@@ -6,12 +6,14 @@ import torch
 from torch import Tensor
 
 from mua.student.components import Components
-from mua.student.factorize import truncated_svd
+from mua.student.factorize import frame_weights, truncated_svd
 from mua.student.local import Parts, sample_locality
 from mua.student.model import Coarse
 from mua.student.optimise import Run
 from mua.student.regress import absolute_error, regress
 from mua.student.settings import Settings
+
+MESH_POWER = 1.5  # of the weights: cloth hangs on history, which windows of quick motion do not show
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,20 +30,25 @@ def mesh_pca(
     components: int,
     *,
     generator: torch.Generator,
+    weights: Tensor | None = None,  # [F] how much each frame counts
 ) -> MeshPca:
     """The leading principal components of canonical meshes; where frames or vertices are too few, the rest is zero."""
-    mean = meshes.mean(0)
+    counts = frame_weights(meshes, weights)
+    mean = (meshes * counts[:, None, None]).mean(0)
     flat = (meshes - mean).flatten(1)
-    _, s, v = truncated_svd(flat, components, generator=generator)
+    _, s, v = truncated_svd(flat * counts.sqrt()[:, None], components, generator=generator)
     v = v * (s > torch.finfo(s.dtype).eps * max(flat.shape) * s.max())[:, None]  # directions without motion are noise
     basis = torch.nn.functional.pad(v, (0, 0, 0, components - len(v)))
     return MeshPca(mean, basis.unflatten(1, meshes.shape[1:]), flat @ basis.T)
 
 
-def set_pca(coarse: Coarse, meshes: Tensor, run: Run) -> MeshPca:
+def set_pca(coarse: Coarse, meshes: Tensor, run: Run, weights: Tensor | None = None) -> MeshPca:
     """Set mean and basis of `coarse` from meshes [F, V, 3], metres, alike in all processes; returns the PCA."""
     pca = MeshPca(
-        **run.once("coarse components", lambda: vars(mesh_pca(meshes, len(coarse.basis), generator=run.generator)))
+        **run.once(
+            "coarse components",
+            lambda: vars(mesh_pca(meshes, len(coarse.basis), generator=run.generator, weights=weights)),
+        )
     )
     coarse.mean.copy_(pca.mean)
     coarse.basis.copy_(pca.basis)
@@ -57,9 +64,10 @@ def fit_coarse(
     settings: Settings,
     run: Run,
     parts: Parts | None = None,
+    weights: Tensor | None = None,  # [F] how much each frame counts
 ) -> None:
     """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
-    pca = set_pca(coarse, meshes, run)
+    pca = set_pca(coarse, meshes, run, weights)
     fade = settings.generalisation.fade
     mlp = regress(
         inputs,
@@ -71,6 +79,7 @@ def fit_coarse(
         schedule=settings.regression,
         stage="coarse mesh",
         run=run,
+        weights=None if weights is None else weights**MESH_POWER,
         generalisation=settings.generalisation,
     )
     coarse.mlp.load_state_dict(mlp.folded().state_dict())

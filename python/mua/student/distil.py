@@ -10,13 +10,15 @@ from typing import Protocol
 
 import numpy as np
 import torch
+from torch import Tensor
 
 from mua import __version__
 from mua.arrays import Array
 from mua.checkpoint import Checkpoints, run_key
 from mua.errors import InputError
+from mua.pose.clip import is_range
 from mua.pose.components import principal_components
-from mua.pose.descriptor import choose_joints, choose_translated, describe, normalization, units_of
+from mua.pose.descriptor import choose_joints, choose_translated, describe, joints_of, normalization, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -29,6 +31,7 @@ from mua.student.settings import Settings, StageName
 from mua.student.train import Samples, stages, train
 from mua.teachers.bones import figure_scale
 
+RANGE_WEIGHT = 0.02  # of a frame of the built-in range of motion: bases are first of all for the user's motion
 GPU_SECONDS = 1.0  # between two questions about the GPU
 
 
@@ -95,7 +98,7 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     )
     descriptors = describe_frames(recording, encoding)
     units = units_of(encoding, figure_scale(recording.rig.mesh.vertices))
-    components = principal_components(descriptors, normalization(descriptors, units), units)
+    components = principal_components(descriptors, normalization(descriptors, units), units, joints_of(encoding))
     student = Student(
         settings,
         encoding=encoding,
@@ -124,7 +127,17 @@ def _samples(recording: Recording, descriptors: Array) -> Samples:
         meshes=torch.from_numpy(recording.meshes(np.arange(recording.count()))),
         subbands=recording.subbands,
         mean_texture=torch.from_numpy(recording.mean_texture()).float(),
+        weights=_weights(recording),
     )
+
+
+def _weights(recording: Recording) -> Tensor | None:
+    """How much each training frame counts: those of the built-in range of motion less; None where there is none."""
+    clips = [clip for clip in recording.clips if not clip.held_out]
+    counts = np.concatenate(
+        [np.full(len(clip.recorded), RANGE_WEIGHT if is_range(clip.name) else 1.0) for clip in clips]
+    )
+    return torch.from_numpy(counts).float() if (counts == 1).any() and (counts < 1).any() else None
 
 
 class _Reporter:

@@ -36,6 +36,16 @@ class Factors:
         return torch.einsum("sri,srj->rsij", self.h, self.w).flatten(1)
 
 
+def frame_weights(
+    frames: Tensor,  # [F, ...]
+    weights: Tensor | None,  # [F] how much each counts; None: all alike
+) -> Tensor:
+    """The weights [F] with a mean of one."""
+    if weights is None:
+        return torch.ones(len(frames), dtype=frames.dtype, device=frames.device)
+    return (weights / weights.mean()).to(frames)
+
+
 def truncated_svd(
     x: Tensor,  # [F, P]
     rank: int,

@@ -72,6 +72,7 @@ def finetune(
     basis_rate: float = BASIS_RATE,
     weight_decay: float = Generalisation.weight_decay,
     error: Callable[[Bands, Bands], Tensor] = subband_loss,
+    frames: Tensor | None = None,  # [F] how often each frame is drawn; None: all alike
 ) -> None:
     """Train bases and MLP together on an error of weighted subbands, by default the paper's loss."""
     schedule = schedule.over(len(inputs))
@@ -83,7 +84,7 @@ def finetune(
             predicted = model(inputs[share.rows.to(inputs.device)])
             return error(predicted, Bands(ll * scale, d3 * scale, d2 * scale))
 
-        return run.processes.mean_loss(draw_frames(len(inputs), schedule, run), part, frames=len(inputs))
+        return run.processes.mean_loss(draw_frames(len(inputs), schedule, run, frames), part, frames=len(inputs))
 
     mlp = list(branch.mlp.parameters())
     bases = [branch.ll_basis, branch.d3.h, branch.d3.w, branch.d2.h, branch.d2.w]
@@ -95,6 +96,8 @@ def finetune(
         optimise(branch, loss, schedule=schedule, parameters=groups, stage=stage, run=run)
 
 
-def draw_frames(count: int, schedule: Schedule, run: Run) -> Tensor:
-    """The indices [B] of a step's frames out of `count`, each at most once."""
+def draw_frames(count: int, schedule: Schedule, run: Run, weights: Tensor | None = None) -> Tensor:
+    """The indices [B] of a step's frames out of `count`, each at most once, as often as its weight [F] says."""
+    if weights is not None:
+        return torch.multinomial(weights.cpu(), min(schedule.batch, count), generator=run.generator)
     return torch.randperm(count, generator=run.generator)[: schedule.batch]

@@ -39,6 +39,7 @@ def regress(
     run: Run,
     expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
+    weights: Tensor | None = None,  # [F] how much each frame counts
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
     """An MLP from components to targets, or to targets @ expand, taught the smooth function through them.
@@ -56,7 +57,7 @@ def regress(
     @cache  # and not at all where a finished stage is taken up
     def lesson() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
-        smooth = fit_local(inputs, goal, components, locality, generator=generator)
+        smooth = fit_local(inputs, goal, components, locality, generator=generator, weights=weights)
         points = draw_points(
             inputs,
             components,
@@ -99,16 +100,17 @@ def fit_local(
     locality: Locality | None,
     *,
     generator: torch.Generator,
+    weights: Tensor | None = None,  # [F]
 ) -> Callable[[Tensor], Tensor]:
     """The smooth function of components through `goal`; with `locality` a sum over parts, as each sees the pose."""
     z, back = components(inputs), components.back()
     if locality is None:
-        return fit_smoother(z, goal, generator=generator)
+        return fit_smoother(z, goal, generator=generator, weights=weights)
     turns, smoothers = [], []
     for reach, share in zip(locality.reach, locality.shares, strict=True):
         turn = (back * reach) @ whitening(inputs * reach)
         turn = turn[:, leading(z @ turn)]
-        one = fit_smoother(z @ turn, goal, generator=generator)
+        one = fit_smoother(z @ turn, goal, generator=generator, weights=weights)
         turns.append(turn)
         smoothers.append(replace(one, values=one.values @ share))
     return Sum(tuple(turns), tuple(smoothers))

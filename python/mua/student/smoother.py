@@ -35,23 +35,26 @@ def fit_smoother(
     targets: Tensor,  # [F, K]
     *,
     generator: torch.Generator,
+    weights: Tensor | None = None,  # [F] how much each frame counts, by default 1: its noise is RIDGE over that
 ) -> Smoother:
     """The smooth function that comes near `targets` at `x`."""
+    weights = torch.ones_like(x[:, 0]) if weights is None else weights
     chosen = torch.randperm(len(x), generator=generator)[:CENTRES].sort().values.to(x.device)
     centres = x[chosen]
     distance = float(2 * (x - x.mean(0)).square().sum(1).mean())
     width = WIDTH * distance if distance > 0 else 1.0
     kernel = _kernel(centres, centres, width).double()
     if len(centres) == len(x):  # no approximation
-        system = kernel + RIDGE * torch.eye(len(x), dtype=kernel.dtype, device=kernel.device)
-        solved = torch.cholesky_solve(targets.double(), torch.linalg.cholesky(system))
+        system = kernel + torch.diag(RIDGE / weights[chosen].double())
+        solved = torch.cholesky_solve(targets[chosen].double(), torch.linalg.cholesky(system))
         return Smoother(centres, solved.to(targets), width)
     values, vectors = torch.linalg.eigh(kernel)
     kept = values > RANK_FLOOR * values[-1]
     features = vectors[:, kept] / values[kept].sqrt()
     seen = _kernel(x, centres, width).double() @ features
-    system = seen.T @ seen + RIDGE * torch.eye(seen.shape[1], dtype=seen.dtype, device=seen.device)
-    solved = features @ torch.linalg.solve(system, seen.T @ targets.double())
+    weighted = seen.T * weights.double()
+    system = weighted @ seen + RIDGE * torch.eye(seen.shape[1], dtype=seen.dtype, device=seen.device)
+    solved = features @ torch.linalg.solve(system, weighted @ targets.double())
     return Smoother(centres, solved.to(targets), width)
 
 

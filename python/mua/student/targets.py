@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from mua.channels import ATTRIBUTES
-from mua.student.factorize import truncated_svd
+from mua.student.factorize import frame_weights, truncated_svd
 from mua.student.model import Branch, outer_products
 
 # No one sees an attribute vary by less, in its own unit (metres on a person, quaternion, log scale, logit, SH).
@@ -82,6 +82,7 @@ def joint_targets(
     *,
     rank: int,
     generator: torch.Generator,
+    frames: Tensor | None = None,  # [F] how much each frame counts
 ) -> Targets:
     """The leading `rank` joint directions of a branch's coefficients, by their worth in the weighted texture.
 
@@ -95,7 +96,9 @@ def joint_targets(
     alphas = branch.split(flat)
     roots = [_root(basis, weights) for basis in bases]
     worth = [torch.einsum("fcr,crk->fck", alpha, root.to(alpha)) for alpha, root in zip(alphas, roots, strict=True)]
-    u, s, v = truncated_svd(torch.cat([level.flatten(1) for level in worth], dim=1), rank, generator=generator)
+    roots_of_weights = frame_weights(flat, frames).sqrt()[:, None]
+    together = torch.cat([level.flatten(1) for level in worth], dim=1)
+    u, s, v = truncated_svd(together * roots_of_weights, rank, generator=generator)
     kept = max(int((s > ROUNDING * s[0]).sum()), 1)
     u, s, v = u[:, :kept], s[:kept], v[:kept]
     parts = branch.split(v)
@@ -103,7 +106,7 @@ def joint_targets(
         torch.linalg.solve_triangular(root, part.transpose(0, 1).double(), upper=False, left=False).transpose(0, 1)
         for root, part in zip(roots, parts, strict=True)
     ]
-    return Targets(u * s, torch.cat([part.flatten(1) for part in expand], dim=1).to(u))
+    return Targets(u * s / roots_of_weights, torch.cat([part.flatten(1) for part in expand], dim=1).to(u))
 
 
 def _root(

@@ -8,7 +8,7 @@ from functools import partial
 import torch
 from torch import Tensor
 
-from mua.channels import APPEARANCE, GEOMETRY
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.checkpoint import Checkpoints
 from mua.errors import InputError
 from mua.memory import release_memory
@@ -17,10 +17,10 @@ from mua.student.branches import each_branch, side_by_side
 from mua.student.coarse import fit_coarse
 from mua.student.components import Components
 from mua.student.conditioned import fold
-from mua.student.factorize import blendshapes, separable_blendshapes
+from mua.student.factorize import blendshapes, frame_weights, separable_blendshapes
 from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
 from mua.student.local import Parts, texture_locality
-from mua.student.model import Alphas, Branch, Student, outer_products
+from mua.student.model import Alphas, Branch, Student, lowpass_texels, outer_products
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
@@ -46,6 +46,7 @@ class Samples:
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
+    weights: Tensor | None = None  # [F] how much each frame counts; None: all alike
     sensitivities: Callable[[Run], Bands] | None = None  # of images to samples; without them, the paper's loss counts
 
     def __len__(self) -> int:
@@ -80,15 +81,22 @@ def train(
     student.load_state_dict(run.once("components", student.read_buffers), strict=False)
     descriptors, components = samples.descriptors.to(device), student.components
     random = settings.start == "random"
+    counts = None if samples.weights is None else samples.weights.to(device)
     inputs = student.read(descriptors) if random else student.normalize(descriptors)
-    start = fit_coarse_from_noise if random else partial(fit_coarse, components=components, parts=samples.parts)
+    start = (
+        fit_coarse_from_noise
+        if random
+        else partial(fit_coarse, components=components, parts=samples.parts, weights=counts)
+    )
     if only in (None, "coarse"):
         start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
     release_memory()
     if only == "coarse":
         return
     seen = None if random else _sensitivities(samples, run.alone(SENSITIVITIES))
-    learn = partial(fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen)
+    learn = partial(
+        fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen, frames=counts
+    )
     fit = fit_branch_from_noise if random else learn
 
     def teach(name: str, branch: Branch, channels: slice, run: Run) -> None:
@@ -107,8 +115,22 @@ def train(
     each_branch([partial(teach, *branch) for branch in branches], run)
     if only is not None:
         return
-    student.static.copy_(samples.mean_texture.to(device).T - student.mean_lowpass())
+    low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)
+    student.static.copy_(samples.mean_texture.to(device).T - low)
     student.requires_grad_(False).eval()
+
+
+def mean_lowpass(student: Student, samples: Samples) -> Tensor:
+    """What the mean of the recorded subbands puts into the valid texels [23, N], where bases have another mean."""
+    rows = torch.arange(len(samples))
+    means = [
+        Bands(*(band.mean(0, keepdim=True) for band in samples.subbands(slice(channel, channel + 1), rows)))
+        for channel in range(CHANNELS)
+    ]
+    ll, d3, d2 = zip(*means, strict=True)
+    mean = Bands(torch.cat(ll, dim=1), torch.cat(d3, dim=2), torch.cat(d2, dim=2))
+    device = student.static.device
+    return lowpass_texels(Bands(*(band.to(device) for band in mean)), student.wavelet, student.texels)[0]
 
 
 def _sensitivities(samples: Samples, run: Run) -> Bands | None:
@@ -167,6 +189,7 @@ def fit_branch(
     parts: Parts | None = None,
     until: StageName | None = None,
     sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
+    frames: Tensor | None = None,  # [F] how much each frame counts
 ) -> None:
     """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
 
@@ -184,6 +207,7 @@ def fit_branch(
         parts=parts,
         until=until,
         sensitivities=sensitivities,
+        frames=frames,
     )
     if until in ("bases", "regression"):
         return
@@ -204,6 +228,7 @@ def fit_branch(
         weight_decay=settings.generalisation.weight_decay,
         basis_rate=basis_rate,
         error=error,
+        frames=frames,
     )
     fold(branch)
 
@@ -221,6 +246,7 @@ def start_branch(
     parts: Parts | None = None,
     until: StageName | None = None,
     sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
+    frames: Tensor | None = None,  # [F] how much each frame counts
 ) -> Tensor:
     """Closed-form bases, and an MLP taught their coefficients, conditioned for what follows; not if `until` "bases".
 
@@ -235,6 +261,7 @@ def start_branch(
         stage=stage,
         run=run.alone(stage),
         sensitivities=None if sensitivities is None else sensitivities.of(channels),
+        counts=frames,
     )
     release_memory()
     weights = channel_weights(variance, channels, size=run.size)
@@ -247,7 +274,8 @@ def start_branch(
     own = run.alone(stage)
     targets = Targets(
         **own.once(
-            f"{name} targets", lambda: vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator))
+            f"{name} targets",
+            lambda: vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator, frames=frames)),
         )
     )
     local = (
@@ -259,6 +287,7 @@ def start_branch(
         components=components,
         expand=targets.expand,
         locality=local,
+        weights=frames,
         hidden=settings.hidden,
         criterion=squared_error,
         schedule=settings.regression,
@@ -279,6 +308,7 @@ def factorize_branch(
     stage: str,
     run: Run,
     sensitivities: Bands | None = None,  # of images to the samples of the branch's channels, of one frame
+    counts: Tensor | None = None,  # [F] how much each frame counts
 ) -> tuple[Tensor, Tensor]:
     """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C].
 
@@ -297,7 +327,7 @@ def factorize_branch(
         generator = run.alone(f"{stage} {channel}").generator  # whoever solves for it draws the same numbers
         worth = None if sensitivities is None else worth_of(sensitivities, channel)
         solved, energy[channel] = factorize_channel(
-            branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth
+            branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth, counts=counts
         )
         for level, own in zip(alphas, solved, strict=True):
             level[:, channel] = own
@@ -318,24 +348,27 @@ def factorize_channel(
     sweeps: int,
     generator: torch.Generator,
     worth: tuple[Tensor, ...] | None = None,  # of `worth_of`; None: errors of all samples count alike
+    counts: Tensor | None = None,  # [F] how much each frame counts
 ) -> tuple[Alphas, Tensor]:
     """Set means and bases of one channel; returns its coefficients [F, R] and the sum of squares about the mean."""
     ll, d3, d2 = bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]
     coarse, *fine = (None, None, None) if worth is None else worth
-    branch.ll_mean[channel] = ll.mean(0)
-    ll = ll - branch.ll_mean[channel]
+    counts = frame_weights(ll, counts)
+    roots = counts.sqrt()
+    branch.ll_mean[channel] = torch.einsum("f,fij->ij", counts, ll) / len(ll)
+    ll = (ll - branch.ll_mean[channel]) * roots[:, None, None]
     coarse = None if coarse is None else coarse.flatten()
     shapes = blendshapes(ll.flatten(1), branch.ranks.ll, generator=generator, worth=coarse)
     branch.ll_basis[channel] = shapes.basis.unflatten(1, ll.shape[1:])
     energy = ll.square().sum()
-    coefficients = [shapes.coefficients]
+    coefficients = [shapes.coefficients / roots[:, None]]
     levels = ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2))
     for (detail, rank, band), own in zip(levels, fine, strict=True):
-        detail.mean[:, channel] = band.mean(0)
-        band = band - detail.mean[:, channel]
+        detail.mean[:, channel] = torch.einsum("f,fsij->sij", counts, band) / len(band)
+        band = (band - detail.mean[:, channel]) * roots[:, None, None, None]
         factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator, worth=own)
         detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
-        coefficients.append(factors.coefficients)
+        coefficients.append(factors.coefficients / roots[:, None])
         energy = energy + band.square().sum()
     return Alphas(*coefficients), energy
 
