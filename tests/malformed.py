@@ -191,6 +191,8 @@ MALFORMED = [
     ("missing", "encoding.margins", drop("encoding.margins")),
     ("shape", "encoding.components.shape", put("encoding.components", pack(np.zeros((20, 71))))),
     ("shape", "coarse.mlp[0].weight.shape", fewer_components),
+    ("shape", "geometry.mlp[0].weight.shape", put("geometry.mlp.0.weight", pack(np.zeros((16, 19))))),
+    ("shape", "appearance.mlp[0].weight.shape", put("appearance.mlp.0.weight", pack(np.zeros((16, 21))))),
     ("finite", "encoding.components", poke("encoding.components", 7, NAN)),
     ("shape", "encoding.ranges.shape", put("encoding.ranges", pack(np.zeros((2, 19))))),
     ("shape", "encoding.ranges.shape", put("encoding.ranges", pack(np.zeros((20, 2))))),

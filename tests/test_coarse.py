@@ -5,10 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from synthetic_student import INPUTS, SETTINGS, VERTICES, run_in, samples
+from synthetic_student import SETTINGS, run_in, samples, student_of
 
 from mua.student.coarse import fit_coarse, mesh_pca
-from mua.student.model import Coarse
 
 FLOAT32 = float(np.finfo(np.float32).eps)
 
@@ -50,9 +49,9 @@ def test_a_mesh_that_never_moves_has_no_basis() -> None:
 
 def test_coarse_mesh_follows_the_descriptor(tmp_path: Path) -> None:
     data = samples()
-    inputs = (data.descriptors - data.descriptors.mean(0)) / data.descriptors.std(0)
-    coarse = Coarse(VERTICES, SETTINGS.components, inputs=INPUTS, hidden=32)
+    student = student_of(data)
+    inputs, components, coarse = student.normalize(data.descriptors), student.components, student.coarse
     longer = replace(SETTINGS, regression=replace(SETTINGS.regression, steps=400))
-    fit_coarse(coarse, inputs, data.meshes, settings=longer, run=run_in(tmp_path))
-    error = (coarse(inputs) - data.meshes).square().sum()
+    fit_coarse(coarse, inputs, data.meshes, components=components, settings=longer, run=run_in(tmp_path))
+    error = (student.mesh(data.descriptors) - data.meshes).square().sum()
     assert error < 0.1 * (data.meshes - data.meshes.mean(0)).square().sum()

@@ -10,12 +10,12 @@ from people import LIMBS, angle, bone, person, still, world
 
 from mua import rotation
 from mua.arrays import Array
-from mua.motion_range import PREFIX, motion_range
+from mua.motion_range import motion_range
 from mua.motion_range.angles import INDEX, LIMITS
 from mua.motion_range.mixed import mixed, random_poses, within
 from mua.motion_range.moves import MOVES
 from mua.motion_range.played import played
-from mua.pose.clip import Clip
+from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Character, Mesh
 
@@ -147,7 +147,7 @@ def test_the_whole_body_is_shown_upside_down_and_lying(rig: tuple[Skeleton, Clip
 def test_whoever_walks_stands_on_the_floor_and_gets_ahead() -> None:
     skeleton = RIGS["T-pose"]
     walk = motion_range(character(skeleton), (), frames=FRAMES, seed=0)[0]
-    assert walk.name == f"{PREFIX}walk"
+    assert walk.name == f"{RANGE_OF_MOTION}walk"
     feet = [skeleton.names.index(f"{side}{part}") for side in SIDES for part in ("Foot", "ToeBase")]
     _, rest = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
     _, at = world(skeleton, walk.cut(slice(45)))  # the first steps, straight on
@@ -159,7 +159,7 @@ def test_whoever_walks_stands_on_the_floor_and_gets_ahead() -> None:
 def test_whoever_lies_or_stands_on_the_hands_touches_the_floor() -> None:
     skeleton = RIGS["T-pose"]
     clips = {clip.name: clip for clip in motion_range(character(skeleton), (), frames=FRAMES, seed=0)}
-    lowest = world(skeleton, clips[f"{PREFIX}floor"])[1][..., 1].min(axis=1)
+    lowest = world(skeleton, clips[f"{RANGE_OF_MOTION}floor"])[1][..., 1].min(axis=1)
     assert -0.1 < lowest.min() <= lowest.max() < 0.2
 
 
@@ -217,7 +217,7 @@ def test_more_frames_are_of_more_poses() -> None:
     assert sum(map(len, few)) < sum(map(len, some)) / 8
     assert len(many) == 2 * len(some)
     assert len({clip.name for clip in many}) == len(many)
-    first, second = (next(c for c in many if c.name == f"{PREFIX}{name}") for name in ("reach", "reach 2"))
+    first, second = (next(c for c in many if c.name == f"{RANGE_OF_MOTION}{name}") for name in ("reach", "reach 2"))
     assert not np.array_equal(first.rotations, second.rotations)
 
 
@@ -263,7 +263,11 @@ def test_each_joint_of_an_animal_moves_alone_and_with_others() -> None:
     skeleton = animal()
     names = ("HeadTop_End", "LeftToe_End", "RightToe_End", "LeftHandMiddle1", "RightHandMiddle1")
     made = motion_range(character(skeleton, without_skin=names), (), frames=FRAMES, seed=0)
-    assert [clip.name.removeprefix(PREFIX) for clip in made] == ["joints alone", "joints together", "joints together 2"]
+    assert [clip.name.removeprefix(RANGE_OF_MOTION) for clip in made] == [
+        "joints alone",
+        "joints together",
+        "joints together 2",
+    ]
     away = [2 * np.degrees(np.arccos(np.clip(abs(np.sum(c.rotations * c.rotations[:1], axis=-1)), 0, 1))) for c in made]
     for joint, name in enumerate(skeleton.names):
         if name in names:

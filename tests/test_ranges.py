@@ -12,9 +12,9 @@ from test_motion_range import RIGS, character
 from mua.asset import read
 from mua.baking.order import MotionRange, Order
 from mua.baking.pipeline import bake
-from mua.baking.ranges import clips_of, is_range, planned_range, range_frames
+from mua.baking.ranges import clips_of, planned_range, range_frames
 from mua.errors import InputError
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, is_range
 
 
 def order(directory: Path, *, frames: int = 240, motion_range: MotionRange = "full") -> Order:
@@ -75,5 +75,5 @@ def test_a_file_without_animation_is_baked_and_played(tmp_path: Path) -> None:
     baked = bake(replace(asked, settings=settings, character=column_file(tmp_path, clip=False)), Silent())
     clips = read(baked.output).clips
     assert clips
-    assert all(is_range(clip.name) and len(clip) > 10 for clip in clips)
+    assert not any(is_range(clip.name) or len(clip) <= 10 for clip in clips)
     assert set(baked.errors) == {"training", *(f"{clip.name} (end)" for clip in clips)}

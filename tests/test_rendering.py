@@ -38,7 +38,9 @@ def splats(centres: Array, colors: Array, *, scale: float = 0.05, opacity: float
 
 def cast(frame: Splats, dtype: type) -> Splats:
     held = {f.name: getattr(frame, f.name) for f in dataclasses.fields(Splats)}
-    return Splats(**{name: None if values is None else values.astype(dtype) for name, values in held.items()})
+    return Splats(
+        **{name: values.astype(dtype) if isinstance(values, np.ndarray) else values for name, values in held.items()}
+    )
 
 
 def sphere(count: int, *, radius: float = 0.4) -> Splats:

@@ -6,9 +6,8 @@ import numpy as np
 
 from mua.baking.order import ALL, NONE
 from mua.baking.plan import ENDING
-from mua.baking.ranges import is_range
 from mua.errors import InputError
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, is_range
 from mua.recording import RecordedClip
 
 LOOKED_AT = 512  # frames, evenly over all clips, of which the most typical is pictured

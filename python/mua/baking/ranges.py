@@ -7,7 +7,7 @@ from mua.baking.order import Order
 from mua.baking.plan import plan
 from mua.baking.sources import load_clips
 from mua.motion_range import motion_range
-from mua.pose.clip import Clip, is_range
+from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
 
@@ -21,13 +21,14 @@ def clips_of(order: Order, character: Character) -> tuple[list[Clip], list[str]]
     if order.motions or character.clips or order.motion_range == "none":
         return load_clips(character, order.motions, mapping=order.mapping, feet=order.feet)
     clips = motion_range(character, (), frames=order.settings.frames, seed=order.settings.seed)
+    clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
     note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
     return clips, [f"{note}. --motion adds motion of your own."]
 
 
 def planned_range(order: Order, character: Character, clips: Sequence[Clip], frames: int) -> list[PlannedClip]:
     """What is recorded of the range of motion beside `frames` training frames of `clips`; none of it is kept whole."""
-    if order.motion_range == "none" or any(is_range(clip.name) for clip in clips):
+    if order.motion_range == "none" or (clips and not order.motions and not character.clips):
         return []
     count = range_frames(order.settings.frames, frames)
     made = motion_range(character, clips, frames=count, seed=order.settings.seed)

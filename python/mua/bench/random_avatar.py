@@ -52,7 +52,7 @@ def random_avatar(settings: Settings) -> Avatar:
         producer="mua-bench",
         rig=rig,
         encoding=ENCODING,
-        components=_components(rng),
+        components=_components(),
         coarse=Coarse(
             _mlp(rng, ENCODING.width, settings.hidden, settings.components),
             vertices,
@@ -69,9 +69,9 @@ def random_avatar(settings: Settings) -> Avatar:
     )
 
 
-def _components(rng: np.random.Generator) -> Components:
+def _components() -> Components:
     """As many as the descriptor has numbers, the most that an avatar has; no pose of the clip leaves their ranges."""
-    directions = np.linalg.qr(rng.standard_normal((ENCODING.width, ENCODING.width)))[0].astype(np.float32)
+    directions = np.eye(ENCODING.width, dtype=np.float32)
     zeros, ones = (make(ENCODING.width, np.float32) for make in (np.zeros, np.ones))
     return Components(Normalization(zeros, ones), directions, FARTHEST * np.stack([-ones, ones]), ones)
 

@@ -72,3 +72,8 @@ class Clip:
 def is_range(name: str) -> bool:
     """Whether a clip of that name is of the built-in range of motion."""
     return name.startswith(RANGE_OF_MOTION)
+
+
+def is_averaged(name: str, *, held_out: bool) -> bool:
+    """Whether a recording's mean is over the frames of such a clip: those of the user's training motion."""
+    return not held_out and not is_range(name)

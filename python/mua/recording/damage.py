@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
+from mua.pose.clip import is_averaged
 from mua.recording.encode import load_reference
 from mua.recording.layout import (
     HEADER,
@@ -69,7 +70,7 @@ def _check_indices(directory: Path, indices: Sequence[Index], plan: Sequence[Pla
                     f"{directory / SHARDS / shard_name(number) / INDEX}: differs from the index that was written"
                 )
             ends[segment.clip] += segment.poses
-            frames += 0 if own.held_out else len(segment.recorded)
+            frames += len(segment.recorded) if is_averaged(segment.clip, held_out=own.held_out) else 0
         if index.training_frames != frames:
             raise InputError(
                 f"{directory / SHARDS / shard_name(number) / INDEX}: has a frame count that differs from its list"

@@ -15,7 +15,7 @@ from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.channels import CHANNELS
 from mua.errors import InputError
-from mua.pose.clip import Clip
+from mua.pose.clip import Clip, is_averaged
 from mua.recording.encode import load_reference
 from mua.recording.layout import (
     HEADER,
@@ -134,7 +134,7 @@ class Recording:
 
     def mean_texture(self) -> Array:
         """The mean [N, 23] float64 over all training frames, at full precision and not only over those kept whole."""
-        count = self._training_frames  # asked first: without frames there is no sum
+        count = self._averaged_frames  # asked first: without frames there is no sum
         mean = self._sum / count
         mean += self.reference.texture
         return mean
@@ -175,6 +175,14 @@ class Recording:
         for number in range(len(self._shards)):
             digest.update((self.directory / SHARDS / shard_name(number) / INDEX).read_bytes())
         return digest.hexdigest()
+
+    @cached_property
+    def _averaged_frames(self) -> int:
+        clips = [clip for clip in self.clips if is_averaged(clip.name, held_out=clip.held_out)]
+        count = sum(len(clip.recorded) for clip in clips)
+        if not count:
+            raise InputError(f"recording {self.directory}: it holds no training frame")
+        return count
 
     @cached_property
     def _training_frames(self) -> int:

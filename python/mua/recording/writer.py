@@ -15,7 +15,7 @@ from mua.channels import CHANNELS
 from mua.errors import InputError
 from mua.levels import COARSE_TEXELS
 from mua.locks import DirectoryLock
-from mua.pose.clip import LARGEST_RATE, LEAST_RATE
+from mua.pose.clip import LARGEST_RATE, LEAST_RATE, is_averaged
 from mua.pose.skeleton import Pose
 from mua.recording.encode import (
     HALF_MAX,
@@ -296,7 +296,7 @@ class TeacherWriter:
         kept = frame.difference.astype(np.float16) if whole else None
         self._shard.add_frame(state.frames, mesh=frame.mesh, subbands=frame.subbands, whole=kept)
         state.recorded.append(state.frames)
-        if not state.held_out:
+        if is_averaged(self._clip, held_out=state.held_out):
             self._sum += frame.difference
             self._training_frames += 1
 

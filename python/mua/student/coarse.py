@@ -13,7 +13,7 @@ from mua.student.optimise import Run
 from mua.student.regress import absolute_error, regress
 from mua.student.settings import Settings
 
-MESH_POWER = 1.5  # of the weights: cloth hangs on history, which windows of quick motion do not show
+MESH_POWER = 2.0  # of the weights: cloth hangs on history, which windows of quick motion do not show
 
 
 @dataclass(frozen=True, eq=False)
