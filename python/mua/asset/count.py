@@ -10,7 +10,7 @@ def parameters(avatar: Avatar) -> dict[str, int]:
     """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison)."""
     branches, components = (avatar.geometry, avatar.appearance), avatar.components
     return {
-        "components of the pose": np.count_nonzero(components.directions) + 3 * len(components.margins),
+        "components of the pose": int(np.count_nonzero(components.directions)) + 3 * len(components.margins),
         "coefficient MLPs": sum(_weights(mlp) for mlp in (avatar.coarse.mlp, *(b.mlp for b in branches))),
         "PCA mesh": avatar.coarse.mean.size + avatar.coarse.basis.size,
         "LL bases": sum(b.ll_mean.size + b.ll_basis.size for b in branches),

@@ -46,7 +46,7 @@ class Samples:
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
     parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
-    weights: Tensor | None = None  # [F] how much each frame counts; None: all alike
+    weights: Tensor | None = None  # [F] how much each frame counts; the mean texture is over those of 1; None: all
     sensitivities: Callable[[Run], Bands] | None = None  # of images to samples; without them, the paper's loss counts
 
     def __len__(self) -> int:
@@ -121,8 +121,9 @@ def train(
 
 
 def mean_lowpass(student: Student, samples: Samples) -> Tensor:
-    """What the mean of the recorded subbands puts into the valid texels [23, N], where bases have another mean."""
-    rows = torch.arange(len(samples))
+    """What the mean subbands of the frames that the mean texture is over put into the valid texels [23, N]."""
+    assert samples.weights is not None
+    rows = torch.nonzero(samples.weights == 1)[:, 0]
     means = [
         Bands(*(band.mean(0, keepdim=True) for band in samples.subbands(slice(channel, channel + 1), rows)))
         for channel in range(CHANNELS)
