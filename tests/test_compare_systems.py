@@ -99,7 +99,7 @@ def test_the_rate_rises_then_falls_to_zero_over_the_budget() -> None:
 
 def test_the_linear_map_is_linear(smooth_frames: TrainingFrames) -> None:
     system = trained("linear", smooth_frames, Budget(steps=2))
-    a, b = smooth_frames.motion.descriptors[:2]
-    between = replace(smooth_frames.motion.of(torch.arange(1)), descriptors=(0.25 * a + 0.75 * b)[None])
+    a, b = smooth_frames.motion.inputs[:2]
+    between = replace(smooth_frames.motion.of(torch.arange(1)), inputs=(0.25 * a + 0.75 * b)[None])
     ends = system.textures(smooth_frames.motion.of(torch.arange(2)))
     torch.testing.assert_close(system.textures(between)[0], 0.25 * ends[0] + 0.75 * ends[1], rtol=1e-4, atol=1e-4)
