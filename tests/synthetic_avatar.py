@@ -41,10 +41,10 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4", levels: int = L
         producer="mua tests",
         rig=rig,
         encoding=encoding,
-        components=synthetic_components(rng, encoding.width),
-        coarse=Coarse(_mlp(rng, COMPONENTS, PCA), vertices, _normal(rng, (PCA, *vertices.shape), 0.01)),
-        geometry=_branch(rng, COMPONENTS, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], side, texels),
-        appearance=_branch(rng, COMPONENTS, [0] * 12, side, texels),
+        components=synthetic_components(rng, encoding.width, seed),
+        coarse=Coarse(_mlp(rng, encoding.width, PCA), vertices, _normal(rng, (PCA, *vertices.shape), 0.01)),
+        geometry=_branch(rng, encoding.width, [0] * 3 + [1, 0, 0, 0] + [-3] * 3 + [2], side, texels),
+        appearance=_branch(rng, encoding.width, [0] * 12, side, texels),
         wavelet=Wavelet(wavelet, levels, np.array(taps.rec_lo), np.array(taps.rec_hi)),
         clips=(synthetic_clip(rig.skeleton, rng),),
         bounds=np.array([[-1, -1, -1], [1, 2, 1]], dtype=np.float32),
@@ -53,12 +53,13 @@ def synthetic_avatar(seed: int = 0, *, wavelet: str = "bior4.4", levels: int = L
     )
 
 
-def synthetic_components(rng: np.random.Generator, width: int) -> Components:
+def synthetic_components(rng: np.random.Generator, width: int, seed: int) -> Components:
     """Random ones; poses of the clip are within the ranges of some and beyond those of others."""
-    scale = rng.uniform(0.5, 2, width).astype(np.float32)
+    normalization = Normalization(scale=rng.uniform(0.5, 2, width).astype(np.float32), mean=_normal(rng, width, 0.1))
+    rng = np.random.default_rng([seed, 1])  # its own: what else is drawn does not depend on the components
     middle, half = _normal(rng, COMPONENTS, 0.5), np.abs(_normal(rng, COMPONENTS, 1.0))
     return Components(
-        normalization=Normalization(_normal(rng, width, 0.1), scale),
+        normalization=normalization,
         directions=_normal(rng, (COMPONENTS, width), 1 / np.sqrt(width)),
         ranges=np.stack([middle - half, middle + half]),
         margins=np.abs(_normal(rng, COMPONENTS, 0.3)),
@@ -179,8 +180,10 @@ def _band(rng: np.random.Generator, channels: int, rank: int, side: int) -> Deta
 
 
 def _mlp(rng: np.random.Generator, inputs: int, outputs: int) -> Mlp:
+    """One that reads as many of `inputs` as there are components."""
     sizes = (inputs, HIDDEN, HIDDEN, outputs)
-    return tuple(Layer(_normal(rng, (n, m), 1 / np.sqrt(m)), _normal(rng, n, 0.1)) for m, n in pairwise(sizes))
+    first, *others = (Layer(_normal(rng, (n, m), 1 / np.sqrt(m)), _normal(rng, n, 0.1)) for m, n in pairwise(sizes))
+    return Layer(first.weight[:, :COMPONENTS], first.bias), *others
 
 
 def _normal(rng: np.random.Generator, shape: int | tuple[int, ...], scale: float) -> Array:
