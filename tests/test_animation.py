@@ -177,6 +177,8 @@ def test_joints_without_a_bind_matrix_of_their_own_stay_where_they_rest(tmp_path
     binds[[1, 4]] = np.eye(4).ravel()
     glb.json["skins"][0]["inverseBindMatrices"] = glb.accessor(binds)
     skeleton = read(glb, tmp_path).skeleton
+    assert set(skeleton.names) == set(expected.names)
+    assert skeleton.names
     places = dict(zip(expected.names, expected.world(*bind(expected))[1], strict=True))
     for name, place in zip(skeleton.names, skeleton.world(*bind(skeleton))[1], strict=True):
         np.testing.assert_allclose(place, places[name], atol=FLOAT_BOUND)

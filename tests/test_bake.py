@@ -157,22 +157,45 @@ def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Pat
     assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
 
 
+MESH = ("vertices", "faces", "uv", "uv_faces")
+SKELETON = ("names", "parents", "bind_rotations", "bind_translations", "root")
+CHARACTER = ("base_color", "skin_indices", "skin_weights", "looseness")
+
+
+def _other(owner: object, name: str) -> object:
+    """Another value of a field."""
+    value = getattr(owner, name)
+    if isinstance(value, np.ndarray):
+        other = value.copy()
+        other.flat[-1] = not other.flat[-1]
+        return other
+    return tuple(f"{each}_" for each in value) if isinstance(value, tuple) else value + 1
+
+
 def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path) -> None:
     order = Order(tmp_path / "a.muaavatar", tmp_path, SMALL, "cpu")
     character = load_character(None, uv="auto", seed=0)
     mesh, skeleton = character.mesh, character.skeleton
     others = [
-        dataclasses.replace(character, mesh=dataclasses.replace(mesh, faces=mesh.faces[:, [1, 2, 0]])),
-        dataclasses.replace(character, mesh=dataclasses.replace(mesh, uv_faces=mesh.uv_faces[:, [1, 2, 0]])),
-        dataclasses.replace(character, skin_indices=character.skin_indices[:, ::-1]),
-        dataclasses.replace(character, looseness=None),
-        dataclasses.replace(
-            character, skeleton=dataclasses.replace(skeleton, names=tuple(name + "_" for name in skeleton.names))
+        *(
+            dataclasses.replace(character, mesh=dataclasses.replace(mesh, **{name: _other(mesh, name)}))
+            for name in MESH
         ),
+        *(
+            dataclasses.replace(character, skeleton=dataclasses.replace(skeleton, **{name: _other(skeleton, name)}))
+            for name in SKELETON
+        ),
+        *(dataclasses.replace(character, **{name: _other(character, name)}) for name in CHARACTER),
+        dataclasses.replace(character, looseness=None),
+    ]
+    orders = [
+        dataclasses.replace(order, settings=dataclasses.replace(SMALL, **{name: getattr(SMALL, name) + 32}))
+        for name in ("texels", "seed")
     ]
     keys = [recording_key(parts(order, one), []) for one in (character, character, *others)]
+    keys += [recording_key(parts(one, character), []) for one in orders]
     assert keys[0] == keys[1]
-    assert len(set(keys)) == 1 + len(others)
+    assert len(set(keys)) == 1 + len(others) + len(orders)
 
 
 def test_a_recording_of_other_motion_is_not_taken_for_this_one() -> None:

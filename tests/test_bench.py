@@ -3,11 +3,14 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
-from commands import process
+from commands import Commands, process
 from synthetic_avatar import synthetic_avatar
 
+import mua.bench.measure
+import mua.gpu
 from mua.asset import write
 from mua.bench import work
 from mua.bench.random_avatar import random_avatar
@@ -128,6 +131,36 @@ def test_prints_every_kernel_and_writes_the_same_figures(avatar_file: Path, tmp_
     assert skin["bytes_per_second"] == pytest.approx(1e3 * skin["bytes"] / skin["milliseconds"]["median"])
     assert skin["fraction_of_copy"] == pytest.approx(skin["bytes_per_second"] / figures["copy_bytes_per_second"])
     assert all(k["milliseconds"]["low"] <= k["milliseconds"]["high"] for k in figures["kernels"].values())
+
+
+@pytest.mark.parametrize("more", [(), ("--model", "quest3"), ("--counts",)], ids=["measured", "modelled", "counted"])
+def test_measures_as_many_frames_on_the_device_asked_for(
+    command: Commands,
+    avatar_file: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    more: tuple[str, ...],
+) -> None:
+    asked: list[str | None] = []
+    measured: list[int] = []
+    open_device, measure = mua.gpu.open_device, mua.bench.measure.measure
+
+    def opened(name: str | None) -> mua.gpu.Device:
+        asked.append(name)
+        return open_device(None)
+
+    def keep(*given: Any, frames: int, **others: Any) -> mua.bench.measure.Measured:
+        measured.append(frames)
+        return measure(*given, frames=frames, **others)
+
+    monkeypatch.setattr(mua.gpu, "open_device", opened)
+    monkeypatch.setattr(mua.bench.measure, "measure", keep)
+    frames = () if "--counts" in more else ("--frames", "3")
+    ended = command("bench", avatar_file, "--device", "mine", *frames, *more, "--json", tmp_path / "figures.json")
+    assert ended.status == 0, ended.err
+    assert asked == ["mine"]
+    assert measured == [3] * bool(frames)
+    assert json.loads((tmp_path / "figures.json").read_text())
 
 
 def test_measures_a_setting_without_a_file() -> None:

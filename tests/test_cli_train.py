@@ -5,9 +5,11 @@ import json
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
+from commands import Commands
 from recordings import FormulaTeacher, clip
 from rich.console import Console
 from synthetic_avatar import synthetic_rig
@@ -21,7 +23,7 @@ from mua.cli import display
 from mua.cli.display import Display
 from mua.recording import PlannedClip, TeacherWriter, record
 from mua.student import distil, source
-from mua.student.settings import STAGES
+from mua.student.settings import STAGES, preset
 
 
 def test_leaves_an_avatar_of_the_recordings_texture_size(trained: Path) -> None:
@@ -173,3 +175,23 @@ def test_a_gpu_holds_what_fits_into_half_of_what_is_free(monkeypatch: pytest.Mon
     monkeypatch.setattr(torch.cuda, "memory_allocated", lambda _: 1_000)
     assert source.room(torch.device("cuda")) == 4_000
     assert source.room(torch.device("cpu")) == source.HELD_BYTES
+
+
+def test_a_check_reports_on_the_recording_and_trains_nothing(
+    written: Path, tmp_path: Path, mua_train: Training
+) -> None:
+    told = mua_train(written, "--check").out
+    assert "walk" in told
+    assert not set(told.splitlines()) & set(STAGE_NAMES)
+    assert [path.name for path in tmp_path.iterdir()] == ["a_check.png"]
+
+
+def test_a_preset_says_how_large_the_student_is(
+    written: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[Any] = []
+    monkeypatch.setattr("mua.baking.train._distil", lambda _, order, __: given.append(order.settings))
+    for name in ("tiny", "preview"):
+        assert command("train", written, "-o", tmp_path / "a.muaavatar", "--preset", name).status == 0
+    assert [settings.hidden for settings in given] == [preset(name).hidden for name in ("tiny", "preview")]
+    assert given[0] != given[1]

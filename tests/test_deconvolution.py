@@ -43,6 +43,7 @@ def shown(colors: Array, place: tuple[float, float], angle: float, spread: float
 def test_weights_are_those_of_surfels_laid_over_each_other() -> None:
     place = np.array([0.25, -0.25])
     single = np.eye(SIZE * SIZE)[5 * SIZE + 6].reshape(SIZE, SIZE, 1) * np.ones(3)  # one white texel
+    assert len(blending(place, OPACITY, SPREAD)) == DIRECTIONS
     for row, weights in enumerate(blending(place, OPACITY, SPREAD)):
         angle = (row + 0.5) * 2 * np.pi / DIRECTIONS
         for dv in (-1, 0, 1):

@@ -299,6 +299,21 @@ def test_bench_asks_for_the_rate_and_waits_as_long_as_it_plays(monkeypatch: pyte
     assert settings["debug.oculus.refreshRate"] == "90"
 
 
+def test_bench_has_the_rate_and_the_seconds_asked_for(deploy: Deploy, hero: Path, tmp_path: Path) -> None:
+    during: dict[str, str] = {}
+
+    def look(arguments: list[str]) -> list[str]:
+        during.update(headset.properties)
+        return playing(arguments)
+
+    headset = FakeHeadset(player=look)
+    ended = deploy([headset], hero, "--bench", "4", "--rate", "90", "--json", tmp_path / "bench.json")
+    (benched,) = json.loads((tmp_path / "bench.json").read_text())["benched"]
+    assert (benched["rate"], benched["seconds"], len(benched["samples"])) == (90, 4, 4)
+    assert during["debug.oculus.refreshRate"] == "90"
+    assert "4 of 4 seconds at 90 Hz" in ended.out
+
+
 def test_bench_puts_the_headset_back_after_an_error(deploy: Deploy, hero: Path, tmp_path: Path) -> None:
     headset = FakeHeadset(player=lambda a: [unity(f"MUA-BENCH {run_of(a)} FAIL avatars/hero.muaavatar: crc32")])
     told = deploy([headset], hero, "--bench", "5", "--json", tmp_path / "bench.json").sentence

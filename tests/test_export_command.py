@@ -1,6 +1,7 @@
 """mua-export writes the files that it is asked for, all of them or none, and refuses the rest in a sentence."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -110,6 +111,24 @@ def test_motion_of_another_file_is_exported_too(command: Commands, avatar_file: 
     assert "joints" in ended.err  # what retargeting has to tell
     moved = read_ply(tmp_path / "b.ply").centres
     assert np.abs(moved - avatar.decode("wave", 0).centres).max() > 0.01
+
+
+def test_a_mapping_says_which_joint_moves_and_a_name_which_of_several_motions(
+    command: Commands, avatar_file: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "motions"
+    folder.mkdir()
+    (folder / "nod.bvh").write_text(BVH.replace("spine", "thing"))
+    (folder / "still.bvh").write_text(re.sub(r"[12]0 0 0$", "0 0 0", BVH.replace("spine", "thing"), flags=re.M))
+    centres = {}
+    for joint in ("middle", "tip"):
+        (tmp_path / f"{joint}.json").write_text(json.dumps({"root": "hips", joint: "thing"}))
+        for clip in ("nod", "still"):
+            more = ("--motion", folder, "--mapping", tmp_path / f"{joint}.json", "--clip", clip, "--frames", 4)
+            ended = command("export", avatar_file, "-o", tmp_path / "b.ply", *more)
+            assert ended.status == 0, ended.err
+            centres[joint, clip] = read_ply(tmp_path / "b.ply").centres
+    assert len({found.tobytes() for found in centres.values()}) == len(centres)
 
 
 @pytest.mark.parametrize(

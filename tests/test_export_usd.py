@@ -187,6 +187,7 @@ def test_the_mesh_of_a_package_shines_in_its_texture(
     surface, _, _ = material.ComputeSurfaceSource()
     ((source,), _) = surface.GetInput("emissiveColor").GetConnectedSources()
     image = UsdShade.Shader(source.source.GetPrim())
+    assert image.GetInput("sourceColorSpace").Get() == "sRGB"  # "raw" would be seen too pale
     asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(image.GetInput("file").Get().resolvedPath))
     with Image.open(io.BytesIO(bytes(asset.GetBuffer()))) as picture:
         pixels = np.asarray(picture)

@@ -209,6 +209,42 @@ def test_splats_look_like_the_character_that_they_are_of(tmp_path: Path) -> None
     assert sheet.width == 2 * 3 * SCREEN[0]
 
 
+FIN = np.array([0.6, 0.5])  # x and z of a corner that sticks out of the column, to its left and front
+TURNED = np.radians(120)  # by which a clip turns the column to its left
+
+
+def lopsided(tmp_path: Path) -> Character:
+    """The column with one upper corner drawn out, so that no two sides look alike; a clip turns it and stays."""
+    glb = gltf_files.body()
+    points = gltf_files.POINTS.copy()
+    points[np.ix_((points > [0, 1.2, 0]).all(axis=1), [0, 2])] = FIN
+    gltf_files.primitive(glb)["attributes"]["POSITION"] = glb.accessor(points)
+    turn = np.array([[0, np.sin(TURNED / 2), 0, np.cos(TURNED / 2)]] * 2)
+    sampler = {"input": glb.accessor(np.array([0.0, 1.0])), "output": glb.accessor(turn)}
+    channel = {"sampler": 0, "target": {"node": 0, "path": "rotation"}}
+    glb.json["animations"] = [{"name": "turned", "samplers": [sampler], "channels": [channel]}]
+    return read_character(glb.save(tmp_path / "fin.glb"), atlas_size=128)
+
+
+@pytest.mark.parametrize("others", [False, True])
+def test_source_and_splats_are_seen_from_the_same_named_side_of_a_turned_figure(tmp_path: Path, others: bool) -> None:
+    """Whether the clip is the file's own, which moves its nodes, or another file's, which moves joints."""
+    character = lopsided(tmp_path)
+    clips = [replace(clip, name="of another file") for clip in character.clips] if others else character.clips
+    fidelity, _ = fidelity_of(character, clips, texels=TEXELS)
+    assert fidelity is not None
+    assert [len(pose.shots) for pose in fidelity.poses] == [4, 1, 1, 1]
+    assert fidelity.iou > 0.96
+    sides = {"front": 0, "left": 90, "back": 180, "front, right": -40, "back, left": 140}  # of the camera, to the left
+    for shot in (shot for pose in fidelity.poses for shot in pose.shots):
+        angle = np.radians(sides[shot.view])
+        fin_is_right = np.array([np.cos(angle), -np.sin(angle)]) @ FIN > 0
+        for image in (shot.source, shot.splats):
+            columns = np.flatnonzero(image[..., 3].any(axis=0))
+            mass = np.average(np.arange(SCREEN[0]), weights=image[..., 3].sum(axis=0))
+            assert (mass < (columns[0] + columns[-1]) / 2) == fin_is_right, shot.view
+
+
 @pytest.mark.parametrize("pale", [True, False])
 def test_a_figure_stands_out_from_the_background_of_its_sheet(tmp_path: Path, pale: bool) -> None:
     character = column(tmp_path)  # which is white

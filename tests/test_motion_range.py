@@ -164,6 +164,8 @@ def test_whoever_lies_or_stands_on_the_hands_touches_the_floor() -> None:
 
 
 def test_no_pose_is_beyond_the_limits_of_its_joints() -> None:
+    assert all(any(key.angles for key in keys) for keys in MOVES.values())
+    assert MOVES
     for name, keys in MOVES.items():
         for number, key in enumerate(keys):
             for angle_name, degree in key.angles.items():

@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from commands import Commands
 
 from mua.asset.read import load, read
 from mua.asset.summary import storage_of
+from mua.asset.write import write
 
 
 def test_packs_beside_the_file_by_default_and_names_both_sizes(command: Commands, avatar_file: Path) -> None:
@@ -24,11 +26,19 @@ def test_a_packed_file_becomes_a_plain_one_with_the_same_numbers(
     packed, plain = tmp_path / "p.muaavatar", tmp_path / "f.muaavatar"
     assert command("pack", avatar_file, "-o", packed).status == 0
     assert command("pack", packed, "--storage", "f16", "-o", plain).status == 0
-    assert (storage_of(load(plain)), load(plain)["version_major"]) == ("f16", 2)
+    assert (storage_of(load(plain)), load(plain)["version_major"]) == ("f16", 4)
     first, second = read(packed), read(plain)
     for name in ("geometry", "appearance"):
         np.testing.assert_array_equal(getattr(first, name).static, getattr(second, name).static)
         np.testing.assert_array_equal(getattr(first, name).ll_basis, getattr(second, name).ll_basis)
+
+
+@pytest.mark.parametrize("storage", ["f32", "f16", "i8", "packed"])
+def test_writes_the_storage_asked_for(command: Commands, avatar_file: Path, tmp_path: Path, storage: str) -> None:
+    given, made = tmp_path / "given.muaavatar", tmp_path / "made.muaavatar"
+    write(given, read(avatar_file), storage="i8" if storage == "f32" else "f32")
+    assert command("pack", given, "--storage", storage, "-o", made).status == 0
+    assert storage_of(load(made)) == storage
 
 
 def test_what_has_the_storage_already_is_refused(command: Commands, avatar_file: Path, tmp_path: Path) -> None:

@@ -60,7 +60,9 @@ def test_it_holds_every_module_and_no_settings(installed: Path) -> None:
 
 def test_its_entries_are_there(installed: Path) -> None:
     package = installed / "node_modules" / "@mua" / "player"
-    for entry in json.loads((package / "package.json").read_text())["exports"].values():
+    exports = json.loads((package / "package.json").read_text())["exports"]
+    assert "." in exports
+    for entry in exports.values():
         assert (package / entry["types"]).is_file()
         assert (package / entry["default"]).is_file()
 

@@ -82,6 +82,13 @@ def test_files_that_are_named_exist(path: str) -> None:
     assert [name for name in names if not (ROOT / name).exists()] == []
 
 
+def test_pages_show_commands_and_tools_with_options() -> None:
+    """Else the tests of them below would ask nothing."""
+    assert len(SHOWN) > 20
+    shown = [words for page in PAGES.values() for _, words in TOOL.findall(page.read_text())]
+    assert any("--" in words for words in shown)
+
+
 @pytest.mark.parametrize("path", PAGES)
 def test_tools_have_the_options_that_are_shown(path: str) -> None:
     """Of argparse as a string, of typer as a parameter."""

@@ -20,6 +20,7 @@ RANDOM = replace(
 
 def test_noise_descends_to_the_training_frames(tmp_path: Path) -> None:
     descriptors, truth = bands_of_frames()
+    assert len(truth)
     for found, band in zip(train_in(tmp_path, RANDOM).predict(descriptors), truth, strict=True):
         about_mean = (band - band.mean(0)).abs().sum()
         assert about_mean > 0

@@ -127,6 +127,7 @@ def test_draws_every_joint_over_all_else(stage: Stage) -> None:
     camera = camera_at(stage.frame.centres)
     image = stage.picture((camera,), "splats,geometry,template,skeleton")
     _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
+    assert len(joints) == 3
     for column, row in pixels(camera, joints).astype(int):
         np.testing.assert_allclose(image[row, column, :3], JOINT_COLOR, atol=HALF)
 

@@ -22,6 +22,7 @@ ROUNDING = 1e-9
 
 @pytest.mark.parametrize("shot", [Shot((64, 96)), Shot((64, 96), follow=True), Shot((64, 96), turning=2.0)])
 def test_the_figure_is_in_the_picture_at_every_frame(shot: Shot) -> None:
+    assert len(CLIP) > 1
     for (camera,), box in zip(film(shot, RIG, CLIP), frame_boxes(RIG, CLIP), strict=True):
         corners = np.array(np.meshgrid(*box.T)).reshape(3, -1).T
         assert np.abs(ndc(camera, corners)).max() <= 1
@@ -86,6 +87,7 @@ def test_what_is_looked_at_stays_in_the_middle_at_its_size() -> None:
 def test_a_camera_that_does_not_follow_looks_where_the_joint_was_at_first() -> None:
     cameras = [camera for (camera,) in film(Shot((64, 96), look_at="tip"), RIG, CLIP)]
     first = find_focus(RIG, "tip").places(RIG.skeleton, CLIP.rotations, CLIP.translations)[0]
+    assert len(cameras) == len(CLIP)
     for camera in cameras:
         np.testing.assert_allclose(ndc(camera, first[None]), 0, atol=ROUNDING)
 

@@ -64,6 +64,35 @@ def test_limbs_point_where_the_source_points(arms_down: float, legs_apart: float
         assert angle(bone(target, found, begin, end), bone(source, clip, begin, end)) < ANGLE_BOUND
 
 
+def lopsided(skeleton: Skeleton, other: Skeleton) -> Skeleton:
+    """The first person with the right arm and leg of the other; both have plain axes."""
+    right = np.array([name.startswith("Right") for name in skeleton.names])[:, None]
+    return replace(skeleton, bind_translations=np.where(right, other.bind_translations, skeleton.bind_translations))
+
+
+@pytest.mark.parametrize("right_is_splayed", [False, True])
+def test_limbs_point_where_the_source_points_where_left_and_right_rest_otherwise(right_is_splayed: bool) -> None:
+    straight, splayed = person(), person(arms_down=50, legs_apart=20)
+    target = lopsided(straight, splayed) if right_is_splayed else lopsided(splayed, straight)
+    source = person(axes=1)
+    clip = random_clip(source)
+    found, _ = retarget(SourceMotion(source, clip), target)
+    for begin, end in LIMBS:
+        assert angle(bone(target, found, begin, end), bone(source, clip, begin, end)) < ANGLE_BOUND, begin
+
+
+def test_each_sole_is_levelled_by_its_own_foot() -> None:
+    """Feet that roll with a splayed leg stand beside one that is straight."""
+    source, target = lopsided(person(), person(legs_apart=20)), person(axes=2)
+    rotations = source.bind_rotations[None].copy()
+    rotations[0, source.names.index("RightUpLeg")] = Rotation.from_euler("z", 20, degrees=True).as_quat(
+        scalar_first=True
+    )
+    closed = replace(still(source), rotations=rotations)
+    turned, _ = world(target, retarget(SourceMotion(source, closed), target)[0])
+    assert_turned_as_at_rest(target, turned[0], "LeftFoot", "RightFoot", "RightToeBase")
+
+
 def test_the_rest_pose_of_another_person_gives_ones_own_torso() -> None:
     source, target = person(arms_down=50, legs_apart=20, axes=1), person(axes=2)
     rest = still(source)

@@ -64,6 +64,7 @@ def test_a_factor_is_rounded_as_finely_as_the_other_is_large() -> None:
     details = tuple(replace(band, h=band.h / 4, w=band.w * 4) for band in branch.details)
     avatars = [replace(synthetic_avatar(), appearance=one) for one in (branch, replace(branch, details=details))]
     even, uneven = (rounded(one).appearance.details for one in avatars)
+    assert len(even) == 2
     for first, second in zip(even, uneven, strict=True):
         np.testing.assert_array_equal(second.h * 4, first.h)
         np.testing.assert_array_equal(second.w / 4, first.w)

@@ -240,6 +240,7 @@ def test_what_does_not_compile_counts_apart() -> None:
 
 def test_every_listed_fault_stands_where_the_list_says() -> None:
     known = run_mutants.tomllib.loads(run_mutants.EQUIVALENT.read_text())["equivalent"]
+    assert known
     for entry in known:
         found = [
             mutant

@@ -78,6 +78,7 @@ def test_fxc_is_given_no_path_that_looks_like_an_option(monkeypatch: pytest.Monk
 def test_a_machine_without_compilers_finds_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shader_compilers.shutil, "which", lambda *_, **__: None)
     monkeypatch.setattr(shader_compilers, "_wheel", lambda *_: None)
+    assert shader_compilers.FINDERS
     for name in shader_compilers.FINDERS:
         monkeypatch.delenv(f"MUA_{name.upper()}", raising=False)
         assert shader_compilers.find(name) is None, name

@@ -181,7 +181,10 @@ def test_tells_what_is_wrong_between_files(tmp_path: Path) -> None:
 
 
 def test_text_and_compiled_code_agree() -> None:
-    for shader in check_shaders.kernel_shaders():
+    shaders = check_shaders.kernel_shaders()
+    assert all(shader.kernels for shader in shaders)
+    assert shaders
+    for shader in shaders:
         for entry in shader.kernels:
             seen = reflect(compile.spirv(shader.path, entry))
             assert shader.threads(entry) == seen.threads

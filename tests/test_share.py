@@ -10,15 +10,20 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from threading import Thread
 from typing import Any, BinaryIO
 
+import numpy as np
 import pytest
 from commands import Commands
 from PIL import Image
+from synthetic_avatar import synthetic_avatar
 
+from mua.asset import write
+from mua.rotation import multiply
 from mua.share import folder, server, single, site
 from mua.share.poster import front, opening
 from mua.share.server import serving
@@ -69,6 +74,23 @@ def test_the_poster_shows_the_figure_on_nothing(command: Commands, avatar_file: 
         assert (poster.mode, poster.size) == ("RGBA", (720, 960))
         lowest, highest = poster.getchannel("A").getextrema()
         assert (lowest, highest > 200) == (0, True)
+
+
+def test_poster_and_page_begin_with_the_clip_asked_for(command: Commands, tmp_path: Path) -> None:
+    avatar = synthetic_avatar()
+    clip, root = avatar.clips[0], avatar.rig.skeleton.root
+    rotations = clip.rotations.copy()
+    rotations[:, root] = multiply(np.array([0.6, 0, 0.8, 0]), rotations[:, root])  # about the vertical
+    backward = replace(clip, name="turned", rotations=rotations[::-1])
+    write(tmp_path / "a.muaavatar", replace(avatar, clips=(clip, backward)))
+    begins = {}
+    for name in ("wave", "turned"):
+        share(command, tmp_path / "a.muaavatar", "-o", tmp_path / "out", "--clip", name)
+        element = Tags((tmp_path / "out" / "index.html").read_text()).one("mua-avatar")
+        fronts = front(*opening(tmp_path / "a.muaavatar", name))
+        assert float(element["azimuth"] or 0) == pytest.approx(fronts, abs=0.06)
+        begins[name] = element["azimuth"], (tmp_path / "out" / "poster.png").read_bytes()
+    assert all(one != other for one, other in zip(begins["wave"], begins["turned"], strict=True))
 
 
 def test_everything_that_the_page_names_is_in_the_folder(command: Commands, avatar_file: Path, tmp_path: Path) -> None:

@@ -81,6 +81,7 @@ def test_a_held_out_end_goes_on_from_the_motion_before_it(teacher: SimulatedTeac
     whole = [frame for frame in teacher.frames(clip, {16, 19}) if isinstance(frame, TeacherFrame)]
     after = [frame for frame in played(teacher, planned, planned.wanted) if isinstance(frame, TeacherFrame)]
     unmoved = [frame for frame in teacher.frames(end.clip, {0, 3}) if isinstance(frame, TeacherFrame)]
+    assert len(whole) == 2
     for one, other, cold in zip(whole, after, unmoved, strict=True):
         np.testing.assert_array_equal(one.mesh, other.mesh)
         np.testing.assert_array_equal(one.texture, other.texture)
@@ -185,6 +186,7 @@ def test_mesh_offsets_and_texel_transforms_rebuild_the_simulated_surface() -> No
     character, teacher, at_vertex, vertex = at_vertices(looseness=0.6)
     rig, clip = teacher.rig, swing(character)
     moved = simulated_vertices(character, clip)
+    assert len(moved) == len(clip)
     for frame, expected in zip(whole_frames(teacher, clip), moved, strict=True):
         np.testing.assert_allclose(posed(rig, frame)[0][at_vertex], expected[vertex], atol=SINGLE)
 
@@ -200,6 +202,8 @@ def test_a_rigid_tube_keeps_its_canonical_shape() -> None:
     carried = rig.skin_indices[rig.mesh.faces[rig.texels.triangles], 0]
     alone = np.all(carried == carried[:, :1], axis=1)  # by one joint; between two, long triangles are straightened
     frames = whole_frames(teacher, swing(character))
+    assert len(frames) > 1
+    assert alone.any()
     for frame in frames:
         np.testing.assert_allclose(frame.mesh, teacher.rig.mesh.vertices, atol=SINGLE)
         np.testing.assert_allclose(frame.texture[alone, :3], frames[0].texture[alone, :3], atol=SINGLE)
@@ -207,7 +211,9 @@ def test_a_rigid_tube_keeps_its_canonical_shape() -> None:
 
 def test_quaternions_are_unit_and_on_the_hemisphere_of_the_bind_pose(teacher: SimulatedTeacher) -> None:
     bind = whole_frames(teacher, still(tube()))[-1].texture[:, ATTRIBUTES["rotation"]]
-    for frame in whole_frames(teacher, swing(tube())):
+    frames = whole_frames(teacher, swing(tube()))
+    assert len(frames) > 1
+    for frame in frames:
         q = frame.texture[:, ATTRIBUTES["rotation"]]
         np.testing.assert_allclose(np.linalg.norm(q, axis=1), 1, atol=SINGLE)
         assert np.min(np.sum(q * bind, axis=1)) > 0.5
@@ -222,7 +228,9 @@ def test_surfels_lie_in_the_posed_surface(teacher: SimulatedTeacher) -> None:
     here, right, below = (part.ravel() for part in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, :-1]))
     inside = (here >= 0) & (right >= 0) & (below >= 0)
     here, right, below = here[inside], right[inside], below[inside]
-    for frame in whole_frames(teacher, swing(tube()))[::5]:
+    frames = whole_frames(teacher, swing(tube()))[::5]
+    assert len(frames) > 1
+    for frame in frames:
         centres, rotations = posed(rig, frame)
         normals = np.cross(centres[below] - centres[here], centres[right] - centres[here])
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)

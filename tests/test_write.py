@@ -45,6 +45,8 @@ def tensors(avatar: object) -> dict[str, Array]:
 def test_f32_file_returns_every_array_as_float32() -> None:
     avatar = synthetic_avatar()
     back = tensors(decode_tree(parse_checked(encode(avatar, storage="f32"))))
+    assert set(back) == set(tensors(avatar))
+    assert back
     for path, expected in tensors(avatar).items():
         unit = path.endswith(("rotations", "barycentrics"))  # renormalised by the reader
         bound = 4 * np.finfo(np.float32).eps if unit else 0

@@ -37,6 +37,7 @@ def test_builds_agree(device: Device, golden: Golden, other: str) -> None:
     """Whole numbers are equal; each build may be off by the bound of the case, so two differ by twice that at most."""
     kernel = device.kernel_of(golden.case["entry"], built_by(other, golden))
     found = replay(device, golden), replay(device, golden, kernel)
+    assert golden.case["expected"]
     for described in golden.case["expected"]:
         first, second = both(described, found)
         bound = 2 * (described["absolute"] + described["relative"] * np.maximum(np.abs(first), np.abs(second)))
@@ -45,7 +46,9 @@ def test_builds_agree(device: Device, golden: Golden, other: str) -> None:
 
 @pytest.mark.parametrize("other", OTHERS)
 def test_builds_bind_alike(other: str) -> None:
-    for golden in {(golden.kernel, golden.case["entry"]): golden for golden in ALL}.values():
+    kernels = {(golden.kernel, golden.case["entry"]): golden for golden in ALL}
+    assert kernels
+    for golden in kernels.values():
         path, entry = sources.find(golden.kernel), golden.case["entry"]
         first, second = reflect(spirv(path, entry)), reflect(built_by(other, golden))
         assert first.threads == second.threads

@@ -126,6 +126,7 @@ def test_one_order_goes_through_all_avatars(crowd: Crowd) -> None:
 
 
 def test_the_box_of_each_avatar_holds_its_splats(crowd: Crowd) -> None:
+    assert len(crowd.frame.avatars) > 1
     for avatar, first in zip(crowd.frame.avatars, crowd.frame.first_splats, strict=True):
         own = crowd.exact.centres[np.searchsorted(crowd.slots, first) :][: avatar.splat_count]
         assert np.all(avatar.bounds[0] <= own.min(axis=0))
@@ -135,6 +136,7 @@ def test_the_box_of_each_avatar_holds_its_splats(crowd: Crowd) -> None:
 def test_the_picture_agrees_with_the_cpu_rasteriser(crowd: Crowd) -> None:
     renderer = SplatRenderer(crowd.device, image_format(crowd.device))
     image = draw_image(crowd.device, renderer, crowd.frame.sorted, crowd.cameras)
+    assert len(crowd.cameras) > 0
     for found, camera in zip(np.split(image, len(crowd.cameras), axis=1), crowd.cameras, strict=True):
         assert psnr(found, render_premultiplied(crowd.exact, camera)) > LEAST_PSNR
 
