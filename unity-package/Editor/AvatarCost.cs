@@ -31,10 +31,11 @@ namespace Mua.Editor
             long still = branches.Sum(branch => (long)branch.StaticOffset.Count);
             long basis = avatar.Coarse.Basis.Count, ll = branches.Sum(branch => (long)branch.LlBasis.Count);
             PoseEncoding pose = avatar.Encoding;
+            long directions = pose.Components.ToFloats().LongCount(number => number != 0); // 0 where a component has no part in a number
             return new[]
             {
                 new AvatarCost(
-                    "components of the pose", (long)pose.Components.Count + pose.Ranges.Length + pose.Margins.Length,
+                    "components of the pose", directions + pose.Ranges.Length + pose.Margins.Length,
                     2L * pose.Components.Count),
                 new AvatarCost(
                     "coefficient MLPs", layers.Sum(layer => (long)layer.Weight.Count + layer.Bias.Count),

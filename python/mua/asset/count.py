@@ -7,7 +7,10 @@ from mua.model import Branch, Mlp
 
 
 def parameters(avatar: Avatar) -> dict[str, int]:
-    """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison)."""
+    """Learnt numbers by part; their sum is the paper's Param column (Tab. Comparison).
+
+    Components of one joint are 0 for all others: what is 0 in them is stored, and not learnt.
+    """
     branches, components = (avatar.geometry, avatar.appearance), avatar.components
     return {
         "components of the pose": int(np.count_nonzero(components.directions)) + 3 * len(components.margins),
