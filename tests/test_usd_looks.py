@@ -218,3 +218,34 @@ def test_glow_lies_where_the_colour_does_or_is_left_out_by_name(tmp_path: Path, 
         assert len(told) == 1
         assert told[0].endswith("Skin.")
         np.testing.assert_array_equal(surfaces.materials[0].image, dark)
+
+
+STORED = {"auto": (200, 10, 20), "sRGB": (200, 10, 20), "raw": (229, 56, 79)}  # the picture's; as sRGB where linear
+
+
+@pytest.mark.parametrize("space", STORED)
+@pytest.mark.parametrize("scale", [1.0, 0.5])
+def test_a_texture_declared_linear_is_brought_to_srgb(tmp_path: Path, space: str, scale: float) -> None:
+    def declare(stage: Usd.Stage) -> None:
+        image = UsdShade.Shader.Get(stage, "/Man/Skin/Image")
+        image.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set(space)
+        image.CreateInput("scale", Sdf.ValueTypeNames.Float4).Set(Gf.Vec4f(scale, scale, scale, 1))
+
+    shown = read_surfaces(edited(write_character(tmp_path / "man.usda"), declare)).materials[0].image[0, 0]
+    light = ((np.array(STORED[space]) / 255 + 0.055) / 1.055) ** 2.4  # of the display
+    seen = 255 * (1.055 * (scale * light) ** (1 / 2.4) - 0.055)
+    np.testing.assert_allclose(shown[:3], STORED[space] if scale == 1 else seen, atol=1)
+    assert shown[3] == 128  # a share, whatever the colours are
+
+
+@pytest.mark.parametrize("channel", ["r", "a"])
+def test_opacity_in_a_texture_declared_linear_is_what_is_stored(tmp_path: Path, channel: str) -> None:
+    def declare(stage: Usd.Stage) -> None:
+        image = UsdShade.Shader.Get(stage, "/Man/Skin/Image")
+        image.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("raw")
+        image.CreateInput("scale", Sdf.ValueTypeNames.Float4).Set(Gf.Vec4f(0.5))
+        opacity = UsdShade.Shader.Get(stage, "/Man/Skin/Surface").GetInput("opacity")
+        opacity.ConnectToSource(image.CreateOutput(channel, Sdf.ValueTypeNames.Float))
+
+    path = edited(write_character(tmp_path / "man.usda"), declare)
+    assert read_surfaces(path).materials[0].image[0, 0, 3] == {"r": 100, "a": 64}[channel]

@@ -30,6 +30,11 @@ def in_8_bits(image: Image.Image) -> Image.Image:
     return Image.fromarray(np.rint(np.asarray(image) / 257).astype(np.uint8))
 
 
+def from_linear(image: Array) -> Array:
+    """The sRGB picture [h, w, 4] uint8 of one whose colours are linear, in 8 bits too; opacity stays."""
+    return np.dstack([_encoded(STORED)[image[..., :3]], image[..., 3]])
+
+
 def blocky(image: Array) -> Array:
     """The picture [h, w, 4] with each texel as a square of several, as samplers show it that do not interpolate."""
     times = min(SQUARE, FINEST // max(image.shape[:2]))

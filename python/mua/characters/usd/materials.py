@@ -79,7 +79,7 @@ def _surface_look(name: str, shader: UsdShade.Shader, path: Path) -> Look:
     if threshold > 0:
         look = replace(look, material=replace(look.material, alpha_mode="mask", alpha_cutoff=threshold))
     if alpha_source is not None:
-        alpha = _picture(alpha_source[0], path)[..., CHANNELS[alpha_source[1]]]
+        alpha = _channel(*alpha_source, path)
         return replace(look, material=replace(look.material, image=_with_alpha(look.material.image, alpha)))
     if source is None:
         return look
@@ -120,6 +120,9 @@ def _value(shader: UsdShade.Shader, name: str, *, default: Any) -> tuple[Any, tu
 
 def _textured(name: str, texture: UsdShade.Shader, path: Path) -> Look:
     image = _picture(texture, path)
+    if _constant(texture, "sourceColorSpace", "auto") == "raw":
+        image = pictures.from_linear(image)
+    image = pictures.tinted(image, _scale(texture))
     wraps = [WRAPS.get(_constant(texture, wrap, "repeat"), "repeat") for wrap in ("wrapS", "wrapT")]
     reader = _source(texture, "st")
     matrix = np.eye(2, 3)
@@ -131,6 +134,17 @@ def _textured(name: str, texture: UsdShade.Shader, path: Path) -> Look:
         reader = _source(reader, "in")
     primvar = None if reader is None else str(_constant(reader, "varname", "st"))
     return Look(Material(name, image, wraps[0], wraps[1]), primvar, matrix, needed=True)
+
+
+def _channel(texture: UsdShade.Shader, output: str, path: Path) -> Array:
+    """One channel [h, w] of a UsdUVTexture with its scale: a share, which no colour space applies to."""
+    channel = CHANNELS[output]
+    return np.round(np.minimum(_picture(texture, path)[..., channel] * _scale(texture)[channel], 255)).astype(np.uint8)
+
+
+def _scale(texture: UsdShade.Shader) -> Array:
+    """What a texture is multiplied by [4], linear."""
+    return np.array(_constant(texture, "scale", (1, 1, 1, 1)), float)
 
 
 def _source(shader: UsdShade.Shader, name: str) -> UsdShade.Shader | None:
@@ -152,7 +166,7 @@ def _constant(shader: UsdShade.Shader, name: str, default: Any) -> Any:
 
 
 def _picture(texture: UsdShade.Shader, path: Path) -> Array:
-    """The image [h, w, 4] of a UsdUVTexture with its scale, from beside the stage or inside its package."""
+    """The image [h, w, 4] of a UsdUVTexture as it is stored, from beside the stage or inside its package."""
     field = f"{texture.GetPath()}.inputs:file"
     asset = _constant(texture, "file", None)
     if not isinstance(asset, Sdf.AssetPath) or not asset.resolvedPath:
@@ -163,10 +177,9 @@ def _picture(texture: UsdShade.Shader, path: Path) -> Array:
     with opened:
         content = bytes(opened.GetBuffer())
     try:
-        image = pictures.decode_image(content)
+        return pictures.decode_image(content)
     except ValueError as broken:
         raise InputError(f"{path}: {field} names {asset.path}, which cannot be decoded: {broken}") from broken
-    return pictures.tinted(image, np.array(_constant(texture, "scale", (1, 1, 1, 1)), float))
 
 
 def _with_alpha(image: Array, alpha: Array) -> Array:
