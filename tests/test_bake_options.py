@@ -8,7 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from commands import python
+from commands import Commands, python
 
 import mua
 from mua.baking.options import check_inputs, check_jobs, check_output, check_settings
@@ -68,6 +68,24 @@ def test_directories_to_make_are_told_once(tmp_path: Path) -> None:
     new = tmp_path / "new"
     assert check_output(new / "more" / "a.muaavatar", new / "work") == [new]
     assert check_output(tmp_path / "a.muaavatar", tmp_path / "work") == []
+
+
+@pytest.mark.parametrize("checked", [(), ("--check",)], ids=["bake", "check"])
+@pytest.mark.parametrize(("option", "given"), [("--mapping", "--mapping m.json"), ("--feet plant", "--feet plant")])
+def test_what_becomes_of_motion_files_is_refused_where_there_are_none(
+    command: Commands,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    checked: tuple[str, ...],
+    option: str,
+    given: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("m.json").write_text('{"hips": "root"}')
+    for stage in ("mua.baking.pipeline.bake", "mua.cli.check.check_and_show"):  # which would take minutes
+        monkeypatch.setattr(stage, lambda *_: pytest.fail("begun"))
+    ended = command("bake", *given.split(), *checked)
+    assert ended.sentence == f"error: {option}: works only with --motion, which is not given"
 
 
 @pytest.mark.parametrize(

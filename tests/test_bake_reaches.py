@@ -102,7 +102,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("reaches")
     with_hat(directory)
     (directory / "walk.bvh").write_text(bvh_text(person(), walk(person(size=1.0))))
-    (directory / "wave.bvh").write_text(BVH.replace("spine", "thing"))
+    for name in ("wave", "sway"):
+        (directory / f"{name}.bvh").write_text(BVH.replace("spine", "thing"))
     for name, joint in (("spine", "spine"), ("head", "head")):
         (directory / f"{name}.json").write_text(json.dumps({"hips": "hips", joint: "thing"}))
     return directory
@@ -217,7 +218,7 @@ def test_an_option_is_seen_in_what_the_late_stages_get(run: Callable[..., Late],
     flag = () if option == "character" else (f"--{option.replace('_', '-')}",)
     mode = ("--check",) if checked else ()
     given = shown(run(*mode, *before, *flag, value))
-    other = {"mapping": MAPPED}.get(option, ())
+    other = {"mapping": MAPPED, "motion": ("--motion", "sway.bvh")}.get(option, ())
     assert given != shown(run(*mode, *before, *other))
     assert expected is None or given == expected
 

@@ -188,10 +188,10 @@ def test_a_bake_is_ordered_as_its_options_say(
 
     monkeypatch.setattr(pipeline, "bake", carry_out)
     monkeypatch.chdir(tmp_path)
+    Path("walk.bvh").touch()
+    motion: dict[str, Any] = {"motion": "walk.bvh", "mapping": {"a": "b"}}
     with caplog.at_level("INFO"):
-        mua.bake(
-            output=Path("a.muaavatar"), clips=2, hold_out="turn", detail={"head": 3}, texels=64, mapping={"a": "b"}
-        )
+        mua.bake(output=Path("a.muaavatar"), clips=2, hold_out="turn", detail={"head": 3}, texels=64, **motion)
     (order,) = given
     assert (order.output, order.work, order.clips) == (Path("a.muaavatar"), Path("a.work"), ("2",))
     assert (order.hold_out, order.detail, order.mapping) == (("turn",), {"head": 3}, {"a": "b"})

@@ -60,7 +60,15 @@ def read_order(options: Mapping[str, Any]) -> Order:
     else:
         order = _taught(order, options)
     check_output(order.output, order.work)
+    _check_of_motion(order)
     return order
+
+
+def _check_of_motion(order: Order) -> None:
+    """Raises InputError for an option that says what becomes of motion files where there are none."""
+    for name, given in (("--mapping", order.mapping is not None), ("--feet plant", order.feet == "plant")):
+        if given and not order.motions:
+            raise InputError(f"{name}: works only with --motion, which is not given")
 
 
 def _taught(order: Order, options: Mapping[str, Any]) -> Order:
