@@ -15,6 +15,7 @@ from people import (
     retarget,
     still,
     walk,
+    with_offset,
     world,
 )
 from scipy.spatial.transform import Rotation
@@ -112,6 +113,25 @@ def test_hips_and_shoulders_of_a_bind_pose_whose_chest_is_turned_each_face_where
     for part in ("UpLeg", "Arm"):
         ends = (f"Right{part}", f"Left{part}")
         assert angle(bone(target, found, *ends), bone(source, clip, *ends)) < np.radians(2 * ESTIMATE_BOUND)
+
+
+@pytest.mark.parametrize(("stands", "swings"), [("Left", "Right"), ("Right", "Left")])
+def test_a_sole_is_level_while_its_own_foot_stands(stands: str, swings: str) -> None:
+    """The ankles of source and target lie at other heights, so that a foot's bone alone would tilt the sole."""
+    source, target = person(), person(size=1.1, axes=2)
+    for side in ("Left", "Right"):
+        source = with_offset(source, f"{side}ToeBase", (0, -0.02, 0.13))
+    pitch = 0.8 * np.sin(2 * np.pi * np.arange(60) / 30)
+    clip = still(source, len(pitch))
+    clip.rotations[:, source.names.index(f"{swings}UpLeg")] = Rotation.from_rotvec(pitch[:, None] * [1, 0, 0]).as_quat(
+        scalar_first=True
+    )
+    found, _ = retarget(SourceMotion(*bone_aligned(source, clip)), target)
+    sole = target.names.index(f"{stands}Foot")
+    rest, _ = target.world(target.bind_rotations, target.bind_translations)
+    moved = rotation.multiply(world(target, found)[0][:, sole], rotation.conjugate(rest[sole]))
+    up = rotation.rotate(moved, np.broadcast_to([0.0, 1, 0], (len(moved), 3)))
+    assert np.degrees(np.arccos(up[:, 1])).max() < ESTIMATE_BOUND
 
 
 def test_rotations_are_copied_between_rigs_of_one_maker_whatever_the_rest_pose() -> None:
