@@ -1,7 +1,12 @@
 """Fixtures of the Unity package's tests."""
 
+import functools
 import shutil
+from collections.abc import Callable
+from pathlib import Path
 
+import component
+import pipelines
 import pytest
 from csharp import CSharp
 
@@ -13,3 +18,46 @@ def csharp() -> CSharp:
         if shutil.which(tool) is None:
             pytest.skip(f"needs {tool}: Debian's package {package}, which tools/setup.sh installs, runs this test")
     return CSharp()
+
+
+@pytest.fixture(scope="session")
+def component_program(csharp: CSharp) -> Path:
+    """The program of stories about AvatarRenderer."""
+    return component.build_program(csharp)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The avatars of these stories; tests add their own."""
+    made = tmp_path_factory.mktemp("avatars")
+    component.write_avatars(made)
+    return made
+
+
+@pytest.fixture
+def story(csharp: CSharp, component_program: Path, folder: Path) -> component.Story:
+    """What a story says, by its name and the names of avatars."""
+    return functools.partial(component.tell, csharp, component_program, folder)
+
+
+@pytest.fixture(scope="session")
+def record(csharp: CSharp, tmp_path_factory: pytest.TempPathFactory) -> Callable[[pipelines.Mode], pipelines.Recorded]:
+    """Runs a mode, once for all tests."""
+    program = pipelines.built(csharp)
+    return functools.cache(lambda mode: pipelines.run(csharp, program, mode, tmp_path_factory.mktemp("pipeline")))
+
+
+@pytest.fixture(params=pipelines.MODES, ids=pipelines.label)
+def recorded(
+    request: pytest.FixtureRequest, record: Callable[[pipelines.Mode], pipelines.Recorded]
+) -> pipelines.Recorded:
+    """A run in each mode."""
+    return record(request.param)
+
+
+@pytest.fixture(params=[mode for mode in pipelines.MODES if mode.pipeline == "urp"], ids=pipelines.label)
+def universal(
+    request: pytest.FixtureRequest, record: Callable[[pipelines.Mode], pipelines.Recorded]
+) -> pipelines.Recorded:
+    """A run in each mode of URP."""
+    return record(request.param)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from csharp import ROOT, CSharp
 from replay import replay
 from synthetic_avatar import synthetic_avatar
 
@@ -19,7 +19,6 @@ sys.path.append(str(ROOT / "tests" / "parity"))
 
 from test_frame import FRAME_ORDER, PARTS_ORDER
 
-STAND_INS = Path(__file__).parent / "stand_ins"
 FRAMES = 24  # displayed
 POSED = len(FRAME_ORDER) - sum(map(len, PARTS_ORDER))  # dispatches of a frame that decodes nothing
 SPREAD, AT_ONCE = "spread", "at once"
@@ -35,16 +34,6 @@ class Shown:
     kept: list[tuple[Array, Array]]  # mesh and channels
     outside: list[str]  # how far outside of training what is shown is
     shadows: list[bool]  # whether it falls from the mesh that is shown
-
-
-@pytest.fixture(scope="module")
-def program(csharp: CSharp) -> Path:
-    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
-    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
-    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    programs = [PROGRAMS / "shared", *sorted(PROGRAMS.glob("Component*.cs"))]
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", *programs]
-    return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
 
 
 class Watched:
@@ -86,8 +75,8 @@ def _shadows(recording: Path) -> list[bool]:
 
 
 @pytest.fixture
-def watched(csharp: CSharp, program: Path, device: Device, tmp_path: Path) -> Watched:
-    return Watched(csharp, program, device, tmp_path)
+def watched(csharp: CSharp, component_program: Path, device: Device, tmp_path: Path) -> Watched:
+    return Watched(csharp, component_program, device, tmp_path)
 
 
 def alike(found: tuple[Array, Array], exact: tuple[Array, Array]) -> bool:

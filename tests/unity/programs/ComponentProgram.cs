@@ -1,5 +1,5 @@
 // Runs AvatarRenderer in the stand-ins' player loop. Arguments: the folder of the kernels, the story, avatars. It prints what
-// tests/unity/test_component.py asks about; a story ends with all objects destroyed.
+// tests/unity/test_component*.py ask about; a story ends with all objects destroyed.
 using System;
 using System.Collections.Generic;
 using System.Globalization;

@@ -1,0 +1,62 @@
+"""AvatarRenderer in the stand-ins' player loop: program and avatars of its stories, and how one is told."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from synthetic_avatar import synthetic_avatar, with_surface
+
+from mua.asset import write
+from mua.model import Layer
+
+STAND_INS = Path(__file__).parent / "stand_ins"
+KERNELS = ROOT / "ComputeShaders"
+WIDE = 1500  # a layer that needs more than one frame's chunk
+SECOND = 72  # frames of the program's player loop
+RATE = 24  # of the synthetic avatars
+TURNED, TRANSLATED = 1e-6, 1e-5  # float32 of a few transforms on top of each other
+Told = dict[str, list[str]]
+Story = Callable[..., Told]
+
+
+def build_program(csharp: CSharp) -> Path:
+    """programs/Component*.cs with the package's runtime."""
+    engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
+    file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
+    motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
+    programs = [PROGRAMS / "shared", *sorted(PROGRAMS.glob("Component*.cs"))]
+    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", *programs]
+    return csharp.build(sources, name="ComponentProgram", references=[engine, file, motion])
+
+
+def write_avatars(folder: Path) -> None:
+    """Two avatars, one that takes several frames to upload, and one that is damaged."""
+    avatar = with_surface(synthetic_avatar(1))
+    write(folder / "first.muaavatar", avatar, storage="f16")
+    write(folder / "second.muaavatar", synthetic_avatar(2), storage="i8")
+    first, *_, last = avatar.coarse.mlp
+    outputs, inputs = len(last.bias), first.weight.shape[1]
+    zeros = [np.zeros(shape, np.float32) for shape in ((WIDE, inputs), (WIDE, WIDE), (outputs, WIDE))]
+    mlp = tuple(Layer(weight, np.zeros(len(weight), np.float32)) for weight in zeros)
+    write(folder / "wide.muaavatar", replace(avatar, coarse=replace(avatar.coarse, mlp=mlp)), storage="f32")
+    content = bytearray((folder / "first.muaavatar").read_bytes())
+    content[len(content) // 2] ^= 0xFF
+    (folder / "damaged.muaavatar").write_bytes(content)
+
+
+def tell(csharp: CSharp, program: Path, folder: Path, name: str, *files: str) -> Told:
+    """What a story says, by key; all that it made is given back at its end."""
+    told: Told = {"log": []}
+    said = csharp.run(program, KERNELS, name, *(folder / f"{file}.muaavatar" for file in files))
+    for line in said.splitlines():
+        key, value = line.split("\t", 1)
+        told.setdefault(key, []).append(value)
+    assert (told["alive"], told["requests"], told["world"]) == (["0"], ["0"], ["0"]), told
+    return told
+
+
+def counts(seed: int) -> list[int]:
+    """Splats of the levels of a synthetic avatar."""
+    return [len(synthetic_avatar(seed).at_level(level).rig.texels.texels) for level in range(3)]

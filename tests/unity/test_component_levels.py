@@ -1,0 +1,79 @@
+"""Levels of detail of AvatarRenderer and the budget of several, in a player loop of stand-ins."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from component import Story, counts
+from csharp import ROOT
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset import write
+
+sys.path.append(str(ROOT / "tests" / "parity"))
+
+from test_frame import FRAME_ORDER
+
+
+def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None:
+    told, levels = story("ChangesLevel", "first"), counts(1)
+    assert told["distance"] == [str(levels[level]) for level in (0, 2, 0)]
+    assert told["asked"] == [str(levels[level]) for level in (1, 2, 0)]
+    assert told["nearest"] == [str(levels[level]) for level in (0, 2, 0)]  # of two cameras, then one
+    assert told["still"] == [str(len(FRAME_ORDER))]
+    assert told["geometry"] == [str(levels[0])]
+    assert told["log"] == []
+
+
+def test_texels_are_measured_at_the_nearest_point_that_is_drawn(story: Story) -> None:
+    """That is the near plane, 0.25 m away, where the eye is within the avatar's box."""
+    told = story("MeasuresTexels", "first")
+    focal = float(told["focal"][0])
+    seen = [tuple(map(float, line.split())) for line in told["seen"]]
+    for found, wanted in zip(seen, [(0, focal / 0.25)] * 2 + [(2, focal / 2)] * 2, strict=True):
+        assert found == pytest.approx(wanted, rel=1e-4)
+
+
+def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:
+    told, first, second = story("SharesBudget", "first", "second"), counts(1), counts(2)
+    assert told["splats"] == [f"{first[i]} {second[j]}" for i, j in ((0, 0), (0, 1), (2, 2))]
+    assert told["one camera"] == [f"{first[0]} {second[1]}"]
+    assert told["two cameras"] == [f"{first[1]} {second[0]}"]  # of which another one is nearer to the second
+    assert told["fixed"] == [f"{first[2]} {second[0]}"] * 2
+    assert told["alone"] == [str(first[0])]  # what is not in view takes nothing off
+    assert told["later"] == [f"{first[0]} {second[0]}", f"{first[2]} {second[2]}"]  # the budget that came last counts
+    assert told["free"] == [f"{first[0]} {second[0]}"]
+    assert told["allocated"] == ["0"]
+    assert told["log"] == []
+
+
+def test_a_level_that_is_picked_in_the_inspector_is_checked(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(1)
+    taps = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
+    write(folder / "long.muaavatar", replace(avatar, wavelet=replace(avatar.wavelet, **taps)), storage="f16")
+    told = story("LevelIsPicked", "long")
+    assert told["message"] == ["", "the avatar has no such level of detail; it is shown at full size."]
+    assert told["budget"] == ["0 0"]
+
+
+def test_an_avatar_that_lacks_the_level_asked_for_is_shown_at_full_size(story: Story, folder: Path) -> None:
+    """Not at the coarsest that it has."""
+    avatar = synthetic_avatar(1, levels=3)
+    write(folder / "two.muaavatar", avatar, storage="f16")
+    assert avatar.at_level(1) is not None
+    told = story("LevelIsPicked", "two")
+    assert told["message"][1].startswith("the avatar has no such level of detail")
+    assert told["splats"] == [str(len(avatar.rig.texels.texels))]
+
+
+def test_an_avatar_without_levels_says_so_once_and_shows_all(story: Story, folder: Path) -> None:
+    avatar = synthetic_avatar(1)
+    taps = {name: np.pad(getattr(avatar.wavelet, name), 12) for name in ("rec_lo", "rec_hi")}
+    write(folder / "long.muaavatar", replace(avatar, wavelet=replace(avatar.wavelet, **taps)), storage="f16")
+    told = story("LacksLevel", "long")
+    assert told["splats"] == [str(counts(1)[0])] * 2
+    sentence = "the avatar has no such level of detail; it is shown at full size."
+    assert told["message"] == [sentence]
+    assert [line.rpartition(": ")[2] for line in told["log"]] == [sentence]

@@ -1,0 +1,96 @@
+"""AvatarRenderer in a player loop of stand-ins: how it loads files and assets, and what it says where that fails."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from component import Story, counts
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset import write
+
+
+def test_a_load_asks_once_for_the_packages_resources(story: Story) -> None:
+    assert story("Plays", "first")["asked"] == ["1"]
+
+
+def test_an_avatar_destroyed_while_it_uploads_leaves_nothing(story: Story) -> None:
+    told = story("GoesMidUpload", "wide")
+    assert (told["state"], told["progress"], told["held"]) == (["Loading"], ["1"], ["1"])
+
+
+def test_an_avatar_destroyed_while_it_is_read_leaves_nothing(story: Story) -> None:
+    assert story("GoesMidRead", "first")["log"] == []
+
+
+def test_a_file_is_found_in_both_folders_and_in_an_asset(story: Story, folder: Path) -> None:
+    """Persistent data before what came with the application."""
+    (folder / "others").mkdir()
+    write(folder / "others" / "first.muaavatar", replace(synthetic_avatar(2), name="another"), storage="f16")
+    told = story("FindsFiles", "first")
+    assert told["state"] == ["Ready"] * 3
+    assert told["of both"] == [synthetic_avatar(1).name]
+
+
+def test_a_file_inside_an_android_package_is_requested(story: Story) -> None:
+    told = story("Streams", "first")
+    assert told["state"] == ["Ready", "Failed"]
+    assert len(told["log"]) == 1
+    assert "404" in told["log"][0]
+
+
+def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) -> None:
+    told = story("HasJustEnoughBuffers", "first")
+    assert (told["state"], told["log"]) == (["Ready"], [])
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "words"),
+    [
+        ("Fails", "damaged", "crc32"),
+        ("Fails", "absent", "absent.muaavatar"),
+        ("FailsInEditor", "damaged", "crc32"),
+        ("FailsInEditor", "absent", "absent.muaavatar"),
+        ("LacksKernel", "first", "splat_sort.compute"),
+        ("LacksResources", "first", "MuaAvatarResources"),
+        ("LacksCompute", "first", "compute shaders"),
+        ("LacksBuffers", "first", "4 buffers in a compute kernel"),
+        ("LacksVertexBuffers", "first", "4 buffers in a vertex shader"),
+        ("LacksMemory", "first", "4096"),
+    ],
+)
+def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: str) -> None:
+    told = story(name, file)
+    assert told["state"] == ["Failed"]
+    assert told["held"] == ["0"]
+    assert len(told["log"]) == 1, told["log"]
+    assert told["log"][0].startswith("Error MUA: ")
+    assert words in told["log"][0]
+    assert "One or more errors" not in told["log"][0]
+    assert told["log"][0].endswith(told["message"][0])
+
+
+def test_an_avatar_that_has_no_room_beside_others_goes_alone(story: Story) -> None:
+    told = story("LacksMemoryForTwo", "first")
+    assert told["state"] == ["Ready Failed"]
+    assert told["shown"] == ["1"]
+    assert len(told["log"]) == 1, told["log"]
+    assert "splats" in told["message"][0]
+
+
+def test_one_avatar_takes_the_place_of_another(story: Story) -> None:
+    told, first, second = story("ShowsOneAfterAnother", "first", "second"), counts(1)[0], counts(2)[0]
+    assert told["shown"] == [
+        f"Ready {first} False",
+        f"Ready {second} True",
+        f"Ready {first} False",
+        "Failed 0 False",
+        f"Ready {first} False",
+        "Empty 0 False",
+        f"Ready {second} True",
+    ]
+    assert told["message"][0].endswith("it is no avatar.")
+
+
+def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
+    assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Mesh Half False True"]
