@@ -163,7 +163,7 @@ def built(csharp: CSharp, *defines: str) -> Path:
     file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
     motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
     package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", RUNTIME / "Urp"]
-    sources = [*package, PROGRAMS / "shared", PROGRAMS / "PipelineProgram.cs"]
+    sources = [*package, PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "PipelineProgram.cs"]
     return csharp.build(sources, references=[*pipeline, file, motion], defines=defines)
 
 

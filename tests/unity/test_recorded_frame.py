@@ -80,7 +80,8 @@ def program(csharp: CSharp) -> Path:
     motion = csharp.build([RUNTIME / "Motion"], library=True, references=[file])
     package = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels"]
     return csharp.build(
-        [*package, PROGRAMS / "shared", PROGRAMS / "FrameProgram.cs"], references=[engine, file, motion]
+        [*package, PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "FrameProgram.cs"],
+        references=[engine, file, motion],
     )
 
 

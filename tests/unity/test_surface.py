@@ -56,7 +56,13 @@ def surface_program(csharp: CSharp) -> Path:
     engine = csharp.build([STAND_INS / "UnityEngine"], library=True, name="UnityEngine")
     file = csharp.build([RUNTIME / "Format"], library=True, name="Mua.Format")
     motion = csharp.build([RUNTIME / "Motion"], library=True, name="Mua.Motion", references=[file])
-    sources = [*sorted(RUNTIME.glob("*.cs")), RUNTIME / "Kernels", PROGRAMS / "shared", PROGRAMS / "SurfaceProgram.cs"]
+    sources = [
+        *sorted(RUNTIME.glob("*.cs")),
+        RUNTIME / "Kernels",
+        PROGRAMS / "shared",
+        PROGRAMS / "scenario",
+        PROGRAMS / "SurfaceProgram.cs",
+    ]
     return csharp.build(sources, name="SurfaceProgram", references=[engine, file, motion])
 
 

@@ -187,18 +187,17 @@ namespace Mua
         /// <summary>A joint's GameObject is destroyed while it poses the avatar; another one has the name of a joint.</summary>
         private static void LosesJoint()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
-            Transform twin = new GameObject(avatar.Skeleton.Names[rig.Length - 1]).transform;
-            twin.SetParent(Scene[Scene.Count - 1].transform, false);
+            var rig = new Rig();
+            Transform twin = new GameObject(rig.Avatar.Skeleton.Names[rig.Joints.Length - 1]).transform;
+            twin.SetParent(rig.Root, false);
             twin.localRotation = Quaternion.Euler(70, 0, 0);
-            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
-            var pose = new AvatarPose(avatar);
+            var joints = rig.Bind();
+            var pose = new AvatarPose(rig.Avatar);
             pose.Sample(joints, 0);
-            SayLast(pose, avatar);
-            UnityEngine.Object.DestroyImmediate(rig[rig.Length - 1].gameObject);
+            SayLast(pose, rig.Avatar);
+            UnityEngine.Object.DestroyImmediate(rig.Last.gameObject);
             pose.Sample(joints, 1);
-            SayLast(pose, avatar);
+            SayLast(pose, rig.Avatar);
         }
 
         /// <summary>An avatar that no camera has drawn yet, then one does.</summary>
@@ -217,10 +216,9 @@ namespace Mua
         /// <summary>A rig one of whose joints is inactive.</summary>
         private static void HasInactiveJoint()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
-            rig[rig.Length - 1].gameObject.SetActive(false);
-            Say("missing", new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform).Missing);
+            var rig = new Rig();
+            rig.Last.gameObject.SetActive(false);
+            Say("missing", rig.Bind().Missing);
         }
 
         /// <summary>The rotation of the last joint.</summary>

@@ -13,18 +13,17 @@ namespace Mua
     {
         private static void FollowsRig()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
-            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
-            var read = new double[4 * rig.Length];
-            var translations = new double[3 * rig.Length];
+            var rig = new Rig();
+            var joints = rig.Bind();
+            var read = new double[4 * rig.Joints.Length];
+            var translations = new double[3 * rig.Joints.Length];
             joints.Read(read, translations);
-            var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
-            var wanted = new double[4 * rig.Length];
-            var wantedTranslations = new double[3 * rig.Length];
+            var clip = rig.MakeClip();
+            var wanted = new double[4 * rig.Joints.Length];
+            var wantedTranslations = new double[3 * rig.Joints.Length];
             clip.ReadFrame(2, wanted, wantedTranslations);
             double turned = 0, moved = 0;
-            for (int i = 0; i < rig.Length; i++)
+            for (int i = 0; i < rig.Joints.Length; i++)
             {
                 QuaternionD a = QuaternionD.Load(read, i), b = QuaternionD.Load(wanted, i);
                 turned = Math.Max(turned, 1 - Math.Abs(a.W * b.W + a.X * b.X + a.Y * b.Y + a.Z * b.Z));
@@ -36,45 +35,44 @@ namespace Mua
             Say("turned", turned);
             Say("translated", moved);
             AvatarRenderer shown = Show(files[0]);
-            shown.Rig = Scene[Scene.Count - 2].transform;
+            shown.Rig = rig.Root;
             Frames(10);
             long before = GC.GetAllocatedBytesForCurrentThread();
             Frames(72);
             Say("allocated", GC.GetAllocatedBytesForCurrentThread() - before);
-            UnityEngine.Object.DestroyImmediate(rig[avatar.Skeleton.Root].gameObject);
+            UnityEngine.Object.DestroyImmediate(rig.Hips.gameObject);
             Frames(20);
             Say("state", shown.State);
         }
 
         private static void RigIsPicked()
         {
-            Transform[] rig = MakeRig(AvatarFile.Read(File.ReadAllBytes(files[0])));
+            var rig = new Rig();
             AvatarRenderer shown = Show(files[0]);
             shown.IsPlaying = false;
             FieldInfo field = typeof(AvatarRenderer).GetField("rig", BindingFlags.Instance | BindingFlags.NonPublic);
-            field.SetValue(shown, Scene[Scene.Count - 2].transform);
+            field.SetValue(shown, rig.Root);
             StandIns.Messages.Send(shown, "OnValidate");
             Frames(72);
             Say("idle", Dispatches(10));
-            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            rig.Last.localRotation = Quaternion.Euler(0, 40, 0);
             Say("woken", Dispatches(10));
         }
 
         private static void RigRests()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
+            var rig = new Rig();
             AvatarRenderer shown = Show(files[0]);
-            shown.Rig = Scene[Scene.Count - 2].transform;
+            shown.Rig = rig.Root;
             Say("settling", Dispatches(72));
             Say("idle", Dispatches(10));
-            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            rig.Last.localRotation = Quaternion.Euler(0, 40, 0);
             Say("woken", Dispatches(72));
             Say("idle", Dispatches(10));
             shown.transform.position = new Vector3(5, 0, 0);
             Say("carried", Dispatches(1));
             Say("idle", Dispatches(10));
-            rig[avatar.Skeleton.Root].localPosition += new Vector3(0, 0.1f, 0);
+            rig.Hips.localPosition += new Vector3(0, 0.1f, 0);
             Say("stepped", Dispatches(72));
             shown.IsPlaying = false;
             shown.Rig = null;
@@ -84,11 +82,10 @@ namespace Mua
         /// <summary>A pose that is held for long and then left: the window still holds what was before.</summary>
         private static void RemembersRest()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
-            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
-            var pose = new AvatarPose(avatar);
-            double frame = 1 / avatar.Encoding.Rate;
+            var rig = new Rig();
+            var joints = rig.Bind();
+            var pose = new AvatarPose(rig.Avatar);
+            double frame = 1 / rig.Avatar.Encoding.Rate;
             int changes = 0;
             for (int i = 0; i < 100; i++)
             {
@@ -97,27 +94,26 @@ namespace Mua
             Say("changes", changes);
             long rested = pose.Due;
             double[] rest = pose.Current.ToArray();
-            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 40, 0);
+            rig.Last.localRotation = Quaternion.Euler(0, 40, 0);
             Say("changes", pose.Sample(joints, 100 * frame) ? 1 : 0);
             Say("fresh", pose.Due != rested ? 1 : 0);
             double[] window = pose.Window.ToArray();
             int same = 0;
-            for (int age = 0; age < avatar.Encoding.Window; age++)
+            for (int age = 0; age < rig.Avatar.Encoding.Window; age++)
             {
                 var held = new ReadOnlySpan<double>(window, age * rest.Length, rest.Length);
                 same += held.SequenceEqual(rest) ? 1 : 0;
             }
-            Say("rests", avatar.Encoding.Window - same);
+            Say("rests", rig.Avatar.Encoding.Window - same);
         }
 
         /// <summary>Which poses of a rig that moves all the time are in the window, newest first.</summary>
         private static void WindowTakesTurns()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
-            var joints = new AvatarJoints(avatar.Skeleton, Scene[Scene.Count - 1].transform);
-            var pose = new AvatarPose(avatar);
-            double frame = 1 / avatar.Encoding.Rate, now = 100;
+            var rig = new Rig();
+            var joints = rig.Bind();
+            var pose = new AvatarPose(rig.Avatar);
+            double frame = 1 / rig.Avatar.Encoding.Rate, now = 100;
             var seen = new List<double[]>();
             for (int i = 0; i <= 12; i++)
             {
@@ -133,26 +129,26 @@ namespace Mua
             Say("window", Indices(pose, seen));
             Turn(rig, joints, pose, now + 8 * frame, seen);
             Say("window", Indices(pose, seen));
-            var clip = new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate);
+            var clip = rig.MakeClip();
             Say("before", clip.FrameCount - clip.Position(-0.5 * frame));
             Say("before", clip.FrameCount - clip.Position(-(clip.FrameCount + 1) * frame));
             int taken = 0;
             for (int i = 0; i < 300; i++) // at times whose differences are a frame but for rounding
             {
                 long due = pose.Due;
-                Turn(rig, joints, pose, 1000.1 + i / (double)avatar.Encoding.Rate, seen);
+                Turn(rig, joints, pose, 1000.1 + i / (double)rig.Avatar.Encoding.Rate, seen);
                 taken += pose.Due != due ? 1 : 0;
             }
             Say("steady", taken);
             pose.Sample(clip, 0, 0);
             long first = pose.Due;
-            pose.Sample(new ClipSampler(avatar.Clips[0], avatar.Skeleton, avatar.Encoding.Rate), 0, 0);
+            pose.Sample(rig.MakeClip(), 0, 0);
             Say("other clip", pose.Due != first ? 1 : 0);
         }
 
-        private static void Turn(Transform[] rig, AvatarJoints joints, AvatarPose pose, double seconds, List<double[]> seen)
+        private static void Turn(Rig rig, AvatarJoints joints, AvatarPose pose, double seconds, List<double[]> seen)
         {
-            rig[rig.Length - 1].localRotation = Quaternion.Euler(0, 5 * seen.Count, 0);
+            rig.Last.localRotation = Quaternion.Euler(0, 5 * seen.Count, 0);
             pose.Sample(joints, seconds);
             seen.Add(pose.Current.ToArray());
         }
@@ -170,14 +166,13 @@ namespace Mua
 
         private static void LacksJoint()
         {
-            AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(files[0]));
-            Transform[] rig = MakeRig(avatar);
-            rig[rig.Length - 1].gameObject.name = "Another";
+            var rig = new Rig();
+            rig.Last.gameObject.name = "Another";
             AvatarRenderer shown = Show(files[0]);
-            shown.Rig = Scene[Scene.Count - 2].transform;
+            shown.Rig = rig.Root;
             Frames(20);
-            rig[avatar.Skeleton.Root].gameObject.name = "NoRoot";
-            shown.Rig = Scene[Scene.Count - 2].transform;
+            rig.Hips.gameObject.name = "NoRoot";
+            shown.Rig = rig.Root;
             Frames(20);
             Say("state", shown.State);
         }
@@ -188,27 +183,6 @@ namespace Mua
             shown.transform.localScale = new Vector3(2, 2, 2);
             Frames(20);
             Say("state", shown.State);
-        }
-
-        /// <summary>Transforms that stand as frame 2 of the first clip, below a root that is moved and turned.</summary>
-        private static Transform[] MakeRig(AvatarFile avatar)
-        {
-            Skeleton skeleton = avatar.Skeleton;
-            var clip = new ClipSampler(avatar.Clips[0], skeleton, avatar.Encoding.Rate);
-            var rotations = new double[4 * skeleton.JointCount];
-            var translations = new double[3 * skeleton.JointCount];
-            clip.ReadFrame(2, rotations, translations);
-            GameObject root = Make("rig");
-            root.transform.SetPositionAndRotation(new Vector3(3, -1, 2), Quaternion.Euler(10, 200, -30));
-            var rig = new Transform[skeleton.JointCount];
-            for (int i = 0; i < rig.Length; i++)
-            {
-                rig[i] = new GameObject(skeleton.Names[i]).transform;
-                rig[i].SetParent(skeleton.Parents[i] < 0 ? root.transform : rig[skeleton.Parents[i]], false);
-                rig[i].localPosition = AvatarSpace.Position(Vector3D.Load(translations, i));
-                rig[i].localRotation = AvatarSpace.Rotation(QuaternionD.Load(rotations, i));
-            }
-            return rig;
         }
     }
 }

@@ -12,7 +12,7 @@ namespace Mua
         private const int Watched = 24; // displayed frames
         private const float Fast = 1f / 71, Slow = 1f / 31; // seconds of one, of which no number is a frame of the avatar
 
-        private static Transform[] rigTransforms;
+        private static Rig posing;
 
         private static void SpreadsClip()
         {
@@ -67,12 +67,12 @@ namespace Mua
 
         private static void FollowRig(AvatarRenderer shown)
         {
-            shown.Rig = Scene[Scene.Count - 2].transform;
+            shown.Rig = posing.Root;
         }
 
         private static void TurnRig(AvatarRenderer shown, int i)
         {
-            rigTransforms[rigTransforms.Length - 1].localRotation = Quaternion.Euler(0, 5 * i, 0);
+            posing.Last.localRotation = Quaternion.Euler(0, 5 * i, 0);
         }
 
         private static void Watch(float step, Action<AvatarRenderer> begin, Action<AvatarRenderer, int> move)
@@ -81,7 +81,7 @@ namespace Mua
             {
                 string label = spreads ? "spread" : "at once";
                 Recorder.Start(Path.ChangeExtension(files[0], null) + " " + label);
-                rigTransforms = MakeRig(Mua.Format.AvatarFile.Read(File.ReadAllBytes(files[0])));
+                posing = new Rig();
                 AvatarRenderer shown = Begin(files[0]);
                 shown.SpreadDecode = spreads;
                 Until(shown);

@@ -11,46 +11,12 @@ using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
 using Mua.Format;
-using Mua.Motion;
 using StandIns;
 using UnityEngine;
 using UnityEngine.Rendering;
 
 namespace Mua
 {
-    internal sealed class Actor : IDisposable
-    {
-        public readonly AvatarBuffers Buffers;
-        public readonly AvatarFrame Frame;
-        public readonly ClipSampler Clip;
-        private readonly double[] rotations, translations;
-
-        public Actor(AvatarResources resources, string path)
-        {
-            AvatarFile file = AvatarFile.Read(File.ReadAllBytes(path));
-            Buffers = new AvatarBuffers(file);
-            while (!Buffers.Upload(1 << 16))
-            {
-            }
-            Frame = new AvatarFrame(resources, Buffers);
-            Clip = new ClipSampler(file.Clips[0], file.Skeleton, file.Encoding.Rate);
-            rotations = new double[4 * file.Encoding.Window * file.Skeleton.JointCount];
-            translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
-        }
-
-        public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place, int level)
-        {
-            Clip.ReadWindow((int)Clip.Position(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
-            Frame.Decode(commands, rotations, translations, place, level);
-        }
-
-        public void Dispose()
-        {
-            Frame.Dispose();
-            Buffers.Dispose();
-        }
-    }
-
     internal static class FrameProgram
     {
         private const int WarmUp = 10;
@@ -96,10 +62,10 @@ namespace Mua
         {
             if (words[0] == "screen")
             {
-                width = (int)Number(words, 1);
-                height = (int)Number(words, 2);
-                near = Number(words, 3);
-                instances = (int)Number(words, 4);
+                width = (int)Scenario.Number(words, 1);
+                height = (int)Scenario.Number(words, 2);
+                near = Scenario.Number(words, 3);
+                instances = (int)Scenario.Number(words, 4);
                 newEyes = true;
             }
             else if (words[0] == "eye")
@@ -109,12 +75,12 @@ namespace Mua
                     Eyes.Begin(width, height, near, instances);
                 }
                 newEyes = false;
-                Eyes.Add(Matrix(words, 1), Matrix(words, 17));
+                Eyes.Add(Scenario.Matrix(words, 1), Scenario.Matrix(words, 17));
             }
             else if (words[0] == "decode")
             {
                 double seconds = double.Parse(words[2], CultureInfo.InvariantCulture);
-                Actors[(int)Number(words, 1)].Decode(Commands, seconds, Place(words), words.Length > 10 ? (int)Number(words, 10) : 0);
+                Actors[(int)Scenario.Number(words, 1)].Decode(Commands, seconds, Scenario.Place(words, 3), words.Length > 10 ? (int)Scenario.Number(words, 10) : 0);
             }
             else if (words[0] == "sort")
             {
@@ -130,7 +96,7 @@ namespace Mua
             else
             {
                 Recorder.Pause();
-                System.Console.WriteLine("allocated " + Again((int)Number(words, 1), splats));
+                System.Console.WriteLine("allocated " + Again((int)Scenario.Number(words, 1), splats));
                 Recorder.Resume();
             }
         }
@@ -180,27 +146,6 @@ namespace Mua
                 Execute(splats);
             }
             return GC.GetAllocatedBytesForCurrentThread() - before;
-        }
-
-        private static DualQuaternion Place(string[] words)
-        {
-            var position = new Vector3(Number(words, 3), Number(words, 4), Number(words, 5));
-            return AvatarSpace.Place(position, new Quaternion(Number(words, 6), Number(words, 7), Number(words, 8), Number(words, 9)));
-        }
-
-        private static Matrix4x4 Matrix(string[] words, int first)
-        {
-            var matrix = new Matrix4x4();
-            for (int i = 0; i < 16; i++)
-            {
-                matrix[i / 4, i % 4] = Number(words, first + i);
-            }
-            return matrix;
-        }
-
-        private static float Number(string[] words, int index)
-        {
-            return float.Parse(words[index], CultureInfo.InvariantCulture);
         }
     }
 }

@@ -315,15 +315,15 @@ namespace Mua
                 string[] words = line.Split(' ');
                 if (words[0] == "screen")
                 {
-                    Eyes.Resolution((int)Number(words, 1), (int)Number(words, 2));
-                    main.nearClipPlane = Number(words, 3);
+                    Eyes.Resolution((int)Scenario.Number(words, 1), (int)Scenario.Number(words, 2));
+                    main.nearClipPlane = Scenario.Number(words, 3);
                     continue;
                 }
-                Eyes.Look(eye++, Matrix(words, 1), Matrix(words, 17));
+                Eyes.Look(eye++, Scenario.Matrix(words, 1), Scenario.Matrix(words, 17));
                 if (eye == 1)
                 {
-                    main.worldToCameraMatrix = Matrix(words, 1);
-                    main.projectionMatrix = Matrix(words, 17);
+                    main.worldToCameraMatrix = Scenario.Matrix(words, 1);
+                    main.projectionMatrix = Scenario.Matrix(words, 17);
                 }
             }
         }
@@ -333,21 +333,6 @@ namespace Mua
             Camera camera = new GameObject(name).AddComponent<Camera>();
             camera.transform.position = new Vector3(0, 1, -3);
             return camera;
-        }
-
-        private static Matrix4x4 Matrix(string[] words, int start)
-        {
-            Matrix4x4 matrix = Matrix4x4.identity;
-            for (int i = 0; i < 16; i++)
-            {
-                matrix[i / 4, i % 4] = Number(words, start + i);
-            }
-            return matrix;
-        }
-
-        private static float Number(string[] words, int index)
-        {
-            return float.Parse(words[index], CultureInfo.InvariantCulture);
         }
 
         private static void Advance(int frames)

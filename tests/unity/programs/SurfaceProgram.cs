@@ -8,7 +8,6 @@ using System.Globalization;
 using System.IO;
 using System.Threading;
 using Mua.Format;
-using Mua.Motion;
 using StandIns;
 using UnityEngine;
 using UnityEngine.Rendering;
@@ -68,24 +67,19 @@ namespace Mua
         {
             Recorder.Start(arguments[2]);
             AvatarResources resources = PackageResources.Place(arguments[1]);
-            var buffers = new List<AvatarBuffers>();
-            var frames = new List<AvatarFrame>();
+            var actors = new List<Actor>();
             for (int i = 4; i < arguments.Length; i++)
             {
-                buffers.Add(new AvatarBuffers(AvatarFile.Read(File.ReadAllBytes(arguments[i]))));
-                while (!buffers[i - 4].Upload(1 << 16))
-                {
-                }
-                frames.Add(new AvatarFrame(resources, buffers[i - 4]));
+                actors.Add(new Actor(resources, arguments[i]));
             }
-            var splats = new SplatFrame(resources, frames);
-            AvatarFrame frame = frames[frames.Count - 1];
+            var splats = new SplatFrame(resources, actors.ConvertAll(actor => actor.Frame));
+            AvatarFrame frame = actors[actors.Count - 1].Frame;
             var surface = new AvatarSurface(resources, frame);
             int made = Recorder.Made;
             surface.CastShadow(All, new Bounds(), 0); // before there is a pose
             Collect(surface, AvatarViews.Splats);
             Say("idle", Recorder.Made - made, Recorder.Renders, Draws.Count);
-            Follow(arguments[3], frame);
+            Follow(arguments[3], actors[actors.Count - 1]);
             splats.Project(Commands, Eyes);
             Graphics.ExecuteCommandBuffer(Commands);
             Commands.Clear();
@@ -121,8 +115,7 @@ namespace Mua
             {
                 surface.Dispose();
                 splats.Dispose();
-                frames.ForEach(each => each.Dispose());
-                buffers.ForEach(each => each.Dispose());
+                actors.ForEach(actor => actor.Dispose());
             }
             Recorder.Stop();
             Say("alive", Recorder.AliveCount);
@@ -148,56 +141,29 @@ namespace Mua
             Commands.Clear();
         }
 
-        private static void Follow(string scenario, AvatarFrame frame)
+        private static void Follow(string scenario, Actor actor)
         {
             foreach (string line in File.ReadAllLines(scenario))
             {
                 string[] words = line.Split(' ');
                 if (words[0] == "screen")
                 {
-                    Eyes.Begin((int)Number(words, 1), (int)Number(words, 2), Number(words, 3));
+                    Eyes.Begin((int)Scenario.Number(words, 1), (int)Scenario.Number(words, 2), Scenario.Number(words, 3));
                 }
                 else if (words[0] == "eye")
                 {
-                    Eyes.Add(Matrix(words, 1), Matrix(words, 17));
+                    Eyes.Add(Scenario.Matrix(words, 1), Scenario.Matrix(words, 17));
                 }
                 else
                 {
-                    Decode(frame, words);
+                    actor.Decode(Commands, Scenario.Number(words, 1), Scenario.Place(words, 2));
                 }
             }
-        }
-
-        private static void Decode(AvatarFrame frame, string[] words)
-        {
-            AvatarFile file = frame.Avatar.Avatar;
-            var clip = new ClipSampler(file.Clips[0], file.Skeleton, file.Encoding.Rate);
-            var rotations = new double[4 * file.Encoding.Window * file.Skeleton.JointCount];
-            var translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
-            clip.ReadWindow((int)clip.Position(Number(words, 1)), file.Encoding.Window, rotations, translations);
-            var position = new Vector3(Number(words, 2), Number(words, 3), Number(words, 4));
-            var rotation = new Quaternion(Number(words, 5), Number(words, 6), Number(words, 7), Number(words, 8));
-            frame.Decode(Commands, rotations, translations, AvatarSpace.Place(position, rotation));
         }
 
         private static void Say(string what, params long[] numbers)
         {
             System.Console.WriteLine(what + " " + string.Join(" ", numbers));
-        }
-
-        private static Matrix4x4 Matrix(string[] words, int first)
-        {
-            var matrix = new Matrix4x4();
-            for (int i = 0; i < 16; i++)
-            {
-                matrix[i / 4, i % 4] = Number(words, first + i);
-            }
-            return matrix;
-        }
-
-        private static float Number(string[] words, int index)
-        {
-            return float.Parse(words[index], CultureInfo.InvariantCulture);
         }
     }
 }
