@@ -13,8 +13,6 @@ from mua.student.optimise import Run
 from mua.student.regress import absolute_error, regress
 from mua.student.settings import Settings
 
-MESH_POWER = 2.0  # of the weights: cloth hangs on history, which windows of quick motion do not show
-
 
 @dataclass(frozen=True, eq=False)
 class MeshPca:
@@ -79,7 +77,7 @@ def fit_coarse(
         schedule=settings.regression,
         stage="coarse mesh",
         run=run,
-        weights=None if weights is None else weights**MESH_POWER,
+        own=None if weights is None else weights == 1,
         generalisation=settings.generalisation,
     )
     coarse.mlp.load_state_dict(mlp.folded().state_dict())

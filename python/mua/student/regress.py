@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 
 import torch
@@ -17,7 +16,7 @@ from mua.student.model import build_mlp, linear_layers
 from mua.student.optimise import Run, optimise
 from mua.student.points import draw_points
 from mua.student.settings import Generalisation, Schedule
-from mua.student.smoother import Sum, fit_smoother
+from mua.student.smoother import Smooth, Sum, fit_beyond, fit_smoother
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions
@@ -39,7 +38,7 @@ def regress(
     run: Run,
     expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
-    weights: Tensor | None = None,  # [F] how much each frame counts
+    own: Tensor | None = None,  # [F] bool, the frames of the user's motion; None: all
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
     """An MLP from components to targets, or to targets @ expand, taught the smooth function through them.
@@ -49,7 +48,8 @@ def regress(
     """
     schedule = schedule.over(len(inputs))
     z = components(inputs)
-    unit = targets.square().sum(1).mean().sqrt().clamp(min=torch.finfo(targets.dtype).tiny)
+    unit = (targets if own is None else targets[own]).square().sum(1).mean().sqrt()
+    unit = unit.clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)
     count = max(schedule.steps * schedule.batch // VISITS, 1)
@@ -57,7 +57,7 @@ def regress(
     @cache  # and not at all where a finished stage is taken up
     def lesson() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
-        smooth = fit_local(inputs, goal, components, locality, generator=generator, weights=weights)
+        smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own)
         points = draw_points(
             inputs,
             components,
@@ -100,20 +100,25 @@ def fit_local(
     locality: Locality | None,
     *,
     generator: torch.Generator,
-    weights: Tensor | None = None,  # [F]
-) -> Callable[[Tensor], Tensor]:
+    own: Tensor | None = None,  # [F] bool
+) -> Smooth:
     """The smooth function of components through `goal`; with `locality` a sum over parts, as each sees the pose."""
     z, back = components(inputs), components.back()
+
+    def fit(x: Tensor) -> Smooth:
+        if own is None:
+            return fit_smoother(x, goal, generator=generator)
+        return fit_beyond(x, goal, own, generator=generator)
+
     if locality is None:
-        return fit_smoother(z, goal, generator=generator, weights=weights)
-    turns, smoothers = [], []
+        return fit(z)
+    turns, terms = [], []
     for reach, share in zip(locality.reach, locality.shares, strict=True):
         turn = (back * reach) @ whitening(inputs * reach)
         turn = turn[:, leading(z @ turn)]
-        one = fit_smoother(z @ turn, goal, generator=generator, weights=weights)
         turns.append(turn)
-        smoothers.append(replace(one, values=one.values @ share))
-    return Sum(tuple(turns), tuple(smoothers))
+        terms.append(fit(z @ turn).through(share))
+    return Sum(tuple(terms), tuple(turns))
 
 
 def whitening(

@@ -6,7 +6,10 @@ Nystrom's approximation over some of the frames bounds the cost (Williams and Se
 https://papers.nips.cc/paper/1866-using-the-nystrom-method-to-speed-up-kernel-machines).
 """
 
-from dataclasses import dataclass
+import functools
+import math
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import torch
 from torch import Tensor
@@ -14,20 +17,53 @@ from torch import Tensor
 CENTRES = 2048  # frames that the function is spanned by
 WIDTH = 3.0  # squared width of the kernel relative to the mean squared distance between frames
 RIDGE = 3e-3  # noise variance that a frame's value is granted, relative to the function's own
+BEYOND = 10.0  # that of frames beyond the user's motion, whose cloth hangs on a history that no descriptor shows
+LEAST = 0.2  # of it for a frame that is hardly off the mean: the farther off, the less it says of other motion
 RANK_FLOOR = 1e-12  # of the kernel matrix's largest eigenvalue: what lies below is rounding
+
+
+class Smooth(Protocol):
+    """A function of points [F, D]."""
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """The values [F, K]."""
+
+    def through(self, matrix: Tensor) -> "Smooth":
+        """The function whose values are multiplied by a matrix [K, K']."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoother:
-    """f(x) = kernel(x, centres) @ values."""
+    """f(x) = kernel(x, centres) @ values; far from the centres less, where it has a reach."""
 
     centres: Tensor  # [M, D]
     values: Tensor  # [M, K]
     width: float
+    reach: float = math.inf  # squared distance from the nearest centre at which the function has faded to 1 / e
 
     def __call__(self, x: Tensor) -> Tensor:
-        """The function's values [F, K] at points [F, D]."""
-        return _kernel(x, self.centres, self.width) @ self.values
+        squared = torch.cdist(x, self.centres).square_()
+        trust = (-squared.min(1).values / self.reach).exp_()
+        return trust[:, None] * (squared.div_(-self.width).exp_() @ self.values)
+
+    def through(self, matrix: Tensor) -> "Smoother":
+        return replace(self, values=self.values @ matrix)
+
+
+@dataclass(frozen=True, eq=False)
+class Sum:
+    """The sum of functions, of which each may see the points turned."""
+
+    terms: tuple[Smooth, ...]
+    turns: tuple[Tensor, ...] | None = None  # [D, D'] each
+
+    def __call__(self, x: Tensor) -> Tensor:
+        turns = self.turns or (None,) * len(self.terms)
+        parts = (term(x if turn is None else x @ turn) for term, turn in zip(self.terms, turns, strict=True))
+        return functools.reduce(Tensor.add_, parts)
+
+    def through(self, matrix: Tensor) -> "Sum":
+        return replace(self, terms=tuple(term.through(matrix) for term in self.terms))
 
 
 def fit_smoother(
@@ -35,42 +71,47 @@ def fit_smoother(
     targets: Tensor,  # [F, K]
     *,
     generator: torch.Generator,
-    weights: Tensor | None = None,  # [F] how much each frame counts, by default 1: its noise is RIDGE over that
+    noise: Tensor | None = None,  # [F] variance that each frame's value is granted; None: RIDGE
+    width: float | None = None,  # of the kernel, squared; None: by the frames
 ) -> Smoother:
     """The smooth function that comes near `targets` at `x`."""
-    weights = torch.ones_like(x[:, 0]) if weights is None else weights
+    noise = torch.full_like(x[:, 0], RIDGE) if noise is None else noise
     chosen = torch.randperm(len(x), generator=generator)[:CENTRES].sort().values.to(x.device)
     centres = x[chosen]
-    distance = float(2 * (x - x.mean(0)).square().sum(1).mean())
-    width = WIDTH * distance if distance > 0 else 1.0
+    width = width or WIDTH * spread(x) or 1.0
     kernel = _kernel(centres, centres, width).double()
     if len(centres) == len(x):  # no approximation
-        system = kernel + torch.diag(RIDGE / weights[chosen].double())
+        system = kernel + torch.diag(noise[chosen].double())
         solved = torch.cholesky_solve(targets[chosen].double(), torch.linalg.cholesky(system))
         return Smoother(centres, solved.to(targets), width)
     values, vectors = torch.linalg.eigh(kernel)
     kept = values > RANK_FLOOR * values[-1]
     features = vectors[:, kept] / values[kept].sqrt()
     seen = _kernel(x, centres, width).double() @ features
-    weighted = seen.T * weights.double()
-    system = weighted @ seen + RIDGE * torch.eye(seen.shape[1], dtype=seen.dtype, device=seen.device)
+    weighted = seen.T / noise.double()
+    system = weighted @ seen + torch.eye(seen.shape[1], dtype=seen.dtype, device=seen.device)
     solved = features @ torch.linalg.solve(system, weighted @ targets.double())
     return Smoother(centres, solved.to(targets), width)
 
 
-@dataclass(frozen=True, eq=False)
-class Sum:
-    """f(x) = sum_p smoother_p(x @ turns[p])."""
+def fit_beyond(
+    x: Tensor,  # [F, D]
+    targets: Tensor,  # [F, K]
+    own: Tensor,  # [F] bool, the frames of the user's motion
+    *,
+    generator: torch.Generator,
+) -> Sum:
+    """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them."""
+    size = targets.norm(dim=1)
+    relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
+    common = fit_smoother(x, targets, generator=generator, noise=BEYOND * relative.clamp(min=LEAST))
+    besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=common.width)
+    return Sum((common, replace(besides, reach=spread(x[own]) or 1.0)))
 
-    turns: tuple[Tensor, ...]  # [D, D'] each
-    smoothers: tuple[Smoother, ...]
 
-    def __call__(self, x: Tensor) -> Tensor:
-        """The function's values [F, K] at points [F, D]."""
-        total = x.new_zeros(len(x), self.smoothers[0].values.shape[1])
-        for turn, one in zip(self.turns, self.smoothers, strict=True):
-            total.addmm_(_kernel(x @ turn, one.centres, one.width), one.values)
-        return total
+def spread(x: Tensor) -> float:
+    """The mean squared distance between points [F, D]."""
+    return float(2 * (x - x.mean(0)).square().sum(1).mean())
 
 
 def _kernel(a: Tensor, b: Tensor, width: float) -> Tensor:

@@ -288,7 +288,7 @@ def start_branch(
         components=components,
         expand=targets.expand,
         locality=local,
-        weights=frames,
+        own=None if frames is None else frames == 1,
         hidden=settings.hidden,
         criterion=squared_error,
         schedule=settings.regression,
