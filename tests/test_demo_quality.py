@@ -33,9 +33,9 @@ LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on 
 
 @pytest.fixture(scope="module")
 def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
-    """As `make demo` does, without the range of motion, which takes part of the bases."""
+    """As `make demo` does."""
     directory = tmp_path_factory.mktemp("demo")
-    order = Order(directory / "a.muaavatar", directory / "work", preset("tiny"), "cpu", jobs=2, motion_range="none")
+    order = Order(directory / "a.muaavatar", directory / "work", preset("tiny"), "cpu", jobs=2)
     return bake(order, Silent())
 
 

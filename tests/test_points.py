@@ -11,7 +11,7 @@ from mua.checkpoint import Checkpoints
 from mua.student.components import Components
 from mua.student.optimise import Run
 from mua.student.points import BLEND, RADII, draw_points, exchange, scatter
-from mua.student.regress import regress, squared_error
+from mua.student.regress import regress
 from mua.student.settings import Generalisation, Schedule
 
 PLAIN = Components(torch.eye(6), 1e6 * torch.tensor([[-1.0], [1.0]]).expand(2, 6), torch.ones(6))
@@ -79,7 +79,6 @@ def test_an_mlp_taught_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp
             shown,
             components=PLAIN,
             hidden=64,
-            criterion=squared_error,
             schedule=schedule,
             stage="x",
             run=run,

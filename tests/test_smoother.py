@@ -1,12 +1,14 @@
 """Kernel ridge regression against the textbook's formula, in double precision."""
 
+import math
+
 import numpy as np
 import pytest
 import torch
 from scipy.spatial.distance import cdist
 
 from mua.student import smoother
-from mua.student.smoother import RIDGE, WIDTH, fit_smoother
+from mua.student.smoother import BEYOND, LEAST, RIDGE, WIDTH, fit_beyond, fit_smoother
 
 
 def frames(count: int, dimensions: int = 4) -> tuple[torch.Tensor, torch.Tensor]:
@@ -48,3 +50,73 @@ def test_frames_that_are_all_alike_give_their_mean() -> None:
     targets = torch.tensor([[1.0], [3.0], [2.0]])
     found = fitted(torch.ones(3, 2), targets)(torch.ones(1, 2))
     assert float(found) == pytest.approx(2, rel=0.01)
+
+
+def test_noise_counts_frame_by_frame_also_where_only_some_span_the_function(monkeypatch: pytest.MonkeyPatch) -> None:
+    x, targets = frames(300)
+    noise = torch.where(torch.arange(300) < 150, RIDGE, 10.0)
+    every, some = (
+        fit_smoother(x, targets, generator=torch.Generator().manual_seed(1), noise=noise)(x)
+        for centres in (300, 200)
+        if monkeypatch.setattr(smoother, "CENTRES", centres) is None
+    )
+    errors = (every - targets).square().sum(1)
+    assert errors[:150].mean() < 0.5 * errors[150:].mean()
+    assert (some - every).square().sum() < 0.05 * every.square().sum()
+
+
+def users_and_range() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    """Points of the user's motion, close together, those of the range of motion, targets, and which is which."""
+    x, targets = frames(80)
+    own = torch.arange(80) < 50
+    return torch.where(own[:, None], 0.2 * x + 1, 2 * x), torch.where(own[:, None], targets, 4 * targets), own
+
+
+def test_what_all_frames_have_in_common_and_what_the_users_show_besides_add_up() -> None:
+    x, targets, own = users_and_range()
+    new = torch.cat([x[own][:5] + 0.05, 2 * frames(90)[0][80:]])
+    found = fit_beyond(x, targets, own, generator=torch.Generator().manual_seed(1))(new)
+    x, targets, new, own = (part.double().numpy() for part in (x, targets, new, own))
+    own = own > 0
+
+    def spread(points: np.ndarray) -> float:
+        return float(2 * np.square(points - points.mean(0)).sum(1).mean())
+
+    wide, reach = WIDTH * spread(x), spread(x[own])
+
+    def kernel(a: np.ndarray, b: np.ndarray, width: float = wide) -> np.ndarray:
+        return np.asarray(np.exp(-cdist(a, b, "sqeuclidean") / width))
+
+    size = np.linalg.norm(targets, axis=1)
+    noise = BEYOND * np.maximum(size / np.sqrt(np.square(size[~own]).mean()), LEAST)
+    common = np.linalg.solve(kernel(x, x) + np.diag(noise), targets)
+    left = targets[own] - kernel(x[own], x) @ common
+    narrower = math.sqrt(wide * WIDTH * reach)
+    besides = np.linalg.solve(kernel(x[own], x[own], narrower) + RIDGE * np.eye(own.sum()), left)
+    trust = np.exp(-cdist(new, x[own], "sqeuclidean").min(1) / reach)
+    expected = kernel(new, x) @ common + trust[:, None] * (kernel(new, x[own], narrower) @ besides)
+    assert np.abs(found.numpy() - expected).max() < 1e-3 * np.abs(expected).max()
+
+
+def test_the_users_frames_are_kept_and_end_with_them() -> None:
+    x, targets, own = users_and_range()
+    function = fit_beyond(x, targets, own, generator=torch.Generator().manual_seed(1))
+    assert (function(x[own]) - targets[own]).square().sum() < 0.1 * targets[own].square().sum()
+    far = x[~own]
+    assert (function(far) - targets[~own]).square().sum() > 0.5 * targets[~own].square().sum()
+    assert function(far).square().sum() < 0.2 * targets[~own].square().sum()
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_one_or_two_frames_of_the_user_are_given_back(count: int) -> None:
+    x, targets, own = users_and_range()
+    rows = torch.cat([torch.arange(count), torch.arange(50, 80)])
+    function = fit_beyond(x[rows], targets[rows], own[rows], generator=torch.Generator().manual_seed(1))
+    assert torch.allclose(function(x[:count]), targets[:count], atol=0.06 * float(targets[:count].abs().max()))
+
+
+def test_values_go_through_a_matrix() -> None:
+    x, targets, own = users_and_range()
+    function = fit_beyond(x, targets, own, generator=torch.Generator().manual_seed(1))
+    matrix = torch.tensor([[1.0, 2.0, 0.0], [0.0, -1.0, 3.0]])
+    assert torch.allclose(function.through(matrix)(x), function(x) @ matrix, atol=1e-3)

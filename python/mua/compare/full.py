@@ -16,7 +16,7 @@ from mua.student.local import Locality, sample_locality, texture_locality
 from mua.student.model import Branch, build_mlp
 from mua.student.optimise import Run
 from mua.student.paper_recipe import start_mlp
-from mua.student.regress import regress, squared_error
+from mua.student.regress import regress
 from mua.student.settings import Ranks
 from mua.student.targets import joint_targets
 from mua.wavelets import synthesise_lowpass, waverec2
@@ -294,7 +294,6 @@ def _teach(
         expand=expand,
         locality=locality,
         hidden=settings.hidden,
-        criterion=squared_error,
         schedule=settings.regression,
         stage="coefficients",
         run=run,

@@ -10,7 +10,7 @@ from mua.student.factorize import frame_weights, truncated_svd
 from mua.student.local import Parts, sample_locality
 from mua.student.model import Coarse
 from mua.student.optimise import Run
-from mua.student.regress import absolute_error, regress
+from mua.student.regress import regress
 from mua.student.settings import Settings
 
 
@@ -64,7 +64,7 @@ def fit_coarse(
     parts: Parts | None = None,
     weights: Tensor | None = None,  # [F] how much each frame counts
 ) -> None:
-    """Set the PCA of `coarse` and train its F_temp with an L1 loss on the coefficients (paper, Eq. L_coarse)."""
+    """Set the PCA of `coarse` and train its F_temp on the coefficients (paper, Animatable Coarse Geometry)."""
     pca = set_pca(coarse, meshes, run, weights)
     fade = settings.generalisation.fade
     mlp = regress(
@@ -73,7 +73,6 @@ def fit_coarse(
         components=components,
         locality=None if parts is None else sample_locality(parts, pca.basis, parts.vertices, fade=fade),
         hidden=settings.hidden,
-        criterion=absolute_error,
         schedule=settings.regression,
         stage="coarse mesh",
         run=run,

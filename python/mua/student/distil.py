@@ -31,7 +31,7 @@ from mua.student.settings import Settings, StageName
 from mua.student.train import Samples, stages, train
 from mua.teachers.bones import figure_scale
 
-RANGE_WEIGHT = 0.02  # of a frame of the built-in range of motion: bases are first of all for the user's motion
+RANGE_WEIGHT = 0.01  # of a frame of the built-in range of motion: bases are first of all for the user's motion
 GPU_SECONDS = 1.0  # between two questions about the GPU
 
 

@@ -32,7 +32,6 @@ def regress(
     *,
     components: Components,
     hidden: int,
-    criterion: Callable[[Tensor, Tensor], Tensor],
     schedule: Schedule,
     stage: str,
     run: Run,
@@ -73,7 +72,7 @@ def regress(
         def part(share: Share) -> Tensor:
             points, values = lesson()[share.held]
             places = ((share.rows - share.held.start) // share.held.step).to(points.device)
-            return criterion(model(points[places]), values[places])
+            return squared_error(model(points[places]), values[places])
 
         drawn = torch.randint(count, (schedule.batch,), generator=run.generator)
         return run.processes.mean_loss(drawn, part, frames=count)
@@ -159,7 +158,3 @@ def seeded_mlp(inputs: int, hidden: int, outputs: int, *, run: Run) -> nn.Sequen
 def squared_error(predicted: Tensor, goal: Tensor) -> Tensor:
     """Summed over coordinates: one less the explained variance where the goal has unit energy."""
     return (predicted - goal).square().sum(1).mean()
-
-
-def absolute_error(predicted: Tensor, goal: Tensor) -> Tensor:
-    return (predicted - goal).abs().sum(1).mean()

@@ -105,8 +105,10 @@ def fit_beyond(
     size = targets.norm(dim=1)
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
     common = fit_smoother(x, targets, generator=generator, noise=BEYOND * relative.clamp(min=LEAST))
-    besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=common.width)
-    return Sum((common, replace(besides, reach=spread(x[own]) or 1.0)))
+    reach = spread(x[own]) or 1.0
+    width = math.sqrt(common.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
+    besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=width)
+    return Sum((common, replace(besides, reach=reach)))
 
 
 def spread(x: Tensor) -> float:
