@@ -132,8 +132,11 @@ def test_draws_every_joint_over_all_else(stage: Stage) -> None:
         np.testing.assert_allclose(image[row, column, :3], JOINT_COLOR, atol=HALF)
 
 
+@pytest.mark.parametrize("near", [1, 0.1])  # share of the distances by which the bone passes
 @pytest.mark.parametrize("side", [-1, 1])
-def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(stage: Stage, side: int) -> None:
+def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(
+    stage: Stage, side: int, near: float
+) -> None:
     """One joint before the camera, the other behind: every point between them that is in the image is drawn."""
     _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
     behind, ahead = joints[1:3][::side]
@@ -143,15 +146,29 @@ def test_a_bone_that_passes_the_camera_is_drawn_to_where_it_leaves_the_picture(s
     look = np.cos(0.27) * along - np.sin(0.27) * across  # so that the bone's direction in the image tells its end
     turn = np.stack([np.cross(look, up), up, -look])
     view = np.eye(4)
-    view[:3, :3], view[:3, 3] = turn, -turn @ (0.75 * behind + 0.25 * ahead) + [-0.03, -0.04, 0]
+    view[:3, :3], view[:3, 3] = turn, -turn @ (0.75 * behind + 0.25 * ahead) + [-0.03 * near, -0.04 * near, 0]
     camera = replace(camera_at(joints), view=view)
     between = behind + np.linspace(0, 1, 2000)[:, None] * (ahead - behind)
-    before = between[(between @ view[2, :3] + view[2, 3]) < -2 * camera.near]
+    before = between[(between @ view[2, :3] + view[2, 3]) < -2 * near * camera.near]
     at = pixels(camera, before)
     inside = at[((at > 2) & (at < np.array(SCREEN) - 2)).all(axis=1)].astype(int)
     assert np.ptp(inside, axis=0).max() > 20
     image = stage.picture((camera,), "skeleton")
     assert (image[inside[:, 1], inside[:, 0], 3] > 0.5).all()
+
+
+def test_a_bone_behind_the_camera_is_not_drawn(stage: Stage) -> None:
+    """Of an eye that looks straight away from the middle of a bone."""
+    _, joints = stage.avatar.rig.skeleton.world(stage.clip.rotations[INDEX], stage.clip.translations[INDEX])
+    along = (joints[2] - joints[1]) / np.linalg.norm(joints[2] - joints[1])
+    look = rotation.normalize(np.cross(along, [1.0, 0.2, 0.1]))
+    for sign, is_seen in ((1, True), (-1, False)):
+        back = -sign * look
+        turn = np.stack([np.cross(along, back), along, back])
+        view = np.eye(4)
+        view[:3, :3], view[:3, 3] = turn, -turn @ ((joints[1] + joints[2]) / 2 - 2 * look)
+        image = stage.picture((replace(camera_at(joints), view=view),), "skeleton")
+        assert bool(np.any(image[..., 3])) == is_seen
 
 
 @pytest.mark.parametrize(("azimuth", "elevation"), [(0.0, 1.5), (2.2, 0.6), (4.7, 0.1)])

@@ -3,6 +3,7 @@
 Against the desktop player's draw of the same buffers, which is held to the CPU rasteriser by test_recorded_frame.py.
 """
 
+import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -232,6 +233,30 @@ def test_a_single_eye_serves_both_views(painter: Painter, mono: Scene) -> None:
     """Where a pipeline draws a camera without stereo by a pass with it."""
     found = painter.unity(mono.drawn["indirect"], variant="multiview", replayed_view=1)
     agree(found, painter.player(mono)[0])
+
+
+@pytest.mark.parametrize("shift", [-2.0, 2.0], ids=["lower", "upper"])
+def test_splats_beyond_either_end_of_the_depth_are_drawn_at_it(painter: Painter, mono: Scene, shift: float) -> None:
+    """An avatar may reach beyond the planes of a camera."""
+    drawn = mono.drawn["indirect"]
+    found = painter.unity(shifted(drawn, shift))
+    agree(found, painter.player(mono)[0])
+
+
+def test_the_depth_of_opengl_reaches_lower(painter: Painter, mono: Scene) -> None:
+    """To -1, which this device clips where it is left as it is."""
+    drawn = shifted(mono.drawn["indirect"], -0.9)
+    assert seen(painter.unity(drawn))
+    assert not np.any(painter.unity(drawn, space=(*GAMMA, "SHADER_API_GLCORE")))
+
+
+def shifted(drawn: Drawn, shift: float) -> Drawn:
+    """The same draw with another depth of every splat, as shares of the device's."""
+    kind, content = drawn.constants["view_projection"]
+    matrices = np.frombuffer(base64.b64decode(content), np.float32).reshape(-1, 4, 4).transpose(0, 2, 1).copy()
+    matrices[:, 2] += shift * matrices[:, 3]
+    encoded = base64.b64encode(np.ascontiguousarray(matrices.transpose(0, 2, 1)).tobytes()).decode()
+    return replace(drawn, constants={**drawn.constants, "view_projection": (kind, encoded)})
 
 
 def places(scene: Scene, eye: int) -> Iterator[tuple[str, float]]:

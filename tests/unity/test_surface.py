@@ -169,9 +169,13 @@ class Painter:
             return rasterised.smooth(camera, placed(frame.centres), triangles, GEOMETRY_COLOR, wall=wall)
         if name == "Mesh":
             return rasterised.flat(camera, placed(frame.mesh), rig.mesh.faces, TEMPLATE_COLOR, wall=wall)
-        clip = scene.avatar.clips[0]
-        _, joints = rig.skeleton.world(clip.rotations[FRAME], clip.translations[FRAME])
-        return rasterised.strokes(camera, list(skeleton_strokes(rig.skeleton.parents, placed(joints))))
+        return rasterised.strokes(camera, self.strokes())
+
+    def strokes(self) -> list[Stroke]:
+        """The bones and joints where the avatar stands."""
+        skeleton, clip = self.scene.avatar.rig.skeleton, self.scene.avatar.clips[0]
+        _, joints = skeleton.world(clip.rotations[FRAME], clip.translations[FRAME])
+        return list(skeleton_strokes(skeleton.parents, placed(joints)))
 
 
 def skeleton_strokes(parents: Array, joints: Array) -> Iterator[Stroke]:
@@ -255,9 +259,18 @@ def test_a_surface_yields_a_centimetre_to_what_lies_on_it(painter: Painter) -> N
 @pytest.mark.parametrize("name", ["Geometry", "Mesh"])
 def test_a_linear_project_is_given_light(painter: Painter, name: str) -> None:
     srgb = painter.expected(name, 0)
-    image = srgb.image.copy()
-    image[..., :3] = np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)[..., :3]
+    image = np.concatenate([light_of(srgb.image[..., :3]), srgb.image[..., 3:]], axis=-1)
     agree(painter.unity(name, space=()), Picture(image, STEEPEST * srgb.spread), name)
+
+
+def test_a_linear_project_blends_the_light_of_bones(painter: Painter) -> None:
+    lit = [replace(stroke, color=tuple(light_of(np.array(stroke.color)))) for stroke in painter.strokes()]
+    agree(painter.unity("Skeleton", space=()), rasterised.strokes(painter.scene.cameras[0], lit), "Skeleton")
+
+
+def light_of(srgb: Array) -> Array:
+    """IEC 61966-2-1."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
 def light_from(axis: int, span: float, middle: float = 0) -> Array:
