@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rasterised
+import wgpu
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, compare
+from scipy.ndimage import map_coordinates
 from synthetic_avatar import empty_avatar, synthetic_avatar, with_surface
 
 from mua import rotation
@@ -20,7 +22,7 @@ from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.dq_skinning import blend_vertices
 from mua.player.buffers import AvatarBuffers
-from mua.player.draw import view_projection
+from mua.player.draw import read_image, view_projection
 from mua.player.frame import AvatarFrame
 from mua.player.overlays import (
     BONE_COLOR,
@@ -47,6 +49,16 @@ from mua.pose.skeleton import Pose
 SCREEN = (97, 131)  # pixels
 HALF = 2.0**-11  # relative rounding of a half float: the image's format
 INDEX = 3  # frame of the clip
+COVER = """
+#include "surface_draw.hlsl"
+StructuredBuffer<uint> mask;
+cbuffer Constants { uint size; float samples; float first; };
+float4 CoverVert(uint vertex : SV_VertexID) : SV_Position
+{
+    return float4(vertex == 1 ? 3 : -1, vertex == 2 ? 3 : -1, 0, 1);
+}
+float4 CoverFrag(float4 at : SV_Position) : SV_Target { return shadowCover(first + at.xy * samples, size, mask); }
+"""
 
 
 class Stage:
@@ -187,6 +199,31 @@ def test_casts_the_shadow_that_numpy_casts(stage: Stage, azimuth: float, elevati
         darkness=DARKNESS,
     )
     compare(stage.picture((camera,), "shadow"), cast, SURFACE_BOUND)
+
+
+def test_a_shadow_fades_where_its_mask_ends(device: Device, tmp_path: Path) -> None:
+    """A mask that is full of numbers up to its edges, read from three samples before it to three behind it."""
+    size, side, samples = 8, 64, 14 / 64
+    mask = np.random.default_rng(3).integers(0, 256, (size, size), np.uint8)
+    path = tmp_path / "cover.hlsl"
+    path.write_text(COVER)
+    drawing = device.pipeline(
+        path, "CoverVert", "CoverFrag", color_format="rgba32float", depth_format=None, blend=False
+    )
+    usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+    target = device.wgpu.create_texture(size=(side, side, 1), format="rgba32float", usage=usage)
+    encoder = device.wgpu.create_command_encoder()
+    attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
+    render_pass = encoder.begin_render_pass(color_attachments=[attachment])
+    held = device.buffer(mask.view(np.uint32), name="mask")
+    drawing.bind(render_pass, {"mask": held}, size=size, samples=samples, first=-3.0)
+    render_pass.draw(3)
+    render_pass.end()
+    device.wgpu.queue.submit([encoder.finish()])
+    at = (np.arange(side) + 0.5) * samples - 3 - 0.5  # from the first sample's middle
+    rows, columns = np.meshgrid(at, at, indexing="ij")
+    exact = map_coordinates(mask / 255, [rows, columns], order=3, mode="grid-constant", prefilter=False)
+    np.testing.assert_allclose(read_image(device, target)[..., 0], exact, atol=1e-5)  # float32 of 16 products
 
 
 def test_hides_splats_behind_the_surface(stage: Stage) -> None:

@@ -77,3 +77,16 @@ def test_an_avatar_without_levels_says_so_once_and_shows_all(story: Story, folde
     sentence = "the avatar has no such level of detail; it is shown at full size."
     assert told["message"] == [sentence]
     assert [line.rpartition(": ")[2] for line in told["log"]] == [sentence]
+
+
+def test_geometry_is_never_drawn_of_a_coarser_level(story: Story) -> None:
+    """Its triangles are of the finest: that is decoded at once, also in the middle of a clip."""
+    told, levels = story("ShowsGeometryWhilePlaying", "first"), counts(1)
+    assert told["coarse"] == [str(levels[2])]
+    assert told["geometry"] == [str(levels[0])] * 3
+
+
+def test_an_avatar_that_was_far_away_when_others_came_has_room_for_all_its_splats(story: Story) -> None:
+    told, levels = story("ComesNear", "first"), counts(1)
+    assert (told["far"], told["near"]) == ([str(levels[2])], [str(levels[0])])
+    assert int(told["room"][0]) >= levels[0]

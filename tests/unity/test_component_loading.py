@@ -19,6 +19,15 @@ def test_an_avatar_destroyed_while_it_uploads_leaves_nothing(story: Story) -> No
     assert (told["state"], told["progress"], told["held"]) == (["Loading"], ["1"], ["1"])
 
 
+def test_progress_rises_from_nothing_to_all(story: Story) -> None:
+    """Of a file whose upload takes three frames; before it, reading takes any number of them."""
+    found = [float(number) for number in story("MakesProgress", "wide")["progress"]]
+    assert (found[0], found[-1], found) == (0, 1, sorted(found))
+    uploading = sorted({number for number in found if 0 < number < 1})
+    assert len(uploading) >= 2
+    assert uploading[-1] > 0.8
+
+
 def test_an_avatar_destroyed_while_it_is_read_leaves_nothing(story: Story) -> None:
     assert story("GoesMidRead", "first")["log"] == []
 
@@ -94,3 +103,7 @@ def test_one_avatar_takes_the_place_of_another(story: Story) -> None:
 
 def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
     assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Mesh Half False True"]
+
+
+def test_a_component_that_is_off_loads_once_it_is_on(story: Story) -> None:
+    assert story("LoadsWhileDisabled", "first")["state"] == ["Empty", "Ready", "Empty"]

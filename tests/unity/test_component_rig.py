@@ -1,12 +1,16 @@
 """Rigs that AvatarRenderer follows in a player loop of stand-ins."""
 
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from component import SECOND, TRANSLATED, TURNED, Story
 from csharp import ROOT
 from synthetic_avatar import synthetic_avatar
+
+from mua.asset import write
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
@@ -84,3 +88,9 @@ def test_missing_joints_are_said_once(story: Story) -> None:
     some, root = told["log"]
     assert synthetic_avatar(1).rig.skeleton.names[-1] in some
     assert "root joint" in root
+
+
+def test_an_avatar_without_clips_returns_to_its_bind_pose_when_its_rig_goes(story: Story, folder: Path) -> None:
+    write(folder / "mute.muaavatar", replace(synthetic_avatar(1), clips=()))
+    before, meanwhile, after = story("LeavesRigWithoutClips", "first", "mute")["middle"]
+    assert before == after != meanwhile

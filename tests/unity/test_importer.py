@@ -191,12 +191,15 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     write(path, replace(avatar, clips=(avatar.clips[0], replace(avatar.clips[0], name="nod"))), storage="f16")
     told = story("Scrubs", path)
     last = len(avatar.clips[0]) - 1
-    first, chosen, scrubbed, playing, failed = (line for [line] in told["gui"])
+    first, chosen, scrubbed, again, playing, _, failed = (line for [line] in told["gui"])
     assert first == f"popup wave of wave, nod; slider 0 of 0 to {last}"
     assert chosen == first
     assert told["clip"] == [["1", "True"]]
     assert scrubbed == f"popup nod of wave, nod; slider 0 of 0 to {last}"
+    assert again == scrubbed.replace("slider 0", "slider 3")
+    assert told["asked"] == [["1", "1"]] * 2  # of the editor that does not play: a frame and its picture, once
     assert told["frame"] == [["3"]]
+    assert told["playing"] == [["False"]]
     outside = 100 * outside_of_training(path, 3)
     assert playing.split("; ")[1:] == [
         "toggle Playing True",

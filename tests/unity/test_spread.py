@@ -33,6 +33,7 @@ class Shown:
     dispatches: list[int]
     kept: list[tuple[Array, Array]]  # mesh and channels
     outside: list[str]  # how far outside of training what is shown is
+    splats: list[int]
     shadows: list[bool]  # whether it falls from the mesh that is shown
 
 
@@ -56,10 +57,11 @@ class Watched:
     def _shown(self, name: str, told: list[list[str]], sets: int) -> Shown:
         dispatches = [int(value) for label, value in told if label == name]
         outside = [value for label, value in told if label == f"outside {name}"]
+        splats = [int(value) for label, value in told if label == f"splats {name}"]
         recording = self._folder / f"first {name}"
         kept = replay(self._device, recording).kept
         pairs = [(kept[f"{i} mesh"], kept[f"{i} texel_channels"]) for i in range(FRAMES)]
-        return Shown(sets, dispatches, pairs, outside, _shadows(recording.with_suffix(".json")))
+        return Shown(sets, dispatches, pairs, outside, splats, _shadows(recording.with_suffix(".json")))
 
 
 def _shadows(recording: Path) -> list[bool]:
@@ -105,6 +107,17 @@ def test_a_displayed_frame_of_two_cameras_decodes_one_part(watched: Watched) -> 
     spread, at_once = watched.play("SpreadsForTwoCameras")
     assert [alike(*pair) for pair in zip(spread.kept, at_once.kept, strict=True)] == [True] * FRAMES
     assert max(spread.dispatches[3:]) == 2 * POSED - 1 + max(map(len, PARTS_ORDER))  # posed once, sorted for each
+
+
+def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(watched: Watched) -> None:
+    """What was begun at the old level is shown when it is due."""
+    spread, at_once = watched.play("SpreadsOverLevels")
+    assert len(set(at_once.splats)) == 2
+    late = [spread.splats.index(min(at_once.splats)) - at_once.splats.index(min(at_once.splats))]
+    late += [found[::-1].index(min(at_once.splats)) for found in (at_once.splats, spread.splats)]
+    assert 0 < late[0] <= 5  # displayed frames; a pose is due after three
+    assert 0 < late[1] - late[2] <= 5
+    assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))
 
 
 def test_a_shadow_falls_from_the_mesh_that_is_shown(watched: Watched) -> None:

@@ -36,6 +36,34 @@ namespace Mua
             Say("geometry", Splats(shown));
         }
 
+        /// <summary>The detailed geometry, in the middle of a clip that plays at the coarsest level.</summary>
+        private static void ShowsGeometryWhilePlaying()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.Level = AvatarLevel.Quarter;
+            Say("coarse", Splats(shown));
+            for (int i = 0; i < 6; i++)
+            {
+                shown.Views = i % 2 == 0 ? AvatarViews.Splats | AvatarViews.Geometry : AvatarViews.Splats;
+                Frames(1);
+                Say(i % 2 == 0 ? "geometry" : "splats", shown.SplatCount);
+                Frames(6 + i);
+            }
+        }
+
+        /// <summary>What is shared when an avatar is far away, and then comes near.</summary>
+        private static void ComesNear()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            Stand(Far);
+            Frames(9);
+            shown.Views = AvatarViews.Splats;
+            Say("far", Splats(shown));
+            Stand(Near);
+            Say("near", Splats(shown));
+            Say("room", shown.Decoded.Splats.count / 2);
+        }
+
         /// <summary>How large a texel looks: from within the box, from its side, and by a projection whose rows run down.</summary>
         private static void MeasuresTexels()
         {

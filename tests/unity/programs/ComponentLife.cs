@@ -112,6 +112,23 @@ namespace Mua
             Say("shown", shown.State + " " + shown.SplatCount + " " + (shown.Avatar == asset));
         }
 
+        /// <summary>A file that is asked for while the component is off, which then goes on.</summary>
+        private static void LoadsWhileDisabled()
+        {
+            AvatarRenderer shown = Make("avatar").AddComponent<AvatarRenderer>();
+            shown.enabled = false;
+            shown.Load(files[0]);
+            Frames(5);
+            Say("state", shown.State);
+            shown.enabled = true;
+            Until(shown);
+            Say("state", shown.State);
+            shown.gameObject.SetActive(false);
+            shown.Load(files[0]);
+            Frames(5);
+            Say("state", shown.State);
+        }
+
         /// <summary>Settings of a component, and those of one that Unity makes of its serialized fields.</summary>
         private static void IsCopied()
         {

@@ -194,6 +194,19 @@ namespace Mua
             Say("held", Recorder.AliveCount > 0 ? 1 : 0);
         }
 
+        /// <summary>What is said of the progress in each frame until the avatar is there.</summary>
+        private static void MakesProgress()
+        {
+            AvatarRenderer shown = Begin(files[0]);
+            for (int i = 0; i < Patience && shown.State == AvatarState.Loading; i++)
+            {
+                Say("progress", shown.Progress);
+                Frames(1);
+                Thread.Sleep(1);
+            }
+            Say("progress", shown.Progress);
+        }
+
         private static void GoesMidRead()
         {
             Begin(files[0]);

@@ -79,6 +79,19 @@ namespace Mua
             Say("left", Dispatches(1));
         }
 
+        /// <summary>An avatar without clips, before it follows a rig, meanwhile, and after it.</summary>
+        private static void LeavesRigWithoutClips()
+        {
+            var rig = new Rig();
+            AvatarRenderer shown = Show(files[1]);
+            foreach (Transform root in new[] { null, rig.Root, null })
+            {
+                shown.Rig = root;
+                Frames(20);
+                Say("middle", shown.Bounds.center.x + " " + shown.Bounds.center.y + " " + shown.Bounds.center.z);
+            }
+        }
+
         /// <summary>A pose that is held for long and then left: the window still holds what was before.</summary>
         private static void RemembersRest()
         {

@@ -45,6 +45,12 @@ namespace Mua
             });
         }
 
+        /// <summary>Another level of detail in the middle of a decode that is made for a pose to come, then the first.</summary>
+        private static void SpreadsOverLevels()
+        {
+            Watch(Step, null, (shown, i) => shown.Level = i < 11 || i > 16 ? AvatarLevel.Full : AvatarLevel.Quarter);
+        }
+
         private static void SpreadsRig()
         {
             Watch(Fast, FollowRig, TurnRig);
@@ -93,6 +99,7 @@ namespace Mua
                     PlayerLoop.Frame(step);
                     Say(label, Recorder.Dispatches - before);
                     Say("outside " + label, shown.OutsideTraining);
+                    Say("splats " + label, shown.SplatCount);
                     Recorder.Keep(shown.Decoded.Mesh, i + " mesh");
                     Recorder.Keep(shown.Decoded.TexelChannels, i + " texel_channels");
                 }

@@ -139,11 +139,18 @@ namespace Mua.Editor
             PlayerLoop.Frame(1);
             Say("clip", shown.ClipIndex, decoded == shown.Decoded);
             Gui.Answers["Frame"] = 3;
+            int updates = Asked.Updates, repaints = Asked.Repaints;
             Show(inspector);
+            Say("asked", Asked.Updates - updates, Asked.Repaints - repaints);
+            Show(inspector);
+            Say("asked", Asked.Updates - updates, Asked.Repaints - repaints);
             PlayerLoop.Frame(1);
             Say("frame", shown.Frame);
             Machine.Playing(true);
             Show(inspector);
+            Gui.Answers["Playing"] = false;
+            Show(inspector);
+            Say("playing", shown.IsPlaying);
             Machine.Playing(false);
             shown.Load("nowhere.muaavatar");
             Show(inspector);

@@ -9,7 +9,7 @@ namespace UnityEditor
         public static CallbackFunction delayCall;
 
         public static bool isPlayingOrWillChangePlaymode { get { return false; } }
-        public static void QueuePlayerLoopUpdate() { }
+        public static void QueuePlayerLoopUpdate() { StandIns.Asked.Updates++; }
         public static void Exit(int returnValue) { throw new System.OperationCanceledException("exit " + returnValue); }
     }
 }

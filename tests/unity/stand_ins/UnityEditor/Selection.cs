@@ -42,11 +42,17 @@ namespace UnityEditor
 
     public class SceneAsset : Object { }
 
-    public class SceneView { public static void RepaintAll() { } }
+    public class SceneView { public static void RepaintAll() { StandIns.Asked.Repaints++; } }
 }
 
 namespace StandIns
 {
+    /// <summary>What an editor that does not play was asked to do. Not part of Unity's API.</summary>
+    public static class Asked
+    {
+        public static int Updates, Repaints;
+    }
+
     /// <summary>What undo would take back. Not part of Unity's API.</summary>
     public static class Undone
     {
