@@ -120,6 +120,13 @@ def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(
     assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))
 
 
+def test_another_level_does_not_discard_what_is_decoded_already(watched: Watched) -> None:
+    spread, at_once = watched.play("SpreadsOverLevelsOnSlowerDisplay")
+    assert len(set(spread.splats)) == 2
+    assert max(at_once.dispatches[3:]) == len(FRAME_ORDER)
+    assert max(spread.dispatches[3:]) < len(FRAME_ORDER)
+
+
 def test_a_shadow_falls_from_the_mesh_that_is_shown(watched: Watched) -> None:
     """But for the first frame that is due before it is whole, as there was no time to look ahead."""
     spread, _ = watched.play("SpreadsClip")

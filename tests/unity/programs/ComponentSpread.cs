@@ -10,7 +10,7 @@ namespace Mua
     internal static partial class ComponentProgram
     {
         private const int Watched = 24; // displayed frames
-        private const float Fast = 1f / 71, Slow = 1f / 31; // seconds of one, of which no number is a frame of the avatar
+        private const float Fast = 1f / 71, Slower = 1f / 51, Slow = 1f / 31; // seconds of one, of which no number is a frame of the avatar
 
         private static Rig posing;
 
@@ -49,6 +49,12 @@ namespace Mua
         private static void SpreadsOverLevels()
         {
             Watch(Step, null, (shown, i) => shown.Level = i < 11 || i > 16 ? AvatarLevel.Full : AvatarLevel.Quarter);
+        }
+
+        /// <summary>Levels that change in every moment of a decode, on a display that lacks the time to spread all of it.</summary>
+        private static void SpreadsOverLevelsOnSlowerDisplay()
+        {
+            Watch(Slower, null, (shown, i) => shown.Level = i / 5 % 2 == 0 ? AvatarLevel.Full : AvatarLevel.Quarter);
         }
 
         private static void SpreadsRig()
