@@ -8,7 +8,7 @@ import torch
 from scipy.spatial.distance import cdist
 
 from mua.student import smoother
-from mua.student.smoother import BEYOND, LEAST, RIDGE, WIDTH, fit_beyond, fit_smoother
+from mua.student.smoother import LEAST, RIDGE, WIDTH, fit_beyond, fit_smoother
 
 
 def frames(count: int, dimensions: int = 4) -> tuple[torch.Tensor, torch.Tensor]:
@@ -75,7 +75,7 @@ def users_and_range() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
 def test_what_all_frames_have_in_common_and_what_the_users_show_besides_add_up() -> None:
     x, targets, own = users_and_range()
     new = torch.cat([x[own][:5] + 0.05, 2 * frames(90)[0][80:]])
-    found = fit_beyond(x, targets, own, generator=torch.Generator().manual_seed(1))(new)
+    found = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))(new)
     x, targets, new, own = (part.double().numpy() for part in (x, targets, new, own))
     own = own > 0
 
@@ -88,7 +88,7 @@ def test_what_all_frames_have_in_common_and_what_the_users_show_besides_add_up()
         return np.asarray(np.exp(-cdist(a, b, "sqeuclidean") / width))
 
     size = np.linalg.norm(targets, axis=1)
-    noise = BEYOND * np.maximum(size / np.sqrt(np.square(size[~own]).mean()), LEAST)
+    noise = 10 * np.maximum(size / np.sqrt(np.square(size[~own]).mean()), LEAST)
     common = np.linalg.solve(kernel(x, x) + np.diag(noise), targets)
     left = targets[own] - kernel(x[own], x) @ common
     narrower = math.sqrt(wide * WIDTH * reach)
@@ -100,7 +100,7 @@ def test_what_all_frames_have_in_common_and_what_the_users_show_besides_add_up()
 
 def test_the_users_frames_are_kept_and_end_with_them() -> None:
     x, targets, own = users_and_range()
-    function = fit_beyond(x, targets, own, generator=torch.Generator().manual_seed(1))
+    function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))
     assert (function(x[own]) - targets[own]).square().sum() < 0.1 * targets[own].square().sum()
     far = x[~own]
     assert (function(far) - targets[~own]).square().sum() > 0.5 * targets[~own].square().sum()
@@ -111,12 +111,12 @@ def test_the_users_frames_are_kept_and_end_with_them() -> None:
 def test_one_or_two_frames_of_the_user_are_given_back(count: int) -> None:
     x, targets, own = users_and_range()
     rows = torch.cat([torch.arange(count), torch.arange(50, 80)])
-    function = fit_beyond(x[rows], targets[rows], own[rows], generator=torch.Generator().manual_seed(1))
+    function = fit_beyond(x[rows], targets[rows], own[rows], beyond=10.0, generator=torch.Generator().manual_seed(1))
     assert torch.allclose(function(x[:count]), targets[:count], atol=0.06 * float(targets[:count].abs().max()))
 
 
 def test_values_go_through_a_matrix() -> None:
     x, targets, own = users_and_range()
-    function = fit_beyond(x, targets, own, generator=torch.Generator().manual_seed(1))
+    function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))
     matrix = torch.tensor([[1.0, 2.0, 0.0], [0.0, -1.0, 3.0]])
     assert torch.allclose(function.through(matrix)(x), function(x) @ matrix, atol=1e-3)

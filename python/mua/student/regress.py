@@ -24,6 +24,8 @@ VISITS = 32  # to each point: the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
 FORGONE = 1e-4  # of the spread of what a part sees
 GENERALISATION = Generalisation()
+# The noise that values of frames beyond the user's motion are granted: light follows the pose, cloth its history too.
+SHAPE, COLOUR = 10.0, 1.0
 
 
 def regress(
@@ -38,6 +40,7 @@ def regress(
     expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
     own: Tensor | None = None,  # [F] bool, the frames of the user's motion; None: all
+    beyond: float = SHAPE,
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
     """An MLP from components to targets, or to targets @ expand, taught the smooth function through them.
@@ -56,7 +59,7 @@ def regress(
     @cache  # and not at all where a finished stage is taken up
     def lesson() -> dict[range, tuple[Tensor, Tensor]]:
         generator = run.alone(f"{stage} points").generator
-        smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own)
+        smooth = fit_local(inputs, goal, components, locality, generator=generator, own=own, beyond=beyond)
         points = draw_points(
             inputs,
             components,
@@ -100,6 +103,7 @@ def fit_local(
     *,
     generator: torch.Generator,
     own: Tensor | None = None,  # [F] bool
+    beyond: float = SHAPE,
 ) -> Smooth:
     """The smooth function of components through `goal`; with `locality` a sum over parts, as each sees the pose."""
     z, back = components(inputs), components.back()
@@ -107,7 +111,7 @@ def fit_local(
     def fit(x: Tensor) -> Smooth:
         if own is None:
             return fit_smoother(x, goal, generator=generator)
-        return fit_beyond(x, goal, own, generator=generator)
+        return fit_beyond(x, goal, own, beyond=beyond, generator=generator)
 
     if locality is None:
         return fit(z)

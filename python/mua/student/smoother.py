@@ -17,7 +17,6 @@ from torch import Tensor
 CENTRES = 2048  # frames that the function is spanned by
 WIDTH = 3.0  # squared width of the kernel relative to the mean squared distance between frames
 RIDGE = 3e-3  # noise variance that a frame's value is granted, relative to the function's own
-BEYOND = 10.0  # that of frames beyond the user's motion, whose cloth hangs on a history that no descriptor shows
 LEAST = 0.2  # of it for a frame that is hardly off the mean: the farther off, the less it says of other motion
 RANK_FLOOR = 1e-12  # of the kernel matrix's largest eigenvalue: what lies below is rounding
 
@@ -99,12 +98,13 @@ def fit_beyond(
     targets: Tensor,  # [F, K]
     own: Tensor,  # [F] bool, the frames of the user's motion
     *,
+    beyond: float,  # variance of the noise that other frames' values are granted
     generator: torch.Generator,
 ) -> Sum:
     """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them."""
     size = targets.norm(dim=1)
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
-    common = fit_smoother(x, targets, generator=generator, noise=BEYOND * relative.clamp(min=LEAST))
+    common = fit_smoother(x, targets, generator=generator, noise=beyond * relative.clamp(min=LEAST))
     reach = spread(x[own]) or 1.0
     width = math.sqrt(common.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
     besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=width)

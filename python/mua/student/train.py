@@ -24,7 +24,7 @@ from mua.student.model import Alphas, Branch, Student, lowpass_texels, outer_pro
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
-from mua.student.regress import regress
+from mua.student.regress import COLOUR, SHAPE, regress
 from mua.student.sensitivity import STAGE as SENSITIVITIES
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
@@ -289,6 +289,7 @@ def start_branch(
         expand=targets.expand,
         locality=local,
         own=None if frames is None else frames == 1,
+        beyond=COLOUR if channels == APPEARANCE else SHAPE,
         hidden=settings.hidden,
         schedule=settings.regression,
         stage=stage,
