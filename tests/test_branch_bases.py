@@ -8,8 +8,8 @@ from synthetic_student import SETTINGS, SIZE, bands_of_frames, new_student, rand
 from torch import Tensor
 
 from mua.channels import CHANNELS, GEOMETRY
+from mua.student.bases import BestCoefficients, factorize_branch, worth_of
 from mua.student.optimise import Progress
-from mua.student.train import BestCoefficients, factorize_branch, worth_of
 from mua.wavelets import Bands
 
 FRAMES = 12

@@ -24,13 +24,13 @@ from mua.splatting.rasterise import rasterise
 from mua.student import distil as distillation
 from mua.student import sensitivity
 from mua.student import train as training
+from mua.student.bases import worth_of
 from mua.student.distil import distil
 from mua.student.finetune import picture_loss, relative
 from mua.student.model import Student, lowpass_texels
 from mua.student.optimise import Progress, Run
 from mua.student.sensitivity import GOLDEN, LEAST, measure_sensitivities, shared_pattern
 from mua.student.settings import Ranks
-from mua.student.train import worth_of
 from mua.wavelets import Bands
 
 CPU = torch.device("cpu")

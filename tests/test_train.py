@@ -30,6 +30,7 @@ from mua.pose.components import INPUT_FLOOR, principal_components
 from mua.pose.encoding import Components
 from mua.student import coarse, targets
 from mua.student import source as sources
+from mua.student.bases import BestCoefficients
 from mua.student.conditioned import Conditioned, fold
 from mua.student.factorize import truncated_svd
 from mua.student.model import Branch, build_mlp
@@ -38,7 +39,6 @@ from mua.student.regress import leading, whitening
 from mua.student.settings import Schedule, Settings
 from mua.student.source import hold
 from mua.student.targets import joint_targets
-from mua.student.train import BestCoefficients
 from mua.wavelets import Bands
 
 

@@ -23,12 +23,12 @@ import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.levels import COARSE_TEXELS, STATIC_LEVELS
 from mua.recording import Recording
+from mua.student.bases import BestCoefficients, factorize_channel
 from mua.student.factorize import Factors, separable_blendshapes
 from mua.student.model import Branch, lowpass_texels
 from mua.student.paper_recipe import set_means
 from mua.student.settings import Ranks, Settings, preset
 from mua.student.targets import channel_weights
-from mua.student.train import BestCoefficients, factorize_channel
 from mua.wavelets import Bands, synthesise_lowpass, waverec2
 
 FACTORS = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the preset's ranks

@@ -18,9 +18,9 @@ from mua.asset.avatar import Avatar
 from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
 from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
+from mua.student.bases import BestCoefficients
 from mua.student.branches import thread_share
 from mua.student.model import Student
-from mua.student.train import BestCoefficients
 from mua.texture.fill import Fill
 from mua.threads import in_order
 from mua.wavelets import dynamic_subbands

@@ -1,6 +1,5 @@
 """Distillation of training frames into a student: closed-form start, regression, fine-tuning."""
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,14 +12,14 @@ from mua.checkpoint import Checkpoints
 from mua.errors import InputError
 from mua.memory import release_memory
 from mua.processes import ALONE, Processes
+from mua.student.bases import factorize_branch
 from mua.student.branches import each_branch, side_by_side
 from mua.student.coarse import fit_coarse
 from mua.student.components import Components
 from mua.student.conditioned import fold
-from mua.student.factorize import blendshapes, frame_weights, separable_blendshapes
 from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
 from mua.student.local import Parts, texture_locality
-from mua.student.model import Alphas, Branch, Student, lowpass_texels, outer_products
+from mua.student.model import Branch, Student, lowpass_texels
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
@@ -297,123 +296,3 @@ def start_branch(
         generalisation=settings.generalisation,
     )
     return weights
-
-
-@torch.no_grad()
-def factorize_branch(
-    branch: Branch,
-    source: Source,
-    *,
-    frames: int,
-    settings: Settings,
-    stage: str,
-    run: Run,
-    sensitivities: Bands | None = None,  # of images to the samples of the branch's channels, of one frame
-    counts: Tensor | None = None,  # [F] how much each frame counts
-) -> tuple[Tensor, Tensor]:
-    """Set means and bases of `branch` channel by channel; returns coefficients [F, M] and the texel variance [C].
-
-    Bases are the best for images where sensitivities to its samples are given.
-    """
-    kept = run.checkpoints.load(stage)
-    if kept is not None:
-        branch.load_state_dict(kept["branch"])
-        return kept["flat"].to(run.device), kept["variance"].to(run.device)
-    started, owned = time.monotonic(), run.processes.channels(branch.channels)
-    ranks, room = branch.ranks, partial(torch.empty, device=run.device)
-    alphas = Alphas(*(room(frames, branch.channels, rank) for rank in (ranks.ll, ranks.d3, ranks.d2)))
-    energy = room(branch.channels)
-    for done, channel in enumerate(owned, start=1):
-        bands = Bands(*(band.to(run.device) for band in source(slice(channel, channel + 1), torch.arange(frames))))
-        generator = run.alone(f"{stage} {channel}").generator  # whoever solves for it draws the same numbers
-        worth = None if sensitivities is None else worth_of(sensitivities, channel)
-        solved, energy[channel] = factorize_channel(
-            branch, channel, bands, sweeps=settings.sweeps, generator=generator, worth=worth, counts=counts
-        )
-        for level, own in zip(alphas, solved, strict=True):
-            level[:, channel] = own
-        run.report(Progress(stage, done, len(owned), None, done / (time.monotonic() - started)))
-    for channel in range(branch.channels):
-        found = (*branch.channel(channel), *(level[:, channel] for level in alphas), energy[channel])
-        run.processes.broadcast(*found, source=run.processes.owner(channel))
-    flat, spread = alphas.flat(), energy / (frames * settings.texels**2)
-    run.checkpoints.save(stage, {"branch": branch.state_dict(), "flat": flat, "variance": spread})
-    return flat, spread
-
-
-def factorize_channel(
-    branch: Branch,
-    channel: int,
-    bands: Bands,  # of this channel alone
-    *,
-    sweeps: int,
-    generator: torch.Generator,
-    worth: tuple[Tensor, ...] | None = None,  # of `worth_of`; None: errors of all samples count alike
-    counts: Tensor | None = None,  # [F] how much each frame counts
-) -> tuple[Alphas, Tensor]:
-    """Set means and bases of one channel; returns its coefficients [F, R] and the sum of squares about the mean."""
-    ll, d3, d2 = bands.ll[:, 0], bands.d3[:, :, 0], bands.d2[:, :, 0]
-    coarse, *fine = (None, None, None) if worth is None else worth
-    counts = frame_weights(ll, counts)
-    roots = counts.sqrt()
-    branch.ll_mean[channel] = torch.einsum("f,fij->ij", counts, ll) / len(ll)
-    ll = (ll - branch.ll_mean[channel]) * roots[:, None, None]
-    coarse = None if coarse is None else coarse.flatten()
-    shapes = blendshapes(ll.flatten(1), branch.ranks.ll, generator=generator, worth=coarse)
-    branch.ll_basis[channel] = shapes.basis.unflatten(1, ll.shape[1:])
-    energy = ll.square().sum()
-    coefficients = [shapes.coefficients / roots[:, None]]
-    levels = ((branch.d3, branch.ranks.d3, d3), (branch.d2, branch.ranks.d2, d2))
-    for (detail, rank, band), own in zip(levels, fine, strict=True):
-        detail.mean[:, channel] = torch.einsum("f,fsij->sij", counts, band) / len(band)
-        band = (band - detail.mean[:, channel]) * roots[:, None, None, None]
-        factors = separable_blendshapes(band, rank, sweeps=sweeps, generator=generator, worth=own)
-        detail.h[:, channel], detail.w[:, channel] = factors.h, factors.w
-        coefficients.append(factors.coefficients / roots[:, None])
-        energy = energy + band.square().sum()
-    return Alphas(*coefficients), energy
-
-
-def worth_of(
-    sensitivities: Bands,  # of images to the samples of C channels, of one frame
-    channel: int,
-) -> tuple[Tensor, ...]:
-    """What the samples [n, n] of LL, D3 and D2 of a channel count for; alike where images show none of them."""
-    levels = sensitivities.ll[0, channel], sensitivities.d3[0, 0, channel], sensitivities.d2[0, 0, channel]
-    return tuple(own / own.mean() if own.any() else torch.ones_like(own) for own in levels)
-
-
-class BestCoefficients:
-    """The coefficients per frame and channel that fit given subbands best, by least squares, for the learnt bases."""
-
-    @torch.no_grad()
-    def __init__(self, branch: Branch) -> None:
-        """Solve once for what depends on the bases alone."""
-        self._branch = branch
-        outer = (outer_products(detail.h, detail.w) for detail in (branch.d3, branch.d2))
-        self._levels = [_LeastSquares(basis) for basis in (branch.ll_basis.flatten(2), *outer)]
-
-    @torch.no_grad()
-    def __call__(
-        self,
-        bands: Bands,  # of the branch's channels
-    ) -> Alphas:
-        branch = self._branch
-        details = [(bands.d3 - branch.d3.mean).transpose(1, 2), (bands.d2 - branch.d2.mean).transpose(1, 2)]
-        samples = (bands.ll - branch.ll_mean, *details)
-        return Alphas(*(level(own) for level, own in zip(self._levels, samples, strict=True)))
-
-
-class _LeastSquares:
-    """Coefficients [F, C, R] of samples [F, C, ...], in double precision, of least norm where blendshapes are alike."""
-
-    def __init__(
-        self,
-        basis: Tensor,  # [C, R, P]
-    ) -> None:
-        self._basis = basis.double()
-        self._inverse = torch.linalg.pinv(self._basis @ self._basis.transpose(1, 2), hermitian=True, rtol=1e-10)
-
-    def __call__(self, x: Tensor) -> Tensor:
-        right = torch.einsum("fcp,crp->crf", x.flatten(2).double(), self._basis)
-        return (self._inverse @ right).permute(2, 0, 1).to(x)
