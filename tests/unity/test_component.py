@@ -1,5 +1,6 @@
 """AvatarRenderer in a player loop of stand-ins: what it shows beside others, and what that costs."""
 
+import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -156,3 +157,16 @@ def test_a_scale_is_refused_once(story: Story) -> None:
     assert told["state"] == ["Ready"]
     assert len(told["log"]) == 1
     assert "avatars ignore" in told["log"][0]
+
+
+def test_views_of_each_avatar_are_drawn_from_its_own_buffers(story: Story, folder: Path) -> None:
+    """Also those of two that show the same file."""
+    story("ShowsViewsOfTwo", "first")
+    events = [json.loads(line) for line in (folder / "first of two.json").read_text().splitlines()]
+    draws = [event for event in events if event["event"] == "draw"]
+    for index in range(3):
+        first, second = (draw["block_buffers"] for draw in draws if draw["pass"] == index)
+        assert first.keys() == second.keys()
+        own = {"ring", "vertex_dq", "joints"} & first.keys()
+        assert len(own) == 1
+        assert all(first[name] != second[name] for name in own)

@@ -90,3 +90,7 @@ def test_an_avatar_that_was_far_away_when_others_came_has_room_for_all_its_splat
     told, levels = story("ComesNear", "first"), counts(1)
     assert (told["far"], told["near"]) == ([str(levels[2])], [str(levels[0])])
     assert int(told["room"][0]) >= levels[0]
+
+
+def test_an_avatar_without_splats_takes_nothing_of_the_budget(story: Story) -> None:
+    assert story("SharesBudgetWithMesh", "first", "second")["splats"] == [str(counts(1)[0])]

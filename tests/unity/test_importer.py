@@ -65,6 +65,7 @@ def test_a_sound_file_becomes_an_asset_of_its_bytes(story: Story, sound: Path) -
     assert told["asset"] == [["Walking Woman", str(sound.stat().st_size), "", "thumbnail avatar", "30 x 40"]]
     assert told["error"] == [[""]]
     assert told["summary"] == [["synthetic"]]
+    assert told["textures"] == [["1", "1"]]  # one, without smaller copies of itself
     kept = story("Keeps", sound)
     assert [kept[key] for key in ("content", "summary", "thumbnail")] == [[["True"]]] * 3
 
@@ -73,7 +74,9 @@ def test_a_sound_file_becomes_an_asset_of_its_bytes(story: Story, sound: Path) -
 def test_a_file_without_a_thumbnail_has_the_editors_own_icon(story: Story, tmp_path: Path, thumbnail: bytes) -> None:
     path = tmp_path / "a.muaavatar"
     write(path, replace(synthetic_avatar(), thumbnail=thumbnail), storage="f32")
-    [asset] = story("Imports", path)["asset"]
+    told = story("Imports", path)
+    [asset] = told["asset"]
+    assert told["textures"] == [["0", "0"]]
     assert asset == ["a", str(path.stat().st_size), "", "avatar", ""]
     assert story("Inspects", path)["gui"][0] == ["title synthetic"]
 
@@ -210,11 +213,18 @@ def test_a_component_is_scrubbed_in_its_inspector(story: Story, tmp_path: Path) 
     assert told["alive"] == [["0"]]
 
 
+def test_several_components_have_no_clip_in_common_to_scrub(story: Story, sound: Path) -> None:
+    several, one = (line for [line] in story("EditsSeveral", sound)["gui"])
+    assert several.startswith("property ")
+    assert "slider" not in several
+    assert one.startswith("popup ")
+
+
 def test_a_file_that_changes_is_shown_anew(story: Story, sound: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.muaavatar"
     write(other, replace(synthetic_avatar(), name="another"), storage="f16")
     told = story("Reimports", sound, other)
-    assert told["name"] == [["synthetic"], ["another"]]
+    assert told["name"] == [["synthetic"] * 2, ["another"] * 2]
     assert told["alive"] == [["0"]]
 
 

@@ -131,6 +131,16 @@ namespace Mua
             Say("allocated", System.GC.GetAllocatedBytesForCurrentThread() - before);
         }
 
+        /// <summary>A budget for one of two avatars, of which the other one shows no splats.</summary>
+        private static void SharesBudgetWithMesh()
+        {
+            AvatarRenderer first = Show(files[0]), second = Show(files[1]);
+            Stand(Near);
+            second.Views = AvatarViews.Mesh;
+            Make("budget").AddComponent<AvatarBudget>().Splats = Full(first);
+            Say("splats", Splats(first));
+        }
+
         private static void LacksLevel()
         {
             AvatarRenderer shown = Show(files[0]);

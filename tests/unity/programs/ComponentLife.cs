@@ -4,6 +4,7 @@ using System;
 using System.Collections.Generic;
 using System.IO;
 using System.Reflection;
+using System.Threading;
 using Mua.Format;
 using Mua.Motion;
 using StandIns;
@@ -110,6 +111,21 @@ namespace Mua
             Until(shown);
             Frames(1);
             Say("shown", shown.State + " " + shown.SplatCount + " " + (shown.Avatar == asset));
+        }
+
+        /// <summary>Views of two avatars beside their splats, as they reach the device in one frame.</summary>
+        private static void ShowsViewsOfTwo()
+        {
+            AvatarRenderer first = Show(files[0]), second = Show(files[0]);
+            first.Views = second.Views = AvatarViews.Geometry | AvatarViews.Mesh | AvatarViews.Skeleton;
+            for (int i = 0; i < Patience && (i < 2 || AvatarWorld.Current.Draws.Count < 6); i++)
+            {
+                Frames(1);
+                Thread.Sleep(1);
+            }
+            Recorder.Start(Path.ChangeExtension(files[0], null) + " of two");
+            Frames(1);
+            Recorder.Stop();
         }
 
         /// <summary>A file that is asked for while the component is off, which then goes on.</summary>

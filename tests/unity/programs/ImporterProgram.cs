@@ -43,6 +43,7 @@ namespace Mua.Editor
                 Say("asset", asset.name, asset.Content.Length, asset.Fault, string.Join(" ", import.Parts), icon);
                 Say("error", string.Join(" | ", import.Errors));
                 Say("summary", asset.Summary.Split('\n')[0]);
+                Say("textures", Textures.Alive, import.Icon == null ? 0 : import.Icon.mipmapCount);
             }
         }
 
@@ -158,19 +159,32 @@ namespace Mua.Editor
             Say("alive", Recorder.AliveCount);
         }
 
-        /// <summary>The first file's place is taken by the second one.</summary>
+        /// <summary>The inspector of two components at once.</summary>
+        private static void EditsSeveral()
+        {
+            Place(files);
+            AvatarAsset asset = AvatarObject.Find();
+            AvatarRenderer first = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
+            AvatarRenderer second = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
+            Show(Inspectors.Open<AvatarRendererEditor>(first, second));
+            Show(Inspectors.Open<AvatarRendererEditor>(first));
+        }
+
+        /// <summary>The first file's place is taken by the second one, which two components show.</summary>
         private static void Reimports()
         {
             Place(files);
             AvatarAsset asset = AvatarObject.Find();
             AvatarRenderer shown = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
-            Say("name", shown.AvatarName);
+            AvatarRenderer twin = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
+            Say("name", shown.AvatarName, twin.AvatarName);
             FieldInfo content = typeof(AvatarAsset).GetField("content", BindingFlags.Instance | BindingFlags.NonPublic);
             content.SetValue(asset, File.ReadAllBytes(files[1])); // as Unity fills the object that it has
             object[] paths = { new[] { "Assets/other.txt", AssetDatabase.GetAssetPath(asset) }, null, null, null };
             typeof(AvatarReimport).GetMethod("OnPostprocessAllAssets", Hidden).Invoke(null, paths);
-            Say("name", shown.AvatarName);
+            Say("name", shown.AvatarName, twin.AvatarName);
             UnityEngine.Object.DestroyImmediate(shown.gameObject);
+            UnityEngine.Object.DestroyImmediate(twin.gameObject);
             Say("alive", Recorder.AliveCount);
         }
 

@@ -15,11 +15,20 @@ namespace UnityEngine
         {
             this.width = width;
             this.height = height;
+            mipmapCount = 2; // more than one; this stand-in makes none
+            StandIns.Textures.Alive++;
         }
 
-        public Texture2D(int width, int height, TextureFormat textureFormat, bool mipChain) : this(width, height) { format = textureFormat; }
+        public Texture2D(int width, int height, TextureFormat textureFormat, bool mipChain) : this(width, height)
+        {
+            format = textureFormat;
+            mipmapCount = mipChain ? mipmapCount : 1;
+        }
 
         public TextureFormat format { get; private set; }
+        public int mipmapCount { get; private set; }
+
+        internal override void OnDestroyed() { StandIns.Textures.Alive--; }
 
         internal byte[] Content; // as it was loaded
 
@@ -52,9 +61,11 @@ namespace UnityEngine
 
 namespace StandIns
 {
-    /// <summary>What was loaded into a texture. Not part of Unity's API.</summary>
+    /// <summary>Textures that nobody has destroyed, and what was loaded into one. Not part of Unity's API.</summary>
     public static class Textures
     {
+        public static int Alive;
+
         public static byte[] Content(UnityEngine.Texture2D texture) { return texture.Content; }
     }
 }
