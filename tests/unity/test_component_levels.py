@@ -34,6 +34,7 @@ def test_texels_are_measured_at_the_nearest_point_that_is_drawn(story: Story) ->
     seen = [tuple(map(float, line.split())) for line in told["seen"]]
     for found, wanted in zip(seen, [(0, focal / 0.25)] * 2 + [(2, focal / 2)] * 2, strict=True):
         assert found == pytest.approx(wanted, rel=1e-4)
+    assert float(told["between"][0]) == pytest.approx(2.5, rel=1e-4)  # the middle of eyes that are 1 m and 4 m away
 
 
 def test_avatars_share_a_budget_the_nearest_first(story: Story) -> None:

@@ -54,10 +54,12 @@ def test_each_pass_is_given_its_eyes(recorded: Recorded) -> None:
                 np.testing.assert_allclose(matrix.T, getattr(cameras()[eye], name), atol=1e-6)
 
 
-def test_pixels_are_those_of_a_scaled_target(recorded: Recorded) -> None:
+@pytest.mark.parametrize(("frame", "share"), [("scaled", 0.5), ("scaled between pixels", 0.33)])
+def test_pixels_are_those_of_a_scaled_target(recorded: Recorded, frame: str, share: float) -> None:
+    """Those that are covered in part too."""
     mode = recorded.mode
-    scale = np.array([0.5, 0.25 if mode.stereo == "None" else 0.5]) * (0.8 if label(mode) == "urp None" else 1)
-    for given in recorded.constants("scaled", "SplatProject", "screen"):
+    scale = np.array([share, share**2 if mode.stereo == "None" else share]) * (0.8 if label(mode) == "urp None" else 1)
+    for given in recorded.constants(frame, "SplatProject", "screen"):
         assert tuple(given[:2]) == tuple(np.ceil(np.multiply(mode.screen, scale)))
 
 

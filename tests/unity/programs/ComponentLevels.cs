@@ -87,6 +87,14 @@ namespace Mua
                 }
             }
             Say("focal", upright.m11 * 100);
+            var both = new AvatarEyes();
+            both.Begin(400, 200, 0.25f);
+            foreach (float aside in new[] { 1, 4 })
+            {
+                Vector3 eye = middle + new Vector3(shown.Bounds.extents.x + aside, 0, 0);
+                both.Add(Matrix4x4.Scale(new Vector3(1, 1, -1)) * Matrix4x4.Translate(-eye), upright);
+            }
+            Say("between", instance.Seen(both).Distance);
         }
 
         private static void SharesBudget()

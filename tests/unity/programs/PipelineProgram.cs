@@ -156,6 +156,9 @@ namespace Mua
             }
             Resize(0.5f, 0.5f);
             Frame("scaled", true);
+            Resize(0.33f, 0.33f);
+            Frame("scaled between pixels", true);
+            Resize(0.5f, 0.5f);
             Machine.Platform(RuntimePlatform.Android);
             Frame("scaled on a Quest", true);
             if (universal != null)
