@@ -118,6 +118,9 @@ def test_another_level_comes_with_the_next_decode_and_makes_no_frame_decode_all(
     assert 0 < late[0] <= 5  # displayed frames; a pose is due after three
     assert 0 < late[1] - late[2] <= 5
     assert max(spread.dispatches[3:]) == POSED + max(map(len, PARTS_ORDER))
+    thirds = (spread.dispatches[6:], spread.dispatches[7:], spread.dispatches[8:])
+    once = 3 * POSED + sum(map(len, PARTS_ORDER))  # each part in one of three displayed frames
+    assert {sum(frames) for frames in zip(*thirds, strict=False)} == {once}
 
 
 def test_another_level_does_not_discard_what_is_decoded_already(watched: Watched) -> None:

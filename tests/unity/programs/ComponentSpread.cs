@@ -45,10 +45,10 @@ namespace Mua
             });
         }
 
-        /// <summary>Another level of detail in the middle of a decode that is made for a pose to come, then the first.</summary>
+        /// <summary>Another level of detail in each moment of a decode that is made for a pose to come.</summary>
         private static void SpreadsOverLevels()
         {
-            Watch(Step, null, (shown, i) => shown.Level = i < 11 || i > 16 ? AvatarLevel.Full : AvatarLevel.Quarter);
+            Watch(Step, null, (shown, i) => shown.Level = i / 4 % 2 == 0 || i > 15 ? AvatarLevel.Full : AvatarLevel.Quarter);
         }
 
         /// <summary>Levels that change in every moment of a decode, on a display that lacks the time to spread all of it.</summary>
