@@ -130,6 +130,12 @@ def test_key_depends_on_settings_and_inputs() -> None:
     assert run_key("a", [x]) == run_key("a", [x.clone()])
 
 
+def test_what_another_version_of_mua_trained_is_another_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = run_key("a", [])
+    monkeypatch.setattr("mua.checkpoint.__version__", "another")
+    assert run_key("a", []) != now
+
+
 def test_of_several_processes_the_first_alone_writes(tmp_path: Path) -> None:
     others = SimpleNamespace(first=False)
     Checkpoints(tmp_path, "key", others).save("stage", {"step": 1})  # type: ignore[arg-type]

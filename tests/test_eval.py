@@ -326,14 +326,15 @@ def test_a_trained_system_is_not_trained_again(
 
     monkeypatch.setattr(Fake, "fit", counted)
     monkeypatch.setattr(scores, "score", interrupted)
-    for seed, steps in ((0, None), (0, None), (1, None), (1, 7)):
+    for seed, steps, version in ((0, None, "a"), (0, None, "a"), (1, None, "a"), (1, 7, "a"), (1, 7, "b")):
+        monkeypatch.setattr("mua.checkpoint.__version__", version)
         with pytest.raises(KeyboardInterrupt):
             command.evaluate(
                 recording=recording.directory, system=["good", "bad"], seconds=1.0, steps=steps, preset="tiny",
                 frames=1, views=1, size=SIZE, seed=seed, output=tmp_path,
             )  # fmt: skip
-    assert trained == ["good", "bad", "bad", "good", "bad", "good", "bad"]
-    assert budgets == [(1.0, None)] * 5 + [(None, 7)] * 2
+    assert trained == ["good", "bad", "bad", *["good", "bad"] * 3]
+    assert budgets == [(1.0, None)] * 5 + [(None, 7)] * 4
 
 
 def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> None:

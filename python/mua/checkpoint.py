@@ -10,6 +10,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from mua import __version__
 from mua.files import remove_leftovers, replacing
 from mua.processes import ALONE, Processes
 
@@ -65,8 +66,8 @@ class Checkpoints:
 
 
 def run_key(settings: object, tensors: Iterable[Tensor]) -> str:
-    """A digest of everything that a run's result depends on: its settings and its training inputs."""
-    digest = hashlib.sha256(repr(settings).encode())
+    """A digest of everything that a run's result depends on: its settings, its training inputs and this version."""
+    digest = hashlib.sha256(f"{__version__} {settings!r}".encode())
     for tensor in tensors:
         digest.update(tensor.detach().cpu().contiguous().numpy().tobytes())
     return digest.hexdigest()

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import torch
 
-from mua import __version__
 from mua.baking.listener import Listener
 from mua.capture import open_capture
 from mua.checkpoint import Checkpoints, run_key
@@ -71,7 +70,7 @@ def _key(filmed: Filmed, settings: TeacherSettings, weights: Path | None, materi
     points = [values for of in material.tracks for values in (*vars(of.tracks).values(), of.texels)]
     said = filmed.capture.file.read_bytes()
     return run_key(
-        (__version__, settings, said, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
+        (settings, said, None if weights is None else sha256(weights.read_bytes()).hexdigest()),
         [filmed.subject.surfels, *map(torch.as_tensor, (*skin, *poses)), *(one for one in points if one is not None)],
     )
 

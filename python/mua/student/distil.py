@@ -12,7 +12,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mua import __version__
 from mua.arrays import Array
 from mua.checkpoint import Checkpoints, run_key
 from mua.errors import InputError
@@ -60,7 +59,7 @@ def distil(
     stage alone starts from checkpoints that are not in `directory`.
     """
     student, samples = prepare(recording, settings)
-    key = run_key((__version__, settings, recording.fingerprint()), [student.mean, student.scale])
+    key = run_key((settings, recording.fingerprint()), [student.mean, student.scale])
     checkpoints = Checkpoints(directory, key)
     if processes.first:
         checkpoints.remove_leftovers(name for names in stages(settings).values() for name in names)
