@@ -346,6 +346,26 @@ def test_cameras_are_those_of_their_name_whatever_the_order_of_the_file(
     assert (capture.template_height, capture.leave_out) == (1.5, ("hat", "shoes"))
 
 
+def test_the_command_takes_unit_and_axes_back(given: tuple[object, ...], command: Commands, tmp_path: Path) -> None:
+    """The cameras of a calibration in millimetres whose X, Y, Z are our Z, X, Y."""
+    for name in NAMES:
+        (tmp_path / "anna" / "images" / name).mkdir(parents=True)
+        for number in range(2):
+            Image.new("RGB", SIZE).save(tmp_path / "anna" / "images" / name / f"{number}.png")
+    calibration = write(tmp_path, "anipose")
+    text = calibration.read_text()
+    for matrix in MATRICES:
+        turned = np.column_stack([matrix[:3, [2, 0, 1]], 1000 * matrix[:3, 3]])
+        text = text.replace(str(vector(matrix).tolist()), str(vector(turned).tolist()))
+        text = text.replace(str(matrix[:3, 3].tolist()), str(turned[:, 3].tolist()))
+    calibration.write_text(text)
+    line = ("capture", "describe", tmp_path / "anna", *given, "--calibration", calibration, "-o", tmp_path / "out")
+    ended = command(*line, "--axes", "Z,X,Y", "--scale", 0.001)
+    assert ended.status == 0, ended
+    for camera, matrix in zip(open_capture(tmp_path / "out").cameras, MATRICES, strict=True):
+        np.testing.assert_allclose(camera.world_to_camera, matrix, atol=ROUNDING)
+
+
 def test_what_a_folder_lacks_is_named(given: tuple[object, ...], command: Commands, tmp_path: Path) -> None:
     source, calibration = tmp_path / "anna", write(tmp_path, "anipose")
     source.mkdir()

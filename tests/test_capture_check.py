@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from mua.arrays import Array
 from mua.capture import Capture, sheet, write_capture
 from mua.capture.camera import CaptureCamera
 from mua.capture.check import Checked, check_capture
-from mua.capture.fit import Seen, chosen_frames
+from mua.capture.fit import Seen, chosen_frames, look_at
 from mua.capture.outline import overlap, pixels, rough_overlap, silhouette
 from mua.capture.sheet import MASK, OUTLINE, check_sheet
 from mua.player.video import write_video
@@ -280,6 +281,22 @@ def test_the_command_prints_what_it_found(small_capture: Capture, command: Comma
         assert told in ended.out
     with Image.open(tmp_path / "check.png") as picture:
         assert picture.width > 1000
+
+
+def test_the_command_looks_at_as_many_frames_as_asked_for(
+    small_capture: Capture, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: set[tuple[str, int]] = set()
+
+    def keep(capture: Capture, posed: Any, clip: str, frame: int, camera: CaptureCamera) -> Any:
+        looked.add((clip, frame))
+        return look_at(capture, posed, clip, frame, camera)
+
+    monkeypatch.setattr("mua.capture.check.look_at", keep)
+    for frames, expected in (("1", len(small_capture.clips)), ("0", sum(clip.frames for clip in small_capture.clips))):
+        looked.clear()
+        assert command("capture", "check", small_capture.folder, "--frames", frames).status == 0
+        assert len(looked) == expected
 
 
 def test_the_command_fails_where_something_cannot_be_right(command: Commands, damaged: Capture) -> None:

@@ -113,6 +113,17 @@ def angles(points: Array) -> Array:
     return np.stack(found, axis=1)
 
 
+def test_a_template_of_another_height_has_limbs_as_long_as_the_persons(
+    template: Path, surfaces: Surfaces, known: Clip, command: Commands, tmp_path: Path
+) -> None:
+    (tmp_path / "walk.trc").write_text(trc(1.3 * joints(surfaces, known)))
+    line = ("capture", "poses", tmp_path / "walk.trc", "--template", template, "-o", tmp_path / "walk.npz")
+    assert "limbs are 1.30 times as long" in command(*line).out
+    ended = command(*line, "--height", 1.3 * np.ptp(surfaces.vertices[:, 1]))
+    assert ended.status == 0, ended
+    assert "times as long" not in ended.out
+
+
 def test_limbs_become_as_long_as_the_persons(surfaces: Surfaces, known: Clip) -> None:
     """The same person, a tenth larger, on the template as it is."""
     points = 1.1 * joints(surfaces, known)

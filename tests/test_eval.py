@@ -211,7 +211,7 @@ class Fake:
 
     def __init__(self, name: str, sizes: Sizes) -> None:
         self.name, self.parameters, self.flops = name, 2_000_000, 30_000_000
-        self._texels = len(sizes.texels)
+        self._texels, self.components = len(sizes.texels), sizes.settings.components
 
     def fit(self, frames: TrainingFrames, budget: Budget, generator: torch.Generator, report: Report) -> None:
         if self.name == "bad":
@@ -264,6 +264,7 @@ def test_the_command_writes_tables_plots_and_sheets(
         None,
     )
     assert told["setting"]["frames"] == {"training": 1, "held out": 1}
+    assert told["setting"]["size"] == SIZE
     assert [(p["clip"], p["frame"]) for p in systems["i8"]["pictures"]] == [("walk", 3), ("turn", 3)]
 
     rows = list(csv.DictReader((output / "results.csv").read_text().splitlines()))
@@ -314,11 +315,13 @@ def test_a_trained_system_is_not_trained_again(
 ) -> None:
     trained: list[str] = []
     budgets: list[tuple[float | None, int | None]] = []
+    components: set[int] = set()
     fit = Fake.fit
 
     def counted(self: Fake, *given: Any) -> None:
         trained.append(self.name)
         budgets.append((given[1].seconds, given[1].steps))
+        components.add(self.components)
         fit(self, *given)
 
     def interrupted(*_: object, **__: object) -> None:
@@ -335,6 +338,7 @@ def test_a_trained_system_is_not_trained_again(
             )  # fmt: skip
     assert trained == ["good", "bad", "bad", *["good", "bad"] * 3]
     assert budgets == [(1.0, None)] * 5 + [(None, 7)] * 4
+    assert components == {3}, "those of the preset"
 
 
 def test_an_unknown_system_is_named(recording: Recording, tmp_path: Path) -> None:

@@ -8,11 +8,13 @@ import pytest
 import torch
 from captures import make_capture
 from commands import Commands
+from taught import FEW
 from test_splatting import camera, in_torch, random_splats
 
 from mua.splatting.gsplat_views import gsplat_views, intrinsics
 from mua.splatting.projection import Eye, matrices
 from mua.splatting.rasterise import rasterise
+from mua.teaching import settings
 from mua.teaching.model import draw_views
 
 LEAST_DB = 33.0  # of Gaussians at pixel centres beside windows over pixels; a flipped axis leaves 17
@@ -107,8 +109,12 @@ def test_a_shifted_principal_point_is_kept() -> None:
     torch.testing.assert_close(opencv[:2] / opencv[2], torch.stack([column, row]))
 
 
-def test_gsplat_that_is_not_installed_is_a_sentence(tmp_path: Path, command: Commands) -> None:
-    said = command("teach", make_capture(tmp_path / "capture").folder, "--rasteriser", "gsplat").sentence
+def test_gsplat_that_is_not_installed_is_a_sentence(
+    tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(settings.PRESETS, "tiny", FEW)  # it would take long, were it to begin
+    line = ("teach", make_capture(tmp_path / "capture").folder, "-o", tmp_path / "t", "--steps", 1, "--texels", 64)
+    said = command(*line, "--rasteriser", "gsplat").sentence
     assert "--rasteriser gsplat: the Python package gsplat is not installed; pip install gsplat" in said
 
 

@@ -198,6 +198,15 @@ def test_a_teacher_says_what_it_was_trained_with(capture: Path, lpips: Path, tmp
     assert load_teacher(tmp_path / "t")[0].rig.texels.size == 80
 
 
+def test_a_gpu_that_is_not_there_is_named(
+    capture: Path, tmp_path: Path, command: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    line = ("teach", capture, "-o", tmp_path / "t", "--steps", 1, "--texels", TEXELS)
+    assert "--device cuda" in command(*line, "--device", "cuda").sentence
+    assert not (tmp_path / "t" / "teacher.json").exists()
+
+
 def test_poses_of_held_out_clips_change_nothing_in_a_teacher(
     made: Path, capture: Path, lpips: Path, tmp_path: Path
 ) -> None:
