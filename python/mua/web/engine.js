@@ -78,8 +78,14 @@ export class Engine {
       if (lasted < STUMBLE)
         throw new AvatarError("The graphics device was lost twice at once; reload the page to try again.");
       const renderer = await this.opened();
-      for (const entry of this.entries) entry.slot = await renderer.add(entry.avatar);
+      const added = [];
+      for (const entry of this.entries) added.push({ entry, slot: await renderer.add(entry.avatar) });
       await renderer.compile();
+      if (this.disposed) return renderer.destroy();
+      for (const { entry, slot } of added) {
+        if (this.entries.includes(entry)) entry.slot = slot;
+        else renderer.remove(slot); // its avatar was taken away meanwhile
+      }
       this.renderer = renderer;
       this.drawNow();
     } catch (error) {

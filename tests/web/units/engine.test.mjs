@@ -1,0 +1,155 @@
+// Which avatars an engine holds on its device, while they come, go and the device is lost; the device is a stand-in.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { beforeEach, test } from "node:test";
+import { Engine } from "../../../python/mua/web/engine.js";
+import { read } from "../../../python/mua/web/format/read.js";
+import { Renderer } from "../../../python/mua/web/renderer.js";
+
+const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
+const avatar = await read(Uint8Array.from(content).buffer);
+const LONG = 10_000; // milliseconds that a device lasted
+const settled = () => new Promise((done) => setTimeout(done));
+const AWAY = { message: "The graphics device is away; try again in a moment." };
+
+Object.assign(globalThis, { cancelAnimationFrame() {} });
+
+let devices; // that were opened
+let uploading; // called with each avatar that a device takes up, before it has it
+
+class FakeRenderer {
+  slots = [];
+  drawn = [];
+  destroyed = false;
+  ready = true;
+  bytes = 0;
+  projecting = Promise.resolve();
+  device = { gpu: { lost: new Promise((lose) => (this.lose = lose)), queue: { onSubmittedWorkDone: async () => {} } } };
+
+  async add(one) {
+    await uploading(one);
+    const slot = { avatar: one, freed: 0, memory: { free: () => (slot.freed += 1) }, frame: { outside: 0.5 } };
+    this.slots.push(slot);
+    return slot;
+  }
+
+  replace(old, slot) {
+    assert.ok(this.slots.includes(old) && this.slots.includes(slot));
+    this.remove(old);
+  }
+
+  remove(slot) {
+    assert.ok(this.slots.includes(slot), "a slot is given back where it is, once");
+    this.slots = this.slots.filter((one) => one !== slot);
+    slot.memory.free();
+  }
+
+  async compile() {}
+
+  draw(posed) {
+    this.drawn.push(posed.map(({ slot }) => slot));
+  }
+
+  destroy() {
+    this.destroyed = true;
+  }
+}
+
+beforeEach(() => {
+  [devices, uploading] = [[], async () => {}];
+  Renderer.open = async () => devices[devices.push(new FakeRenderer()) - 1];
+});
+
+async function begun() {
+  const engine = await Engine.create({ width: 8, height: 8 }, {});
+  const told = [];
+  engine.onerror = ({ message }) => told.push(message);
+  engine.show.shadow = false;
+  return { engine, told };
+}
+
+test("an avatar has a slot of the device from when it is shown until it is taken away, once", async () => {
+  const { engine } = await begun();
+  const [first, second] = [await engine.put(avatar, null, true), await engine.put(avatar, null, true)];
+  assert.equal(first.handle.outsideTraining, 0.5);
+  first.handle.remove();
+  first.handle.remove();
+  assert.deepEqual(devices[0].slots, [second.slot]);
+  assert.deepEqual(engine.avatars, [second.handle]);
+  assert.equal(first.handle.outsideTraining, 0);
+});
+
+test("the whole avatar takes the slot of its part, and the handle stays", async () => {
+  const { engine } = await begun();
+  const part = await engine.put(avatar, null, false);
+  const { handle, slot } = part;
+  const after = await engine.put(avatar, part, true);
+  assert.equal(after.handle, handle);
+  assert.deepEqual([handle.whole, slot.freed, devices[0].slots], [true, 1, [after.slot]]);
+});
+
+test("what comes after its part was taken away is given back at once", async () => {
+  const { engine } = await begun();
+  const part = await engine.put(avatar, null, false);
+  uploading = async () => part.handle.remove();
+  await engine.put(avatar, part, true);
+  assert.deepEqual([devices[0].slots, engine.avatars], [[], []]);
+});
+
+test("an avatar whose device is lost while it comes is a sentence and is not shown", async () => {
+  const { engine } = await begun();
+  uploading = async () => (engine.renderer = null);
+  await assert.rejects(engine.put(avatar, null, true), AWAY);
+  await assert.rejects(engine.put(avatar, null, true), AWAY);
+  assert.deepEqual(engine.avatars, []);
+});
+
+test("a device that comes back draws all avatars by slots of its own", async () => {
+  const { engine, told } = await begun();
+  for (let i = 0; i < 2; i++) await engine.put(avatar, null, true);
+  await engine.recover(LONG);
+  assert.equal(devices.length, 2);
+  assert.deepEqual(engine.entries.map(({ slot }) => slot), devices[1].slots);
+  assert.deepEqual(devices[1].drawn, [devices[1].slots]);
+  assert.deepEqual([engine.renderer, told], [devices[1], []]);
+});
+
+test("an avatar that is taken away while its device comes back holds nothing there", async () => {
+  const { engine, told } = await begun();
+  const [first, second] = [await engine.put(avatar, null, true), await engine.put(avatar, null, true)];
+  uploading = async () => first.handle.remove();
+  await engine.recover(LONG);
+  assert.deepEqual([devices[1].slots, devices[1].drawn, told], [[second.slot], [[second.slot]], []]);
+});
+
+test("a player that is disposed of while its device comes back leaves no device behind", async () => {
+  const { engine, told } = await begun();
+  await engine.put(avatar, null, true);
+  uploading = async () => engine.dispose();
+  await engine.recover(LONG);
+  assert.deepEqual([devices[1].destroyed, devices[1].drawn, engine.renderer, told], [true, [], null, []]);
+});
+
+test("a device that goes because the player was disposed of does not come back", async () => {
+  const { engine, told } = await begun();
+  const entry = await engine.put(avatar, null, true);
+  engine.dispose();
+  engine.dispose();
+  devices[0].lose({ reason: "unknown" });
+  await settled();
+  assert.deepEqual([devices.length, devices[0].destroyed, entry.slot.freed, told], [1, true, 1, []]);
+  entry.handle.remove();
+  assert.equal(entry.handle.outsideTraining, 0);
+});
+
+test("a device that does not come back is told and nothing is drawn", async () => {
+  const { engine, told } = await begun();
+  await engine.put(avatar, null, true);
+  Renderer.open = async () => {
+    throw new Error("no adapter");
+  };
+  await engine.recover(LONG);
+  assert.deepEqual(told, ["The graphics device was lost and did not come back: no adapter"]);
+  await assert.rejects(engine.screenshot(), AWAY);
+});
