@@ -67,6 +67,31 @@ def test_a_share_of_the_points_exchanges_parts(share: float, expected: int) -> N
     assert ((alone[:, 0] - alone[:, 3]).abs() < 1e-4).all()
 
 
+def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) -> None:
+    inputs, shown = two_limbs(200, seed=3, together=True)
+    half = inputs[:, 0] > inputs[:, 0].median()
+    errors = {}
+    for name, own, known in (("all", None, True), ("half", half, True), ("none", None, False)):
+        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
+        mlp = regress(
+            inputs,
+            torch.where(half[:, None], shown, -shown),  # a jump, which no smooth function follows
+            components=PLAIN,
+            hidden=64,
+            schedule=Schedule(steps=600, batch=64, lr=3e-3),
+            stage="x",
+            run=run,
+            own=own,
+            generalisation=Generalisation(own=known),
+        )
+        with torch.no_grad():
+            errors[name] = (mlp(inputs) - torch.where(half[:, None], shown, -shown)).square().sum(1)
+    size = shown.square().sum(1)
+    assert errors["half"][half].mean() < 0.5 * size[half].mean()
+    assert errors["half"][~half].mean() > 0.7 * size[~half].mean()
+    assert errors["none"].mean() > 1.5 * errors["all"].mean()
+
+
 def test_an_mlp_taught_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:
     inputs, shown = two_limbs(300, seed=3, together=True)
     unseen, truth = two_limbs(200, seed=4, together=False)

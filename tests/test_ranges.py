@@ -12,7 +12,7 @@ from test_motion_range import RIGS, character
 from mua.asset import read
 from mua.baking.order import MotionRange, Order
 from mua.baking.pipeline import bake
-from mua.baking.ranges import clips_of, planned_range, range_frames
+from mua.baking.ranges import clips_of, planned_range, range_frames, settings_for
 from mua.errors import InputError
 from mua.pose.clip import Clip, is_range
 
@@ -60,6 +60,16 @@ def test_a_person_without_animation_has_the_range_as_its_motion(tmp_path: Path) 
     assert planned_range(order(tmp_path), figure, clips, 240) == []
     with pytest.raises(InputError, match="rig: holds no animation; give a file or directory with --motion"):
         clips_of(order(tmp_path, motion_range="none"), figure)
+
+
+def test_only_motion_of_a_user_is_followed_closely(tmp_path: Path) -> None:
+    figure, still = character(RIGS["T-pose"]), RIGS["T-pose"]
+    assert not settings_for(order(tmp_path), figure).generalisation.own
+    own = Clip("own", 30.0, still.bind_rotations[None], still.bind_translations[None])
+    asked = order(tmp_path)
+    assert settings_for(asked, replace(figure, clips=(own,))) == asked.settings
+    moved = replace(asked, motions=(tmp_path / "walk.bvh",))
+    assert settings_for(moved, figure) == moved.settings
 
 
 def test_a_character_with_animation_keeps_to_it(tmp_path: Path) -> None:

@@ -115,6 +115,16 @@ def test_one_or_two_frames_of_the_user_are_given_back(count: int) -> None:
     assert torch.allclose(function(x[:count]), targets[:count], atol=0.06 * float(targets[:count].abs().max()))
 
 
+def test_where_no_frame_is_the_users_all_are_smoothed() -> None:
+    x, targets, _ = users_and_range()
+    none = torch.zeros(len(x), dtype=torch.bool)
+    found = fit_beyond(x, targets, none, beyond=10.0, generator=torch.Generator().manual_seed(1))(x)
+    size = targets.norm(dim=1)
+    noise = 10 * (size / size.square().mean().sqrt()).clamp(min=LEAST)
+    assert torch.allclose(found, fit_smoother(x, targets, generator=torch.Generator(), noise=noise)(x), atol=1e-5)
+    assert 0 < found.square().sum() < 0.2 * targets.square().sum()
+
+
 def test_values_go_through_a_matrix() -> None:
     x, targets, own = users_and_range()
     function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))

@@ -14,7 +14,7 @@ from mua.baking.options import check_output
 from mua.baking.order import Order
 from mua.baking.plan import plan, split
 from mua.baking.playback import choose
-from mua.baking.ranges import clips_of, planned_range
+from mua.baking.ranges import clips_of, planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
 from mua.baking.sources import ordered_character
@@ -52,6 +52,7 @@ def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
     clips, notes = clips_of(order, character)
     for sentence in (*character.notes, describe_texels(character, order.settings.texels), *notes):
         listener.note(sentence)
+    settings = settings_for(order, character)
     training, held = split(clips, order.hold_out)
     planned = plan(training, held, frames=order.settings.frames)
     choose(clips, order.clips)  # before hours of work
@@ -67,7 +68,7 @@ def _bake(order: Order, device: torch.device, listener: Listener) -> Baked:
     distillation = Distillation(
         output=order.output,
         work=order.work,
-        settings=order.settings,
+        settings=settings,
         device=device,
         name=character.name,
         teacher=STAND_IN,

@@ -10,6 +10,7 @@ from mua.motion_range import motion_range
 from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character
+from mua.student.settings import Settings
 
 SHARE = 4  # a quarter as many frames of the range as the user asks for of their own motion
 SHORT_SHARE = 3  # where that motion is shorter, its missing frames are of the range too, up to a third of those asked
@@ -24,6 +25,13 @@ def clips_of(order: Order, character: Character) -> tuple[list[Clip], list[str]]
     clips = [replace(clip, name=clip.name.removeprefix(RANGE_OF_MOTION)) for clip in clips]  # they are the motion
     note = f"{character.name}: holds no animation; its motion is a built-in range of motion made for its rig"
     return clips, [f"{note}. --motion adds motion of your own."]
+
+
+def settings_for(order: Order, character: Character) -> Settings:
+    """The settings of a bake: where the range of motion is the only motion, none of its frames is the user's."""
+    if order.motions or character.clips or order.motion_range == "none":
+        return order.settings
+    return replace(order.settings, generalisation=replace(order.settings.generalisation, own=False))
 
 
 def planned_range(order: Order, character: Character, clips: Sequence[Clip], frames: int) -> list[PlannedClip]:

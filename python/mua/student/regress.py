@@ -50,7 +50,9 @@ def regress(
     """
     schedule = schedule.over(len(inputs))
     z = components(inputs)
-    unit = (targets if own is None else targets[own]).square().sum(1).mean().sqrt()
+    if not generalisation.own:
+        own = torch.zeros(len(targets), dtype=torch.bool, device=targets.device)
+    unit = (targets if own is None or not own.any() else targets[own]).square().sum(1).mean().sqrt()
     unit = unit.clamp(min=torch.finfo(targets.dtype).tiny)
     goal = targets / unit
     mlp = seeded_mlp(z.shape[1], hidden, goal.shape[1], run=run)

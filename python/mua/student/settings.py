@@ -63,6 +63,7 @@ class Generalisation:
     outside: float = 0.2  # share of all points that lie outside of training, where the function fades to the mean
     weight_decay: float = 1e-3  # of the MLPs
     heading: bool = True  # whether the descriptor is turned back by the heading
+    own: bool = True  # whether frames show motion that will be played; else all say as little as the range of motion
 
 
 @dataclass(frozen=True)

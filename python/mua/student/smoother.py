@@ -101,10 +101,15 @@ def fit_beyond(
     beyond: float,  # variance of the noise that other frames' values are granted
     generator: torch.Generator,
 ) -> Sum:
-    """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them."""
+    """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them.
+
+    Where no frame is the user's, it is what they have in common.
+    """
     size = targets.norm(dim=1)
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
     common = fit_smoother(x, targets, generator=generator, noise=beyond * relative.clamp(min=LEAST))
+    if not own.any():
+        return Sum((common,))
     reach = spread(x[own]) or 1.0
     width = math.sqrt(common.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
     besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=width)
