@@ -16,6 +16,7 @@ import { VR } from "./vr.js";
 /** @typedef {{avatar: Avatar, handle: AvatarHandle, slot: import("./renderer.js").Slot, grounds: Map<string, number>}} Entry */
 
 const STUMBLE = 2000; // milliseconds; a device that is lost again so soon is given up
+const TWICE = "The graphics device was lost twice at once; reload the page to try again.";
 const AWAY = "The graphics device is away; try again in a moment.";
 
 export class Engine {
@@ -31,6 +32,8 @@ export class Engine {
     this.options = options;
     /** @type {Renderer | null} */
     this.renderer = null; // while a lost device is being replaced
+    /** @type {WeakSet<Renderer>} */
+    this.lost = new WeakSet(); // those whose device was lost before they drew
     /** @type {Entry[]} */
     this.entries = [];
     /** @type {import("./player.js").CameraState} */
@@ -61,8 +64,9 @@ export class Engine {
     const renderer = await Renderer.open(this.canvas, this.options);
     const since = performance.now();
     renderer.device.gpu.lost.then(({ reason }) => {
-      if (reason !== "destroyed" && !this.disposed && this.renderer === renderer)
-        this.recover(performance.now() - since);
+      if (reason === "destroyed" || this.disposed) return;
+      if (this.renderer === renderer) this.recover(performance.now() - since);
+      else this.lost.add(renderer); // recovering with it finds that out
     });
     renderer.device.gpu.onuncapturederror = ({ error }) =>
       this.tell(new AvatarError(`The graphics device refused: ${error.message}`));
@@ -74,14 +78,16 @@ export class Engine {
     this.leaveVR(); // it draws on the lost device
     this.renderer = null;
     this.drawn = "";
+    /** @type {Renderer | null} */
+    let renderer = null;
     try {
-      if (lasted < STUMBLE)
-        throw new AvatarError("The graphics device was lost twice at once; reload the page to try again.");
-      const renderer = await this.opened();
+      if (lasted < STUMBLE) throw new AvatarError(TWICE);
+      renderer = await this.opened();
       const added = [];
       for (const entry of this.entries) added.push({ entry, slot: await renderer.add(entry.avatar) });
       await renderer.compile();
       if (this.disposed) return renderer.destroy();
+      if (this.lost.has(renderer)) throw new AvatarError(TWICE);
       for (const { entry, slot } of added) {
         if (this.entries.includes(entry)) entry.slot = slot;
         else renderer.remove(slot); // its avatar was taken away meanwhile
@@ -89,12 +95,14 @@ export class Engine {
       this.renderer = renderer;
       this.drawNow();
     } catch (error) {
+      if (this.renderer !== renderer) renderer?.destroy();
       this.stop();
       this.tell(asAvatarError(error, "The graphics device was lost and did not come back"));
     }
   }
 
   tell(/** @type {AvatarError} */ error) {
+    if (this.disposed) return;
     if (this.onerror) this.onerror(error);
     else console.error(error);
   }

@@ -153,3 +153,39 @@ test("a device that does not come back is told and nothing is drawn", async () =
   assert.deepEqual(told, ["The graphics device was lost and did not come back: no adapter"]);
   await assert.rejects(engine.screenshot(), AWAY);
 });
+
+test("a device that comes back and cannot take up the avatars is given back, and told", async () => {
+  const { engine, told } = await begun();
+  await engine.put(avatar, null, true);
+  uploading = () => Promise.reject(new Error("too little memory"));
+  await engine.recover(LONG);
+  assert.deepEqual([devices[1].destroyed, engine.renderer], [true, null]);
+  assert.deepEqual(told, ["The graphics device was lost and did not come back: too little memory"]);
+});
+
+test("a device that is lost again while it takes up the avatars is told and draws nothing", async () => {
+  const { engine, told } = await begun();
+  await engine.put(avatar, null, true);
+  uploading = async () => (devices[1].lose({ reason: "unknown" }), settled());
+  await engine.recover(LONG);
+  assert.deepEqual([devices.length, devices[1].destroyed, devices[1].drawn, engine.renderer], [2, true, [], null]);
+  assert.match(told.join(), /lost twice/);
+});
+
+test("a device that is lost for a while comes back, and is told where it is lost again at once", async () => {
+  const { engine, told } = await begun();
+  await engine.recover(LONG);
+  devices[1].lose({ reason: "unknown" });
+  await settled();
+  assert.equal(devices.length, 2);
+  assert.match(told.join(), /lost twice/);
+});
+
+test("nothing is told of a player that was disposed of", async () => {
+  const { engine, told } = await begun();
+  await engine.put(avatar, null, true);
+  uploading = async () => (engine.dispose(), Promise.reject(new Error("gone")));
+  await engine.recover(LONG);
+  devices[0].device.gpu.onuncapturederror({ error: { message: "destroyed" } });
+  assert.deepEqual([devices[1].destroyed, told], [true, []]);
+});
