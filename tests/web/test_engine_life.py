@@ -5,8 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from web.browser import Browser, Serve
+from web.conftest import PLAIN
 from web.pages import LOSABLE
 from web.test_engine import Open, load, opened, screenshot, small
+
+from mua.share.site import Site, player_files
 
 __all__ = ["opened", "small"]  # fixtures
 LOADS = 50
@@ -69,3 +73,31 @@ def test_what_is_disposed_of_holds_nothing_and_may_be_disposed_of_again(opened: 
     assert load(page) == ""
     page.evaluate("(player.start(), player.dispose(), player.dispose())")
     assert page.evaluate("player.bytes") == 0
+
+
+def test_a_picture_that_is_being_drawn_when_the_player_is_given_back_is_no_error(opened: Open) -> None:
+    page = opened()
+    assert page.evaluate("(() => { const drawn = player.draw(); player.dispose(); return drawn })()") is None
+
+
+OTHER_SRC = "element.setAttribute('src', 'a.muaavatar?other')"
+BACK = "(element.remove(), setTimeout(() => document.body.append(element)))"
+
+
+@pytest.mark.parametrize("change", [OTHER_SRC, BACK], ids=["another src", "away and back"])
+@pytest.mark.parametrize("after", [0, 120])  # milliseconds: while the device opens, and while kernels compile
+def test_an_element_that_changes_before_its_first_picture_shows_one(
+    browser: Browser, serve: Serve, small: Path, change: str, after: int
+) -> None:
+    site: Site = {**player_files(), "index.html": PLAIN, "a.muaavatar": small.read_bytes()}
+    page = browser.page(serve(site), size=(160, 200))
+    page.wait("Boolean(customElements.get('mua-avatar'))")
+    page.evaluate(f"""globalThis.element = document.querySelector("mua-avatar"), globalThis.told = [];
+      for (const kind of ["load", "error"])
+        element.addEventListener(kind, ({{ detail }}) => told.push(detail.message ?? kind));
+      element.setAttribute("src", "a.muaavatar");
+      setTimeout(() => ({change}, told.length = 0), {after});""")
+    page.wait("told.length > 0 && element.firstPicture > 0")
+    assert page.evaluate("[told, element.avatars.length]") == [["load"], 1]
+    assert page.told["errors"] == []
+    page.close()

@@ -18,6 +18,8 @@ export class Loading {
   player = null;
   /** @type {Promise<Player> | null} */
   #opening = null;
+  /** @type {Promise<void>} */
+  #closed = Promise.resolve(); // when the player before has given the canvas back
   /** @type {Source[]} */
   #sources = [];
   #run = 0; // counts what src has been
@@ -63,6 +65,7 @@ export class Loading {
     const { controls } = this;
     controls.load(0, "Starting the player");
     const player = await this.#open();
+    if (run !== this.#run) return;
     const onProgress = (/** @type {number} */ share, /** @type {string} */ sentence) => {
       if (run === this.#run) controls.load(share, sentence);
     };
@@ -89,9 +92,12 @@ export class Loading {
 
   /** The player; made when first needed. */
   async #open() {
-    this.#opening ??= createPlayer(this.controls.canvas);
-    const [opening, run] = [this.#opening, this.#run];
-    const player = await opening;
+    const run = this.#run;
+    this.#opening ??= this.#closed.then(() => {
+      if (run !== this.#run) throw new AvatarError("Another avatar was asked for.");
+      return createPlayer(this.controls.canvas);
+    });
+    const player = await this.#opening;
     if (run !== this.#run || this.player === player) return player;
     this.player = player;
     player.playing = false;
@@ -105,7 +111,7 @@ export class Loading {
     this.#run += 1;
     const opening = this.#opening;
     [this.#opening, this.player, this.#sources] = [null, null, []];
-    opening?.then((player) => player.dispose(), () => {}); // why it did not open has been said
+    if (opening) this.#closed = opening.then((player) => player.dispose(), () => {}); // why it did not open has been said
   }
 
   /** Say what went wrong. */

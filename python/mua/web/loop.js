@@ -64,10 +64,11 @@ export class Loop {
   }
 
   async #drawChanged() {
+    const { player } = this.avatar;
     try {
       while (this.#changed && this.avatar.player && !this.avatar.player.playing) await this.draw();
     } catch (error) {
-      this.asks.fail(error);
+      if (this.avatar.player === player) this.asks.fail(error); // not of one that was given back meanwhile
     } finally {
       this.#drawing = false;
     }

@@ -62,6 +62,7 @@ export class Renderer {
     /** @type {Promise<unknown> | null} */
     this.sorting = null; // once the first picture is there
     this.ready = false; // to draw at once
+    this.destroyed = false;
     /** @type {Slot[]} */
     this.slots = [];
     /** @type {SplatFrame | null} */
@@ -146,6 +147,7 @@ export class Renderer {
     this.compute((pass) => this.pose(pass, posed, look, cameras));
     await this.projecting;
     const { splats } = this;
+    if (this.destroyed) return;
     if (!splats) return this.draw(posed, look);
     this.compute((pass) => splats.projectAll(pass, cameras));
     const order = await readOrder(device, splats);
@@ -245,6 +247,7 @@ export class Renderer {
   }
 
   destroy() {
+    this.destroyed = true;
     this.rearrange([]);
     this.context.unconfigure();
     this.device.gpu.destroy();

@@ -249,3 +249,22 @@ test("a player that opens after the element has gone is given back", async () =>
   await settled();
   assert.deepEqual([players[0].disposed, loading.player, named("opened")], [true, null, []]);
 });
+
+test("a canvas has one player at a time, and those that nobody waits for are not made", async () => {
+  const { loading, element, named } = begun({ src: "a" });
+  let release;
+  opens = new Promise((done) => (release = done));
+  const loads = [loading.reload()];
+  await settled();
+  opens = null;
+  for (const src of ["b", "c"]) {
+    element.attributes.src = src;
+    loads.push(loading.reload());
+    await settled();
+  }
+  assert.equal(players.length, 1, "the first has not given the canvas back");
+  release();
+  await Promise.all(loads);
+  assert.deepEqual(players.map(({ disposed, loaded }) => [disposed, loaded]), [[true, []], [false, ["http://host/folder/c"]]]);
+  assert.deepEqual([named("load").length, named("error")], [1, []]);
+});
