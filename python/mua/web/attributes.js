@@ -1,11 +1,12 @@
 // What an element's attributes ask of its player.
 
+import { AvatarError } from "./error.js";
 import { SHOWN } from "./keys.js";
 
 /** @typedef {import("./player.js").Player} Player */
 
 /** Those that are followed whenever they change. */
-export const FOLLOWED = ["src", "clip", "controls", "poster", "speed", "show", "level", "budget", "stereo", "follow", "azimuth", "elevation"];
+export const FOLLOWED = ["src", "clip", "controls", "poster", "alt", "speed", "show", "level", "budget", "stereo", "follow", "azimuth", "elevation"];
 
 /** @type {Record<string, (player: Player, value: string | null) => void>} by the attribute's name */
 const ASKED = {
@@ -19,8 +20,11 @@ const ASKED = {
   follow: (player, value) => (player.follow = value !== null),
   show(player, value) {
     if (value === null) return;
-    const shown = value.split(",").map((word) => word.trim());
-    for (const each of /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN))) player.show[each] = shown.includes(each);
+    const shown = value.split(",").map((word) => word.trim()).filter(Boolean);
+    const known = /** @type {(keyof typeof SHOWN)[]} */ (Object.keys(SHOWN));
+    const other = shown.find((word) => !known.some((each) => each === word));
+    if (other) throw new AvatarError(`show="${value}": "${other}" cannot be shown, only ${known.join(", ")}.`);
+    for (const each of known) player.show[each] = shown.includes(each);
   },
 };
 
@@ -45,4 +49,9 @@ function numberIn(/** @type {string | null} */ text, /** @type {number} */ other
 /** What a player is asked for by a name in the panel or an attribute: by the distance, the finest, or texels along a side. @returns {import("./player.js").Level} */
 export function levelNamed(/** @type {string | null} */ name) {
   return name === "full" ? "full" : Number(name) || "auto";
+}
+
+/** What is shown, as the attribute says it. */
+export function namesOf(/** @type {import("./player.js").Show} */ show) {
+  return Object.entries(show).filter(([, shown]) => shown).map(([name]) => name).join();
 }

@@ -106,7 +106,9 @@ export class Controls {
     /** @type {HTMLElement} */ (this.again.parentElement).hidden = !again && !close;
   }
 
-  hush() {
+  /** Say nothing more; what is wrong may stay. */
+  hush({ wrong = true } = {}) {
+    if (!wrong && this.says.classList.contains("wrong")) return;
     this.says.hidden = true;
     this.sentence.textContent = "";
   }
@@ -124,7 +126,8 @@ export class Controls {
     this.vr.disabled = !here;
     this.vr.setAttribute("aria-pressed", String(player?.vr ?? false));
     this.frame.style.setProperty("--bar", `${this.bar.offsetHeight}px`); // all else stands above it
-    this.canvas.setAttribute("aria-label", avatar.avatars.map(({ name }) => name).join(", ") || "No avatar");
+    const names = avatar.avatars.map(({ name }) => name).join(", ");
+    this.canvas.setAttribute("aria-label", avatar.alt || avatar.ariaLabel || names || "No avatar");
     if (!player) return;
     this.play.innerHTML = player.playing ? ICONS.pause : ICONS.play;
     this.play.setAttribute("aria-label", player.playing ? "Pause" : "Play");

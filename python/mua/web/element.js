@@ -5,6 +5,7 @@
 //   autoplay    plays as soon as it is loaded, unless the reader wants less motion
 //   controls    shows the bar and the panel
 //   poster      picture until the avatar is drawn
+//   alt         what is seen, for those who do not see it; the names of the avatars if left out
 //   speed       playback speed; 1 plays at the recorded speed
 //   show        what is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow
 //   level       of detail: auto (by the distance, if left out), full, or texels along a side of the texture
@@ -15,10 +16,12 @@
 //   elevation   degrees above the horizon
 //   orbit       degrees per second by which the camera goes round while it plays, unless less motion is wanted
 //
+// Each is a property too; both may be set before, while and after an avatar loads, as play(), pause() and seek() may be called.
 // `outsideTraining` tells how far the pose last drawn is from those of training, 0 to 1.
 // Events: `load` when an avatar is shown, `error` with the error in `detail`, `picture` when the first one is drawn.
 
-import { adopt, ASKABLE, FOLLOWED, levelNamed } from "./attributes.js";
+import { Asked } from "./asked.js";
+import { adopt, ASKABLE, FOLLOWED, levelNamed, namesOf, numberOf } from "./attributes.js";
 import { Controls } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
@@ -27,6 +30,7 @@ import { Loading } from "./loading.js";
 import { look } from "./look.js";
 import { Loop } from "./loop.js";
 import { AvatarError, offersVR } from "./player.js";
+import { Attributed } from "./properties.js";
 import { Stage } from "./stage.js";
 
 /** @typedef {import("./player.js").AvatarHandle} AvatarHandle */
@@ -36,9 +40,7 @@ import { Stage } from "./stage.js";
 const SHARPEST = 2; // device pixels of a CSS pixel that are drawn: more cost much and show little
 const FIRST = { splats: true, geometry: false, mesh: false, skeleton: false, shadow: true }; // what is shown where nothing is asked for
 
-const HTMLElementOrNone = /** @type {typeof HTMLElement} */ (globalThis.HTMLElement ?? class {});
-
-export class MuaAvatar extends HTMLElementOrNone {
+export class MuaAvatar extends Attributed {
   static observedAttributes = FOLLOWED;
 
   /** Milliseconds from the start of the page to the first picture; 0 before. */
@@ -55,6 +57,7 @@ export class MuaAvatar extends HTMLElementOrNone {
   });
   #controls;
   #loading;
+  #asked = new Asked();
   #stage = new Stage(this);
   #loop = new Loop(this, {
     tick: (seconds) => this.#tick(seconds),
@@ -80,6 +83,7 @@ export class MuaAvatar extends HTMLElementOrNone {
   }
 
   connectedCallback() {
+    this.upgrade();
     for (const part of [this.#controls.canvas, this.#controls.bar]) this.#watched.observe(part);
     this.#seen.observe(this);
     if (!this.#loading.begun) void this.reload();
@@ -97,7 +101,7 @@ export class MuaAvatar extends HTMLElementOrNone {
     if (name === "poster") this.#setPoster(value);
     else if (name === "src") this.isConnected && void this.reload();
     else if (name === "azimuth" || name === "elevation") this.resetView();
-    else if (this.player) adopt(this.player, this, name);
+    else this.#adopt(name);
     this.#redraw();
   }
 
@@ -111,28 +115,33 @@ export class MuaAvatar extends HTMLElementOrNone {
     return this.player?.avatars ?? [];
   }
 
-  get controls() {
-    return this.hasAttribute("controls");
-  }
-
+  /** Name of the clip that plays. @type {string | null} */
   get clip() {
     return this.player?.clip ?? this.getAttribute("clip");
   }
 
   set clip(name) {
-    if (!this.player || !name) return;
-    this.player.clip = name;
-    this.player.time = 0;
+    this.reflect("clip", name);
+    if (this.player && this.player.clip === name) this.player.time = 0;
     this.#redraw();
   }
 
+  /** Playback speed; 1 plays at the recorded speed. @type {number} */
   get speed() {
-    return this.player?.speed ?? 1;
+    return this.player?.speed ?? numberOf(this, "speed", 1);
   }
 
   set speed(speed) {
-    if (this.player) this.player.speed = speed;
-    this.#redraw();
+    this.reflect("speed", speed);
+  }
+
+  /** What is drawn, separated by commas: splats, geometry, mesh, skeleton, shadow. @type {string} */
+  get show() {
+    return this.player ? namesOf(this.player.show) : (this.getAttribute("show") ?? namesOf(FIRST));
+  }
+
+  set show(names) {
+    this.reflect("show", names);
   }
 
   /** Share of the pose of the first avatar, as last drawn, that training did not show, 0 to 1. */
@@ -146,8 +155,7 @@ export class MuaAvatar extends HTMLElementOrNone {
   }
 
   set level(level) {
-    if (this.player) this.player.level = level;
-    this.#redraw();
+    this.reflect("level", level);
   }
 
   /** All that may be asked for: by the distance, the finest, and the sizes of the first avatar, texels along a side. */
@@ -163,14 +171,12 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Draw two eyes side by side, or one. */
   toggleStereo() {
-    if (this.player) this.player.stereo = !this.player.stereo;
-    this.#redraw();
+    this.toggleAttribute("stereo");
   }
 
   /** Let the camera go with the figure, or stay. */
   toggleFollow() {
-    if (this.player) this.player.follow = !this.player.follow;
-    this.#redraw();
+    this.toggleAttribute("follow");
   }
 
   /** Load what src names, anew. */
@@ -208,9 +214,9 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Pause and go to a time in the clip, seconds. */
   seek(/** @type {number} */ seconds) {
-    if (!this.player) return;
     this.pause();
-    this.player.time = seconds;
+    if (this.player && this.avatars.length) this.player.time = seconds;
+    else this.#asked.time = seconds;
     this.#redraw();
   }
 
@@ -230,9 +236,8 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Show or hide a part of the picture. */
   toggle(/** @type {keyof typeof SHOWN} */ name) {
-    if (!this.player) return;
-    this.player.show[name] = !this.player.show[name];
-    this.#redraw();
+    const shown = this.show.split(",").filter(Boolean);
+    this.show = (shown.includes(name) ? shown.filter((each) => each !== name) : [...shown, name]).join();
   }
 
   /** Open the panel at the times of each stage, or close them. */
@@ -312,8 +317,9 @@ export class MuaAvatar extends HTMLElementOrNone {
 
   /** Draw what was loaded; what the reader has set since the `first` picture of an avatar stays. */
   async #show(/** @type {boolean} */ first) {
-    if (this.player) for (const name of first ? ASKABLE : ["clip"]) adopt(this.player, this, name);
+    for (const name of first ? ASKABLE : ["clip"]) this.#adopt(name);
     if (first) this.#arrange();
+    if (first && this.player) this.#asked.seek(this.player);
     this.#redraw();
     this.#fit(); // the bar has taken its place
     await this.#loop.draw();
@@ -322,8 +328,17 @@ export class MuaAvatar extends HTMLElementOrNone {
       this.firstPicture = performance.now();
       this.dispatchEvent(new Event("picture"));
     }
-    if (first && this.hasAttribute("autoplay") && !lessMotion()) this.play();
+    if (first && this.avatars.length === 1 && this.#asked.play(this.autoplay && !lessMotion())) this.play();
     this.#controls.update();
+  }
+
+  /** Let the player do what an attribute asks for, or say why it cannot. */
+  #adopt(/** @type {string} */ name) {
+    try {
+      if (this.player) adopt(this.player, this, name);
+    } catch (error) {
+      this.#loading.fail(error);
+    }
   }
 
   /** After a part of an avatar was shown whose rest is damaged or did not come. */
@@ -340,6 +355,7 @@ export class MuaAvatar extends HTMLElementOrNone {
   }
 
   #setPlaying(/** @type {boolean} */ playing) {
+    if (!this.firstPicture || !this.avatars.length) this.#asked.playing = playing;
     if (!this.player) return;
     this.player.playing = playing && this.player.clips.length > 0;
     this.#loop.pace();

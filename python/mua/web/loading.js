@@ -81,7 +81,7 @@ export class Loading {
       const handle = await player.load(address, { onProgress, onPart: (part) => void onPart(part).catch(() => {}) });
       if (run !== this.#run) return handle.remove();
       await this.asks.show(!begun);
-      controls.hush();
+      controls.hush({ wrong: false });
       controls.update();
       this.avatar.dispatchEvent(new CustomEvent("load", { detail: handle }));
     } catch (error) {
