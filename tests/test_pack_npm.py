@@ -20,6 +20,9 @@ export async function begin(canvas: HTMLCanvasElement): Promise<string[]> {
   player.camera.azimuth = 1;
   return handle.clips.map(({ name }) => name);
 }
+const found = document.querySelector("mua-avatar");
+if (found) [found.src, found.clip, found.speed, found.controls] = ["hero.muaavatar", "wave", 0.5, true];
+export const made: MuaAvatar = document.createElement("mua-avatar");
 export const shown = (element: MuaAvatar): number => element.avatars.length;
 """
 WRONG = 'import { createPlayer } from "@mua/player";\nexport const wrong: Promise<number> = createPlayer(1);\n'

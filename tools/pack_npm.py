@@ -14,6 +14,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PLAYER, TESTS = ROOT / "python" / "mua" / "web", ROOT / "tests" / "web"
 TSC = TESTS / "node_modules" / "typescript" / "bin" / "tsc"
+# What querySelector("mua-avatar") finds, which no comment of JavaScript can say.
+TAG = """
+declare global {
+  interface HTMLElementTagNameMap {
+    "mua-avatar": MuaAvatar;
+  }
+}
+"""
 ENTRIES = ("player.js", "element.js")  # what others import
 
 
@@ -36,6 +44,8 @@ def write_types(folder: Path) -> None:
     written.write_text(json.dumps({"compilerOptions": options, "files": [*ENTRIES, "worker.js", *known]}))
     subprocess.run(["node", str(TSC), "-p", str(written)], check=True, stdout=sys.stderr)
     written.unlink()
+    element = folder / "types" / "element.d.ts"
+    element.write_text(element.read_text() + TAG)
 
 
 def pack(output: Path) -> Path:

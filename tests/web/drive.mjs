@@ -55,6 +55,14 @@ const operations = {
     for (const [i, [x, y]] of to.entries()) await touches[i].move(x, y);
     for (const touch of touches) await touch.end();
   },
+  async swipe({ page, from, to }) {
+    const touch = await page.touchscreen.touchStart(...from);
+    for (let step = 1; step <= 8; step++) {
+      await touch.move(...from.map((at, axis) => at + ((to[axis] - at) * step) / 8));
+      await new Promise((done) => setTimeout(done, 16));
+    }
+    await touch.end();
+  },
   async choose({ page, code, files }) {
     const chooser = page.waitForFileChooser();
     await page.evaluate(code);

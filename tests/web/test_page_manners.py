@@ -1,13 +1,19 @@
 """The page for everybody: keyboard, names, less motion, light and dark, all sizes, with a headset and without."""
 
+import re
+from pathlib import Path
 from typing import Any
 
 import pytest
-from web.browser import DESKTOP, PHONE, TABLET
-from web.pages import SENTENCE, SHADOW
-from web.test_page import SETTLED, Open, opened, part
+from web.browser import DESKTOP, PHONE, TABLET, Browser, Serve
+from web.pages import ELEMENT, SENTENCE, SHADOW, fake_site
+from web.test_page import LOADED, SETTLED, Open, middle, opened, part
+from web.test_page_life import HOLD
+
+from mua.share.folder import write_folder
 
 __all__ = ["opened"]  # a fixture
+GUIDE = Path(__file__).parents[2] / "docs" / "web.md"
 
 
 def test_who_wants_less_motion_gets_none_unasked(opened: Open) -> None:
@@ -91,3 +97,74 @@ def test_the_page_follows_the_readers_light_or_dark(opened: Open, scheme: str, b
     page = opened(prefers_color_scheme=scheme)
     code = "getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number)"
     assert (sum(page.evaluate(code)) > 384) is bright
+
+
+ARTICLE = """(() => { document.body.style.cssText = "height: auto; display: block";
+  document.querySelector("main").style.height = "400px";
+  document.body.append(Object.assign(document.createElement("p"), { style: "height: 3000px" })); })()"""
+
+
+def test_swipes_over_an_element_scroll_the_page_around_it_and_turn_the_figure(opened: Open) -> None:
+    page = opened(size=PHONE, touch=True)
+    x, y = middle(page)
+    page.do("swipe", **{"from": [x, y], "to": [x, y - 150]})
+    turned = abs(page.evaluate("fake.camera.elevation"))
+    assert turned > 0.8, "there is nothing to scroll in a page of the player alone"
+    page.evaluate("(fake.camera.elevation = 0)")
+    page.evaluate(f"({part('canvas')}.part.remove('canvas'), {ARTICLE})")  # as in a page without that style
+    page.evaluate(SETTLED)
+    x, y = middle(page)
+    page.do("swipe", **{"from": [x, y], "to": [x + 100, y]})
+    assert page.evaluate("[Math.abs(fake.camera.azimuth) > 0.3, scrollY]") == [True, 0]
+    page.do("swipe", **{"from": [x, y], "to": [x, y - 150]})
+    page.wait("scrollY > 50")
+    assert abs(page.evaluate("fake.camera.elevation")) < 0.15
+
+
+def test_the_bar_leaves_a_small_element_to_the_figure(opened: Open) -> None:
+    page = opened(before="globalThis.fakeHeadset = 'willing'")
+    page.evaluate(f"({ELEMENT}.style.cssText = 'width: 240px; height: 192px', 0)")
+    page.wait(f"{part('canvas')}.clientWidth === 240")
+    page.evaluate(SETTLED)
+    assert page.evaluate(f"{part('.bar')}.offsetHeight") < 0.25 * 192
+    shown = page.evaluate(
+        f"[...{part('.bar')}.children].filter((one) => one.checkVisibility())"
+        ".map((one) => [one.className, one.getBoundingClientRect().right])"
+    )
+    assert {name for name, _ in shown} == {"play", "scrub", "clips", "settings", "vr"}
+    assert max(right for _, right in shown) <= 240
+
+
+def test_a_page_with_the_policy_of_the_guide_plays_and_shows_its_poster(browser: Browser, serve: Serve) -> None:
+    said = re.search(r"content security policy needs (.*?),\s+as the", GUIDE.read_text(), re.DOTALL)
+    assert said
+    policy = "; ".join(["default-src 'none'", *re.findall(r"`(.*?)`", said[1].replace("\n", " "))])
+    html = f"""<!doctype html><meta http-equiv="Content-Security-Policy" content="{policy}">
+      <mua-avatar src="hero.muaavatar" poster="icon.svg" controls></mua-avatar>
+      <script type="module" src="element.js"></script>"""
+    page = browser.page(serve({**fake_site(), "own.html": html.encode()}) + "own.html", before=HOLD)
+    page.wait(f"{part('.poster')}?.naturalWidth > 0")
+    page.evaluate("go()")
+    page.wait(LOADED)
+    assert [line for line in page.told["console"] if "Content Security Policy" in line] == []
+    page.close()
+
+
+def test_a_page_that_is_opened_from_the_disk_says_what_to_do(browser: Browser, tmp_path: Path) -> None:
+    write_folder(tmp_path / "hero", fake_site())
+    page = browser.page((tmp_path / "hero" / "index.html").as_uri())
+    stuck = "document.querySelector('#stuck')"
+    page.wait(f"{stuck} && {stuck}.checkVisibility({{ visibilityProperty: true }})")
+    said = page.evaluate(f"{stuck}.innerText")
+    assert "python3 -m http.server" in said
+    assert "--single-file" in said
+    assert page.evaluate("document.querySelector('#open').disabled")
+    page.close()
+
+
+def test_a_page_that_plays_says_nothing_of_the_disk(opened: Open) -> None:
+    page = opened()
+    assert page.evaluate("[document.querySelector('#stuck'), document.querySelector('#open').disabled]") == [
+        None,
+        False,
+    ]

@@ -9,7 +9,7 @@ import { Stages } from "./format/stages.js";
 const LARGEST = 2 ** 28; // bytes of a file that is shown before all of it is there: memory is taken on the server's word
 const SOON = 2000; // milliseconds; within them a slow device has hardly prepared a part of a file
 const STILL = 500; // milliseconds without a byte, after which nobody knows when the rest comes
-const WAITS = [200, 1000]; // milliseconds before the rest is asked for again
+const WAITS = [200, 1000]; // milliseconds before the rest is asked for again, after so many times in vain
 const MARKS = ["etag", "last-modified"]; // that another version of the file would change
 
 const megabytes = (/** @type {number} */ bytes) => (bytes / 1e6).toFixed(1);
@@ -46,10 +46,11 @@ export class Download {
     if (!first.ok) throw this.absent(`the server answers ${first.status} ${first.statusText}.`);
     this.begin(first);
     let there = await this.take(first, progress);
-    for (let time = 0; !there; time++) {
-      if (!this.total || time === WAITS.length) throw this.broken();
-      await new Promise((resolve) => setTimeout(resolve, WAITS[time]));
+    for (let [vain, most] = [0, this.got]; !there; most = Math.max(most, this.got)) {
+      if (!this.total || vain === WAITS.length) throw this.broken();
+      await new Promise((resolve) => setTimeout(resolve, WAITS[vain]));
       there = await this.resume(first, progress);
+      vain = this.got > most ? 0 : vain + 1;
     }
     if (this.got === this.content.length) return this.content.buffer;
     return joined([this.content.subarray(0, this.got), ...this.beyond], this.got);

@@ -35,7 +35,8 @@ const RULES = `
 :host([hidden]), [hidden] { display: none !important; }
 .frame { position: absolute; inset: 0; --bar: 0px; }
 canvas, .poster { position: absolute; inset: 0; width: 100%; height: calc(100% - var(--bar)); }
-canvas { touch-action: none; cursor: grab; }
+canvas { touch-action: pan-y; cursor: grab; } /* a swipe up or down scrolls the page */
+:host(:fullscreen) canvas { touch-action: none; }
 canvas:active { cursor: grabbing; }
 .poster { object-fit: contain; pointer-events: none; }
 :focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; border-radius: 4px; }
@@ -145,5 +146,13 @@ progress { width: 14rem; max-width: 100%; accent-color: var(--accent); }
   .panel { inset: auto 0 var(--bar); width: auto; max-height: 55%; border-width: 1px 0 0; border-radius: 10px 10px 0 0; }
   button, select, .panel label, .panel li { min-height: 2.75rem; }
   button { min-width: 2.75rem; padding: 0 0.5rem; display: inline-grid; place-items: center; }
+}
+@container avatar (max-width: 24rem) {
+  .bar { flex-wrap: nowrap; padding-block: 0.2rem; }
+  .bar :is(.clock, .speed, .picture, .whole) { display: none; }
+  .bar .scrub { flex: 1 1 3rem; min-width: 2rem; }
+  .bar .clips { flex: 0 1 6rem; min-width: 0; }
+  .bar button { min-width: 2.25rem; }
+  .bar :is(button, select, .scrub) { min-height: 2.25rem; height: 2.25rem; }
 }
 `;

@@ -13,7 +13,10 @@ showHint();
 for (const kind of ["load", "error"])
   avatar.addEventListener(kind, () => (empty.hidden = kind === "error" || avatar.avatars.length > 0));
 
-document.querySelector("#open")?.addEventListener("click", () => avatar.openFiles());
+const open = /** @type {HTMLButtonElement} */ (document.querySelector("#open"));
+open.addEventListener("click", () => avatar.openFiles());
+open.disabled = false;
+document.querySelector("#stuck")?.remove();
 document.addEventListener("keydown", (event) => {
   if (!event.composedPath().includes(avatar)) pressed(event, avatar);
 });
