@@ -1,16 +1,19 @@
 """Which texels are one-sided: those that others hide from behind, in every pose and from everywhere."""
 
+import threading
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 from synthetic_avatar import synthetic_avatar, with_one_sided
 
 from mua import one_sided, rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.bench.random_avatar import random_avatar
-from mua.decode import decode_clip_frame
+from mua.camera import Camera
+from mua.decode import Splats, decode_clip_frame
 from mua.pose.clip import Clip
 from mua.rendering import projected, render_over
 from mua.student.settings import preset
@@ -173,6 +176,23 @@ def test_each_pose_has_views_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(one_sided, "around", lambda splats, texel, *, first: firsts.append(first) or [])
     one_sided.shares_behind(closed(), closed().clips)
     assert firsts == [0, 10]
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_views_are_drawn_by_all_threads_with_the_same_result(threads: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    meet = threading.Barrier(threads, timeout=60)
+    drawn = one_sided._shares_behind
+
+    def together(splats: Splats, normals: Array, camera: Camera) -> Array:
+        meet.wait()
+        return drawn(splats, normals, camera)
+
+    avatar = closed()
+    monkeypatch.setattr(one_sided, "VIEWS", 9)
+    alone = one_sided.shares_behind(avatar, avatar.clips)
+    monkeypatch.setattr(one_sided, "_shares_behind", together)
+    monkeypatch.setattr(torch, "get_num_threads", lambda: threads)
+    assert np.array_equal(one_sided.shares_behind(avatar, avatar.clips), alone)
 
 
 def test_pictures_are_of_a_size_that_can_be_drawn() -> None:

@@ -7,6 +7,7 @@ edge of the mesh: tips of hair and hems are thin, and a pose that was not looked
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -24,11 +25,14 @@ from mua.pose.resample import frames_at
 from mua.rig.rig import Rig
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import largest_shares
+from mua.threads import in_order
+from mua.torch_threads import thread_share
 
 LARGEST_SHARE = 1 / 24  # of a pixel's colour
 OPEN = 0.01  # of the figure's largest side: texels so near to an open edge are not one-sided
 SAME_PLACE = 1e-6  # of the same: vertices so near to each other are one, as along the seams of a texture
 POSES, VIEWS = 8, 24  # views of each pose
+THREADS = 4  # views drawn at once, at most: each holds an image and its splats
 PIXEL = 1.0  # texels, in the middle of an image
 FOV = np.radians(60)  # of the images; near enough for openings to be looked into
 LARGEST_SIDE = 4096  # pixels
@@ -74,12 +78,15 @@ def shares_behind(
     whole = replace(avatar, rig=replace(avatar.rig, texels=texels))
     behind = np.zeros(len(texels.texels))
     poses = distinct_poses(clips, avatar.encoding.rate, root=avatar.rig.skeleton.root)
-    for number, (clip, frame) in enumerate(poses):
-        splats = decode_clip_frame(whole, clip, frame=frame)
-        normals = texel_normals(whole.rig, splats.canonical, splats.texel_dq)
-        for camera in around(splats, texel_length(whole), first=number * VIEWS):
-            np.maximum(behind, _shares_behind(splats, normals, camera), out=behind)
-        progress(number + 1, len(poses))
+    threads = min(torch.get_num_threads(), THREADS)
+    with thread_share(threads):
+        for number, (clip, frame) in enumerate(poses):
+            splats = decode_clip_frame(whole, clip, frame=frame)
+            normals = texel_normals(whole.rig, splats.canonical, splats.texel_dq)
+            cameras = around(splats, texel_length(whole), first=number * VIEWS)
+            for shares in in_order(partial(_shares_behind, splats, normals), cameras, threads=threads):
+                np.maximum(behind, shares, out=behind)
+            progress(number + 1, len(poses))
     return behind
 
 

@@ -3,7 +3,9 @@
 # mypy: disable-error-code="no-untyped-call"
 # (Warp's functions have no types)
 
+import threading
 from collections.abc import Sequence
+from contextlib import nullcontext
 from typing import Any
 
 import torch
@@ -12,6 +14,10 @@ import warp as wp
 from mua.splatting.kernels import passes
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.tiles import TILE, Tiles, assign, join
+
+# Warp compiles and loads a kernel when it is first launched, which two threads must not do at once.
+_FIRST = threading.Lock()
+_LAUNCHED: set[tuple[Any, str]] = set()  # kernels and the devices that they are loaded on
 
 REALS = {torch.float32: wp.float32, torch.float64: wp.float64}
 
@@ -97,4 +103,6 @@ def _launch(kernel: Any, tiles: Tiles, tensors: list[torch.Tensor]) -> None:
     held = (tiles.places, tiles.starts, tiles.quads, *tensors)
     arrays = [wp.from_torch(tensor, requires_grad=False) for tensor in held]
     stream = wp.stream_from_torch(tensors[0].device) if device.is_cuda else None
-    wp.launch(kernel, dim=len(tiles.places) * TILE * TILE, inputs=arrays, device=device, stream=stream)
+    with nullcontext() if (kernel, device.alias) in _LAUNCHED else _FIRST:
+        wp.launch(kernel, dim=len(tiles.places) * TILE * TILE, inputs=arrays, device=device, stream=stream)
+        _LAUNCHED.add((kernel, device.alias))

@@ -1,15 +1,13 @@
 """Both branches of a student trained at once: side by side on a processor, each with its share of the threads."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from threading import Event
 
-import torch
-
 from mua.student.optimise import Progress, Run
 from mua.threads import together
+from mua.torch_threads import thread_share
 
 
 class Stopped(Exception):
@@ -40,14 +38,3 @@ def each_branch(tasks: Sequence[Callable[[Run], None]], run: Run) -> None:
 def side_by_side(run: Run) -> bool:
     """Whether branches are trained at once: not on a GPU, whose memory one fills, nor where processes take turns."""
     return run.device.type == "cpu" and run.processes.count == 1
-
-
-@contextmanager
-def thread_share(parts: int) -> Iterator[None]:
-    """Let torch compute with one of so many parts of its threads within the block, in each thread that asks it to."""
-    threads = torch.get_num_threads()
-    torch.set_num_threads(max(threads // parts, 1))
-    try:
-        yield
-    finally:
-        torch.set_num_threads(threads)
