@@ -1,5 +1,5 @@
 # `make demo` bakes the procedural character; `make test` checks everything, `make package` packs what
-# Unity installs, `make docs` builds the site, `make mutants` puts the tests to the test. All set up what they need.
+# Unity installs, `make docs` builds the site, `make mutants` puts the tests to the test. Each sets up what it needs.
 
 PYTHON ?= python3
 VENV := .venv
@@ -11,8 +11,9 @@ PYTEST := $(BIN)/pytest --numprocesses $(WORKERS) --dist worksteal
 
 .PHONY: demo test test-long test-web test-files test-wheel gallery mutants docs check package wheel setup clean
 
-demo: setup
-	$(BIN)/mua-bake --preset tiny -o $(DEMO)/avatar.muaavatar
+# A quarter of the preset's frames: a first picture soon.
+demo: $(VENV)/.demo
+	$(BIN)/mua-bake --preset tiny --frames 60 -o $(DEMO)/avatar.muaavatar
 	$(BIN)/mua-inspect --verify $(DEMO)/avatar.muaavatar
 
 test: setup check
@@ -31,7 +32,7 @@ test-files: setup
 	$(PYTEST) -m long -k mutants -rP tests/unity/test_mutants.py
 
 # The wheel in an empty environment, its commands without a compiler; downloads about 1 GB.
-test-wheel: demo
+test-wheel: setup demo
 	$(BIN)/python tools/check_wheel.py
 
 # The characters of tools/gallery.toml, from a folder: GALLERY=folder make gallery; GALLERY_FLAGS=--bake bakes them too.
@@ -49,7 +50,7 @@ mutants: setup
 docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
-$(VENV)/.docs: $(VENV)/.installed
+$(VENV)/.docs: $(VENV)/.demo
 	$(BIN)/python -m pip install -q -e "./python[docs]"
 	touch $@
 
@@ -66,8 +67,9 @@ check: setup
 	$(BIN)/python tools/lint_upm.py
 	$(BIN)/python tools/pack_upm.py --check
 
-package: setup
-	$(BIN)/python tools/pack_upm.py
+# With nothing but Python.
+package:
+	$(PYTHON) tools/pack_upm.py
 
 wheel: setup
 	rm -rf python/build  # what an older checkout had would go in too
@@ -75,9 +77,13 @@ wheel: setup
 
 setup: $(VENV)/.installed
 
-$(VENV)/.installed: python/pyproject.toml tools/setup.sh
-	PYTHON=$(PYTHON) sh tools/setup.sh $(VENV)
+$(VENV)/.demo: python/pyproject.toml tools/setup.sh
+	PYTHON=$(PYTHON) sh tools/setup.sh $(VENV) demo
 	touch $@
+
+$(VENV)/.installed: python/pyproject.toml tools/setup.sh
+	PYTHON=$(PYTHON) sh tools/setup.sh $(VENV) test
+	touch $(VENV)/.demo $@
 
 clean:
 	rm -rf build

@@ -1,33 +1,45 @@
 #!/bin/sh
-# Sets up what `make demo` and `make test` need: Debian packages where it may, a virtual environment always.
-# Usage: tools/setup.sh VENV
+# Sets up a virtual environment, and Debian packages where it may: for `make demo` what baking and viewing need, for
+# `make test` what the tests and checks need too.
+# Usage: tools/setup.sh VENV demo|test
 set -eu
 venv=$1
+purpose=$2
 python=${PYTHON:-python3}
 
-# command:package pairs; flatc is the independent reader that a test holds the file format against
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || {
+    echo "$python is Python $("$python" -c 'import platform; print(platform.python_version())'), expected 3.11 or" \
+        "later; PYTHON=python3.12 make demo takes another" >&2
+    exit 1
+}
+
 missing=""
 "$python" -c 'import ensurepip, venv' 2>/dev/null || missing="$missing python3-venv"
-command -v flatc >/dev/null || missing="$missing flatbuffers-compiler"
-# shaders come compiled, but tests compile changed ones; a Vulkan driver (this package has one that runs on the CPU)
-command -v glslangValidator >/dev/null || missing="$missing glslang-tools"
+# the window needs a Vulkan driver; this package has one that runs on the CPU
 find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2>/dev/null | grep -q . ||
     missing="$missing mesa-vulkan-drivers"
-# a character's own mesh is drawn by OpenGL without a display (this driver runs on the CPU)
-find /usr/lib /lib -name 'libEGL.so.1' 2>/dev/null | grep -q . || missing="$missing libegl1"
-find /usr/lib /lib -name 'swrast_dri.so' -o -name 'libgallium*.so' 2>/dev/null | grep -q . ||
-    missing="$missing libgl1-mesa-dri"
-# the Unity package's C# is compiled and run without Unity
-command -v mcs >/dev/null || missing="$missing mono-mcs"
-command -v mono >/dev/null || missing="$missing mono-runtime"
-# the interactive player is tested on a display that is not there
-command -v Xvfb >/dev/null || missing="$missing xvfb"
-find /usr/lib /lib -name libXext.so.6 2>/dev/null | grep -q . || missing="$missing libxext6"
+if [ "$purpose" = test ]; then
+    # the independent reader that a test holds the file format against
+    command -v flatc >/dev/null || missing="$missing flatbuffers-compiler"
+    # shaders come compiled, but tests compile changed ones
+    command -v glslangValidator >/dev/null || missing="$missing glslang-tools"
+    # a character's own mesh is drawn by OpenGL without a display (this driver runs on the CPU)
+    find /usr/lib /lib -name 'libEGL.so.1' 2>/dev/null | grep -q . || missing="$missing libegl1"
+    find /usr/lib /lib -name 'swrast_dri.so' -o -name 'libgallium*.so' 2>/dev/null | grep -q . ||
+        missing="$missing libgl1-mesa-dri"
+    # the Unity package's C# is compiled and run without Unity
+    command -v mcs >/dev/null || missing="$missing mono-mcs"
+    command -v mono >/dev/null || missing="$missing mono-runtime"
+    # the interactive player is tested on a display that is not there
+    command -v Xvfb >/dev/null || missing="$missing xvfb"
+    find /usr/lib /lib -name libXext.so.6 2>/dev/null | grep -q . || missing="$missing libxext6"
+fi
 
 if [ -n "$missing" ] && command -v apt-get >/dev/null; then
     if [ "$(id -u)" = 0 ]; then as_root=""; else as_root="sudo -n"; fi
     if $as_root true 2>/dev/null; then
-        $as_root apt-get update -q && $as_root apt-get install -y -q $missing && missing=""
+        echo "Installing Debian packages:$missing"
+        $as_root apt-get update -q && $as_root apt-get install -y -q --no-install-recommends $missing && missing=""
     fi
 fi
 for package in $missing; do
@@ -35,7 +47,17 @@ for package in $missing; do
 done
 case "$missing" in *python3-venv*) exit 1 ;; esac
 
+case "$purpose" in
+demo) extras=bake,view size="1.8 GB" ;;
+*) extras=dev size="2.4 GB" ;;
+esac
+echo "Installing Python packages into $venv: $size, of which torch is 0.7 GB"
 [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
+# Compiling all modules would take longer than compiling those that are imported, when they are.
+pip="$venv/bin/python -m pip install --no-compile --disable-pip-version-check"
 # torch by itself first: asked for by another package, pip may choose a build for a GPU that is not there
-"$venv/bin/python" -m pip install -q "torch==2.13.0"
-"$venv/bin/python" -m pip install -q -e "./python[dev]"
+if command -v nvidia-smi >/dev/null; then builds=""; else builds="--extra-index-url https://download.pytorch.org/whl/cpu"; fi
+echo "1 of 2: torch"
+$pip $builds "torch==2.13.0" "setuptools>=77"
+echo "2 of 2: MUA and all others"
+$pip --no-build-isolation -e "./python[$extras]"
