@@ -55,9 +55,11 @@ echo "Installing Python packages into $venv: $size, of which torch is 0.7 GB"
 [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
 # Compiling all modules would take longer than compiling those that are imported, when they are.
 pip="$venv/bin/python -m pip install --no-compile --disable-pip-version-check"
-# torch by itself first: asked for by another package, pip may choose a build for a GPU that is not there
-if command -v nvidia-smi >/dev/null; then builds=""; else builds="--extra-index-url https://download.pytorch.org/whl/cpu"; fi
+# Without a GPU of NVIDIA's the build for the CPU, which is a tenth of the size; where it is not found, whatever pip finds.
+torch=torch==2.13.0
 echo "1 of 2: torch"
-$pip $builds "torch==2.13.0" "setuptools>=77"
+command -v nvidia-smi >/dev/null ||
+    $pip --retries 1 --no-deps --index-url https://download.pytorch.org/whl/cpu $torch || true
+$pip $torch "setuptools>=77"
 echo "2 of 2: MUA and all others"
 $pip --no-build-isolation -e "./python[$extras]"
