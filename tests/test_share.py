@@ -23,9 +23,11 @@ from PIL import Image
 from synthetic_avatar import synthetic_avatar
 
 from mua.asset import write
+from mua.camera import FILL
+from mua.rig.bounds import root_positions
 from mua.rotation import multiply
 from mua.share import folder, server, single, site
-from mua.share.poster import front, opening
+from mua.share.poster import front, opening, view
 from mua.share.server import serving
 from mua.share.single import in_order
 
@@ -71,9 +73,23 @@ def test_a_folder_holds_player_avatar_poster_and_page(command: Commands, avatar_
 def test_the_poster_shows_the_figure_on_nothing(command: Commands, avatar_file: Path, tmp_path: Path) -> None:
     share(command, avatar_file, "-o", tmp_path / "out")
     with Image.open(tmp_path / "out" / "poster.png") as poster:
-        assert (poster.mode, poster.size) == ("RGBA", (720, 960))
+        assert (poster.mode, poster.size[1]) == ("RGBA", 960)
         lowest, highest = poster.getchannel("A").getextrema()
         assert (lowest, highest > 200) == (0, True)
+
+
+def test_the_box_of_the_figure_fills_width_and_height_of_the_poster(avatar_file: Path) -> None:
+    avatar, clip = opening(avatar_file, None)
+    gone = np.array([5, 0.5, -3], np.float32)
+    translations = clip.translations.copy()
+    translations[:, avatar.rig.skeleton.root] += gone
+    for wide in (1, 3):
+        bounds = avatar.bounds * [wide, 1, 1]
+        camera = view(replace(avatar, bounds=bounds), replace(clip, translations=translations))
+        box = bounds + root_positions(avatar.rig, clip)[0] + gone
+        corners = np.array(np.meshgrid(*box.T, [1.0])).reshape(4, -1)
+        x, y, _, w = camera.projection @ camera.view @ corners
+        assert [np.abs(x / w).max(), np.abs(y / w).max()] == pytest.approx([FILL, FILL], rel=0.01)
 
 
 def test_poster_and_page_begin_with_the_clip_asked_for(command: Commands, tmp_path: Path) -> None:

@@ -204,7 +204,7 @@ def test_the_reference_draws_without_a_device(
         raise InputError("no device")
 
     monkeypatch.setattr(mua.gpu, "open_device", none)
-    monkeypatch.setattr("mua.share.poster.SCREEN", (24, 32))
+    monkeypatch.setattr("mua.share.poster.HEIGHT", 32)
     asked = (avatar_file, "-o", tmp_path / ("v.png" if name == "view" else "site"))
     assert command(name, *asked, "--reference").status == 0
     assert command(name, *asked).sentence == "error: no device"

@@ -1,9 +1,11 @@
 """What mua-share writes, in a browser with the real engine: it plays, and what is wrong is a sentence on the page."""
 
+import base64
 import gzip
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from io import BytesIO
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -13,10 +15,11 @@ import pytest
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
 from web.browser import Browser, Page, Serve
-from web.pages import ELEMENT, LOSABLE, SENTENCE
+from web.pages import ELEMENT, LOSABLE, SENTENCE, SHADOW
 
 from mua.arrays import Array
 from mua.asset.write import encode
+from mua.share.poster import front, opening, poster
 from mua.share.single import single_page
 from mua.share.site import Content, Shown, player_files, player_site
 
@@ -210,3 +213,37 @@ def test_what_another_server_does_not_give_is_a_sentence(opened: Open, elsewhere
 
 def test_the_player_is_small() -> None:
     assert sum(len(gzip.compress(path.read_bytes())) for path in player_files().values()) < LARGEST_PLAYER
+
+
+def extent(alpha: Array) -> Array:
+    """First and last row and column [2, 2] in which anything shows."""
+    places = np.argwhere(alpha > 0.1)
+    return np.array([places.min(axis=0), places.max(axis=0) + 1])
+
+
+@pytest.mark.parametrize("size", [(400, 200), (120, 300)], ids=["wide", "narrow"])
+def test_the_poster_is_framed_as_the_figure(
+    opened: Open, avatar_file: Path, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int]
+) -> None:
+    monkeypatch.setattr("mua.share.poster.HEIGHT", 240)
+    begins = opening(avatar_file, None)
+    content = poster(avatar_file, *begins, reference=True)
+    with Image.open(BytesIO(content)) as image:
+        there = extent(np.asarray(image)[..., 3] / 255)
+        scale = min(size[0] / image.width, size[1] / image.height)  # as object-fit: contain
+        middle = np.array([image.height, image.width]) / 2
+    style = f"min-height: 0; width: {size[0]}px; height: {size[1]}px"
+    more = {"show": "splats", "azimuth": str(front(*begins))}
+    page = opened(player_site([avatar_file], Shown("Hero", more=more)))
+    page.evaluate(f"({ELEMENT}.style.cssText = '{style}', {ELEMENT}.controls = false, {ELEMENT}.seek(0), 0)")
+    page.wait(f"{SHADOW}.querySelector('canvas').clientHeight === {size[1]}")
+    page.evaluate(f"{ELEMENT}.resetView()")
+    url = page.evaluate(f"""{ELEMENT}.screenshot().then((blob) => new Promise((done) => {{
+      const reader = Object.assign(new FileReader(), {{ onload: () => done(reader.result) }});
+      reader.readAsDataURL(blob);
+    }}))""")
+    with Image.open(BytesIO(base64.b64decode(url.split(",")[1]))) as image:
+        assert image.size == size
+        drawn = extent(np.asarray(image)[..., 3] / 255)
+    expected = (there - middle) * scale + np.array(size[::-1]) / 2
+    np.testing.assert_allclose(drawn, expected, atol=0.03 * max(size))

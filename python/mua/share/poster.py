@@ -10,15 +10,15 @@ from PIL import Image
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
-from mua.camera import Camera
+from mua.camera import FILL, Camera, orbit
 from mua.motion.facing import front_of
 from mua.player.motion import named_clip, player_clips
 from mua.player.picture import Reference, over
-from mua.player.shot import Shot, film
 from mua.player.toggles import Toggles
 from mua.pose.clip import Clip
+from mua.rig.bounds import root_positions
 
-SCREEN = (720, 960)  # pixels
+HEIGHT, WIDEST = 960, 1920  # pixels
 
 
 def opening(file: Path, name: str | None) -> tuple[Avatar, Clip]:
@@ -47,11 +47,26 @@ def poster(
 
     Errors: InputError where there is no graphics device, or it has too little memory.
     """
-    ((camera,),) = film(Shot(SCREEN), avatar.rig, clip.cut(np.array([0])))
+    camera = view(avatar, clip)
     pixels = Reference(avatar, clip).picture(0, [camera]) if reference else _drawn(file, clip, camera)
     out = BytesIO()
     Image.fromarray(over(pixels, None)).save(out, "PNG", optimize=True)
     return out.getvalue()
+
+
+def view(avatar: Avatar, clip: Clip) -> Camera:
+    """The camera of the page's first frame, on a screen that the figure's box fills in width as in height.
+
+    Fitted into a page of any shape, the image shows the figure as large as the page does.
+    """
+    first = clip.cut(np.array([0]))
+    box = avatar.bounds + root_positions(avatar.rig, first)[0]
+    azimuth = front_of(avatar.rig.skeleton, clip.rotations[0], clip.translations[0])
+    wide = orbit(box, screen=(WIDEST, HEIGHT), azimuth=azimuth)
+    corners = np.array(np.meshgrid(*np.transpose(box), [1.0])).reshape(4, -1)
+    x, _, _, w = wide.projection @ wide.view @ corners
+    width = max(round(WIDEST * float(np.abs(x / w).max()) / FILL), 1)
+    return orbit(box, screen=(width, HEIGHT), azimuth=azimuth)
 
 
 def _drawn(file: Path, clip: Clip, camera: Camera) -> Array:

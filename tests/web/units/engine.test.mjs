@@ -189,3 +189,24 @@ test("nothing is told of a player that was disposed of", async () => {
   devices[0].device.gpu.onuncapturederror({ error: { message: "destroyed" } });
   assert.deepEqual([devices[1].destroyed, told], [true, []]);
 });
+
+test("an avatar stands on the ground of the clip that it plays, where a shadow is asked for", async () => {
+  const higher = { ...avatar.clips[0], name: "higher", translation: avatar.clips[0].translation.map((at) => at + 0.5) };
+  const { engine } = await begun();
+  const entry = await engine.put({ ...avatar, clips: [avatar.clips[0], higher] }, null, true);
+  assert.equal(engine.posed()[0].ground, 0);
+  engine.show.shadow = true;
+  const [{ ground }] = engine.posed();
+  engine.clip = "higher";
+  assert.ok(Math.abs(engine.posed()[0].ground - ground - 0.5) < 1e-6);
+  engine.clip = avatar.clips[0].name;
+  assert.equal(engine.posed()[0].ground, ground);
+  assert.notEqual(ground, 0);
+});
+
+test("before its first picture an avatar is not outside of training", async () => {
+  const { engine } = await begun();
+  const entry = await engine.put(avatar, null, true);
+  entry.slot.frame = new Proxy({}, { get: () => undefined });
+  assert.equal(entry.handle.outsideTraining, 0);
+});

@@ -162,6 +162,17 @@ test("a frame draws both eyes side by side and lays each on its part of its imag
   assert.equal(gpu.noted.submitted, 1);
 });
 
+test("each eye is seen through its own projection from its own place", async () => {
+  const { told, session } = await opened();
+  const other = view(1);
+  other.projectionMatrix = CLIP.map((value, i) => (i === 0 ? 2 : i === 8 ? 0.25 : value));
+  other.transform = { inverse: { matrix: IDENTITY.map((value, i) => (i === 12 ? -0.064 : value)) } };
+  session.show([view(0), other]);
+  const [left, right] = told.drawn[0].eyes;
+  assert.deepEqual([left, right].map(({ position }) => position[0] + 0), [0, 0.064]);
+  assert.deepEqual([left, right].map(({ projection }) => [projection[0], projection[2] + 0]), [[1, 0], [2, 0.25]]);
+});
+
 test("the picture is kept from frame to frame, and made anew for images of another width or height", async () => {
   const { gpu, session } = await opened();
   const { width, height } = VIEWPORT;
