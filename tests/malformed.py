@@ -149,8 +149,8 @@ def empty(*shape: int) -> Tree:
 
 NAN = float("nan")
 MALFORMED = [
-    ("version", "version_major", put("version_major", 5)),
-    ("version", "version_major", put("version_major", 3)),
+    ("version", "version_major", put("version_major", 6)),
+    ("version", "version_major", put("version_major", 4)),
     ("missing", "skeleton", drop("skeleton")),
     ("missing", "geometry.mlp", drop("geometry.mlp")),
     ("value", "skeleton.parents", poke("skeleton.parents", 1, 2)),

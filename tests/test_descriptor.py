@@ -46,6 +46,14 @@ def matrix(q: np.ndarray) -> np.ndarray:
     return np.asarray(Rotation.from_quat(q, scalar_first=True).as_matrix())
 
 
+def world(rotations: np.ndarray, joint: int) -> np.ndarray:
+    """How a joint of a chain is turned in the world: the joints above it have the numbers before its own."""
+    turned = np.eye(3)
+    for local in rotations[: joint + 1]:
+        turned = turned @ matrix(local)
+    return turned
+
+
 def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: int) -> np.ndarray:
     """One descriptor as mua.pose.encoding words it, for the skeleton of this file, by 3x3 matrices."""
     above = matrix(skeleton.bind_rotations[0])
@@ -65,7 +73,7 @@ def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: i
         turn_g, position_g = root(g)
         parts += [back @ (position_g - position), *(back @ turn_g).T[:2]]
         for j in encoding.joints:
-            parts += [*matrix(clip.rotations[g, j]).T[:2]]
+            parts += [*(back @ world(clip.rotations[g], j) @ world(skeleton.bind_rotations, j).T).T[:2]]
         for j in encoding.translated:
             parts += [clip.translations[g, j] - skeleton.bind_translations[j]]
     return np.concatenate(parts)

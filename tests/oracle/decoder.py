@@ -172,15 +172,15 @@ def descriptor(avatar: Tree, window: list[Pose]) -> Array:
     """3.2, 3.4, 3.5: z [K]; `window` is newest first."""
     skeleton, encoding = avatar["skeleton"], avatar["encoding"]
     root, bind = skeleton["root"], (unit(skeleton["bind_rotations"]), skeleton["bind_translations"])  # 2.1
-    turned0 = world(skeleton, bind)[0][root]
+    bound = world(skeleton, bind)[0]
     placed = [world(skeleton, pose) for pose in window]
-    turns = [times(turned[root], conjugate(turned0)) for turned, _ in placed]
-    twist = turns[0] * [1, 0, 1, 0]
+    turns = [times(turned, conjugate(bound)) for turned, _ in placed]
+    twist = turns[0][root] * [1, 0, 1, 0]
     heading = unit(twist) if encoding["heading"] and np.linalg.norm(twist) >= 1.5e-8 else np.eye(4)[0]
     back, numbers = conjugate(heading), []
-    for (local, moved), turn, (_, places) in zip(window, turns, placed, strict=True):
-        numbers += [rotate(back, places[root] - placed[0][1][root]), six(times(back, turn))]
-        numbers += [six(local[j]) for j in encoding["joints"]]
+    for (_, moved), turn, (_, places) in zip(window, turns, placed, strict=True):
+        numbers += [rotate(back, places[root] - placed[0][1][root])]
+        numbers += [six(times(back, turn[j])) for j in (root, *encoding["joints"])]
         numbers += [moved[j] - bind[1][j] for j in encoding.get("translated", ())]
     return np.asarray(encoding["components"] @ ((np.concatenate(numbers) - encoding["mean"]) / encoding["scale"]))
 

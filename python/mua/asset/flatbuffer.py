@@ -26,7 +26,7 @@ SCALARS = {
     "double": np.dtype("<f8"),
     **{name: np.dtype("u1") for name in ENUMS},
 }
-VERSION = (4, 0)  # major, minor of the format
+VERSION = (5, 0)  # major, minor of the format
 DATA_ALIGN = 16  # bytes, of a tensor's data
 MAX_BYTES = 2**31 - 1  # FlatBuffers' offsets are 32 bits, and its builders stop at half of them
 

@@ -21,8 +21,8 @@ class _Frames:
     """What every frame adds to the windows that hold it."""
 
     position: Array  # [F, 3] world position of the root, metres
-    turn: Array  # [F, 4] world rotation of the root relative to bind
-    joints: Array  # [F, 6 n + 3 m] local rotations and translations of the encoded joints
+    turns: Array  # [F, 1 + n, 4] world rotations of the root and the encoded joints, relative to bind
+    moves: Array  # [F, 3 m] local translations of those whose translation is encoded, relative to bind, metres
 
 
 def describe(
@@ -110,34 +110,23 @@ def heading_of(turn: Array) -> Array:
 
 def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, translations: Array) -> _Frames:
     rotations, translations = np.asarray(rotations, dtype=float), np.asarray(translations, dtype=float)
-    turned, position = _root_world(skeleton, rotations, translations)
-    bind, _ = _root_world(skeleton, skeleton.bind_rotations, skeleton.bind_translations)
-    turns = rotation.to_6d(rotations[:, list(encoding.joints)])
-    moved = list(encoding.translated)
+    turned, placed = skeleton.world(rotations, translations)
+    bind, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
+    told, moved = [skeleton.root, *encoding.joints], list(encoding.translated)
     moves = translations[:, moved] - skeleton.bind_translations[moved]
     return _Frames(
-        position=position,
-        turn=rotation.multiply(turned, rotation.conjugate(bind)),
-        joints=np.concatenate([turns.reshape(len(rotations), -1), moves.reshape(len(rotations), -1)], axis=-1),
+        position=placed[:, skeleton.root],
+        turns=rotation.multiply(turned[:, told], rotation.conjugate(bind[told])),
+        moves=moves.reshape(len(rotations), -1),
     )
-
-
-def _root_world(skeleton: Skeleton, rotations: Array, translations: Array) -> tuple[Array, Array]:
-    """World rotation [..., 4] and position [..., 3] of the root joint alone."""
-    turned, position = rotations[..., skeleton.root, :], translations[..., skeleton.root, :]
-    joint = int(skeleton.parents[skeleton.root])
-    while joint >= 0:
-        turned = rotation.multiply(rotations[..., joint, :], turned)
-        position = translations[..., joint, :] + rotation.rotate(rotations[..., joint, :], position)
-        joint = int(skeleton.parents[joint])
-    return turned, position
 
 
 def _gather(encoding: PoseEncoding, frames: _Frames, window: Array) -> Array:
     """Descriptors [N, k D] of windows [N, k] of frame indices, newest first."""
     moved = frames.position[window] - frames.position[window[:, :1]]
-    turn = frames.turn[window]
+    turns = frames.turns[window]
     if encoding.heading:
-        back = rotation.conjugate(heading_of(turn[:, :1]))
-        moved, turn = rotation.rotate(back, moved), rotation.multiply(back, turn)
-    return np.concatenate([moved, rotation.to_6d(turn), frames.joints[window]], axis=-1).reshape(len(window), -1)
+        back = rotation.conjugate(heading_of(turns[:, :1, 0]))
+        moved, turns = rotation.rotate(back, moved), rotation.multiply(back[:, :, None], turns)
+    turned = rotation.to_6d(turns).reshape(*window.shape, -1)
+    return np.concatenate([moved, turned, frames.moves[window]], axis=-1).reshape(len(window), -1)

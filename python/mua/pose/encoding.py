@@ -18,10 +18,10 @@ class Part(NamedTuple):
 class PoseEncoding:
     """The declared form of the motion descriptor, stored in every recording and asset.
 
-    Per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3),
-    the root joint's world rotation relative to its bind rotation (6D), then the local rotations of `joints` (6D each)
-    and the local translations of `translated` relative to those of the bind pose (3 each), metres.
-    With `heading`, root positions and rotations are turned back by the yaw of frame f.
+    Per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3), the
+    world rotations of the root joint and of `joints` relative to the bind pose (6D each), and the local translations of
+    `translated` relative to the bind pose (3 each), metres. Rotations are those of the world because light and gravity
+    act there. With `heading`, root positions and rotations are turned back by the yaw of frame f.
     """
 
     joints: tuple[int, ...]  # joints encoded beside the root, ascending, root excluded

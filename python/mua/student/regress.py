@@ -25,7 +25,7 @@ POINTS_AT_ONCE = 1 << 9
 FORGONE = 1e-4  # of the spread of what a part sees
 GENERALISATION = Generalisation()
 # The noise that values of frames beyond the user's motion are granted: light follows the pose, cloth its history too.
-SHAPE, COLOUR = 10.0, 1.0
+SHAPE, COLOUR = 10.0, 0.1
 
 
 def regress(

@@ -11,7 +11,7 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Parser
     {
-        public const int Major = 4;
+        public const int Major = 5;
 
         private const int OffsetWidth = 4;
         private static readonly UTF8Encoding Utf8 = new UTF8Encoding(false, true);

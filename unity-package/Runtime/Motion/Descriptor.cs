@@ -13,18 +13,18 @@ namespace Mua.Motion
 
         private readonly Skeleton skeleton;
         private readonly PoseEncoding encoding;
-        private readonly QuaternionD bindBack;
         private readonly Components components;
         private readonly double[] normal; // the descriptor, normalised
+        private readonly double[] turned, placed; // joints in the world: [J, 4], [J, 3]
 
         public Descriptor(Skeleton skeleton, PoseEncoding encoding)
         {
             this.skeleton = skeleton;
             this.encoding = encoding;
-            RootWorld(skeleton.BindRotations, skeleton.BindTranslations, out QuaternionD bind, out Vector3D _);
-            bindBack = bind.Conjugate;
             components = new Components(encoding);
             normal = new double[encoding.Width];
+            turned = new double[4 * skeleton.JointCount];
+            placed = new double[3 * skeleton.JointCount];
         }
 
         /// <summary>K: numbers that Write fills.</summary>
@@ -56,24 +56,18 @@ namespace Mua.Motion
             {
                 ReadOnlySpan<double> pose = rotations.Slice(4 * joints * age, 4 * joints);
                 ReadOnlySpan<double> offsets = translations.Slice(3 * joints * age, 3 * joints);
-                RootWorld(pose, offsets, out QuaternionD turned, out Vector3D position);
-                QuaternionD turn = turned * bindBack;
+                skeleton.World(pose, offsets, turned, placed);
+                Vector3D position = Vector3D.Load(placed, skeleton.Root);
                 if (age == 0)
                 {
                     origin = position;
-                    back = encoding.Heading ? HeadingOf(turn).Conjugate : back;
+                    back = encoding.Heading ? HeadingOf(Turn(skeleton.Root)).Conjugate : back;
                 }
-                Vector3D moved = position - origin;
-                if (encoding.Heading)
-                {
-                    moved = back.Rotate(moved);
-                    turn = back * turn;
-                }
-                Put(moved, ref at);
-                PutColumns(turn, ref at);
+                Put(back.Rotate(position - origin), ref at);
+                PutColumns(back * Turn(skeleton.Root), ref at);
                 foreach (int joint in encoding.Joints)
                 {
-                    PutColumns(QuaternionD.Load(pose, joint), ref at);
+                    PutColumns(back * Turn(joint), ref at);
                 }
                 foreach (int joint in encoding.Translated)
                 {
@@ -82,19 +76,10 @@ namespace Mua.Motion
             }
         }
 
-        /// <summary>World rotation and position of the root joint alone.</summary>
-        private void RootWorld(
-            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, out QuaternionD turned,
-            out Vector3D position)
+        /// <summary>A joint's world rotation relative to the bind pose.</summary>
+        private QuaternionD Turn(int joint)
         {
-            turned = QuaternionD.Load(rotations, skeleton.Root);
-            position = Vector3D.Load(translations, skeleton.Root);
-            for (int joint = skeleton.Parents[skeleton.Root]; joint >= 0; joint = skeleton.Parents[joint])
-            {
-                QuaternionD above = QuaternionD.Load(rotations, joint);
-                turned = above * turned;
-                position = Vector3D.Load(translations, joint) + above.Rotate(position);
-            }
+            return QuaternionD.Load(turned, joint) * QuaternionD.Load(skeleton.BindInverse, 2 * joint);
         }
 
         /// <summary>The first two columns of the rotation's matrix (Zhou et al. 2019, https://arxiv.org/abs/1812.07035).</summary>

@@ -7,7 +7,7 @@ import { ENUMS, IDENTIFIER, ROOT, TABLES } from "./layout.js";
 /** @typedef {Record<string, any>} Tree */
 /** @typedef {{name: string, kind: string, vector?: boolean, required?: boolean, align?: number}} Field */
 
-const MAJOR = 4; // version of the format
+const MAJOR = 5; // version of the format
 /** @type {Record<string, number>} */
 const WIDTHS = { bool: 1, ubyte: 1, ushort: 2, uint: 4, float: 4, double: 8 };
 /** @type {Record<string, new (content: ArrayBufferLike, at: number, count: number) => ArrayBufferView>} */
