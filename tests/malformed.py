@@ -80,7 +80,7 @@ def poke(path: str, at: int, value: float) -> Callable[[Tree], None]:
 def fewer_components(tree: Tree) -> None:
     """One component less than the first layers read."""
     own = tree["encoding"]
-    own["components"] = pack(np.zeros((19, 72)))
+    own["components"] = pack(np.zeros((19, 84)))
     own["ranges"], own["margins"] = pack(np.zeros((2, 19))), pack(np.zeros(19))
 
 

@@ -71,7 +71,7 @@ def valid_texels() -> Tensor:
 
 
 def bands_of_frames(frames: int = FRAMES, *, rank: int = 4, seed: int = 0) -> tuple[Tensor, Bands]:
-    """Descriptors [F, k D] and subbands of all 23 channels, `rank` hidden factors driving all of them."""
+    """Descriptors [F, D] and subbands of all 23 channels, `rank` hidden factors driving all of them."""
     generator = torch.Generator().manual_seed(seed)
     descriptors = torch.randn(frames, WIDTH, generator=generator)
     hidden = torch.tanh(descriptors @ torch.randn(WIDTH, rank, generator=generator) / 3)

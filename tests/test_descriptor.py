@@ -67,13 +67,14 @@ def slow_descriptor(skeleton: Skeleton, encoding: PoseEncoding, clip: Clip, f: i
     if encoding.heading:
         # The twist about Y is the rotation about Y nearest to `turn`: its angle maximises trace(R_y(angle)^T turn).
         back = Rotation.from_euler("y", -np.arctan2(turn[0, 2] - turn[2, 0], turn[0, 0] + turn[2, 2])).as_matrix()
-    parts = []
+    turns = [back @ world(clip.rotations[f], j) @ world(skeleton.bind_rotations, j).T for j in encoding.joints]
+    parts = [column for turn in turns for column in turn.T[:2]]
     for i in range(encoding.window):
         g = max(f - i, 0)
         turn_g, position_g = root(g)
         parts += [back @ (position_g - position), *(back @ turn_g).T[:2]]
         for j in encoding.joints:
-            parts += [*(back @ world(clip.rotations[g], j) @ world(skeleton.bind_rotations, j).T).T[:2]]
+            parts += [*matrix(clip.rotations[g, j]).T[:2]]
         for j in encoding.translated:
             parts += [clip.translations[g, j] - skeleton.bind_translations[j]]
     return np.concatenate(parts)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 import recordings
 import torch
 from limbs import limbs_apart, two_limbs
@@ -19,6 +20,7 @@ from mua.student.components import Components
 from mua.student.distil import prepare
 from mua.student.factorize import truncated_svd
 from mua.student.local import (
+    POSE_FOR_LIGHT,
     Parts,
     body_parts,
     joint_steps,
@@ -66,14 +68,14 @@ def test_every_entry_of_the_descriptor_fades_with_its_joint_and_the_root_by_one_
     parts = body_parts(rig, encoding)
     seen = [rig.skeleton.root, *encoding.joints]
     assert parts.steps.shape == (len(seen), encoding.width)
-    frame = encoding.width // encoding.window
+    turned = 6 * len(encoding.joints)
     for part in range(len(seen)):
-        for age in range(encoding.window):
-            entries = parts.reach(0.5)[part, age * frame : (age + 1) * frame]
-            assert torch.equal(entries[:9], torch.full((9,), 1.0 if part == 0 else 0.5))
-            for column in range(1, len(seen)):
-                own = entries[9 + 6 * (column - 1) :][:6]
-                assert torch.equal(own, torch.full((6,), 0.5 ** int(joint_steps(rig.skeleton, seen)[part, column])))
+        steps = joint_steps(rig.skeleton, seen)[part]
+        joints = [0.5 ** int(steps[column]) for column in range(1, len(seen)) for _ in range(6)]
+        of_frames = ([1.0 if part == 0 else 0.5] * 9 + joints) * encoding.window
+        assert parts.reach(0.5)[part].tolist() == [0.0] * turned + of_frames
+        light = [*joints, *(POSE_FOR_LIGHT * share for share in of_frames)]
+        assert parts.reach(0.5, light=True)[part].tolist() == pytest.approx(light)
 
 
 def test_what_a_joint_is_translated_fades_as_its_rotation_does() -> None:
@@ -81,10 +83,9 @@ def test_what_a_joint_is_translated_fades_as_its_rotation_does() -> None:
     rig = synthetic_rig()
     parts = body_parts(rig, PoseEncoding(joints=(1,), rate=30, window=2, translated=(1, 2)))
     steps = joint_steps(rig.skeleton, [0, 1, 2])
-    entries = [0] * 9 + [1] * 6 + [1] * 3 + [2] * 3
-    expected = steps[:, entries]
-    expected[:, :9] = np.minimum(expected[:, :9], 1)
-    assert parts.steps.tolist() == np.tile(expected, 2).tolist()
+    frame = steps[:, [0] * 9 + [1] * 6 + [1] * 3 + [2] * 3]
+    frame[:, :9] = np.minimum(frame[:, :9], 1)
+    assert parts.steps.tolist() == np.hstack([steps[:, [1] * 6], frame, frame]).tolist()
 
 
 def test_a_sample_belongs_to_the_part_that_most_of_its_texels_hang_on() -> None:
@@ -104,7 +105,13 @@ def two_parts() -> Parts:
     coarse[:, 2:] = 1
     fine = torch.zeros(6, 6, dtype=torch.int64)
     fine[:, 4:] = 1
-    return Parts(torch.tensor([[0, 1], [1, 0]]), coarse, fine, torch.tensor([0, 0, 0, 1, 1, 1, 1]))
+    return Parts(
+        torch.tensor([[0, 1], [1, 0]]),
+        torch.zeros(2, dtype=torch.bool),
+        coarse,
+        fine,
+        torch.tensor([0, 0, 0, 1, 1, 1, 1]),
+    )
 
 
 def test_shares_of_the_parts_make_up_the_whole_texture() -> None:

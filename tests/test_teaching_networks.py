@@ -16,6 +16,10 @@ from mua.teaching.motion_deformation import FARTHEST, GraphSizes, MotionDeformat
 ENCODING = PoseEncoding(joints=(1, 2), rate=30.0)
 SIZES = GraphSizes(nodes=20, features=5)
 ROUNDING = 1e-6  # some 20 float32 operations on lengths of up to 2 metres
+CHEST = (
+    slice(6, 12),
+    slice(12 + 9 + 6, 12 + 9 + 12),
+)  # entries: in the world, then in its parent
 
 
 @pytest.fixture(scope="module")
@@ -53,16 +57,17 @@ def test_a_node_sees_distant_joints_less(rig: Rig) -> None:
     hangs = skin_of_parts(rig, ENCODING)[graph.nodes]
     reach = torch.as_tensor(hangs).float() @ features.parts.reach
     lowest, highest = graph.positions[:, 1].argmin(), graph.positions[:, 1].argmax()
-    chest = slice(3 + 6 + 6, 3 + 6 + 12)  # of the newest pose: root, root's turn, spine, chest
-    assert reach[highest, chest].min() > 2 * reach[lowest, chest].max()
+    for chest in CHEST:
+        assert reach[highest, chest].min() > 2 * reach[lowest, chest].max()
     np.testing.assert_allclose(hangs.sum(axis=1), 1, atol=ROUNDING)
 
 
 def test_a_part_sees_a_joint_less_with_every_joint_between_and_the_root_from_one_step(rig: Rig) -> None:
-    """A chain: root, spine, chest; of every pose of the window its place, then the turns of all three."""
+    """A chain: root, spine, chest; how the last two are turned in the world, then of every pose place and all turns."""
     reach = NodeFeatures(rig, ENCODING, build_graph(rig, nodes=9), features=5, fade=0.5).parts.reach
     rows = [[0, 1, 2], [1, 0, 1], [1, 1, 0]]  # joints from root, spine and chest to each
-    expected = [([root] * (ENCODING.width // 3 - 12) + [spine] * 6 + [chest] * 6) * 3 for root, spine, chest in rows]
+    limbs = [[spine] * 6 + [chest] * 6 for _, spine, chest in rows]
+    expected = [own + ([root] * 9 + own) * 3 for (root, _, _), own in zip(rows, limbs, strict=True)]
     torch.testing.assert_close(reach, 0.5 ** torch.tensor(expected, dtype=torch.float32))
 
 
@@ -96,11 +101,12 @@ def test_what_fades_to_nothing_changes_nothing(rig: Rig) -> None:
     features = NodeFeatures(rig, ENCODING, graph, features=5, fade=0.0)
     features.seed(torch.Generator().manual_seed(0))
     inputs = torch.randn(1, ENCODING.width, generator=torch.Generator().manual_seed(1))
-    other = inputs.clone()
-    other[:, 3 + 6 + 6 : 3 + 6 + 12] += 1  # the chest
-    apart = (features.parts(inputs) - features.parts(other)).abs().amax(dim=2)[0]
-    assert apart[1] == 0  # the spine
-    assert apart[2] > 0.01
+    for chest in CHEST:
+        other = inputs.clone()
+        other[:, chest] += 1
+        apart = (features.parts(inputs) - features.parts(other)).abs().amax(dim=2)[0]
+        assert apart[1] == 0  # the spine
+        assert apart[2] > 0.01
 
 
 def test_neighbours_know_of_each_other(rig: Rig) -> None:

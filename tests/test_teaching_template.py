@@ -21,7 +21,7 @@ def avatar() -> Model:
 
 
 def inputs(avatar: Model) -> tuple[torch.Tensor, torch.Tensor]:
-    """Descriptors [F, k D] and joints [F, J, 8] float64 of a clip."""
+    """Descriptors [F, D] and joints [F, J, 8] float64 of a clip."""
     clip, skeleton = avatar.clips[0], avatar.rig.skeleton
     descriptors = describe(skeleton, avatar.encoding, clip.rotations, clip.translations)
     return torch.tensor(descriptors), torch.tensor(skeleton.skinning(clip.rotations, clip.translations))

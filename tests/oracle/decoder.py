@@ -177,10 +177,11 @@ def descriptor(avatar: Tree, window: list[Pose]) -> Array:
     turns = [times(turned, conjugate(bound)) for turned, _ in placed]
     twist = turns[0][root] * [1, 0, 1, 0]
     heading = unit(twist) if encoding["heading"] and np.linalg.norm(twist) >= 1.5e-8 else np.eye(4)[0]
-    back, numbers = conjugate(heading), []
-    for (_, moved), turn, (_, places) in zip(window, turns, placed, strict=True):
-        numbers += [rotate(back, places[root] - placed[0][1][root])]
-        numbers += [six(times(back, turn[j])) for j in (root, *encoding["joints"])]
+    back = conjugate(heading)
+    numbers = [six(times(back, turns[0][j])) for j in encoding["joints"]]
+    for (local, moved), turn, (_, places) in zip(window, turns, placed, strict=True):
+        numbers += [rotate(back, places[root] - placed[0][1][root]), six(times(back, turn[root]))]
+        numbers += [six(local[j]) for j in encoding["joints"]]
         numbers += [moved[j] - bind[1][j] for j in encoding.get("translated", ())]
     return np.asarray(encoding["components"] @ ((np.concatenate(numbers) - encoding["mean"]) / encoding["scale"]))
 

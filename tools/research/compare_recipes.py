@@ -50,7 +50,7 @@ CPU = torch.device("cpu")
 class Frames:
     """Frames of one kind as a branch sees them."""
 
-    inputs: torch.Tensor  # [F, k D] normalised descriptors
+    inputs: torch.Tensor  # [F, D] normalised descriptors
     source: Source  # of the branch's channels, counted from 0
 
 

@@ -82,11 +82,11 @@ def weighted_samples(bands: Bands, parts: Parts) -> tuple[Tensor, Tensor, Tensor
 
 
 def predict(
-    inputs: Tensor,  # [F, k D]
+    inputs: Tensor,  # [F, D]
     values: Tensor,  # [F, S]
-    points: Tensor,  # [G, k D]
+    points: Tensor,  # [G, D]
     owners: Tensor,  # [S]
-    reach: Tensor,  # [P, k D]
+    reach: Tensor,  # [P, D]
 ) -> Tensor:
     """The samples [G, S] at `points`, each by the function of its part."""
     found = torch.zeros(len(points), values.shape[1])

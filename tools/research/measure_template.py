@@ -49,7 +49,7 @@ LONGEST = 360  # frames of a clip
 class Frames:
     """Frames of one or more clips, and the true surface in each."""
 
-    descriptors: Tensor  # [F, k D]
+    descriptors: Tensor  # [F, D]
     joints: Tensor  # [F, J, 8]
     surfaces: Array  # [F, W, 3] float32 dense vertices, world
 

@@ -114,7 +114,8 @@ def start_from_components(basis: Basis, frames: TrainingFrames, *, run: Run) -> 
     if frames.parts is not None:
         directions = (basis.shapes[:kept] / spread[:, None, None]).transpose(1, 2)
         owners = frames.parts.texel_owners(frames.sizes.texels)
-        local = sample_locality(frames.parts, directions, owners, fade=frames.sizes.settings.generalisation.fade)
+        fade, light = frames.sizes.settings.generalisation.fade, basis.channels.stop > APPEARANCE.start
+        local = sample_locality(frames.parts, directions, owners, fade=fade, light=light)
     basis.mlp = _teach(frames, rows, u * s, expand, locality=local, run=run)
 
 
@@ -196,7 +197,8 @@ def start_from_quarter(part: Separable, frames: TrainingFrames, *, run: Run) -> 
         parts = replace(
             frames.parts, coarse=finer(fine, FINE_TEXELS >> STATIC_LEVELS), fine=finer(fine, FINE_TEXELS >> 1)
         )
-        local = texture_locality(parts, stand_in, targets, unit, fade=settings.generalisation.fade)
+        fade, light = settings.generalisation.fade, part.channels == APPEARANCE
+        local = texture_locality(parts, stand_in, targets, unit, fade=fade, light=light)
     part.mlp = _teach(frames, rows, targets.coordinates, targets.expand, locality=local, run=run)
 
 

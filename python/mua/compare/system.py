@@ -59,7 +59,7 @@ class Budget:
 class Motion:
     """F frames as the systems see them."""
 
-    descriptors: Tensor  # [F, k D] normalised
+    descriptors: Tensor  # [F, D] normalised
     inputs: Tensor  # [F, K] their components, which every MLP reads
     canonical: Tensor  # [F, V, 3] the coarse mesh before posing, metres
     posed: Tensor  # [F, V, 3] posed, relative to the root joint and its heading, metres

@@ -16,10 +16,10 @@ JITTER = np.radians(1.0)  # of each joint, and as many metres of each length: wh
 
 
 def principal_components(
-    descriptors: Array,  # [N, k D] of the training frames
+    descriptors: Array,  # [N, D] of the training frames
     normalization: Normalization,
-    units: Array,  # [k D] as of `mua.pose.descriptor.units_of`
-    joints: Array,  # [k D] the joint of each number, as of `mua.pose.descriptor.joints_of`
+    units: Array,  # [D] as of `mua.pose.descriptor.units_of`
+    joints: Array,  # [D] the joint of each number, as of `mua.pose.descriptor.joints_of`
 ) -> Components:
     """The whitened components of training descriptors and their ranges, rounded as a file stores them.
 
@@ -40,10 +40,10 @@ def principal_components(
 
 
 def _directions(
-    normal: Array,  # [N, k D]
-    joints: Array,  # [k D]
+    normal: Array,  # [N, D]
+    joints: Array,  # [D]
 ) -> tuple[Array, Array]:
-    """Variances [k D], ascending, and directions [k D, k D] of the numbers of each joint."""
+    """Variances [D], ascending, and directions [D, D] of the numbers of each joint."""
     variances: Array = np.zeros(len(joints))
     directions: Array = np.zeros((len(joints), len(joints)))
     for joint in np.unique(joints):
@@ -57,7 +57,7 @@ def _directions(
 
 def read_components(
     components: Components,
-    descriptors: Array,  # [..., k D]
+    descriptors: Array,  # [..., D]
 ) -> tuple[Array, Array]:
     """What the networks read [..., K] of descriptors, and how far outside of training each is [...], 0 to 1.
 

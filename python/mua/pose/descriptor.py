@@ -21,8 +21,9 @@ class _Frames:
     """What every frame adds to the windows that hold it."""
 
     position: Array  # [F, 3] world position of the root, metres
-    turns: Array  # [F, 1 + n, 4] world rotations of the root and the encoded joints, relative to bind
-    moves: Array  # [F, 3 m] local translations of those whose translation is encoded, relative to bind, metres
+    turn: Array  # [F, 4] world rotation of the root relative to bind
+    turns: Array  # [F, n, 4] those of the encoded joints
+    joints: Array  # [F, 6 n + 3 m] local rotations and translations of the encoded joints
 
 
 def describe(
@@ -31,7 +32,7 @@ def describe(
     rotations: Array,  # [F, J, 4] local, unit
     translations: Array,  # [F, J, 3] local, metres
 ) -> Array:
-    """Descriptors [F, k D] float64 of every frame of a clip; before its first frame, the clip is held still."""
+    """Descriptors [F, D] float64 of every frame of a clip; before its first frame, the clip is held still."""
     window = np.arange(len(rotations))[:, None] - np.arange(encoding.window)
     return _gather(encoding, _frames(skeleton, encoding, rotations, translations), np.maximum(window, 0))
 
@@ -42,7 +43,7 @@ def describe_window(
     rotations: Array,  # [k, J, 4] local, unit, newest first
     translations: Array,  # [k, J, 3] local, metres, newest first
 ) -> Array:
-    """Descriptor [k D] float64 of one window: the numbers that `describe` gives for its newest frame."""
+    """Descriptor [D] float64 of one window: the numbers that `describe` gives for its newest frame."""
     frames = _frames(skeleton, encoding, rotations, translations)
     return np.asarray(_gather(encoding, frames, np.arange(encoding.window)[None])[0])
 
@@ -77,8 +78,8 @@ def choose_translated(
 
 
 def normalization(
-    descriptors: Array,  # [N, k D]
-    units: Array,  # [k D] as of `units_of`
+    descriptors: Array,  # [N, D]
+    units: Array,  # [D] as of `units_of`
 ) -> Normalization:
     """Mean and scale of descriptors; columns that hardly vary keep a scale of one unit."""
     deviation = descriptors.std(axis=0)
@@ -89,15 +90,13 @@ def units_of(
     encoding: PoseEncoding,
     size: float,  # of the figure over that of a person
 ) -> Array:
-    """How much of each column [k D] of a descriptor is as much as 1 on a person: lengths grow with the figure."""
-    units = [size if part.lengths else 1.0 for part in encoding.parts for _ in range(part.width)]
-    return np.tile(units, encoding.window)
+    """How much of each column [D] of a descriptor is as much as 1 on a person: lengths grow with the figure."""
+    return np.array([size if part.lengths else 1.0 for part in encoding.parts for _ in range(part.width)])
 
 
 def joints_of(encoding: PoseEncoding) -> Array:
-    """The joint [k D] that each column of a descriptor is of; -1 for the root."""
-    joints = [-1 if part.joint is None else part.joint for part in encoding.parts for _ in range(part.width)]
-    return np.tile(joints, encoding.window)
+    """The joint [D] that each column of a descriptor is of; -1 for the root."""
+    return np.array([-1 if part.joint is None else part.joint for part in encoding.parts for _ in range(part.width)])
 
 
 def heading_of(turn: Array) -> Array:
@@ -112,21 +111,25 @@ def _frames(skeleton: Skeleton, encoding: PoseEncoding, rotations: Array, transl
     rotations, translations = np.asarray(rotations, dtype=float), np.asarray(translations, dtype=float)
     turned, placed = skeleton.world(rotations, translations)
     bind, _ = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)
-    told, moved = [skeleton.root, *encoding.joints], list(encoding.translated)
+    turns = rotation.multiply(turned, rotation.conjugate(bind))
+    local = rotation.to_6d(rotations[:, list(encoding.joints)])
+    moved = list(encoding.translated)
     moves = translations[:, moved] - skeleton.bind_translations[moved]
     return _Frames(
         position=placed[:, skeleton.root],
-        turns=rotation.multiply(turned[:, told], rotation.conjugate(bind[told])),
-        moves=moves.reshape(len(rotations), -1),
+        turn=turns[:, skeleton.root],
+        turns=turns[:, list(encoding.joints)],
+        joints=np.concatenate([local.reshape(len(rotations), -1), moves.reshape(len(rotations), -1)], axis=-1),
     )
 
 
 def _gather(encoding: PoseEncoding, frames: _Frames, window: Array) -> Array:
-    """Descriptors [N, k D] of windows [N, k] of frame indices, newest first."""
+    """Descriptors [N, D] of windows [N, k] of frame indices, newest first."""
     moved = frames.position[window] - frames.position[window[:, :1]]
-    turns = frames.turns[window]
+    turn, turns = frames.turn[window], frames.turns[window[:, 0]]
     if encoding.heading:
-        back = rotation.conjugate(heading_of(turns[:, :1, 0]))
-        moved, turns = rotation.rotate(back, moved), rotation.multiply(back[:, :, None], turns)
-    turned = rotation.to_6d(turns).reshape(*window.shape, -1)
-    return np.concatenate([moved, turned, frames.moves[window]], axis=-1).reshape(len(window), -1)
+        back = rotation.conjugate(heading_of(turn[:, :1]))
+        moved, turn = rotation.rotate(back, moved), rotation.multiply(back, turn)
+        turns = rotation.multiply(back, turns)
+    of_frames = np.concatenate([moved, rotation.to_6d(turn), frames.joints[window]], axis=-1)
+    return np.concatenate([rotation.to_6d(turns).reshape(len(window), -1), of_frames.reshape(len(window), -1)], axis=-1)

@@ -11,17 +11,19 @@ class Part(NamedTuple):
 
     joint: int | None  # None: the root
     width: int
-    lengths: bool  # metres, not entries of a rotation
+    lengths: bool = False  # metres, not entries of a rotation
+    world: bool = False  # a joint's rotation in the world, not in its parent
 
 
 @dataclass(frozen=True)
 class PoseEncoding:
     """The declared form of the motion descriptor, stored in every recording and asset.
 
-    Per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3), the
-    world rotations of the root joint and of `joints` relative to the bind pose (6D each), and the local translations of
-    `translated` relative to the bind pose (3 each), metres. Rotations are those of the world because light and gravity
-    act there. With `heading`, root positions and rotations are turned back by the yaw of frame f.
+    First, how `joints` are turned in the world in frame f, relative to the bind pose (6D each): light follows it. Then
+    per frame of the window, newest first (f, f-1, f-2): the root joint's world position relative to frame f (3), the
+    root joint's world rotation relative to its bind rotation (6D), the local rotations of `joints` (6D each) and the
+    local translations of `translated` relative to those of the bind pose (3 each), metres. With `heading`, positions
+    and rotations in the world are turned back by the yaw of frame f.
     """
 
     joints: tuple[int, ...]  # joints encoded beside the root, ascending, root excluded
@@ -32,15 +34,17 @@ class PoseEncoding:
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """What stands for one frame, in order."""
-        turns = (Part(joint, 6, lengths=False) for joint in (None, *self.joints))
-        moves = (Part(joint, 3, lengths=True) for joint in self.translated)
-        return Part(None, 3, lengths=True), *turns, *moves
+        """All parts in order."""
+        turned = (Part(joint, 6, world=True) for joint in self.joints)
+        local = (Part(joint, 6) for joint in (None, *self.joints))
+        moved = (Part(joint, 3, lengths=True) for joint in self.translated)
+        frame = (Part(None, 3, lengths=True), *local, *moved)
+        return *turned, *(frame * self.window)
 
     @property
     def width(self) -> int:
-        """k x D, the length of a descriptor."""
-        return self.window * sum(part.width for part in self.parts)
+        """D, the length of a descriptor."""
+        return sum(part.width for part in self.parts)
 
     def frames(self, index: int) -> list[int]:
         """The frames of the window that ends at `index`, newest first; before its first frame, a clip is held still."""
@@ -51,8 +55,8 @@ class PoseEncoding:
 class Normalization:
     """Mean and scale of a descriptor: (d - mean) / scale."""
 
-    mean: Array  # [k D]
-    scale: Array  # [k D], > 0
+    mean: Array  # [D]
+    scale: Array  # [D], > 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +68,6 @@ class Components:
     """
 
     normalization: Normalization
-    directions: Array  # [K, k D]
+    directions: Array  # [K, D]
     ranges: Array  # [2, K] lowest and highest value in training
     margins: Array  # [K], 0 or more

@@ -55,7 +55,7 @@ def set_pca(coarse: Coarse, meshes: Tensor, run: Run, weights: Tensor | None = N
 
 def fit_coarse(
     coarse: Coarse,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, D] normalised descriptors
     meshes: Tensor,  # [F, V, 3] canonical vertices, metres
     *,
     components: Components,

@@ -10,7 +10,7 @@ from torch import Tensor
 class Components:
     """Principal components of normalised descriptors, softly held within the ranges of training and their margins."""
 
-    directions: Tensor  # [K, k D]
+    directions: Tensor  # [K, D]
     ranges: Tensor  # [2, K]
     margins: Tensor  # [K]
 
@@ -18,11 +18,11 @@ class Components:
         return len(self.directions)
 
     def __call__(self, inputs: Tensor) -> Tensor:
-        """Components [F, K] of normalised descriptors [F, k D], wherever they are."""
+        """Components [F, K] of normalised descriptors [F, D], wherever they are."""
         return inputs @ self.directions.T
 
     def back(self) -> Tensor:
-        """The map [K, k D] from components to the normalised descriptors that have them."""
+        """The map [K, D] from components to the normalised descriptors that have them."""
         return torch.linalg.pinv(self.directions.T.double()).to(self.directions)
 
     def hold(self, found: Tensor) -> Tensor:

@@ -113,7 +113,7 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
 
 
 def describe_frames(recording: Recording, encoding: PoseEncoding, *, held_out: bool = False) -> Array:
-    """Descriptors [F, k D] of the recorded frames of a kind, in the order of recording."""
+    """Descriptors [F, D] of the recorded frames of a kind, in the order of recording."""
     clips = [clip for clip in recording.clips if clip.held_out == held_out and len(clip)]
     skeleton = recording.rig.skeleton
     described = [describe(skeleton, encoding, clip.rotations, clip.translations)[clip.recorded] for clip in clips]

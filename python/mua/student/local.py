@@ -20,19 +20,26 @@ from mua.rig.rig import Rig
 from mua.student.model import Branch
 from mua.student.targets import Targets
 
+POSE_FOR_LIGHT = 0.25  # what joints in their parents count for beside how they are turned in the world
+
 
 @dataclass(frozen=True, eq=False)
 class Parts:
     """P body parts: which part each sample belongs to, and how many joints lie between it and each descriptor entry."""
 
-    steps: Tensor  # [P, k D] int64
+    steps: Tensor  # [P, D] int64
+    world: Tensor  # [D] bool, the entries of how joints are turned in the world
     coarse: Tensor  # [n, n] int64, the part of each sample of LL and D3
     fine: Tensor  # [2n, 2n] int64, of D2
     vertices: Tensor  # [V] int64
 
-    def reach(self, fade: float) -> Tensor:
-        """[P, k D] what each entry of a descriptor is multiplied by before a part sees it; 1 for its own joint."""
-        return fade ** self.steps.float()
+    def reach(self, fade: float, *, light: bool = False) -> Tensor:
+        """[P, D] what each entry of a descriptor is multiplied by before a part sees it; 1 for its own joint.
+
+        What follows the `light` also sees how joints are turned in the world; shape follows them in their parents.
+        """
+        sees = torch.where(self.world, float(light), POSE_FOR_LIGHT if light else 1.0)
+        return fade ** self.steps.float() * sees
 
     def texel_owners(
         self,
@@ -47,8 +54,8 @@ class Parts:
 class Locality:
     """How the targets of a regression are made of parts: its sum over parts is what is taught."""
 
-    steps: Tensor  # [P, k D] int64, of the parts
-    reach: Tensor  # [P, k D]
+    steps: Tensor  # [P, D] int64, of the parts
+    reach: Tensor  # [P, D]
     shares: Tensor  # [P, K, K]; coordinates @ shares[p] are the coordinates of part p's samples alone
 
 
@@ -69,7 +76,8 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
         0 if part.joint is None else seen.index(part.joint) for part in encoding.parts for _ in range(part.width)
     ]
     return Parts(
-        steps=torch.from_numpy(steps[:, columns * encoding.window]),
+        steps=torch.from_numpy(steps[:, columns]),
+        world=torch.tensor([part.world for part in encoding.parts for _ in range(part.width)]),
         coarse=torch.from_numpy(sample_owners(image, COARSE_TEXELS)),
         fine=torch.from_numpy(sample_owners(image, FINE_TEXELS)),
         vertices=torch.from_numpy(weights.argmax(1)),
@@ -126,6 +134,7 @@ def texture_locality(
     weights: Tensor,  # [C]
     *,
     fade: float,
+    light: bool = False,
 ) -> Locality:
     """How the joint coordinates of a branch are made of parts.
 
@@ -144,7 +153,7 @@ def texture_locality(
             shapes = torch.einsum("kr,sri,srj->skij", alpha[:, channel], h, w)
             for band in shapes.flatten(2):
                 _add_shares(shares, band * weights[channel], owner)
-    return Locality(parts.steps.to(device), parts.reach(fade).to(device), shares)
+    return Locality(parts.steps.to(device), parts.reach(fade, light=light).to(device), shares)
 
 
 def sample_locality(
@@ -153,12 +162,13 @@ def sample_locality(
     owners: Tensor,  # [S] the part of each sample
     *,
     fade: float,
+    light: bool = False,
 ) -> Locality:
     """How coordinates of a mesh or of a full-size texture are made of parts."""
     shares = torch.zeros(len(parts.steps), len(basis), len(basis), device=basis.device)
     for value in range(basis.shape[2]):
         _add_shares(shares, basis[..., value], owners.to(basis.device))
-    return Locality(parts.steps.to(basis.device), parts.reach(fade).to(basis.device), shares)
+    return Locality(parts.steps.to(basis.device), parts.reach(fade, light=light).to(basis.device), shares)
 
 
 def _add_shares(

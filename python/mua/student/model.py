@@ -195,7 +195,7 @@ class Student(nn.Module):
         return (descriptors - self.mean) / self.scale
 
     def read(self, descriptors: Tensor) -> Tensor:
-        """What the MLPs read [F, K] of descriptors [F, k D]."""
+        """What the MLPs read [F, K] of descriptors [F, D]."""
         return self.components.hold(self.components(self.normalize(descriptors)))
 
     def mesh(self, descriptors: Tensor) -> Tensor:
@@ -217,7 +217,7 @@ class Student(nn.Module):
         )
 
     def predict(self, descriptors: Tensor) -> Bands:
-        """Subbands of all 23 channels of descriptors [F, k D]."""
+        """Subbands of all 23 channels of descriptors [F, D]."""
         return self.synthesize(self.coefficients(descriptors))
 
     def texture(self, bands: Bands) -> Tensor:

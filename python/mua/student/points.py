@@ -18,11 +18,11 @@ RADII = 4  # what is exchanged is a joint with those near it: random, fewer than
 
 
 def draw_points(
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, D] normalised descriptors
     components: Components,
     count: int,
     *,
-    steps: Tensor | None,  # [P, k D] int64, joints between a part and each entry; without them no part is exchanged
+    steps: Tensor | None,  # [P, D] int64, joints between a part and each entry; without them no part is exchanged
     generalisation: Generalisation,
     generator: torch.Generator,
 ) -> Tensor:
@@ -50,17 +50,17 @@ def outward(
 
 
 def exchange(
-    inputs: Tensor,  # [F, k D] normalised descriptors
-    steps: Tensor,  # [P, k D]
+    inputs: Tensor,  # [F, D] normalised descriptors
+    steps: Tensor,  # [P, D]
     count: int,
     *,
     generator: torch.Generator,
 ) -> Tensor:
-    """Descriptors [count, k D] of frames in which a random joint, and those near it, are as in another frame."""
+    """Descriptors [count, D] of frames in which a random joint, and those near it, are as in another frame."""
     part = torch.randint(len(steps), (count,), generator=generator).to(inputs.device)
     radius = torch.randint(RADII, (count, 1), generator=generator).to(inputs.device)
     one, other = (pick(inputs, count, generator=generator) for _ in range(2))
-    few = steps.to(inputs.device, torch.int16)  # joints: [count, k D] of them is large
+    few = steps.to(inputs.device, torch.int16)  # joints: [count, D] of them is large
     return torch.where(few[part] <= radius, one, other)
 
 

@@ -29,7 +29,7 @@ SHAPE, COLOUR = 10.0, 0.1
 
 
 def regress(
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, D] normalised descriptors
     targets: Tensor,  # [F, K]
     *,
     components: Components,
@@ -98,7 +98,7 @@ def _values(smooth: Callable[[Tensor], Tensor], points: Tensor, *, width: int) -
 
 
 def fit_local(
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, D] normalised descriptors
     goal: Tensor,  # [F, K]
     components: Components,
     locality: Locality | None,
@@ -127,9 +127,9 @@ def fit_local(
 
 
 def whitening(
-    inputs: Tensor,  # [F, k D]
+    inputs: Tensor,  # [F, D]
 ) -> Tensor:
-    """The turn [k D, k D] to directions that vary alike, but for a floor that does not raise noise to their level."""
+    """The turn [D, D] to directions that vary alike, but for a floor that does not raise noise to their level."""
     variance, directions = torch.linalg.eigh(torch.cov(inputs.double().T, correction=0).reshape(inputs.shape[1], -1))
     return (directions / (variance.clamp(min=0) + INPUT_FLOOR).sqrt()).to(inputs)
 

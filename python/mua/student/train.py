@@ -40,7 +40,7 @@ SEEN_BASIS_RATE = 12.0  # learning rate of the bases relative to that of the MLP
 class Samples:
     """F training frames as the student sees them."""
 
-    descriptors: Tensor  # [F, k D] as `mua.pose.descriptor` makes them
+    descriptors: Tensor  # [F, D] as `mua.pose.descriptor` makes them
     meshes: Tensor  # [F, V, 3] canonical vertices, metres
     subbands: Source
     mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
@@ -178,7 +178,7 @@ def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoint
 
 def fit_branch(
     branch: Branch,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, D] normalised descriptors
     source: Source,  # of the branch's channels, counted from 0
     *,
     channels: slice,
@@ -235,7 +235,7 @@ def fit_branch(
 
 def start_branch(
     branch: Branch,
-    inputs: Tensor,  # [F, k D] normalised descriptors
+    inputs: Tensor,  # [F, D] normalised descriptors
     source: Source,  # of the branch's channels, counted from 0
     *,
     channels: slice,
@@ -278,9 +278,8 @@ def start_branch(
             lambda: vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator, frames=frames)),
         )
     )
-    local = (
-        None if parts is None else texture_locality(parts, branch, targets, weights, fade=settings.generalisation.fade)
-    )
+    light, fade = channels == APPEARANCE, settings.generalisation.fade
+    local = None if parts is None else texture_locality(parts, branch, targets, weights, fade=fade, light=light)
     branch.mlp = regress(
         inputs,
         targets.coordinates,
@@ -288,7 +287,7 @@ def start_branch(
         expand=targets.expand,
         locality=local,
         own=None if frames is None else frames == 1,
-        beyond=COLOUR if channels == APPEARANCE else SHAPE,
+        beyond=COLOUR if light else SHAPE,
         hidden=settings.hidden,
         schedule=settings.regression,
         stage=stage,

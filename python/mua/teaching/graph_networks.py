@@ -23,7 +23,7 @@ CODE = 0.1  # standard deviation of the nodes' codes at the start
 class PartFeatures(nn.Module):
     """What P body parts see of the motion; one layer for all."""
 
-    reach: Tensor  # [P, k D] what each entry of a descriptor is multiplied by before a part sees it
+    reach: Tensor  # [P, D] what each entry of a descriptor is multiplied by before a part sees it
 
     def __init__(self, rig: Rig, encoding: PoseEncoding, *, features: int, fade: float) -> None:
         super().__init__()
@@ -33,13 +33,13 @@ class PartFeatures(nn.Module):
         columns = [
             0 if part.joint is None else seen.index(part.joint) for part in encoding.parts for _ in range(part.width)
         ]
-        reach = torch.as_tensor(steps[:, columns * encoding.window])
+        reach = torch.as_tensor(steps[:, columns])
         self.register_buffer("reach", fade ** reach.float(), persistent=False)
         self.layer = nn.Linear(encoding.width, features)
 
     def forward(
         self,
-        inputs: Tensor,  # [B, k D] normalised descriptors
+        inputs: Tensor,  # [B, D] normalised descriptors
     ) -> Tensor:
         """Features [B, P, C]."""
         features: Tensor = self.layer(inputs[:, None] * self.reach)
@@ -63,7 +63,7 @@ class NodeFeatures(nn.Module):
 
     def forward(
         self,
-        inputs: Tensor,  # [B, k D] normalised descriptors
+        inputs: Tensor,  # [B, D] normalised descriptors
     ) -> Tensor:
         """Features [B, G, C]."""
         known = torch.relu(self.mix @ self.parts(inputs) + self.code)

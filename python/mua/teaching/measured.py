@@ -31,7 +31,7 @@ KEPT = 256  # surfaces in memory, 2 MB each with its tree; of longer captures, s
 class MeasuredSurfaces:
     """The training frames of a capture with meshes."""
 
-    descriptors: Tensor  # [F, k D]
+    descriptors: Tensor  # [F, D]
     joints: Tensor  # [F, J, 8]
     files: tuple[Path, ...]  # [F]
     size: float  # of the figure over that of a person

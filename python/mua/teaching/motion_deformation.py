@@ -40,8 +40,8 @@ class Deformed:
 class MotionDeformation(nn.Module):
     """From motion descriptors to canonical vertices; before it is trained they are those of the bind pose."""
 
-    mean: Tensor  # [k D]
-    scale: Tensor  # [k D]
+    mean: Tensor  # [D]
+    scale: Tensor  # [D]
 
     def __init__(self, rig: Rig, encoding: PoseEncoding, sizes: GraphSizes) -> None:
         super().__init__()
@@ -58,14 +58,14 @@ class MotionDeformation(nn.Module):
 
     def forward(
         self,
-        descriptors: Tensor,  # [B, k D]
+        descriptors: Tensor,  # [B, D]
     ) -> Tensor:
         """Canonical vertices [B, V, 3], metres."""
         return self.deform(descriptors).vertices
 
     def deform(
         self,
-        descriptors: Tensor,  # [B, k D]
+        descriptors: Tensor,  # [B, D]
         *,
         offsets: bool = True,  # False: F_eg alone
     ) -> Deformed:
@@ -83,7 +83,7 @@ class MotionDeformation(nn.Module):
     @torch.no_grad()
     def prepare(
         self,
-        descriptors: Tensor,  # [F, k D] of the training frames
+        descriptors: Tensor,  # [F, D] of the training frames
         generator: torch.Generator,
     ) -> None:
         """Set the normalisation and draw the weights that training starts from."""

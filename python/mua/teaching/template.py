@@ -32,7 +32,7 @@ class Undeformed(nn.Module):
 
     def forward(
         self,
-        descriptors: Tensor,  # [B, k D] of mua.pose.descriptor
+        descriptors: Tensor,  # [B, D] of mua.pose.descriptor
     ) -> Tensor:
         """Canonical vertices [B, V, 3], metres."""
         return self.vertices.to(descriptors).expand(len(descriptors), -1, -1)
@@ -45,7 +45,7 @@ class DrivableTemplate(nn.Module):
     skin_weights: Tensor  # [V, K]
 
     def __init__(self, rig: Rig, deformation: nn.Module | None = None) -> None:
-        """`deformation` is from descriptors [B, k D] to canonical vertices [B, V, 3]; without one, skinning is all."""
+        """`deformation` is from descriptors [B, D] to canonical vertices [B, V, 3]; without one, skinning is all."""
         super().__init__()
         used = int((rig.skin_weights > 0).sum(axis=1).max(initial=1))  # most rigs blend fewer joints than there is room
         self.register_buffer("skin_indices", torch.as_tensor(rig.skin_indices[:, :used]).long())
@@ -54,7 +54,7 @@ class DrivableTemplate(nn.Module):
 
     def forward(
         self,
-        descriptors: Tensor,  # [B, k D] of mua.pose.descriptor
+        descriptors: Tensor,  # [B, D] of mua.pose.descriptor
         joints: Tensor,  # [B, J, 8] of Skeleton.skinning: bind pose to world
     ) -> PosedTemplate:
         """The template in B frames."""

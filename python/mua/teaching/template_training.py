@@ -71,7 +71,7 @@ class Observations(Protocol):
 
     @property
     def descriptors(self) -> Tensor:
-        """[F, k D] of mua.pose.descriptor."""
+        """[F, D] of mua.pose.descriptor."""
         ...
 
     @property

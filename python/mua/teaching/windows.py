@@ -18,7 +18,7 @@ class Window:
     """k poses, newest first."""
 
     joints: Tensor  # [k, J, 8] bind pose to world
-    descriptors: Tensor  # [k, k D] of mua.pose.descriptor
+    descriptors: Tensor  # [k, D] of mua.pose.descriptor
     root: Tensor  # [3] of the newest, world, metres
     back: Tensor  # [4] the turn that takes the heading of the newest back
 

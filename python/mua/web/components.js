@@ -6,7 +6,7 @@
 /**
  * What the networks read [K] of a descriptor, and how far outside of training it is: the share of the pose that training
  * did not show, 0 to 1.
- * @param {Encoding} encoding @param {Float64Array} descriptor [k D]
+ * @param {Encoding} encoding @param {Float64Array} descriptor [D]
  */
 export function readComponents({ mean, scale, directions, ranges, margins }, descriptor) {
   const normal = descriptor.map((value, i) => (value - mean[i]) / scale[i]);

@@ -8,7 +8,7 @@ import { world } from "./skeleton.js";
 /** @typedef {import("./format/rig.js").Skeleton} Skeleton */
 /** @typedef {import("./format/read.js").Encoding} Encoding */
 
-/** The descriptor [k D] of one window, newest pose first. */
+/** The descriptor [D] of one window, newest pose first. */
 export function describe(
   /** @type {Skeleton} */ skeleton,
   /** @type {Encoding} */ encoding,
@@ -20,22 +20,25 @@ export function describe(
     multiply(posed[age].rotations, inverse, 4 * joint, 8 * joint); // in the world, relative to the bind pose
   const back = conjugate(encoding.heading ? headingOf(turn(0, root)) : [1, 0, 0, 0]);
   const place = (/** @type {number} */ age) => posed[age].places.subarray(3 * root, 3 * root + 3);
-  const numbers = window.flatMap((pose, age) => [
+  const frames = window.flatMap((pose, age) => [
     ...rotate(
       back,
       Array.from(place(age), (value, axis) => value - place(0)[axis]),
     ),
-    ...[root, ...encoding.joints].flatMap((joint) => sixNumbers(multiply(back, turn(age, joint)))),
-    ...moves(skeleton, encoding, pose),
+    ...sixNumbers(multiply(back, turn(age, root))),
+    ...jointNumbers(skeleton, encoding, pose),
   ]);
-  return Float64Array.from(numbers);
+  const turned = Array.from(encoding.joints).flatMap((joint) => sixNumbers(multiply(back, turn(0, joint))));
+  return Float64Array.from([...turned, ...frames]);
 }
 
-/** Local translations of the joints whose translation is encoded, relative to the bind pose. */
-function moves(/** @type {Skeleton} */ skeleton, /** @type {Encoding} */ encoding, /** @type {Pose} */ pose) {
-  return Array.from(encoding.translated).flatMap((joint) =>
+/** Local rotations and translations of the encoded joints. */
+function jointNumbers(/** @type {Skeleton} */ skeleton, /** @type {Encoding} */ encoding, /** @type {Pose} */ pose) {
+  const turns = Array.from(encoding.joints).flatMap((joint) => sixNumbers(pose.rotations, 4 * joint));
+  const moves = Array.from(encoding.translated).flatMap((joint) =>
     [0, 1, 2].map((axis) => pose.translations[3 * joint + axis] - skeleton.bindTranslations[3 * joint + axis]),
   );
+  return [...turns, ...moves];
 }
 
 /** The twist of a rotation about Y; none where it has none. */

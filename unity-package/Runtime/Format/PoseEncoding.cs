@@ -38,10 +38,10 @@ namespace Mua.Format
         /// <summary>K: numbers that the MLPs read.</summary>
         public int ComponentCount => Margins.Length;
 
-        /// <summary>Numbers that one frame adds to a descriptor.</summary>
+        /// <summary>Numbers that one frame of the window adds to a descriptor.</summary>
         public int FrameWidth => RootNumbers + JointNumbers * Joints.Length + TranslationNumbers * Translated.Length;
 
         /// <summary>Length of a descriptor.</summary>
-        public int Width => Window * FrameWidth;
+        public int Width => JointNumbers * Joints.Length + Window * FrameWidth;
     }
 }

@@ -9,7 +9,7 @@ namespace Mua.Motion
     internal sealed class Components
     {
         private readonly PoseEncoding encoding;
-        private readonly float[] directions; // [K, k D]
+        private readonly float[] directions; // [K, D]
 
         public Components(PoseEncoding encoding)
         {
@@ -18,7 +18,7 @@ namespace Mua.Motion
         }
 
         /// <summary>
-        /// From a normalised descriptor [k D] to `target` [K]; the length of what the bounds take off the components, relative
+        /// From a normalised descriptor [D] to `target` [K]; the length of what the bounds take off the components, relative
         /// to their own.
         /// </summary>
         public double Read(double[] descriptor, Span<float> target)

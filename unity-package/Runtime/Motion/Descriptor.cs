@@ -62,12 +62,16 @@ namespace Mua.Motion
                 {
                     origin = position;
                     back = encoding.Heading ? HeadingOf(Turn(skeleton.Root)).Conjugate : back;
+                    foreach (int joint in encoding.Joints)
+                    {
+                        PutColumns(back * Turn(joint), ref at);
+                    }
                 }
                 Put(back.Rotate(position - origin), ref at);
                 PutColumns(back * Turn(skeleton.Root), ref at);
                 foreach (int joint in encoding.Joints)
                 {
-                    PutColumns(back * Turn(joint), ref at);
+                    PutColumns(QuaternionD.Load(pose, joint), ref at);
                 }
                 foreach (int joint in encoding.Translated)
                 {

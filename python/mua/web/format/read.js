@@ -103,7 +103,7 @@ function readEncoding(/** @type {Tree} */ tree, /** @type {Skeleton} */ skeleton
   if (window < 1 || window > MAX_WINDOW)
     throw refuse("encoding.window", `${window} frames, expected 1 to ${MAX_WINDOW}`);
   const rate = readRate(tree, "encoding.rate");
-  const width = window * (9 + 6 * joints.length + 3 * moved.length);
+  const width = 6 * joints.length + window * (9 + 6 * joints.length + 3 * moved.length);
   const components = readComponents(tree, width);
   return { joints, translated: moved, window, rate, heading: Boolean(tree.heading), ...components };
 }
