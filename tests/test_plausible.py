@@ -150,7 +150,7 @@ MISTAKES: dict[str, tuple[Callable[[TeacherFrame, Rig], TeacherFrame], str]] = {
     ),
     "offsets in millimetres": (
         lambda f, _: channels(f, OFFSET, lambda o: 1000 * o),
-        "texture: half of all offsets .* are these millimetres?",
+        "texture: half of all offsets .* are these centimetres or millimetres?",
     ),
     "positions": (positions, "texture: half of all offsets .* are these positions?"),
     "splats xyzw": (lambda f, _: channels(f, ROTATION, xyzw), r"texture: \d+ % of flat splats .* xyzw: are they?"),
@@ -190,6 +190,14 @@ UNSURE: dict[str, tuple[Callable[[TeacherFrame], TeacherFrame], str]] = {
         "SH coefficients of degree 1 are larger .* do all four of red come first?",
     ),
     "invisible splats": (lambda f: channels(f, SCALE, lambda s: s - 8), "are these logarithms right?"),
+    "offsets in centimetres": (
+        lambda f: channels(f, OFFSET, lambda o: 0.3 * o / np.median(np.linalg.norm(o, axis=1))),
+        "half of all offsets are longer than 0.3 m, .* are these centimetres or millimetres?",
+    ),
+    "scales of small splats to base 10": (
+        lambda f: channels(channels(f, SCALE, np.zeros_like), SCALE, lambda s: s + np.log10(0.007)),
+        "half of all splats are longer than .* are these logarithms to base 10?",
+    ),
     "scales to base 10": (lambda f: channels(f, SCALE, lambda s: s / np.log(10)), "are these logarithms to base 10?"),
 }
 

@@ -55,6 +55,22 @@ RIG_MISTAKES: dict[str, tuple[Callable[[Rig], Rig], str]] = {
         lambda r: replace(r, mesh=replace(r.mesh, faces=r.mesh.faces + 1)),
         r"mesh.faces holds 1 to \d+, expected 0 to",
     ),
+    "a name too few": (
+        lambda r: replace(r, skeleton=replace(r.skeleton, names=r.skeleton.names[:-1])),
+        r"skeleton.names has \d+ names, expected \d+, as skeleton.parents has",
+    ),
+    "a name twice": (
+        lambda r: replace(r, skeleton=replace(r.skeleton, names=("Hand", *r.skeleton.names[1:-1], "Hand"))),
+        r"skeleton.names: 'Hand' is the name of joints 0 and \d+, expected names that differ",
+    ),
+    "an empty name": (
+        lambda r: replace(r, skeleton=replace(r.skeleton, names=(*r.skeleton.names[:-1], " "))),
+        r"skeleton.names: joint \d+ is named ' ', expected a text",
+    ),
+    "a rotation too many": (
+        lambda r: with_joints(r, bind_rotations=r.skeleton.bind_rotations[[0, *range(len(r.skeleton.names))]]),
+        r"skeleton.bind_rotations has shape \[\d+, 4\], expected \[\d+, 4\]",
+    ),
     "no texel": (
         lambda r: replace(r, texels=texels_at(r.texels, slice(0))),
         "texels: no texel is valid",

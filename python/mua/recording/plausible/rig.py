@@ -21,8 +21,26 @@ APART = 0.3  # of the figure's size: how far joints may be from the skin that th
 
 def rig_findings(rig: Rig) -> Iterator[Finding]:
     """What looks like a mistake in a rig; with a wrong shape or index, that alone."""
-    wrong = list(_shapes(rig))
+    wrong = list(_names(rig.skeleton)) or list(_shapes(rig)) or list(_indices(rig))
     yield from wrong or [*_size(rig), *_weights(rig), *_joints(rig), *_facing(rig)]
+
+
+def _names(skeleton: Skeleton) -> Iterator[Finding]:
+    """Joints have a name each, by which motion and the players find them."""
+    names, joints = skeleton.names, len(skeleton.parents)
+    if len(names) != joints:
+        yield Finding(
+            f"skeleton.names has {len(names)} names, expected {joints}, as skeleton.parents has", certain=True
+        )
+    first: dict[str, int] = {}
+    for joint, name in enumerate(names):
+        if not isinstance(name, str) or not name.strip():
+            yield Finding(f"skeleton.names: joint {joint} is named {name!r}, expected a text", certain=True)
+        elif name in first:
+            found = f"skeleton.names: {name!r} is the name of joints {first[name]} and {joint}"
+            yield Finding(f"{found}, expected names that differ", certain=True)
+        else:
+            first[name] = joint
 
 
 def _shapes(rig: Rig) -> Iterator[Finding]:
@@ -44,6 +62,12 @@ def _shapes(rig: Rig) -> Iterator[Finding]:
             yield Finding(f"{name} has shape {list(array.shape)}, expected {list(shape)}", certain=True)
         elif not np.isfinite(array).all():
             yield Finding(f"{name} holds a value that is no number, expected finite ones", certain=True)
+
+
+def _indices(rig: Rig) -> Iterator[Finding]:
+    """What counts vertices, joints and triangles, where all shapes are right."""
+    mesh, skeleton, texels = rig.mesh, rig.skeleton, rig.texels
+    joints, vertices, valid = len(skeleton.names), len(mesh.vertices), len(texels.texels)
     limits = {
         "mesh.faces": (mesh.faces, vertices),
         "mesh.uv_faces": (mesh.uv_faces, len(mesh.uv)),

@@ -12,7 +12,10 @@ from mua.rig.rig import Rig
 SAMPLES = 4096  # texels that are looked at
 LARGE, SMALL = 8.0, 0.01  # half of all splats are so many steps between texels long: far more, or less, than any need
 USUAL = 5.0  # times a step, or a fifth of it: what splats are about as long as
+BASE_TEN = 2.5  # times a step: where splats are longer, but not if their logarithms are to base 10, they may be so
 OFFSET, OFFSETS = 0.3, ATTRIBUTES["offset"]  # of the figure's size, for half of all splats
+LOOSE = 0.1  # of the same: half of all splats are nearer to the mesh, even in loose clothes
+SMALLER = "are these centimetres or millimetres? metres are expected"
 BRIGHT = 5.0  # of an SH constant: 1.4 times white above grey
 SCALES_FIRST = "do the channels begin with the scales? offset 3, quaternion 4, log scale 3, opacity 1 are expected"
 LOGARITHMS = {"millimetres": 1000.0, "centimetres": 100.0}
@@ -54,14 +57,15 @@ class Textures:
         """Half of all splats are about as long as the way from a texel to the next."""
         longest = some[:, ATTRIBUTES["scale"]].max(axis=1)
         steps = self._steps(longest)
-        if SMALL < steps < LARGE:
+        base_ten = steps > BASE_TEN and 1 / BASE_TEN < self._steps(longest * np.log(10)) < BASE_TEN
+        if SMALL < steps < LARGE and not base_ten:
             return
         found = f"texture: half of all splats are longer than {self._length(longest)}, of {_long(self._size)} in all"
         cause = self._scale_cause(some)
-        if cause is not None:
+        if cause is not None and not SMALL < steps < LARGE:
             yield Finding(f"{found}: {cause}", certain=True)
         else:
-            question = "to base 10" if self._fits(longest * np.log(10)) else "right"
+            question = "to base 10" if base_ten or self._fits(longest * np.log(10)) else "right"
             expected = f"natural logarithms of about {_long(self._step)} are expected"
             yield Finding(f"{found}: are these logarithms {question}? {expected}", certain=False)
 
@@ -81,16 +85,19 @@ class Textures:
         """Half of all splats are near the mesh."""
         offsets = some[:, OFFSETS]
         away = float(np.median(np.linalg.norm(offsets, axis=1)))
-        if away <= OFFSET * self._size:
+        if away <= LOOSE * self._size:
             return
         found = f"texture: half of all offsets are longer than {_long(away)}, of {_long(self._size)} in all"
+        if away <= OFFSET * self._size:
+            yield Finding(f"{found}: {SMALLER}", certain=False)
+            return
         surface = np.einsum("nvx,nv->nx", mesh[self._faces], self._barycentrics)
         if len(surface) == len(offsets) and np.median(np.linalg.norm(offsets - surface, axis=1)) < away / 4:
             question = "are these positions? offsets from the mesh are expected"
         elif self._fits(offsets.max(axis=1)):
             question = SCALES_FIRST
         else:
-            question = "are these millimetres? metres are expected"
+            question = SMALLER
         yield Finding(f"{found}: {question}", certain=True)
 
     def _fits(self, logarithms: Array) -> bool:
