@@ -25,6 +25,7 @@ from mua.errors import InputError
 from mua.fidelity.strips import CAPTION
 from mua.motion.load import load_motions
 from mua.motion.mapping import read_mapping
+from mua.motion.match import JointPair
 from mua.motion.quality import MotionQuality
 from mua.motion.reach import Reach
 
@@ -115,6 +116,28 @@ def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path
 def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--json: only --check writes it"):
         run("--json", tmp_path / "a.json", "-o", tmp_path / "a.muaavatar")
+
+
+def test_a_motion_format_that_is_not_read_is_refused_before_the_character_is_read(tmp_path: Path) -> None:
+    character, motion = tmp_path / "hero.glb", tmp_path / "walk.fbx"
+    character.touch()  # which itself would be refused
+    motion.write_bytes(b"Kaydara FBX Binary")
+    with pytest.raises(InputError, match=r"walk\.fbx"):
+        CliRunner().invoke(app, [str(character), "--motion", str(motion), "--check"], catch_exceptions=False)
+
+
+def test_what_is_wrong_comes_first_and_few_joints_are_named(capsys: pytest.CaptureFixture[str]) -> None:
+    joints = tuple(f"joint {number}" for number in range(12))
+    pairs = tuple(JointPair(name, name, "") for name in joints[:3])
+    show(Console(width=120), Check(None, (), pairs, joints[3:], ("a note",), ("the left hand is off",), ()))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "Look at this: the left hand is off"
+    assert lines[-2] == "a note"
+    few = "joint 3, joint 4, joint 5, joint 6, joint 7 and 4 others"
+    assert lines[-1] == f"The motion moves 3 joints, and not {few}; the mapping file names all."
+    show(Console(width=120), Check(None, (), pairs, (), (), (), ()))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == ["Nothing looks wrong.", "The motion moves 3 joints, all that have skin."]
 
 
 def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,6 +15,7 @@ from mua.errors import InputError
 from mua.files import missing_directory
 from mua.inputs import is_capture, require_file, require_motion, require_teacher
 from mua.levels import COARSE_TEXELS
+from mua.motion.formats import require_format
 from mua.motion.mapping import read_mapping
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings, preset, with_recipe
@@ -139,11 +140,13 @@ def check_settings(name: str, recipe: str, *, seed: int, frames: int | None, tex
 
 
 def check_inputs(character: Path | None, motions: Sequence[Path]) -> None:
-    """Raises InputError for a file that is not there."""
+    """Raises InputError for a file that is not there, and for motion of a format that is not read."""
     if character is not None:
         require_file(character)
     for motion in motions:
         require_motion(motion)
+    for motion in motions:
+        require_format(motion)
 
 
 def check_jobs(jobs: int | None) -> int:

@@ -13,6 +13,8 @@ from mua.fidelity.compare import Fidelity
 from mua.files import require_writable
 from mua.motion.quality import MotionQuality
 
+FEW = 5  # joints that are named
+
 
 def check_and_show(order: Order, json: Path | None) -> None:
     """Check a character and its motion and print what was found."""
@@ -29,7 +31,11 @@ def check_and_show(order: Order, json: Path | None) -> None:
 
 
 def show(console: Console, found: Check) -> None:
-    """Print the tables, then notes and warnings, then the files written."""
+    """Print what looks wrong, then the figures, what readers changed, how many joints move, and the files written."""
+    for sentence in found.warnings:
+        say(console, f"Look at this: {sentence}")
+    if not found.warnings:
+        say(console, "Nothing looks wrong.")
     if found.fidelity is not None:
         console.print(_fidelity_table(found.fidelity))
     if any(motion.limbs for motion in found.motions):
@@ -42,16 +48,10 @@ def show(console: Console, found: Check) -> None:
             else "The character's own clips"
         )
         say(console, f"{whose}: {', '.join(motion.name for motion in found.motions)}")
-    if found.matched:
-        pairs = ", ".join(f"{pair.target} < {pair.source}" for pair in found.matched)
-        say(console, f"Joints moved by the motion ({len(found.matched)}): {pairs}")
-    if found.unmatched:
-        say(
-            console,
-            f"Skinned joints that the motion does not move ({len(found.unmatched)}): {', '.join(found.unmatched)}",
-        )
-    for sentence in (*found.notes, *found.warnings):
+    for sentence in found.notes:
         say(console, sentence)
+    if found.matched or found.unmatched:
+        say(console, _joints(found))
     for path in found.written:
         say(console, str(path))
 
@@ -76,6 +76,16 @@ def _motion_table(motions: tuple[MotionQuality, ...]) -> Table:
         )
         table.add_row(motion.name, *cells)
     return table
+
+
+def _joints(found: Check) -> str:
+    """How many joints the motion moves, and the first of those that it leaves still; the mapping file has all."""
+    told = f"The motion moves {len(found.matched)} joints"
+    if not found.unmatched:
+        return f"{told}, all that have skin."
+    few = ", ".join(found.unmatched[:FEW])
+    more = len(found.unmatched) - FEW
+    return f"{told}, and not {few}{f' and {more} others' if more > 0 else ''}; the mapping file names all."
 
 
 def _measured(value: float | None, shape: str) -> str:

@@ -1,0 +1,41 @@
+"""Which files hold motion, by their names; asked before anything is read, so that a wrong one costs no time."""
+
+from pathlib import Path
+
+from mua.errors import InputError
+from mua.signature import refuse_foreign
+
+RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".usdz", ".motion")
+SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)
+
+SAVE_NPZ = "save its poses, trans and mocap_framerate with numpy.savez, and give that .npz"
+ADVICE = {  # for other kinds of motion files
+    **dict.fromkeys(
+        (".pkl", ".pickle", ".pt", ".pth"), f"opening it may run code; where you trust it, open it and {SAVE_NPZ}"
+    ),
+    ".npy": f"it holds one array without names; {SAVE_NPZ}",
+    **dict.fromkeys((".c3d", ".trc", ".csv", ".tsv"), "markers have no joints; solve a skeleton and export it as BVH"),
+    **dict.fromkeys((".asf", ".amc", ".htr", ".vmd"), "import it in Blender or MotionBuilder and export it as BVH"),
+}
+
+
+def files_of(directory: Path) -> list[Path]:
+    """The motion files of a directory, by name."""
+    return sorted(file for file in directory.iterdir() if file.suffix.lower() in SUFFIXES)
+
+
+def require_format(path: Path) -> None:
+    """Raises InputError where a path is no file of `SUFFIXES`, and no directory of them."""
+    if path.is_dir():
+        if not files_of(path):
+            raise InputError(f"{path}: expected files that end in {', '.join(SUFFIXES)}, found none")
+        return
+    if not path.exists():
+        raise InputError(f"{path}: does not exist, expected a motion file or a directory of them")
+    suffix = path.suffix.lower()
+    if suffix in SUFFIXES:
+        return
+    refuse_foreign(path)
+    if suffix in ADVICE:
+        raise InputError(f"{path}: {path.suffix} files are not read: {ADVICE[suffix]}")
+    raise InputError(f"{path}: expected a suffix out of {', '.join(SUFFIXES)}, found {path.suffix!r}")
