@@ -140,6 +140,7 @@ def test_a_mapping_says_which_joint_moves_and_a_name_which_of_several_motions(
         (("-o", "a.ply", "--axes", "z-up"), "--axes is 'z-up'; expected y-up or y-down"),
         (("-o", "a.ply", "--mapping", "m.json"), "--mapping: works only with --motion, which is not given"),
         (("-o", "a.ply", "--clip", "run"), "--clip is 'run'; "),
+        (("-o", "a.glb", "--clip", "wave", "--clip", "run"), "--clip is given 2 times; a file holds one clip"),
         (("-o", "a.ply", "--frames", "0:3"), "-o is a.ply, one file, but --frames 0:3 names 3 frames; "
          "expected a directory or a name such as a_%04d.ply"),
         (("-o", "a.ply", "--frames", "7"), "--frames is '7'; clip 'wave' has frames 0 to 6"),

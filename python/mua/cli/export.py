@@ -26,7 +26,9 @@ def export(
             show_default=False,
         ),
     ] = None,
-    clip: Annotated[str | None, typer.Option(help="Clip to export.", show_default="the first one")] = None,
+    clip: Annotated[
+        list[str] | None, typer.Option(help="Clip to export.", show_default="the first one", metavar="TEXT")
+    ] = None,
     frames: Annotated[
         str | None,
         typer.Option(
@@ -52,7 +54,7 @@ def export(
 ) -> None:
     """Export frames of FILE for other programs.
 
-    Splats as .ply, .compressed.ply, .spz, .usd, or .glb (by KHR_gaussian_splatting, a draft); the posed mesh and the
+    Splats as .ply, .compressed.ply, .spz, .usd, or .glb (by KHR_gaussian_splatting); the posed mesh and the
     skeleton with its motion as .glb or .usd; the detailed geometry likewise; motion as .bvh.
     """
     require_file(file)
@@ -65,6 +67,8 @@ def export(
         raise InputError(f"--axes is {axes!r}; expected {' or '.join(AXES)}")
     if axes is not None and (kind.what != SPLATS or kind.clip):
         raise InputError(f"--axes: works only with splats in .ply, .compressed.ply or .spz; -o is {output}")
+    if clip and len(clip) > 1:
+        raise InputError(f"--clip is given {len(clip)} times; a file holds one clip, expected a run for each")
     if mapping is not None and motion is None:
         raise InputError("--mapping: works only with --motion, which is not given")
     if not is_directory(output):
@@ -72,7 +76,7 @@ def export(
 
     from mua.cli.export_files import Source, write  # after the options are checked, because it takes time to load
 
-    write(output, kind, Source(file, motion, mapping, clip), frames=frames, axes=axes)
+    write(output, kind, Source(file, motion, mapping, clip[0] if clip else None), frames=frames, axes=axes)
 
 
 def run() -> None:

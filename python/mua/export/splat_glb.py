@@ -1,4 +1,4 @@
-"""Splats of one frame as glTF points by KHR_gaussian_splatting, a release candidate when this was written.
+"""Splats of one frame as glTF points by KHR_gaussian_splatting.
 
 https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_gaussian_splatting. Readers that do not know
 the extension show coloured points. It has no hint that splats are filtered over the pixel.
@@ -11,7 +11,6 @@ from mua.export.glb import UNLIT, VERTICES, Glb, to_linear, xyzw
 from mua.export.splats import WorldSplats
 
 EXTENSION = "KHR_gaussian_splatting"
-DRAFT = f"{EXTENSION} as of its release candidate of 2026; not a final standard when this file was made"
 POINTS = 0
 SETTINGS = {"kernel": "ellipse", "colorSpace": "srgb_rec709_display", "projection": "perspective"}
 
@@ -21,7 +20,6 @@ def splat_glb(splats: WorldSplats, *, name: str) -> bytes:
     glb = Glb()
     glb.use(EXTENSION)
     glb.use(UNLIT)
-    glb.document.asset.extras = {"status": DRAFT}
     glb.document.materials = [Material(extensions={UNLIT: {}}, alphaMode="BLEND")]
     primitive = Primitive(
         attributes=_attributes(glb, splats), mode=POINTS, material=0, extensions={EXTENSION: SETTINGS}

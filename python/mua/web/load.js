@@ -58,17 +58,26 @@ export async function loadHere(
   if (typeof source === "string") return loadFrom(new Download(source), progress, preview);
   const content = await bytesOf(source);
   progress(FETCHED, "Reading the avatar");
-  return named(source instanceof File ? source.name : "", read(content));
+  return checked(content, source instanceof File ? source.name : "");
 }
 
-/** With the file's name before what is wrong with it. @template T @param {string} name @param {Promise<T>} work @returns {Promise<T>} */
-async function named(name, work) {
+/** The avatar that a file holds; with the file's name before what is wrong with it. @param {ArrayBuffer} content @param {string} name */
+async function checked(content, name) {
   try {
-    return await work;
+    return await read(content);
   } catch (error) {
-    if (name && error instanceof AvatarError) throw new AvatarError(`${name}: ${error.message}`, error);
-    throw error;
+    if (!(error instanceof AvatarError)) throw error;
+    const sentence = error.code === "identifier" ? otherThanAvatar(content) : error.message;
+    throw new AvatarError(name ? `${name}: ${sentence}` : sentence, error);
   }
+}
+
+/** What is there in place of an avatar: many servers answer with a page of their own where a file is absent. */
+function otherThanAvatar(/** @type {ArrayBuffer} */ content) {
+  const begin = new TextDecoder().decode(content.slice(0, 64)).trimStart();
+  return begin.startsWith("<")
+    ? "this is a web page and not an avatar; is its address right?"
+    : "this is not an avatar; expected a .muaavatar file.";
 }
 
 async function bytesOf(/** @type {ArrayBuffer | Blob} */ source) {
@@ -103,7 +112,7 @@ async function loadFrom(
   const content = await fetched.finally(() => clearInterval(looking));
   while (reading) await reading;
   progress(FETCHED, "Reading the avatar");
-  return named(download.name, read(content));
+  return checked(content, download.name);
 }
 
 async function shown(/** @type {ArrayBuffer} */ content, /** @type {number} */ end, /** @type {Preview} */ preview) {
