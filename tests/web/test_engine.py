@@ -371,6 +371,25 @@ def test_two_avatars_stand_where_they_are_placed(opened: Open, small: Path) -> N
     assert page.evaluate("player.camera.target[0]") == pytest.approx(alone - 1.5)
 
 
+def test_a_packed_avatar_and_a_plain_one_beside_each_other_look_as_alone(opened: Open, small: Path) -> None:
+    avatar = read(small)
+    page = opened(a=encode(avatar, storage="i8"), b=encode(avatar, storage="packed"))
+    alone = []
+    for source in ('"a.muaavatar"', '"b.muaavatar"'):
+        assert load(page, source) == ""
+        show(page, SPLATS, 0, 24.0)
+        alone.append(screenshot(page))
+        page.evaluate("avatar.remove()")
+    assert not np.array_equal(*alone)
+    camera = page.evaluate("({...player.camera})")
+    for source in ('"a.muaavatar"', '"b.muaavatar"'):
+        assert load(page, source) == ""
+    for seen in (0, 1):
+        page.evaluate(f"player.avatars.forEach((one, i) => (one.place = [0, 0, i === {seen} ? 0 : 200]))")
+        page.evaluate(f"(Object.assign(player.camera, {json.dumps(camera)}), 0)")
+        np.testing.assert_array_equal(screenshot(page), alone[seen])
+
+
 def test_an_avatar_out_of_view_is_not_sorted_and_the_other_looks_as_alone(opened: Open, small: Path) -> None:
     page = opened(a=small.read_bytes())
     assert load(page) == ""

@@ -224,6 +224,8 @@ def test_a_file_that_is_chosen_is_shown(opened: Open, tmp_path: Path) -> None:
     page.do("choose", code="document.querySelector('#open').click()", files=[str(tmp_path / "chosen.muaavatar")])
     page.wait(LOADED)
     assert page.evaluate("fake.avatars[0].name") == "chosen"
+    page.do("choose", code="document.querySelector('#open').click()", files=[str(tmp_path / "chosen.muaavatar")])
+    page.wait("fake.avatars.length === 2")  # a browser says nothing of a file that is chosen twice
 
 
 def test_a_wrong_file_leaves_what_is_shown(opened: Open) -> None:
@@ -239,6 +241,7 @@ def test_an_absent_file_is_a_sentence_and_can_be_tried_again(opened: Open) -> No
     page = opened({"src": "absent.muaavatar"}, until=f"{SENTENCE}.includes('404')")
     assert page.evaluate(f"{part('.says p')}.getAttribute('role')") == "alert"
     assert page.evaluate(f"{part('.says')}.getBoundingClientRect().width") > 100
+    assert page.evaluate(f"{part('.again')}.checkVisibility()")
     page.evaluate(f"{part('.again')}.click()")
     page.wait("fakes === 2")
     page.wait(f"{SENTENCE}.includes('404')")

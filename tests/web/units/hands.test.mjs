@@ -1,0 +1,84 @@
+// What mouse, fingers, keys and dropped files ask for, with a canvas that is no more than its events.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { acceptFiles } from "../../../python/mua/web/drop.js";
+import { listen } from "../../../python/mua/web/hands.js";
+import { pressed } from "../../../python/mua/web/keys.js";
+
+Object.assign(globalThis, { HTMLElement: class {}, HTMLInputElement: class {} });
+
+const STEP = (0.4 / 180) * Math.PI; // radians of a pixel
+const eventOf = (kind, given) => Object.assign(new Event(kind, { cancelable: true }), given);
+
+function held() {
+  const canvas = Object.assign(new EventTarget(), { setPointerCapture() {}, clientHeight: 100 });
+  const camera = { azimuth: 0, elevation: 0, distance: 4, target: [0, 1, 0], fov: 0.5 };
+  listen(canvas, { camera: () => camera, framed: () => 4, moved() {} });
+  const pointer = (kind, pointerId, clientX, clientY, more = {}) =>
+    canvas.dispatchEvent(eventOf(`pointer${kind}`, { pointerId, clientX, clientY, buttons: 1, shiftKey: false, ...more }));
+  const wheel = (given) => canvas.dispatchEvent(eventOf("wheel", { deltaMode: 0, ...given }));
+  return { camera, pointer, wheel };
+}
+
+test("one finger turns, and another one that the browser took away moves nothing", () => {
+  const { camera, pointer } = held();
+  pointer("down", 1, 10, 10);
+  pointer("cancel", 1, 10, 10); // the page scrolls
+  pointer("move", 1, 10, 50);
+  assert.equal(camera.elevation, 0);
+  pointer("down", 2, 10, 10);
+  pointer("move", 2, 20, 15);
+  assert.ok(Math.abs(camera.azimuth + 10 * STEP) < 1e-12);
+  assert.ok(Math.abs(camera.elevation - 5 * STEP) < 1e-12);
+  pointer("up", 2, 20, 15);
+  pointer("move", 2, 90, 90);
+  assert.deepEqual([camera.distance, camera.target], [4, [0, 1, 0]]);
+});
+
+test("two fingers zoom as they go apart and move aside together", () => {
+  const { camera, pointer } = held();
+  pointer("down", 1, 0, 0);
+  pointer("down", 2, 40, 0);
+  pointer("move", 2, 80, 0);
+  assert.ok(Math.abs(camera.distance - 2) < 1e-9);
+  assert.equal(camera.azimuth, 0);
+  assert.ok(camera.target[0] < 0);
+});
+
+test("a wheel zooms by its notches, in pixels or in lines", () => {
+  for (const given of [{ deltaY: -100 }, { deltaY: -100 / 33, deltaMode: 1 }]) {
+    const { camera, wheel } = held();
+    wheel(given);
+    assert.ok(Math.abs(camera.distance - 4 / 1.15) < 1e-9);
+  }
+});
+
+test("shift and each arrow turn as a drag that way does", () => {
+  const turns = [];
+  const avatar = { turn: (...by) => turns.push(by) };
+  const keyed = (key, more) => pressed(Object.assign(eventOf("keydown", { key, shiftKey: true, composedPath: () => [{}] }), more), avatar);
+  for (const key of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) assert.equal(keyed(key), true);
+  assert.deepEqual(turns, [[-20, 0], [20, 0], [0, -20], [0, 20]]);
+  for (const other of ["ctrlKey", "metaKey", "altKey"]) assert.equal(keyed("ArrowUp", { [other]: true }), false);
+  assert.equal(turns.length, 4);
+});
+
+test("files that are dropped are shown, and the mark of dropping goes with them", () => {
+  const marks = new Set();
+  const classList = { toggle: (name, is) => void (is ? marks.add(name) : marks.delete(name)) };
+  const added = [];
+  const avatar = Object.assign(new EventTarget(), { classList, add: (...files) => added.push(files) });
+  acceptFiles(avatar);
+  const over = eventOf("dragover", { dataTransfer: { types: ["Files"] } });
+  avatar.dispatchEvent(over);
+  assert.deepEqual([[...marks], over.defaultPrevented], [["dropping"], true]);
+  avatar.dispatchEvent(eventOf("drop", { dataTransfer: { files: ["a", "b"] } }));
+  assert.deepEqual([[...marks], added], [[], [["a", "b"]]]);
+  const text = eventOf("dragover", { dataTransfer: { types: ["text/plain"] } });
+  avatar.dispatchEvent(text);
+  assert.deepEqual([marks.size, text.defaultPrevented], [0, false]);
+  avatar.dispatchEvent(over);
+  avatar.dispatchEvent(eventOf("dragleave", {}));
+  assert.equal(marks.size, 0);
+});
