@@ -5,10 +5,14 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
+import torch
 from examples import EXAMPLES, load_example
+from pages import python_blocks
 from PIL import Image
 
 from mua.asset.read import read
+from mua.pose.clip import Clip
 from mua.recording import Recording
 
 
@@ -34,3 +38,30 @@ def test_the_example_goes_on_where_it_was_killed(tmp_path: Path) -> None:
     again = Recording(example.record(tmp_path))
     assert [clip.recorded.tolist() for clip in again.clips] == [[0], [0], [0]]
     assert {clip.name: len(clip) for clip in again.clips} == {"wave": 3, "both": 2, "bow": 2}
+
+
+def test_the_loop_of_the_guide_records_each_clip_as_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    example = load_example("own_teacher")
+    rig, rest = example.build_rig(), example.build_rig().skeleton.bind_pose
+    clips = [
+        Clip(name, 25.0, np.tile(rest.rotations, (5, 1, 1)), np.tile(rest.translations, (5, 1, 1)))
+        for name in ("walk", "bow")
+    ]
+
+    def teacher(clip: Clip, frame: int) -> tuple[torch.Tensor, torch.Tensor]:
+        mesh, texture = example.teacher(rig, clip.pose(frame))
+        texture[:, 10] = 4 if clip.name == "walk" else 5
+        return torch.from_numpy(mesh), torch.from_numpy(texture)
+
+    loop = next(block for block in python_blocks(EXAMPLES.parent / "recording.md") if "with TeacherWriter" in block)
+    exec(loop, {"rig": rig, "clips": clips, "teacher": teacher, "test_clips": ["bow"]})
+    recording = Recording("recordings/subject01")
+    assert [(clip.name, clip.held_out, clip.recorded.tolist()) for clip in recording.clips] == [
+        ("walk", False, [0, 4]),
+        ("bow", True, [0, 4]),
+    ]
+    opacities = [
+        frame.texture[0, 10] for held_out in (False, True) for frame in recording.whole_frames(held_out=held_out)
+    ]
+    assert opacities == pytest.approx([4, 5], abs=1e-2)

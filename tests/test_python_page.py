@@ -1,12 +1,12 @@
 """docs/python.md: what it shows runs as it stands, in a folder with the files that it names."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pages import python_blocks
 from PIL import Image
 from synthetic_avatar import synthetic_avatar
 from trainings import SMALL
@@ -17,8 +17,7 @@ from mua.baking.order import Order
 from mua.student.settings import PRESETS
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "python.md"
-BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.DOTALL | re.MULTILINE)
-READING, BAKING, TRAINING, _ = BLOCKS
+READING, BAKING, TRAINING, _ = python_blocks(PAGE)
 LINES = 10  # of the first example, at most
 
 
@@ -45,6 +44,20 @@ def test_the_example_reads_decodes_draws_and_saves(
         assert standing.getpixel((0, 0)) == (0x20, 0x20, 0x20)
     assert mua.load("hero_small.muaavatar").name == avatar.name
     assert len([line for line in READING.splitlines() if line and not line.startswith("import")]) <= LINES
+
+
+def test_what_the_readme_shows_runs_after_the_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    avatar = synthetic_avatar()
+    dance = replace(avatar.clips[0].cut(np.arange(21) % len(avatar.clips[0])), name="dance")
+    Path("build/demo").mkdir(parents=True)
+    mua.save("build/demo/avatar.muaavatar", replace(avatar, clips=(dance,)))
+    (lines,) = python_blocks(PAGE.parents[1] / "README.md")
+    exec(lines, {})
+    with Image.open("dance.png") as dancing:
+        assert dancing.size == (480, 720)
+        assert np.asarray(dancing).std() > 0
+    assert len([line for line in lines.splitlines() if line]) <= 5
 
 
 def test_a_bake_is_ordered_as_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
