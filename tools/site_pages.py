@@ -11,10 +11,15 @@ from pathlib import Path
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
+from mkdocs.utils import get_relative_url
 
 ROOT = Path(__file__).resolve().parents[1]
 NO_PAGES = ("build", "dist", "node_modules", "LICENSE", ".")  # files and folders that begin like this
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)")
+STYLE, SEARCH = "tools/site.css", "tools/site_search.js"
+FOREIGN = re.compile(
+    r'<script src="https://[^"]*/iframe-worker/[^"]*"></script>'
+)  # of the theme, for search from the disk
 GUIDES, FORMAT, REFERENCE = "docs", "schemas/README.md", "docs/reference.md"
 GIVEN = (  # records that public functions take or give
     "mua.rig.rig.Rig",
@@ -34,13 +39,14 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     guides = ["docs/README.md", *(page for page in dict.fromkeys(listed) if page in pages)]
     research = [page for page in pages if page.startswith("docs/research/")]
     first = ["README.md", *guides, *research, FORMAT]
+    config.extra_css.append(STYLE)
     config.nav = [
         "README.md",
         {"Guides": guides},
         REFERENCE,
         FORMAT,
         {"Measurements": research},
-        {"Inside": [page for page in pages if page not in first]},
+        {"Inside": [{_place(page): page} for page in pages if page not in first]},
     ]
     return config
 
@@ -50,7 +56,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     theme = [file for file in files if not Path(file.abs_src_path or "").is_relative_to(config.docs_dir)]
     pages = _pages()
     linked = {target for page in pages for target in _targets(page) if target.is_file() and target.suffix != ".md"}
-    kept = [_file(config, path) for path in (*pages, *sorted(linked))]
+    kept = [_file(config, path) for path in (*pages, *sorted(linked), ROOT / STYLE, ROOT / SEARCH)]
     return Files([*theme, *kept, File.generated(config, REFERENCE, content=OPENING + _entries())])
 
 
@@ -63,6 +69,22 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         return f"{link[1]}{target.rstrip('/')}/README.md" if (folder / target / "README.md").is_file() else link[0]
 
     return LINK.sub(leading, markdown)
+
+
+def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
+    """Nothing is fetched from elsewhere: our own stand-in for workers, which browsers do not start from the disk."""
+    own = f'<script src="{get_relative_url(SEARCH, page.url)}"></script>'
+    return FOREIGN.sub(own, output)
+
+
+def on_post_template(output: str, template_name: str, config: MkDocsConfig) -> str:
+    """Likewise, on the page for addresses that lead nowhere, which a server shows: it needs no stand-in."""
+    return FOREIGN.sub("", output)
+
+
+def _place(page: str) -> str:
+    """What the sidebar calls a page that builders read: its folder or file, because titles repeat."""
+    return page.removesuffix(".md").removesuffix("/README")
 
 
 def _pages() -> list[Path]:
