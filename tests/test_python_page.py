@@ -65,6 +65,7 @@ def test_a_bake_is_ordered_as_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.chdir(tmp_path)
     Path("hero.glb").touch()
     Path("walks").mkdir()
+    Path("walks/walk_07.bvh").touch()
     given: list[Order] = []
     errors = {"training": SimpleNamespace(explained=lambda attribute: {"SH": 0.9}[attribute])}
     monkeypatch.setattr(pipeline, "bake", lambda order, _: given.append(order) or SimpleNamespace(errors=errors))
