@@ -13,7 +13,7 @@ from PIL import Image
 
 from mua.asset.read import read
 from mua.pose.clip import Clip
-from mua.recording import Recording
+from mua.recording import Recording, TeacherWriter
 
 
 def test_a_teacher_of_ones_own_is_recorded_trained_and_seen(tmp_path: Path) -> None:
@@ -65,3 +65,35 @@ def test_the_loop_of_the_guide_records_each_clip_as_its_own(tmp_path: Path, monk
         frame.texture[0, 10] for held_out in (False, True) for frame in recording.whole_frames(held_out=held_out)
     ]
     assert opacities == pytest.approx([4, 5], abs=1e-2)
+
+
+def test_a_rig_in_centimetres_with_xyzw_is_recorded_as_the_guide_says(tmp_path: Path) -> None:
+    example = load_example("own_teacher")
+    own = example.build_rig()
+    pose = example.poses(own, "both")[7]
+    mesh, expected = example.teacher(own, pose)
+    expected[:, 3:7] = [0.1, 0.2, 0.3, 0.9]
+    expected[:, :3] = 0.004
+    texture = expected.copy()
+    texture[:, 0:3] *= 100
+    texture[:, 3:7] = np.roll(texture[:, 3:7], -1, axis=1)
+    texture[:, 7:10] = (texture[:, 7:10] + np.log(100)) / np.log(10)
+    skeleton = own.skeleton
+    given = {
+        **{"names": skeleton.names, "parents": skeleton.parents, "skin_indices": own.skin_indices},
+        **{"skin_weights": own.skin_weights, "bind_xyzw": np.roll(skeleton.bind_rotations, -1, axis=1)},
+        **{"bind_cm": 100 * skeleton.bind_translations, "vertices_cm": 100 * own.mesh.vertices},
+        **{"faces": own.mesh.faces, "uv": own.mesh.uv, "uv_faces": own.mesh.uv_faces, "texture": texture},
+        **{"pose_xyzw": np.roll(pose.rotations, -1, axis=1), "pose_cm": 100 * pose.translations},
+        "canonical_cm": 100 * mesh,
+    }
+    blocks = python_blocks(EXAMPLES.parent / "recording.md")
+    rig_of, _, frame_of = next(block for block in blocks if "bind_cm" in block).partition("pose = ")
+    exec(rig_of, given)
+    with TeacherWriter(tmp_path / "r", given["rig"], rate=25.0) as writer:
+        writer.start_clip("walk")
+        exec(f"pose = {frame_of}", given | {"writer": writer})
+    (frame,) = Recording(tmp_path / "r").whole_frames()
+    assert frame.texture == pytest.approx(expected, abs=2e-3)
+    assert frame.mesh == pytest.approx(mesh, abs=1e-5)
+    assert Recording(tmp_path / "r").clips[0].rotations[0] == pytest.approx(pose.rotations)

@@ -15,7 +15,7 @@ from mua.rig.rig import Rig
 from mua.rig.texel_map import TexelMap
 from mua.texture import sh
 
-MILLIMETRES = 1000.0
+MILLIMETRES = 1000.0  # of a metre; 100 where yours are centimetres
 INFLUENCES = 8  # joints of a vertex at most
 
 
