@@ -1,7 +1,9 @@
 """Which optional packages of the installation each command, or function of the same name, needs."""
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 # The extras of python/pyproject.toml, by the names under which their packages are imported.
 READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
@@ -36,7 +38,15 @@ def missing_package(command: str, module: str) -> str | None:
     wanted = [own] if own in EXTRAS else []
     if own not in bringing:
         wanted.append(bringing[0])
-    return f'{command} needs the Python package {package}, which is not here: pip install "mua[{",".join(wanted)}]"'
+    return f"{command} needs the Python package {package}, which is not here: {_install(','.join(wanted))}"
+
+
+def _install(extras: str) -> str:
+    """The command that installs extras: of the checkout that this runs from, where it does, by the same Python."""
+    checkout = Path(__file__).resolve().parents[1]
+    if (checkout / "pyproject.toml").is_file():
+        return f'{sys.executable} -m pip install -e "{checkout}[{extras}]"'
+    return f'pip install "mua[{extras}]"'
 
 
 @contextmanager
