@@ -39,7 +39,7 @@ if [ -n "$missing" ] && command -v apt-get >/dev/null; then
     if [ "$(id -u)" = 0 ]; then as_root=""; else as_root="sudo -n"; fi
     if $as_root true 2>/dev/null; then
         echo "Installing Debian packages:$missing"
-        $as_root apt-get update -q && $as_root apt-get install -y -q --no-install-recommends $missing && missing=""
+        $as_root apt-get update -q && $as_root apt-get install -y -q $missing && missing=""
     fi
 fi
 for package in $missing; do
