@@ -9,7 +9,7 @@ from torch import Tensor
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.checkpoint import Checkpoints
 from mua.pose.components import principal_components
-from mua.pose.descriptor import joints_of, normalization, units_of
+from mua.pose.descriptor import groups_of, normalization, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.student.model import Student
@@ -103,7 +103,7 @@ def samples(frames: int = FRAMES) -> Samples:
 def student_of(data: Samples, settings: Settings = SETTINGS) -> Student:
     """A student that is not trained yet, with the components of the samples' descriptors."""
     descriptors, units = data.descriptors.double().numpy(), units_of(ENCODING, 1.0)
-    components = principal_components(descriptors, normalization(descriptors, units), units, joints_of(ENCODING))
+    components = principal_components(descriptors, normalization(descriptors, units), units, groups_of(ENCODING))
     student = new_student(settings, inputs=len(components.margins))
     student.set_components(components)
     return student

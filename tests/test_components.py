@@ -21,10 +21,10 @@ def frames(seed: int = 0) -> Array:
     return np.column_stack([free, free[:, 0] + 0.05 * rng.normal(size=FRAMES), free[:, 1] - free[:, 2]])
 
 
-def components(columns: Array, units: Array | None = None, joints: Array | None = None) -> Components:
+def components(columns: Array, units: Array | None = None, groups: Array | None = None) -> Components:
     units = np.ones(columns.shape[1]) if units is None else units
-    joints = np.zeros(columns.shape[1]) if joints is None else joints
-    return principal_components(columns, normalization(columns, units), units, joints)
+    groups = np.zeros(columns.shape[1]) if groups is None else groups
+    return principal_components(columns, normalization(columns, units), units, groups)
 
 
 def one_component(low: float, high: float, margin: float) -> Components:
@@ -66,9 +66,9 @@ def test_frames_that_do_not_move_have_one_component(still: Array) -> None:
 
 
 def test_a_joint_in_a_new_pose_bounds_no_other_joint() -> None:
-    columns, joints = frames(), np.array([-1, -1, 4, 4, 7, 7])
-    own = components(columns, joints=joints)
-    used = [set(joints[direction != 0]) for direction in own.directions]
+    columns, groups = frames(), np.array([-1, -1, 4, 4, 7, 7])
+    own = components(columns, groups=groups)
+    used = [set(groups[direction != 0]) for direction in own.directions]
     assert all(len(one) == 1 for one in used)
     assert set.union(*used) == {-1, 4, 7}
     moved = columns[:5].copy()

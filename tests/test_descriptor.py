@@ -11,6 +11,7 @@ from mua.pose.descriptor import (
     choose_translated,
     describe,
     describe_window,
+    groups_of,
     heading_of,
     normalization,
     units_of,
@@ -203,3 +204,15 @@ def test_a_small_figures_lengths_count_as_much_as_a_persons() -> None:
     person, small = normalization(columns, units_of(encoding, 1.0)), normalization(columns * units, units)
     assert set(units) == {1.0, 0.01}
     np.testing.assert_allclose(small.scale, person.scale * units, rtol=1e-12)
+
+
+def test_a_joint_in_the_world_is_a_group_apart_from_what_it_does_in_its_parent() -> None:
+    encoding = PoseEncoding((2, 4), rate=30.0, window=2, translated=(4,))
+    root, spine, head = [0] * 9, [1] * 6, [2] * 6
+    frame = [*root, *spine, *head, 2, 2, 2]
+    groups = groups_of(encoding)
+    assert len(groups) == encoding.width
+    names = {group: name for name, group in zip("ab", (groups[0], groups[6]), strict=True)}
+    assert [names.get(group) for group in groups] == ["a"] * 6 + ["b"] * 6 + [None] * 48
+    rest = {group: place for place, group in enumerate(dict.fromkeys(groups[12:].tolist()))}
+    assert [rest[group] for group in groups[12:]] == frame * 2

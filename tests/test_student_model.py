@@ -6,7 +6,7 @@ import torch
 from synthetic_student import random_student
 
 from mua.errors import InputError
-from mua.pose.descriptor import joints_of
+from mua.pose.descriptor import groups_of
 from mua.pose.encoding import PoseEncoding
 from mua.student.model import Student, build_mlp
 from mua.student.settings import PRESETS, Settings, preset
@@ -36,8 +36,8 @@ def parameters(settings: Settings, *, vertices: int, texels: int, encoding: Pose
             wavelet="bior4.4",
         )
     held = {name: tensor.numel() for name, tensor in student.state_dict().items() if tensor.is_floating_point()}
-    joints = joints_of(encoding)
-    held["directions"] = sum(int((joints == joint).sum()) ** 2 for joint in set(joints))  # the others are 0
+    groups = groups_of(encoding)
+    held["directions"] = sum(int((groups == group).sum()) ** 2 for group in set(groups))  # the others are 0
     return sum(held.values())
 
 

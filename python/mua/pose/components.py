@@ -19,16 +19,17 @@ def principal_components(
     descriptors: Array,  # [N, D] of the training frames
     normalization: Normalization,
     units: Array,  # [D] as of `mua.pose.descriptor.units_of`
-    joints: Array,  # [D] the joint of each number, as of `mua.pose.descriptor.joints_of`
+    groups: Array,  # [D] the group of each number, as of `mua.pose.descriptor.groups_of`
 ) -> Components:
     """The whitened components of training descriptors and their ranges, rounded as a file stores them.
 
     A window's poses are nearly alike; velocities are its weak directions, and a network that sees the descriptor as it
     is learns them last. The floor keeps directions that hold only noise from being raised to the others' level. Every
-    joint has components of its own, so that an arm in a new pose bounds nothing of the legs.
+    joint has components of its own, so that an arm in a new pose bounds nothing of the legs; those of how it is turned
+    in the world are apart from those of its angles, so that a network can follow either.
     """
     normal = (descriptors - normalization.mean) / normalization.scale
-    variance, directions = _directions(normal, joints)
+    variance, directions = _directions(normal, groups)
     kept = np.sqrt(np.maximum(variance, 0)) > LEAST_SPREAD * np.sqrt(max(variance.max(), 0))
     kept |= np.arange(len(kept)) == len(kept) - 1  # the largest, where nothing moves
     turn = (directions[:, kept] / np.sqrt(np.maximum(variance[kept], 0) + INPUT_FLOOR)).T[::-1].astype(np.float16)
@@ -41,13 +42,13 @@ def principal_components(
 
 def _directions(
     normal: Array,  # [N, D]
-    joints: Array,  # [D]
+    groups: Array,  # [D]
 ) -> tuple[Array, Array]:
-    """Variances [D], ascending, and directions [D, D] of the numbers of each joint."""
-    variances: Array = np.zeros(len(joints))
-    directions: Array = np.zeros((len(joints), len(joints)))
-    for joint in np.unique(joints):
-        own = np.flatnonzero(joints == joint)
+    """Variances [D], ascending, and directions [D, D] of the numbers of each group."""
+    variances: Array = np.zeros(len(groups))
+    directions: Array = np.zeros((len(groups), len(groups)))
+    for group in np.unique(groups):
+        own = np.flatnonzero(groups == group)
         variances[own], directions[np.ix_(own, own)] = np.linalg.eigh(
             np.cov(normal[:, own].T, bias=True).reshape(len(own), -1)
         )

@@ -94,9 +94,14 @@ def units_of(
     return np.array([size if part.lengths else 1.0 for part in encoding.parts for _ in range(part.width)])
 
 
-def joints_of(encoding: PoseEncoding) -> Array:
-    """The joint [D] that each column of a descriptor is of; -1 for the root."""
-    return np.array([-1 if part.joint is None else part.joint for part in encoding.parts for _ in range(part.width)])
+def groups_of(encoding: PoseEncoding) -> Array:
+    """Which numbers of a descriptor vary together: those of the root, of a joint in its parent, or of it in the world.
+
+    [D] the group of each.
+    """
+    keys = [(part.joint, part.world) for part in encoding.parts for _ in range(part.width)]
+    order = {key: group for group, key in enumerate(dict.fromkeys(keys))}
+    return np.array([order[key] for key in keys])
 
 
 def heading_of(turn: Array) -> Array:

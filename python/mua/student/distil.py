@@ -17,7 +17,7 @@ from mua.checkpoint import Checkpoints, run_key
 from mua.errors import InputError
 from mua.pose.clip import is_range
 from mua.pose.components import principal_components
-from mua.pose.descriptor import choose_joints, choose_translated, describe, joints_of, normalization, units_of
+from mua.pose.descriptor import choose_joints, choose_translated, describe, groups_of, normalization, units_of
 from mua.pose.encoding import PoseEncoding
 from mua.processes import ALONE, Processes
 from mua.recording import Recording
@@ -97,7 +97,7 @@ def prepare(recording: Recording, settings: Settings) -> tuple[Student, Samples]
     )
     descriptors = describe_frames(recording, encoding)
     units = units_of(encoding, figure_scale(recording.rig.mesh.vertices))
-    components = principal_components(descriptors, normalization(descriptors, units), units, joints_of(encoding))
+    components = principal_components(descriptors, normalization(descriptors, units), units, groups_of(encoding))
     student = Student(
         settings,
         encoding=encoding,
