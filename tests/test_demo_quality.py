@@ -33,7 +33,7 @@ LOST = 0.03  # of what the best coefficients would explain, by the MLPs' own on 
 
 @pytest.fixture(scope="module")
 def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
-    """As `make demo` does."""
+    """As `mua-bake --preset tiny` does, of as many frames as the preset says."""
     directory = tmp_path_factory.mktemp("demo")
     order = Order(directory / "a.muaavatar", directory / "work", preset("tiny"), "cpu", jobs=2)
     return bake(order, Silent())
