@@ -56,7 +56,7 @@ class SmoothTeacher:
         base, *moving = self._shapes
         bends = clip.rotations[index, 1:3, 1:].sum(axis=-1).astype(np.float32)
         texture = base + sum(0.2 * bend * shape for bend, shape in zip(bends, moving, strict=True))
-        texture[:, ATTRIBUTES["offset"]] *= 0.1  # metres
+        texture[:, ATTRIBUTES["offset"]] *= 0.05  # metres
         texture[:, 3] += 8  # all rotations in one hemisphere
         texture[:, ATTRIBUTES["scale"]] -= 6
         mesh = self.rig.mesh.vertices.astype(np.float32) * (1 + 0.05 * bends[0])
