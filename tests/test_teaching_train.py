@@ -57,7 +57,7 @@ def test_training_comes_nearer_to_the_pictures_than_a_mean_texture(tmp_path: Pat
     lesson = taught(tmp_path, settings=replace(SETTINGS, texture=replace(SETTINGS.texture, steps=40)), shown=shown)
     mean = errors(lesson, shown, moving=False)
     assert mean < 0.8 * before
-    assert errors(lesson, shown) < 0.6 * mean
+    assert errors(lesson, shown) < 0.7 * mean
 
 
 @pytest.mark.parametrize("killed", [(MEAN, 5), (TEXTURE, 3), (TEXTURE, 11)])
@@ -189,7 +189,7 @@ def test_a_figure_that_stands_beside_its_pictures_is_moved_back() -> None:
     left = off + torch.tanh(poses.moves[: len(off)].detach()) * poses.farthest
     share = left[::2].norm(dim=1) / off[::2].norm(dim=1)
     assert share[1] < 0.1
-    assert (share < 0.5).all()
+    assert (share < 0.6).all()
     with torch.no_grad():
         window = lesson.window(0)
         torch.testing.assert_close(window.root, motion()[0].root + left[0], rtol=0, atol=1e-5)
