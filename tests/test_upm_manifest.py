@@ -38,6 +38,10 @@ MANIFESTS: list[tuple[dict[str, Any], str]] = [
         {"dependencies": {**MANIFEST["dependencies"], "Unity": "1.0.0"}},  # type: ignore[dict-item]
         "dependencies.Unity: not the name of a package",
     ),
+    (
+        {"dependencies": {**MANIFEST["dependencies"], "com.unity.modules.vr": "1.0.0"}},  # type: ignore[dict-item]
+        "dependencies.com.unity.modules.vr: gone from Unity 6000.5 on, where the package could not be installed",
+    ),
     ({"samples": ["Viewer"]}, 'samples[0]: "Viewer", expected displayName, description and path'),
     (
         {"samples": [{"displayName": "Viewer", "path": "Samples~/Viewer"}]},

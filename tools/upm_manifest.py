@@ -10,6 +10,7 @@ from upm_package import Package
 NAME = re.compile(r"[a-z][a-z0-9_-]*(\.[a-z0-9_-]+){2,}")
 VERSION = re.compile(r"\d+\.\d+\.\d+(-[0-9A-Za-z.-]+)?")
 LONGEST_NAME = 214
+GONE = {"com.unity.modules.vr": "6000.5"}  # Unity's own packages that newer editors lack
 PAGES = ("README.md",)
 PAGES_OF_SCRIPTS = ("CHANGELOG.md", "LICENSE.md")  # of a package that people install for itself
 
@@ -90,6 +91,8 @@ def _dependencies(where: str, manifest: dict[str, Any], siblings: dict[str, str]
             yield f"{field}: {json.dumps(version)}, expected an exact version, no range and no address"
         elif name in siblings and version != siblings[name]:
             yield f'{field}: "{version}", expected "{siblings[name]}", the version of that package here'
+        elif name in GONE:
+            yield f"{field}: gone from Unity {GONE[name]} on, where the package could not be installed"
         elif name not in siblings and not name.startswith("com.unity."):
             yield f'{field}: "{version}", expected only packages of Unity\'s own registry and of this repository'
 

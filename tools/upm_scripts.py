@@ -31,7 +31,7 @@ MODULES = {
     r"Collider|Rigidbody|Physics": "com.unity.modules.physics",
     r"ScreenCapture": "com.unity.modules.screencapture",
     r"UnityWebRequest|DownloadHandler\w*": "com.unity.modules.unitywebrequest",
-    r"XRSettings|XRStats|XRDevice": "com.unity.modules.vr",
+    r"XRSettings|XRStats|XRDevice": "com.unity.modules.vr",  # gone from 6000.5 on
     r"InputDevices|XRNode|XRDisplaySubsystem|XRInputSubsystem": "com.unity.modules.xr",
 }
 

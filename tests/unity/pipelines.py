@@ -40,7 +40,7 @@ class Mode:
     """A pipeline and how it draws eyes."""
 
     pipeline: str  # builtin | urp
-    stereo: str  # XRSettings.StereoRenderingMode, or None
+    stereo: str  # how both eyes are drawn, or None
     passes: int  # over a camera
     eyes: int  # that a pass is given
     instances: int  # that the device writes for an indirect draw

@@ -1,4 +1,5 @@
 using System;
+using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.Rendering;
 using UnityEngine.XR;
@@ -12,6 +13,7 @@ namespace Mua
 
         private readonly AvatarWorld world;
         private readonly AvatarEyes eyes = new AvatarEyes();
+        private readonly List<XRDisplaySubsystem> displays = new List<XRDisplaySubsystem>();
         private readonly CommandBuffer compute = new CommandBuffer { name = "MUA compute" };
         private readonly CommandBuffer draw = new CommandBuffer { name = "MUA draw" };
 
@@ -78,23 +80,40 @@ namespace Mua
         /// </summary>
         private void Take(Camera rendered)
         {
-            if (!rendered.stereoEnabled)
+            XRDisplaySubsystem display = rendered.stereoEnabled ? Headset() : null;
+            if (display == null)
             {
                 eyes.Begin(rendered.scaledPixelWidth, rendered.scaledPixelHeight, rendered.nearClipPlane);
                 eyes.Add(rendered.worldToCameraMatrix, rendered.projectionMatrix);
                 return;
             }
-            float scale = XRSettings.renderViewportScale;
-            bool instanced = XRSettings.stereoRenderingMode == XRSettings.StereoRenderingMode.SinglePassInstanced;
+            display.GetRenderPass(0, out XRDisplaySubsystem.XRRenderPass pass);
+            RenderTextureDescriptor target = pass.renderTargetDesc;
+            float scale = display.appliedViewportScale;
+            bool isSinglePass = target.dimension == TextureDimension.Tex2DArray;
             eyes.Begin(
-                Mathf.CeilToInt(scale * XRSettings.eyeTextureWidth), Mathf.CeilToInt(scale * XRSettings.eyeTextureHeight),
-                rendered.nearClipPlane, instanced ? AvatarEyes.Most : 1);
+                Mathf.CeilToInt(scale * target.width), Mathf.CeilToInt(scale * target.height), rendered.nearClipPlane,
+                isSinglePass && !SystemInfo.supportsMultiview ? AvatarEyes.Most : 1);
             eyes.Add(
                 rendered.GetStereoViewMatrix(Camera.StereoscopicEye.Left),
                 rendered.GetStereoProjectionMatrix(Camera.StereoscopicEye.Left));
             eyes.Add(
                 rendered.GetStereoViewMatrix(Camera.StereoscopicEye.Right),
                 rendered.GetStereoProjectionMatrix(Camera.StereoscopicEye.Right));
+        }
+
+        /// <summary>The display that renders; null while there is none.</summary>
+        private XRDisplaySubsystem Headset()
+        {
+            SubsystemManager.GetSubsystems(displays);
+            for (int i = 0; i < displays.Count; i++)
+            {
+                if (displays[i].running && displays[i].GetRenderPassCount() > 0)
+                {
+                    return displays[i];
+                }
+            }
+            return null;
         }
     }
 }

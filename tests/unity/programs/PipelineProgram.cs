@@ -1,5 +1,5 @@
 // Draws avatars in a pipeline of stand-ins, and notes each frame in the recording. Arguments: the folder of the kernels, the
-// path of the recording, builtin | urp, XRSettings.StereoRenderingMode or None, a file with the eyes, an avatar. Lines of
+// path of the recording, builtin | urp, a StereoMode or None, a file with the eyes, an avatar. Lines of
 // that file: `screen WIDTH HEIGHT NEAR`, then `eye VIEW[16] PROJECTION[16]` for each, Unity's matrices row by row.
 using System;
 using System.Collections.Generic;
@@ -10,7 +10,6 @@ using StandIns;
 using UnityEngine;
 using UnityEngine.Rendering;
 using UnityEngine.Rendering.Universal;
-using UnityEngine.XR;
 
 namespace Mua
 {
@@ -39,9 +38,7 @@ namespace Mua
             Look(File.ReadAllLines(arguments[4]));
             if (arguments[3] != "None")
             {
-                var mode = (XRSettings.StereoRenderingMode)Enum.Parse(
-                    typeof(XRSettings.StereoRenderingMode), arguments[3]);
-                Eyes.Wear(mode);
+                Eyes.Wear((StereoMode)Enum.Parse(typeof(StereoMode), arguments[3]));
             }
             if (arguments[2] == "urp")
             {
@@ -69,7 +66,7 @@ namespace Mua
             Measure();
             Scale();
             Avatars[0].Views = AvatarViews.Splats | AvatarViews.Geometry | AvatarViews.Mesh | AvatarViews.Skeleton;
-            bool twice = Eyes.IsWorn && XRSettings.stereoRenderingMode == XRSettings.StereoRenderingMode.MultiPass;
+            bool twice = Eyes.IsMultiPass;
             AwaitDraws(twice ? 8 : 4);
             Frame("all views", true);
             Avatars[0].Views = AvatarViews.Splats;
@@ -181,7 +178,7 @@ namespace Mua
 
         private static void Resize(float headset, float buffers)
         {
-            XRSettings.renderViewportScale = headset;
+            Eyes.Scale = headset;
             ScalableBufferManager.ResizeBuffers(buffers, buffers * buffers); // width and height on their own
         }
 

@@ -6,7 +6,7 @@ namespace UnityEngine.Experimental.Rendering
 {
     public static class XRSystem
     {
-        public static float GetRenderViewportScale() { return UnityEngine.XR.XRSettings.renderViewportScale; }
+        public static float GetRenderViewportScale() { return StandIns.Eyes.Scale; }
     }
 
     public class XRPass

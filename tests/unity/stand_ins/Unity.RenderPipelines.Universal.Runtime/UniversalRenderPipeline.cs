@@ -56,7 +56,6 @@ namespace StandIns
     using UnityEngine;
     using UnityEngine.Rendering;
     using UnityEngine.Rendering.Universal;
-    using UnityEngine.XR;
 
     /// <summary>Draws cameras in URP's order: every eye pass begins the camera, and is submitted before the next.</summary>
     public sealed class Universal
@@ -98,7 +97,7 @@ namespace StandIns
             camera.TryGetComponent(out data);
             if (data != null && data.renderType == CameraRenderType.Overlay)
                 return;
-            bool twice = camera.stereoEnabled && XRSettings.stereoRenderingMode == XRSettings.StereoRenderingMode.MultiPass;
+            bool twice = camera.stereoEnabled && Eyes.IsMultiPass;
             for (int pass = 0; pass < (twice ? 2 : 1); pass++)
             {
                 RenderSingle(camera, data, camera, pass, twice);
@@ -142,8 +141,8 @@ namespace StandIns
             data.xr = xr;
             data.cameraTargetDescriptor = new RenderTextureDescriptor
             {
-                width = xr.enabled ? XRSettings.eyeTextureWidth : (int)(camera.pixelWidth * RenderScale),
-                height = xr.enabled ? XRSettings.eyeTextureHeight : (int)(camera.pixelHeight * RenderScale),
+                width = xr.enabled ? Eyes.Width : (int)(camera.pixelWidth * RenderScale),
+                height = xr.enabled ? Eyes.Height : (int)(camera.pixelHeight * RenderScale),
                 useDynamicScale = xr.enabled || UsesDynamicScale,
             };
             UniversalResourceData targets = renderer.Frame.GetOrCreate<UniversalResourceData>();

@@ -67,7 +67,7 @@ namespace UnityEngine
                 StandIns.Pipelines.Render(this);
                 return;
             }
-            bool twice = stereoEnabled && XR.XRSettings.stereoRenderingMode == XR.XRSettings.StereoRenderingMode.MultiPass;
+            bool twice = stereoEnabled && StandIns.Eyes.IsMultiPass;
             for (int pass = 0; pass < (twice ? 2 : 1); pass++)
                 RenderPass();
         }
@@ -78,7 +78,7 @@ namespace UnityEngine
                 onPreCull(this);
             if (onPreRender != null)
                 onPreRender(this);
-            bool instanced = stereoEnabled && XR.XRSettings.stereoRenderingMode == XR.XRSettings.StereoRenderingMode.SinglePassInstanced;
+            bool instanced = stereoEnabled && StandIns.Eyes.IsInstanced;
             Graphics.InstanceMultiplier = instanced ? 2u : 1;
             for (int i = 0; i < Buffers.Count; i++)
                 Graphics.ExecuteCommandBuffer(Buffers[i]);

@@ -9,6 +9,7 @@ namespace UnityEngine
     {
         public int width { get; set; }
         public int height { get; set; }
+        public Rendering.TextureDimension dimension { get; set; }
         public bool useDynamicScale { get; set; }
     }
 
@@ -28,6 +29,8 @@ namespace UnityEngine
 
 namespace UnityEngine.Rendering
 {
+    public enum TextureDimension { Unknown = -1, None, Any, Tex2D, Tex3D, Cube, Tex2DArray, CubeArray }
+
     public interface IRenderPipelineGraphicsSettings { int version { get; } }
 
     public struct ScriptableRenderContext
@@ -84,25 +87,57 @@ namespace StandIns
         public static void Note(CommandBuffer commands, string text) { commands.Note(text); }
     }
 
+    /// <summary>How both eyes are drawn. Not Unity's API.</summary>
+    public enum StereoMode { MultiPass, SinglePassInstanced, SinglePassMultiview }
+
     /// <summary>Two eyes that all game cameras are drawn for. Not Unity's API.</summary>
     public static class Eyes
     {
         private const float HalfDistance = 0.0315f;
         private static readonly Matrix4x4?[] Views = new Matrix4x4?[2], Projections = new Matrix4x4?[2];
 
+        private static RenderTextureDescriptor target = new RenderTextureDescriptor { width = 1680, height = 1760 };
+        private static StereoMode mode;
+
         public static bool IsWorn { get; private set; }
 
-        public static void Wear(UnityEngine.XR.XRSettings.StereoRenderingMode mode)
+        public static bool IsMultiPass { get { return IsWorn && mode == StereoMode.MultiPass; } }
+        public static bool IsInstanced { get { return IsWorn && mode == StereoMode.SinglePassInstanced; } }
+
+        /// <summary>Share of the eyes' textures along a side that is drawn into.</summary>
+        public static float Scale = 1;
+
+        /// <summary>Puts on a headset; another, whose display does not run, is there too.</summary>
+        public static void Wear(StereoMode stereo)
         {
-            IsWorn = UnityEngine.XR.XRSettings.isDeviceActive = true;
-            UnityEngine.XR.XRSettings.stereoRenderingMode = mode;
-            Machine.Multiview(mode == UnityEngine.XR.XRSettings.StereoRenderingMode.SinglePassMultiview);
+            SubsystemManager.All.Insert(0, new UnityEngine.XR.XRDisplaySubsystem());
+            Headset.Connect();
+            IsWorn = true;
+            mode = stereo;
+            Machine.Multiview(mode == StereoMode.SinglePassMultiview);
         }
+
+        public static int Width { get { return target.width; } }
+        public static int Height { get { return target.height; } }
 
         public static void Resolution(int width, int height)
         {
-            UnityEngine.XR.XRSettings.eyeTextureWidth = width;
-            UnityEngine.XR.XRSettings.eyeTextureHeight = height;
+            target.width = width;
+            target.height = height;
+        }
+
+        internal static int Passes(UnityEngine.XR.XRDisplaySubsystem display)
+        {
+            return !display.running || !IsWorn ? 0 : mode == StereoMode.MultiPass ? 2 : 1;
+        }
+
+        internal static RenderTextureDescriptor Target
+        {
+            get
+            {
+                target.dimension = IsMultiPass ? TextureDimension.Tex2D : TextureDimension.Tex2DArray;
+                return target;
+            }
         }
 
         /// <summary>Where an eye is and what it sees; half the eyes' distance from the camera, as that does, where nobody says.</summary>

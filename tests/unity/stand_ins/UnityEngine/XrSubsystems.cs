@@ -41,6 +41,16 @@ namespace UnityEngine.XR
 
     public class XRDisplaySubsystem : IntegratedSubsystem
     {
+        public struct XRRenderPass { public RenderTextureDescriptor renderTargetDesc; }
+
+        public float appliedViewportScale { get { return StandIns.Eyes.Scale; } }
+        public int GetRenderPassCount() { return StandIns.Eyes.Passes(this); }
+        public void GetRenderPass(int renderPassIndex, out XRRenderPass renderPass)
+        {
+            if (renderPassIndex < 0 || renderPassIndex >= GetRenderPassCount())
+                throw new IndexOutOfRangeException("renderPassIndex");
+            renderPass = new XRRenderPass { renderTargetDesc = StandIns.Eyes.Target };
+        }
         public float foveatedRenderingLevel { get; set; }
         public bool TryGetDisplayRefreshRate(out float displayRefreshRate)
         {
