@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from component import Story
+from component import Story, counts
 from csharp import ROOT
 from synthetic_avatar import synthetic_avatar, with_surface
 
@@ -89,9 +89,9 @@ def test_splats_are_drawn_where_surfaces_cannot_be(story: Story) -> None:
 
 def test_avatars_come_and_go(story: Story) -> None:
     told = story("Crowd", "first", "second")
-    counts = [len(synthetic_avatar(seed).rig.texels.texels) for seed in (1, 2)]
-    assert told["both"] == [str(sum(counts))]
-    assert told["one"] == [str(counts[0])]
+    first, second = (counts(seed)[0] for seed in (1, 2))
+    assert told["both"] == [str(first + second)]
+    assert told["one"] == [str(first)]
     assert (told["fewer"], told["again"]) == (["1"], ["1"])
     assert told["state"] == ["Ready Ready"]
     assert told["log"] == []
@@ -143,10 +143,11 @@ def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
     assert story("IsNotDrawnYet", "first")["shadows"] == ["Ready 0", "Ready 2"]  # of three frames
 
 
-def test_cameras_and_lights_are_told_the_layer_of_each_avatar(story: Story) -> None:
-    """All avatars are drawn together where the layer of one is drawn."""
+def test_a_camera_draws_the_avatars_of_its_layers_alone(story: Story) -> None:
     told = story("LiesOnLayers", "first", "second")
     assert told["drawn"] == ["1", "1", "0"]
+    whole = [counts(seed)[0] for seed in (1, 2)]
+    assert told["splats"] == [*(str(count + count % 2) for count in whole), "0"]
     layer, away = told["shadow"][0].split()
     assert (layer, float(away)) == ("7", pytest.approx(0, abs=1e-5))
     assert float(told["shadow size"][0]) == pytest.approx(1, abs=1e-5)

@@ -64,7 +64,7 @@ def test_as_many_buffers_as_a_kernel_and_a_draw_take_are_enough(story: Story) ->
         ("LacksResources", "first", "MuaAvatarResources"),
         ("LacksCompute", "first", "compute shaders"),
         ("LacksBuffers", "first", "4 buffers in a compute kernel"),
-        ("LacksVertexBuffers", "first", "4 buffers in a vertex shader"),
+        ("LacksVertexBuffers", "first", "2 buffers in a vertex shader"),
         ("LacksMemory", "first", "4096"),
     ],
 )
@@ -77,6 +77,13 @@ def test_what_is_wrong_is_said_once(story: Story, name: str, file: str, words: s
     assert words in told["log"][0]
     assert "One or more errors" not in told["log"][0]
     assert told["log"][0].endswith(told["message"][0])
+
+
+def test_a_server_without_graphics_is_told_nothing(story: Story) -> None:
+    """Unity's -nographics; who asks the component learns why it shows nothing."""
+    told = story("LacksGraphics", "first")
+    assert (told["state"], told["held"], told["log"]) == (["Failed"], ["0"], [])
+    assert "no graphics device" in told["message"][0]
 
 
 def test_an_avatar_that_has_no_room_beside_others_goes_alone(story: Story) -> None:

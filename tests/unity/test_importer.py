@@ -70,6 +70,12 @@ def test_a_sound_file_becomes_an_asset_of_its_bytes(story: Story, sound: Path) -
     assert [kept[key] for key in ("content", "summary", "thumbnail")] == [[["True"]]] * 3
 
 
+def test_a_file_inside_a_package_is_imported(story: Story, sound: Path) -> None:
+    told = story("ImportsFromPackage", sound)
+    assert told["asset"] == story("Imports", sound)["asset"]
+    assert told["error"] == [[""]]
+
+
 @pytest.mark.parametrize("thumbnail", [b"", b"\x89PNG\r\n\x1a\n and nothing"], ids=["none", "no picture"])
 def test_a_file_without_a_thumbnail_has_the_editors_own_icon(story: Story, tmp_path: Path, thumbnail: bytes) -> None:
     path = tmp_path / "a.muaavatar"
@@ -177,6 +183,18 @@ def test_an_avatar_is_dropped_into_the_scene(story: Story, sound: Path) -> None:
     assert (told["hover"], told["other"], told["drop"]) == ([["Copy", "0"]], [["None", "None"]], [["Copy"]])
     [made] = told["object"]
     assert [float(value) for value in made[2:5]] == [1, 0, 2]
+
+
+def test_an_opened_prefab_is_apart_from_the_scene(story: Story, sound: Path) -> None:
+    """The scene view shows the avatars of the prefab, the game view those of the scene."""
+    count = len(synthetic_avatar().rig.texels.texels)
+    one, two = str(count + count % 2), str(2 * (count + count % 2))
+    assert story("OpensPrefab", sound)["seen"] == [
+        *(["view", "1", one], ["game", "0", "0"]),  # the prefab's alone
+        *(["view", "1", one], ["game", "1", one]),
+        *(["view", "2", one], ["game", "1", one]),  # with the prefab's mesh
+        *(["view", "2", two], ["game", "2", two]),  # both avatars in the scene
+    ]
 
 
 def test_the_selected_avatar_comes_first(story: Story, sound: Path, tmp_path: Path) -> None:

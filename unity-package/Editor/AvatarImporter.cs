@@ -24,7 +24,7 @@ namespace Mua.Editor
         {
             try
             {
-                Add(ctx, AvatarFile.Read(File.ReadAllBytes(ctx.assetPath)));
+                Add(ctx, AvatarFile.Read(File.ReadAllBytes(FileUtil.GetPhysicalPath(ctx.assetPath))));
             }
             catch (AvatarFormatException error)
             {

@@ -75,6 +75,9 @@ namespace Mua
         /// <summary>Whether a decode is shown: until then the buffers hold nothing.</summary>
         public bool IsDecoded { get; private set; }
 
+        /// <summary>Whether the camera that is recorded shows it, if it is in view.</summary>
+        public bool IsShown { get; set; } = true;
+
         /// <summary>How far outside of training the pose is that is shown, 0 to 1.</summary>
         public double Outside => shown.Outside;
 

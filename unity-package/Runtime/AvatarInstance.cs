@@ -130,10 +130,25 @@ namespace Mua
             Surface.CastShadow(Views, Bounds, Layer);
         }
 
-        /// <summary>Whether it is drawn for these eyes.</summary>
+        /// <summary>
+        /// Whether a camera draws its layer, and in the editor what its scene belongs to: the scene view shows an opened prefab
+        /// alone, the game view never shows it.
+        /// </summary>
+        public bool IsShownTo(Camera camera)
+        {
+            bool isOnLayer = (camera.cullingMask & (1 << Layer)) != 0;
+#if UNITY_EDITOR
+            return isOnLayer
+                && UnityEditor.SceneManagement.StageUtility.IsGameObjectRenderedByCamera(owner.gameObject, camera);
+#else
+            return isOnLayer;
+#endif
+        }
+
+        /// <summary>Whether it is drawn for these eyes of the camera that is recorded.</summary>
         public bool IsSeenBy(AvatarEyes eyes)
         {
-            return eyes.Sees(Decoded.Low, Decoded.High, AvatarEyes.SplatReach);
+            return Decoded.IsShown && eyes.Sees(Decoded.Low, Decoded.High, AvatarEyes.SplatReach);
         }
 
         /// <summary>Whether it, or the shadow that it casts, may be drawn for these eyes.</summary>
@@ -141,7 +156,7 @@ namespace Mua
         {
             bool hasShadow = (Views & AvatarViews.Shadow) != 0;
             float reach = hasShadow ? AvatarEyes.ShadowReach : AvatarEyes.SplatReach;
-            return eyes.Sees(Decoded.Low, Decoded.High, reach);
+            return Decoded.IsShown && eyes.Sees(Decoded.Low, Decoded.High, reach);
         }
 
         /// <summary>Appends what has changed since the last call: a decode or a part of one, another pose, or nothing.</summary>
@@ -296,7 +311,10 @@ namespace Mua
             Dispose();
             State = AvatarState.Failed;
             Message = sentence;
-            AvatarWorld.Report(sentence, owner);
+            if (SystemInfo.graphicsDeviceType != GraphicsDeviceType.Null) // a server asked for none
+            {
+                AvatarWorld.Report(sentence, owner);
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 using System;
 using UnityEngine;
+using UnityEngine.Rendering;
 
 namespace Mua
 {
@@ -8,7 +9,7 @@ namespace Mua
     {
         private const string Asset = "MuaAvatarResources";
         private const int BuffersOfKernel = 8;
-        private const int BuffersOfVertex = 5; // of a direct draw
+        private const int BuffersOfVertex = 3; // of a direct draw of splats, or of the geometry
 
         [SerializeField] private ComputeShader mlpMatmul = null;
         [SerializeField] private ComputeShader blendSubbands = null;
@@ -64,6 +65,10 @@ namespace Mua
         private static void RequireDevice()
         {
             string missing = null;
+            if (SystemInfo.graphicsDeviceType == GraphicsDeviceType.Null)
+            {
+                throw new InvalidOperationException("There is no graphics device, so that nothing is drawn (-nographics).");
+            }
             if (!SystemInfo.supportsComputeShaders)
             {
                 missing = "does not support compute shaders; MUA needs Vulkan, Direct3D 11 or 12, or Metal.";

@@ -108,6 +108,10 @@ namespace Mua
             {
                 return false;
             }
+            for (int i = 0; i < avatars.Count; i++)
+            {
+                avatars[i].Decoded.IsShown = avatars[i].IsShownTo(camera);
+            }
             levels.See(avatars, eyes);
             for (int i = 0; i < avatars.Count; i++)
             {
@@ -132,7 +136,7 @@ namespace Mua
         }
 
         /// <summary>
-        /// Whether the camera draws the layer of an avatar; all avatars are drawn together then. Previews of assets show none.
+        /// Whether the camera shows any avatar. Previews of assets show none.
         /// </summary>
         public bool IsSeen(Camera camera)
         {
@@ -142,7 +146,7 @@ namespace Mua
             }
             for (int i = 0; i < avatars.Count; i++)
             {
-                if ((camera.cullingMask & (1 << avatars[i].Layer)) != 0)
+                if (avatars[i].IsShownTo(camera))
                 {
                     return true;
                 }

@@ -127,7 +127,7 @@ namespace Mua
             for (int i = 0; i < avatars.Length; i++)
             {
                 AvatarFrame avatar = avatars[i];
-                seen[i] = Eyes.Sees(avatar.Low, avatar.High, AvatarEyes.SplatReach);
+                seen[i] = avatar.IsShown && Eyes.Sees(avatar.Low, avatar.High, AvatarEyes.SplatReach);
                 if (!seen[i])
                 {
                     continue;

@@ -275,6 +275,7 @@ namespace Mua
                 int draws = Recorder.Draws;
                 Frames(1);
                 Say("drawn", Recorder.Draws - draws);
+                Say("splats", Recorder.Draws == draws ? 0 : AvatarWorld.Current.SplatCount);
             }
             second.transform.position = new Vector3(4, 0, 0);
             Frames(1);

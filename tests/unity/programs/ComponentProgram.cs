@@ -280,15 +280,22 @@ namespace Mua
 
         private static void LacksVertexBuffers()
         {
-            Machine.VertexBuffers(4);
+            Machine.VertexBuffers(2);
             Fails();
         }
 
         private static void HasJustEnoughBuffers()
         {
             Machine.ComputeBuffers(8);
-            Machine.VertexBuffers(5);
+            Machine.VertexBuffers(3);
             Say("state", Show(files[0]).State);
+        }
+
+        private static void LacksGraphics()
+        {
+            Machine.ComputeShaders(false);
+            Machine.GraphicsDevice(UnityEngine.Rendering.GraphicsDeviceType.Null);
+            Fails();
         }
 
         private static void LacksMemory()

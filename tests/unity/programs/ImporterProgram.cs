@@ -47,6 +47,14 @@ namespace Mua.Editor
             }
         }
 
+        /// <summary>A file inside a package, which lies in the project's cache.</summary>
+        private static void ImportsFromPackage()
+        {
+            Mounted.Packages["com.someone.people"] = Path.GetDirectoryName(files[0]);
+            files[0] = "Packages/com.someone.people/" + Path.GetFileName(files[0]);
+            Imports();
+        }
+
         /// <summary>Bytes and thumbnail of what is imported are those of the file.</summary>
         private static void Keeps()
         {
@@ -116,6 +124,40 @@ namespace Mua.Editor
             Say("other", Drag.Drop(new Vector3(1, 0, 2), true, asset.Thumbnail), Drag.Drop(new Vector3(1, 0, 2), true, asset, asset));
             Say("drop", Drag.Drop(new Vector3(1, 0, 2), true, asset));
             Tell();
+        }
+
+        /// <summary>An avatar of an opened prefab and one of the scene, to the cameras of either.</summary>
+        private static void OpensPrefab()
+        {
+            Place(files);
+            AvatarAsset asset = AvatarObject.Find();
+            AvatarRenderer opened = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
+            Camera view = new GameObject("view").AddComponent<Camera>(), game = new GameObject("game").AddComponent<Camera>();
+            view.cameraType = CameraType.SceneView;
+            view.transform.position = game.transform.position = new Vector3(0, 1, -5);
+            Stages.Opened.Add(opened.gameObject);
+            SeenBy(view, game);
+            AvatarRenderer other = AvatarObject.Create(asset, null, new Vector3(0.5f, 0, 0)).GetComponent<AvatarRenderer>();
+            SeenBy(view, game);
+            opened.Views = AvatarViews.Splats | AvatarViews.Mesh;
+            SeenBy(view, game);
+            Stages.Opened.Clear();
+            SeenBy(view, game);
+            UnityEngine.Object.DestroyImmediate(opened.gameObject);
+            UnityEngine.Object.DestroyImmediate(other.gameObject);
+        }
+
+        /// <summary>Draws of each camera, and splats of the avatars that it shows.</summary>
+        private static void SeenBy(params Camera[] cameras)
+        {
+            PlayerLoop.Frame(1);
+            foreach (Camera camera in cameras)
+            {
+                int draws = Recorder.Draws;
+                camera.Render();
+                draws = Recorder.Draws - draws;
+                Say("seen", camera.name, draws, draws == 0 ? 0 : AvatarWorld.Current.SplatCount);
+            }
         }
 
         private static void Selects()

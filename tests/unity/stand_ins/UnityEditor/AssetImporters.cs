@@ -1,10 +1,11 @@
-// Stand-in. Source: Unity 6000.0, facts 4.6; ScriptedImporter.cs, AssetImportContext, AssetImporterEditor.cs.
+// Stand-in. Source: Unity 6000.0, facts 4.6; FileUtil.bindings.cs, ScriptedImporter.cs, AssetImportContext, AssetImporterEditor.cs.
 using System;
 using System.Collections.Generic;
 using UnityEngine;
 
 namespace UnityEditor
 {
+    public static class FileUtil { public static string GetPhysicalPath(string logicalPath) { return StandIns.Mounted.Path(logicalPath); } }
     public class AssetImporter : UnityEngine.Object { public string assetPath { get; internal set; } }
 }
 
@@ -58,6 +59,21 @@ namespace UnityEditor.AssetImporters
 namespace StandIns
 {
     using UnityEditor.AssetImporters;
+
+    /// <summary>Where packages lie, by their names; the editor's paths say Packages/NAME wherever that is. Not part of Unity's API.</summary>
+    public static class Mounted
+    {
+        public static readonly Dictionary<string, string> Packages = new Dictionary<string, string>();
+
+        internal static string Path(string path)
+        {
+            string[] parts = path.Split(new[] { '/' }, 3);
+            string folder;
+            return parts.Length == 3 && parts[0] == "Packages" && Packages.TryGetValue(parts[1], out folder)
+                ? System.IO.Path.Combine(folder, parts[2])
+                : path;
+        }
+    }
 
     /// <summary>Imports a file as Unity does. Not part of Unity's API.</summary>
     public sealed class Import

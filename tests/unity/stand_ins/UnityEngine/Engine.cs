@@ -180,6 +180,7 @@ namespace StandIns
         public static void IndirectArguments(bool supported) { SystemInfo.supportsIndirectArgumentsBuffer = supported; }
         public static void ComputeBuffers(int most) { SystemInfo.maxComputeBufferInputsCompute = most; }
         public static void VertexBuffers(int most) { SystemInfo.maxComputeBufferInputsVertex = most; }
+        public static void GraphicsDevice(UnityEngine.Rendering.GraphicsDeviceType type) { SystemInfo.graphicsDeviceType = type; }
         public static void BufferSize(long most) { SystemInfo.maxGraphicsBufferSize = most; }
         public static void GpuRecorder(bool supported) { SystemInfo.supportsGpuRecorder = supported; }
         public static void Multiview(bool supported) { SystemInfo.supportsMultiview = supported; }
