@@ -88,6 +88,12 @@ def test_each_platform_gets_what_it_needs(program: ProjectProgram, platform: str
     assert {change[1]: change[3] for change in changes if change} == MADE[platform]
 
 
+def test_a_renderer_that_is_made_can_draw_camera_effects(program: ProjectProgram) -> None:
+    """Bloom and tone mapping, whose shaders a renderer is not given by CreateInstance."""
+    [path] = program.tell("MakesRenderer")["effects"]
+    assert path.endswith("/PostProcessData.asset")
+
+
 def test_the_built_in_pipeline_keeps_the_one_way_that_it_knows(program: ProjectProgram) -> None:
     told = program.tell("KeepsBuiltIn")
     assert "after" not in told

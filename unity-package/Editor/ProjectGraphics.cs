@@ -17,6 +17,8 @@ namespace Mua.Editor
     {
         private const string PipelineName = "Graphics > Render pipeline";
         private const string BuiltIn = "built-in";
+        private const string PostProcessing =
+            "Packages/com.unity.render-pipelines.universal/Runtime/Data/PostProcessData.asset";
         private const string Universal = "UniversalRenderPipelineAsset";
 
         /// <summary>Whether URP should be taken: no pipeline was chosen, and no material would have to change.</summary>
@@ -85,6 +87,7 @@ namespace Mua.Editor
             }
             ProjectAssets.MakeFolder(ProjectAssets.Folder);
             var renderer = ScriptableObject.CreateInstance<UniversalRendererData>();
+            renderer.postProcessData = AssetDatabase.LoadAssetAtPath<PostProcessData>(PostProcessing);
             AssetDatabase.CreateAsset(renderer, ProjectAssets.Folder + "/Renderer.asset");
             UniversalRenderPipelineAsset pipeline = UniversalRenderPipelineAsset.Create(renderer);
             AssetDatabase.CreateAsset(pipeline, ProjectAssets.Folder + "/Pipeline.asset");

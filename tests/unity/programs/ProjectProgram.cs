@@ -50,6 +50,18 @@ namespace Mua.Editor
             Say("dirtied again", Dialogs.Dirtied.Count);
         }
 
+#if MUA_URP
+        private static void MakesRenderer(string[] arguments)
+        {
+            const string Place = "Packages/com.unity.render-pipelines.universal/Runtime/Data/PostProcessData.asset";
+            EditorUserBuildSettings.SwitchActiveBuildTarget(BuildTargetGroup.Unknown, BuildTarget.Android);
+            AssetDatabase.CreateAsset(ScriptableObject.CreateInstance<PostProcessData>(), Place);
+            ProjectSetup.Apply(BuildTarget.Android);
+            var renderer = AssetDatabase.LoadAssetAtPath<UniversalRendererData>("Assets/MUA/Renderer.asset");
+            Say("effects", renderer.postProcessData == null ? "" : AssetDatabase.GetAssetPath(renderer.postProcessData));
+        }
+#endif
+
         private static void KeepsWhatIsRight(string[] arguments)
         {
             EditorUserBuildSettings.SwitchActiveBuildTarget(BuildTargetGroup.Android, BuildTarget.Android);

@@ -1,10 +1,12 @@
 // Stand-in. Source: Unity's Graphics repository, com.unity.render-pipelines.universal 17.0, Data/UniversalRenderPipelineAsset.cs,
-// UniversalRendererData.cs; values of a new asset.
+// UniversalRendererData.cs, PostProcessData.cs; values of a new asset.
 namespace UnityEngine.Rendering.Universal
 {
     public abstract class ScriptableRendererData : ScriptableObject { }
 
-    public class UniversalRendererData : ScriptableRendererData { }
+    public class PostProcessData : ScriptableObject { }
+
+    public class UniversalRendererData : ScriptableRendererData { public PostProcessData postProcessData; }
 
     public partial class UniversalRenderPipelineAsset
     {
