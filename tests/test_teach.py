@@ -85,7 +85,7 @@ def test_tracks_of_a_capture_are_trained_on(capture: Path, tmp_path: Path, monke
     bind = given.surfaces.vertices[::20]
     points = posed_template(given.surfaces, given.motion("walk"))[:, ::20] + [0.05, 0, 0]
     np.savez(tmp_path / "walk.npz", points=points, bind=bind)
-    few, none = Schedule(steps=12, batch=1, lr=5e-2), TemplateWeights(silhouette=0.0)
+    few, none = Schedule(steps=30, batch=1, lr=5e-2), TemplateWeights(silhouette=0.0)
     monkeypatch.setattr(lessons, "TEMPLATE", replace(TemplateSettings(), nodes=few, offsets=few, weights=none))
     monkeypatch.setitem(settings.PRESETS, "tiny", FEW)
     teacher = TrainedTeacher(mua.teach(tmp_path, output=tmp_path / "t", steps=1, texels=TEXELS, drivable=True))
