@@ -18,6 +18,7 @@ from PIL import Image
 from render_capture import parser, render_capture, run_renderer
 
 from mua import rotation
+from mua.arrays import Array
 from mua.atlas.uv import build_atlas
 from mua.baking.sources import load_clips
 from mua.capture import open_capture
@@ -35,7 +36,7 @@ def order(tmp_path_factory: pytest.TempPathFactory) -> Order:
     folder = tmp_path_factory.mktemp("given")
     given = make_capture(folder)
     motions = tuple(str(clip.motion) for clip in given.clips)
-    return Order(str(given.template), motions[:1], motions[1:], None, (), 3, 1, 32, 3, 2, 4, 0, still=True)
+    return Order(str(given.template), motions[:1], motions[1:], None, (), 3, 1, 32, 3, 2, 4, "studio", 0, still=True)
 
 
 @pytest.fixture(scope="module")
@@ -192,21 +193,42 @@ def test_edges_are_as_far_apart_as_one_was_shifted(shift: float) -> None:
     assert edge_distance(np.zeros((4, 4)), half(20.0)[:4, :4]) == np.inf
 
 
-@pytest.mark.long
-def test_blender_draws_a_white_surface_white_where_the_camera_has_it(order: Order, tmp_path: Path) -> None:
-    blender = os.environ.get("BLENDER")
-    if not blender:
+@pytest.fixture
+def blender() -> str:
+    """A Python with Blender's package; skips where none is named."""
+    found = os.environ.get("BLENDER")
+    if not found:
         pytest.skip(
             "needs Blender's Python package: BLENDER=PYTHON pytest -m long tests/test_render_capture.py, "
             "PYTHON of an environment with bpy 5.0.1"
         )
-    prepare(replace(order, frames=1, held_out_frames=0), tmp_path)
-    job = json.loads(job_file(tmp_path).read_text()) | {"unlit": True}
-    job_file(tmp_path).write_text(json.dumps(job))
-    texture = job_file(tmp_path).with_name("texture.png")
-    Image.new("RGBA", (8, 8), (255, 255, 255, 255)).save(texture)
-    render_capture(Order(**(asdict(order) | job["order"])), tmp_path, blender=blender, threads=1)  # and checks the fit
-    capture = open_capture(tmp_path)
-    image = np.asarray(Image.open(next((tmp_path / "images").rglob("cam00/*.png"))))
-    assert image[image[..., 3] == 255][:, :3].min() == 255
-    assert capture.clips[0].frames == 1
+    return found
+
+
+def white_figure(order: Order, folder: Path, blender: str, *, unlit: bool) -> Array:
+    """Colours [N, 3] where cameras see nothing but the first frame of a figure painted white."""
+    prepare(replace(order, frames=1, held_out_frames=0), folder)
+    job = json.loads(job_file(folder).read_text()) | {"unlit": unlit}
+    job_file(folder).write_text(json.dumps(job))
+    Image.new("RGBA", (8, 8), (255, 255, 255, 255)).save(job_file(folder).with_name("texture.png"))
+    render_capture(Order(**(asdict(order) | job["order"])), folder, blender=blender, threads=1)  # and checks the fit
+    images = np.stack([np.asarray(Image.open(file)) for file in (folder / "images").rglob("*.png")])
+    return images[images[..., 3] == 255][:, :3].astype(int)
+
+
+@pytest.mark.long
+def test_blender_draws_a_white_surface_white_where_the_camera_has_it(
+    order: Order, tmp_path: Path, blender: str
+) -> None:
+    assert white_figure(order, tmp_path, blender, unlit=True).min() == 255
+    assert open_capture(tmp_path).clips[0].frames == 1
+
+
+@pytest.mark.long
+def test_what_the_sun_lights_is_yellow_beside_its_shadows(order: Order, tmp_path: Path, blender: str) -> None:
+    seen = white_figure(replace(order, light="sun"), tmp_path, blender, unlit=False)
+    seen = seen[seen.sum(axis=1).argsort()]
+    tenth = len(seen) // 10
+    shadow, lit = seen[:tenth].mean(axis=0), seen[-tenth:].mean(axis=0)
+    assert lit.sum() > 2 * shadow.sum()
+    assert lit[0] / lit[2] > 1.2 * shadow[0] / shadow[2]

@@ -31,6 +31,7 @@ ATLAS = 2048  # texels of the rendered image of all materials along a side
 IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame:06d}.ply"
 TRACKS, TRACKED = "tracks/{clip}.npz", 1000  # points all over the surface that are followed
 ONE_FILE = (".glb", ".vrm", ".usdc", ".usdz")  # kinds of characters that can be copied
+LIGHTS = {"studio": "three soft lamps", "sun": "the sun from one side and a blue sky"}
 CORNERS = np.dtype([("count", "u1"), ("vertices", "<i4", 3)])  # of a face of a .ply
 
 
@@ -49,6 +50,7 @@ class Order:
     frames: int
     held_out_frames: int
     samples: int
+    light: str  # a key of LIGHTS
     seed: int
     still: bool
 

@@ -27,6 +27,9 @@ LAMPS = (  # direction to the lamp, strength beside the sky: a soft key from the
     ((0.25, 0.6, -1.0), 0.5),
 )
 LAMP_DISTANCE, LAMP_SIDE = 2.5, 1.6  # of the figure's size
+OPEN_SKY = (0.16, 0.21, 0.3)  # light from all around in the sun: red, green, blue
+SUN = ((-0.65, 0.75, 0.35), (1.0, 0.93, 0.82), 2.6)  # direction to it, colour, irradiance
+SUN_DEGREES = 0.53  # across
 
 
 def render(job_file: Path, *, threads: int) -> None:
@@ -72,13 +75,32 @@ def _scene(job: dict[str, Any], threads: int) -> Any:
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "Standard"
     scene.view_settings.look = "None"
+    if job["order"]["light"] == "sun":
+        _sky(scene, OPEN_SKY)
+        _sun(scene)
+    else:
+        _sky(scene, (SKY, SKY, SKY))
+        for direction, strength in LAMPS:
+            _lamp(scene, job, Vector(direction).normalized(), strength)
+    return scene
+
+
+def _sky(scene: Any, colour: tuple[float, float, float]) -> None:
+    """Light from all around, whose red, green and blue are the radiance."""
     scene.world = bpy.data.worlds.new("sky")
     scene.world.use_nodes = True
     sky = scene.world.node_tree.nodes["Background"]
-    sky.inputs["Color"].default_value, sky.inputs["Strength"].default_value = (1, 1, 1, 1), SKY
-    for direction, strength in LAMPS:
-        _lamp(scene, job, Vector(direction).normalized(), strength)
-    return scene
+    sky.inputs["Color"].default_value, sky.inputs["Strength"].default_value = (*colour, 1), 1.0
+
+
+def _sun(scene: Any) -> None:
+    """Light from one direction, with the edges of shadows that the sun's disc makes."""
+    direction, colour, irradiance = SUN
+    light = bpy.data.lights.new("sun", "SUN")
+    light.color, light.energy, light.angle = colour, irradiance, math.radians(SUN_DEGREES)
+    sun = bpy.data.objects.new("sun", light)
+    sun.rotation_euler = Vector(direction).to_track_quat("Z", "Y").to_euler()
+    scene.collection.objects.link(sun)
 
 
 def _lamp(scene: Any, job: dict[str, Any], direction: Any, strength: float) -> None:

@@ -20,7 +20,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from capture_fit import measure_fit
-from capture_job import Order, job_file, prepare
+from capture_job import LIGHTS, Order, job_file, prepare
 
 from mua.capture import open_capture
 from mua.errors import InputError
@@ -108,6 +108,7 @@ def at_least(least: int) -> Callable[[str], int]:
 def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = made.add_argument
+    lights = "; ".join(f"{name}: {what}" for name, what in LIGHTS.items())
     add("character", metavar="CHARACTER", help="a rigged character that mua-bake reads: .glb, .gltf, .vrm or USD")
     add("--motion", nargs="+", default=(), metavar="PATH", help="files or folders of motion; else the character's own")
     add("--held-out-motion", nargs="+", default=(), metavar="PATH", help="motion to test with; else the last clip")
@@ -118,6 +119,7 @@ def parser() -> argparse.ArgumentParser:
     add("--frames", type=at_least(1), default=100, help="frames to train on; default %(default)s")
     add("--held-out-frames", type=at_least(0), default=30, help="frames to test with; default %(default)s")
     add("--samples", type=at_least(1), default=16, help="light paths for each pixel; default %(default)s")
+    add("--light", choices=tuple(LIGHTS), default="studio", help=f"{lights}; default %(default)s")
     add("--seed", type=at_least(0), default=0, help="chooses cloth folds, cameras and noise; default %(default)s")
     add("--height", type=float, help="metres from sole to crown, where the file's unit is wrong")
     add("--leave-out", nargs="+", default=(), metavar="NAME", help="meshes, nodes or materials not to be filmed")
