@@ -18,6 +18,10 @@ missing=""
 # the window needs a Vulkan driver; this package has one that runs on the CPU
 find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2>/dev/null | grep -q . ||
     missing="$missing mesa-vulkan-drivers"
+# meshoptimizer comes as source alone
+command -v c++ >/dev/null || missing="$missing g++"
+"$python" -c 'import sys, sysconfig, pathlib; sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' ||
+    missing="$missing python3-dev"
 if [ "$purpose" = test ]; then
     # the independent reader that a test holds the file format against
     command -v flatc >/dev/null || missing="$missing flatbuffers-compiler"
@@ -62,4 +66,4 @@ command -v nvidia-smi >/dev/null ||
     $pip --retries 1 --no-deps --index-url https://download.pytorch.org/whl/cpu $torch || true
 $pip $torch "setuptools>=77"
 echo "2 of 2: MUA and all others"
-$pip --no-build-isolation -e "./python[$extras]"
+$pip -e "./python[$extras]"
