@@ -1,5 +1,5 @@
 # `make demo` bakes the procedural character; `make test` checks everything, `make package` packs what
-# Unity installs, `make docs` builds the site, `make mutants` puts the tests to the test. Each sets up what it needs.
+# Unity installs, `make docs` builds the site, `make mutants` tries the tests. Each sets up what it needs.
 
 PYTHON ?= python3
 VENV := .venv
@@ -40,11 +40,10 @@ gallery: setup
 	@test -n "$(GALLERY)" || { echo "GALLERY=folder make gallery: the folder with the files of tools/gallery.toml" >&2; exit 1; }
 	$(BIN)/python tools/gallery.py $(GALLERY) $(GALLERY_FLAGS)
 
-# Puts 200 faults into a copy of the tree, one at a time, and prints the share that the tests catch and every survivor:
-# SEED=7 NUMBER=60 LANGUAGE=hlsl JOBS=2 make mutants, each of which may be left out. The languages: python, hlsl, csharp.
+# Faults in the modules of one room of the package, by mutmut, each against the tests of that room: ROOM=pose make mutants
+ROOM ?= pose
 mutants: setup
-	$(BIN)/python tools/run_mutants.py $(if $(SEED),--seed $(SEED)) $(if $(NUMBER),--number $(NUMBER)) \
-		$(if $(LANGUAGE),--language $(LANGUAGE)) $(if $(JOBS),--jobs $(JOBS))
+	cd python && PYTEST_ADDOPTS="-n0 -p no:randomly ../../tests/$(ROOM)" ../$(BIN)/mutmut run "mua.$(ROOM).*"
 
 # Guides and the reference of the Python names: build/site/index.html. The variable spares Material's word on its successor.
 docs: $(VENV)/.docs

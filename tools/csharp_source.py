@@ -1,39 +1,40 @@
-"""Types and their members as C# sources declare them: by the text, without a compiler.
+"""Types and their members as C# sources declare them, read by tree-sitter.
 
-Bodies are passed over. Types of values are kept without their namespaces, type parameters as `!0` of a type and `!!0`
-of a method, so that a declaration can be set against one from an assembly.
+Types of values are kept without their namespaces, type parameters as `!0` of a type and `!!0` of a method, so that a
+declaration can be compared with one from an assembly.
 """
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from csharp_words import BRACKETS, opening, parameter, spell, split, words
+import tree_sitter_c_sharp
+from tree_sitter import Language, Node, Parser
 
-MODIFIERS = {
-    "public", "protected", "internal", "private", "static", "extern", "abstract", "virtual", "override", "sealed",
-    "readonly", "const", "new", "unsafe", "partial", "volatile", "async", "ref", "required", "fixed",
-}  # fmt: skip
-KINDS = ("class", "struct", "interface", "enum", "record")
+CSHARP = Parser(Language(tree_sitter_c_sharp.language()))
 OPERATORS = {
     "+": "op_Addition", "-": "op_Subtraction", "*": "op_Multiply", "/": "op_Division", "==": "op_Equality",
     "!=": "op_Inequality", "implicit": "op_Implicit", "explicit": "op_Explicit",
 }  # fmt: skip
 UNARY = {"+": "op_UnaryPlus", "-": "op_UnaryNegation"}
-ENDS = ("{", ";", "=>", "=", "(")  # of what stands before a member's body, value or parameters
+SYSTEM = {
+    "Boolean": "bool", "Byte": "byte", "Int16": "short", "UInt16": "ushort", "Int32": "int", "UInt32": "uint",
+    "Int64": "long", "UInt64": "ulong", "Single": "float", "Double": "double", "String": "string",
+}  # fmt: skip
+TYPES = {f"{kind}_declaration" for kind in ("class", "struct", "interface", "enum", "record")}
+PASSED = re.compile(r"\b(ref|out|in)\b")
+BARE = re.compile(r"\b(?:this|ref|out|in|params|scoped|readonly)\b")
 
 
 @dataclass(frozen=True)
 class Member:
     """A declaration in a type."""
 
-    kinds: frozenset[str] = (
-        frozenset()
-    )  # how it is used: constructor, method, get, set, field, add, remove, enum, const
+    kinds: frozenset[str] = frozenset()  # its uses: constructor, method, get, set, field, add, remove, enum, const
     name: str = ""
     value: str = ""  # type of what it holds or returns
-    parameters: tuple[str, ...] = ()  # as csharp_words.parameter has them
+    parameters: tuple[str, ...] = ()  # `out float`, with ` =` after one that a call may leave out
     is_static: bool = False
     is_open: bool = True  # public, or protected
     closed: frozenset[str] = frozenset()  # accessors that are neither
@@ -46,7 +47,7 @@ class Member:
 class Declared:
     """A type, with the parts of all its files."""
 
-    name: str  # with its namespace and the types about it, parted by dots; `n for n type parameters
+    name: str  # with its namespace and the types about it, separated by dots; `n for n type parameters
     kind: str
     bases: list[str] = field(default_factory=list)
     members: list[Member] = field(default_factory=list)
@@ -55,232 +56,227 @@ class Declared:
 
 
 def read(folders: Collection[Path], symbols: Collection[str]) -> dict[str, Declared]:
-    """The types below folders, by name."""
+    """The types below folders, by name, of the code that is compiled with `symbols`."""
     found: dict[str, Declared] = {}
     for folder in folders:
         for path in sorted(folder.rglob("*.cs")):
-            _File(words(path.read_text(encoding="utf-8-sig", errors="replace"), symbols), found).read()
+            _space(syntax(path.read_text(encoding="utf-8-sig", errors="replace"), symbols), "", {}, found)
     return found
 
 
-class _File:
-    """The words of one file, and a place among them."""
+def syntax(text: str, symbols: Collection[str]) -> Node:
+    """The syntax tree of the branches of a file that are compiled with `symbols`."""
+    return CSHARP.parse("\n".join(_compiled(text, symbols)).encode()).root_node
 
-    def __init__(self, found: list[str], types: dict[str, Declared]) -> None:
-        self._words, self._types, self._at = found, types, 0
-        self._names: dict[str, str] = {}  # what stands for a name: of `using`, and of the type's own parameters
 
-    def read(self) -> None:
-        self._space("")
+def accesses(node: Node) -> Iterator[str]:
+    """Every `Type.Name`, or `value.Name`, below a node."""
+    if node.type in ("member_access_expression", "qualified_name"):
+        yield ".".join(re.findall(r"\w+", _text(node))[-2:])
+    for child in node.named_children:
+        yield from accesses(child)
 
-    def _peek(self, ahead: int = 0) -> str:
-        at = self._at + ahead
-        return self._words[at] if at < len(self._words) else ""
 
-    def _take(self) -> str:
-        self._at += 1
-        return self._peek(-1)
+def _compiled(text: str, symbols: Collection[str]) -> Iterator[str]:
+    branches: list[tuple[bool, bool]] = []  # of each open #if: whether this branch is compiled, whether one was
+    for line in text.splitlines():
+        word, _, rest = line.strip().removeprefix("#").strip().partition(" ")
+        if not line.strip().startswith("#"):
+            if all(is_compiled for is_compiled, _ in branches):
+                yield line
+        elif word == "if":
+            branches.append((holds(rest, symbols),) * 2)
+        elif word in ("elif", "else"):
+            is_next = not branches[-1][1] and (word == "else" or holds(rest, symbols))
+            branches[-1] = (is_next, is_next or branches[-1][1])
+        elif word == "endif":
+            branches.pop()
 
-    def _until(self, *ends: str) -> list[str]:
-        """Words up to one of `ends` that stands outside of brackets; it is left."""
-        taken: list[str] = []
-        while (word := self._peek()) and word not in ends:
-            taken += self._balanced() if word in BRACKETS else [self._take()]
-        return taken
 
-    def _balanced(self) -> list[str]:
-        end = BRACKETS[self._peek()]
-        taken = [self._take()]
-        while (word := self._peek()) and word != end:
-            taken += self._balanced() if word in BRACKETS else [self._take()]
-        return [*taken, self._take()]
+def holds(condition: str, symbols: Collection[str]) -> bool:
+    """Whether a condition of the preprocessor holds."""
+    words = re.findall(r"\w+|&&|\|\||==|!=|[!()]", condition.partition("//")[0])
+    signs = {"&&": " and ", "||": " or ", "!": " not ", "true": "True", "false": "False"}
+    python = "".join(signs.get(word) or (str(word in symbols) if re.match(r"\w", word) else word) for word in words)
+    return bool(eval(python, {"__builtins__": {}}))  # of True, False, and, or, not, == and brackets alone
 
-    def _body(self) -> None:
-        """Passes over what a member is made of."""
-        if self._peek() == "{":
-            self._balanced()
-        else:
-            self._until(";")
-            self._take()
 
-    def _space(self, prefix: str) -> None:
-        """What stands in a file or in a namespace, to its end."""
-        while (word := self._peek()) not in ("", "}"):
-            if word == "namespace":
-                self._take()
-                inner = "".join(self._until("{", ";"))
-                if self._take() == "{":
-                    self._space(f"{prefix}{inner}.")
-                    self._take()
-                else:
-                    prefix = f"{prefix}{inner}."
-            elif word in ("using", "extern"):
-                self._using(self._until(";"))
-                self._take()
-            elif word == "[" and self._peek(1) in ("assembly", "module"):
-                self._balanced()
+def _space(node: Node, prefix: str, names: dict[str, str], found: dict[str, Declared]) -> None:
+    """What stands in a file or in a namespace."""
+    for child in node.named_children:
+        if child.type == "using_directive" and (name := child.child_by_field_name("name")):
+            names = {**names, _text(name): spell(child.named_children[-1], {})}
+        elif child.type in ("namespace_declaration", "file_scoped_namespace_declaration"):
+            inner = f"{prefix}{_text(child.child_by_field_name('name'))}."
+            body = child.child_by_field_name("body")
+            if body is None:
+                prefix = inner
             else:
-                self._declaration(prefix, None)
+                _space(body, inner, names, found)
+        elif child.type in (*TYPES, "delegate_declaration"):
+            _type(child, prefix, names, found)
 
-    def _using(self, found: list[str]) -> None:
-        if "=" in found:
-            at = found.index("=")
-            self._names[found[at - 1]] = spell(found[at + 1 :], {})
 
-    def _attributes(self) -> str:
-        """Whether what follows is obsolete."""
-        obsolete = ""
-        while self._peek() == "[":
-            text = "".join(self._balanced())
-            if match := re.search(r"\bObsolete(?:Attribute)?\b(\(.*)?", text):
-                obsolete = "error" if re.search(r",(?:error:)?true\)", match[1] or "") else "warning"
-        return obsolete
-
-    def _modifiers(self) -> set[str]:
-        found: set[str] = set()
-        while self._peek() in MODIFIERS:
-            found.add(self._take())
-        return found
-
-    def _declaration(self, prefix: str, owner: Declared | None) -> None:
-        obsolete, modifiers = self._attributes(), self._modifiers()
-        is_open = bool(modifiers & {"public", "protected"}) or (owner is not None and owner.kind == "interface")
-        marks = Member(obsolete=obsolete, is_open=is_open, is_static=bool(modifiers & {"static", "const"}))
-        if self._peek() in KINDS and self._peek(1) not in ("(", "="):
-            self._type(prefix, marks)
-        elif self._peek() == "delegate":
-            self._delegate(prefix, marks)
-        elif owner is None or self._peek() == ";":
-            self._take()  # nothing that this reader knows
-        elif self._peek() == "~":
-            self._until("{", "=>")
-            self._body()
+def _type(node: Node, prefix: str, outer: dict[str, str], found: dict[str, Declared]) -> None:
+    given = _type_parameters(node)
+    name = f"{prefix}{_text(node.child_by_field_name('name'))}" + (f"`{len(given)}" if given else "")
+    made = found.setdefault(name, Declared(name, node.type.removesuffix("_declaration")))
+    made.obsolete, made.is_open = made.obsolete or _obsolete(node), made.is_open or _is_open(node)
+    names = outer | {each: f"!{i}" for i, each in enumerate(given)}
+    if made.kind not in ("enum", "delegate"):
+        for bases in _children(node, "base_list"):
+            made.bases += [spell(base, names) for base in bases.named_children]
+    body = node.child_by_field_name("body")
+    for child in body.named_children if body else []:
+        if child.type in (*TYPES, "delegate_declaration"):
+            _type(child, f"{name}.", names, found)
+        elif child.type == "enum_member_declaration":
+            made.members.append(_enum_member(child, made))
         else:
-            owner.members += self._members(owner, marks, is_const="const" in modifiers)
+            made.members += _members(child, made, names)
 
-    def _declared(self, name: str, kind: str, marks: Member) -> Declared:
-        made = self._types.setdefault(name, Declared(name, kind))
-        made.obsolete, made.is_open = made.obsolete or marks.obsolete, made.is_open or marks.is_open
-        return made
 
-    def _type(self, prefix: str, marks: Member) -> None:
-        kind = self._take()
-        header = self._until("{", ";", ":")
-        bases = self._until("{", ";")[1:]
-        header = header[: header.index("where")] if "where" in header else header
-        bases = bases[: bases.index("where")] if "where" in bases else bases
-        given = [part[-1] for part in split(header[opening(header) + 1 : -1], ",")] if header[-1] == ">" else []
-        name = header[opening(header) - 1] if given else header[-1]
-        made = self._declared(prefix + name + (f"`{len(given)}" if given else ""), kind, marks)
-        outer, self._names = self._names, self._names | {each: f"!{i}" for i, each in enumerate(given)}
-        made.bases += [spell(part, self._names) for part in split(bases, ",")] if kind != "enum" else []
-        if self._take() == "{":
-            while self._peek() not in ("", "}"):
-                self._enum_member(made) if kind == "enum" else self._declaration(f"{made.name}.", made)
-            self._take()
-        self._names = outer
+def _enum_member(node: Node, made: Declared) -> Member:
+    value = node.child_by_field_name("value")
+    last = made.members[-1].number if made.members else ""
+    number = _text(value) if value else f"{last}+1" if last else "0"
+    name = _text(node.child_by_field_name("name"))
+    return Member(frozenset({"enum"}), name, made.name, is_static=True, obsolete=_obsolete(node), number=number)
 
-    def _enum_member(self, made: Declared) -> None:
-        obsolete, name = self._attributes(), self._take()
-        number = "".join(self._until(",", "}")).lstrip("=")
-        if self._peek() == ",":
-            self._take()
-        last = made.members[-1].number if made.members else ""
-        number = number or (f"{last}+1" if last else "0")
-        made.members.append(
-            Member(frozenset({"enum"}), name, made.name, is_static=True, obsolete=obsolete, number=number)
+
+def _members(node: Node, owner: Declared, names: dict[str, str]) -> list[Member]:
+    """The members that a declaration declares; none of one that implements an interface by its name."""
+    modifiers = _modifiers(node)
+    if _children(node, "explicit_interface_specifier"):
+        return []
+    marks = Member(
+        obsolete=_obsolete(node),
+        is_open=_is_open(node) or owner.kind == "interface",
+        is_static=bool(modifiers & {"static", "const"}),
+    )
+    if node.type in ("field_declaration", "event_field_declaration"):
+        return _fields(node, marks, names, is_const="const" in modifiers)
+    if node.type in ("property_declaration", "indexer_declaration", "event_declaration"):
+        return [_property(node, marks, names)]
+    if node.type in _METHODS:
+        return [_method(node, marks, names)]
+    return []
+
+
+_METHODS = {
+    "method_declaration": "method",
+    "constructor_declaration": "constructor",
+    "operator_declaration": "method",
+    "conversion_operator_declaration": "method",
+}
+
+
+def _fields(node: Node, marks: Member, names: dict[str, str], *, is_const: bool) -> list[Member]:
+    (declared,) = _children(node, "variable_declaration")
+    value = spell(declared.child_by_field_name("type"), names)
+    is_event = node.type == "event_field_declaration"
+    kinds = frozenset({"add", "remove"} if is_event else {"const" if is_const else "field"})
+    return [
+        replace(
+            marks,
+            kinds=kinds,
+            name=_text(one.child_by_field_name("name")),
+            value=value,
+            number=_text(one.named_children[-1]) if len(one.named_children) > 1 and not is_event else "",
         )
+        for one in _children(declared, "variable_declarator")
+    ]
 
-    def _delegate(self, prefix: str, marks: Member) -> None:
-        header = self._until("(")
-        self._body()
-        arity = 0
-        if header[-1] == ">":
-            arity = len(split(header[opening(header) + 1 : -1], ","))
-            header = header[: opening(header)]
-        self._declared(prefix + header[-1] + (f"`{arity}" if arity else ""), "delegate", marks)
 
-    def _members(self, owner: Declared, marks: Member, *, is_const: bool) -> list[Member]:
-        is_event = self._peek() == "event"
-        if is_event:
-            self._take()
-        header = self._until(*ENDS)
-        while self._peek() == "(" and not header:  # a tuple is the type
-            header = [*self._balanced(), *self._until(*ENDS)]
-        if not header:
-            self._body()  # nothing that this reader knows
-            return []
-        if self._peek() == "(":
-            return self._method(owner, header, marks)
-        found = self._values(header, marks)
-        if is_event:
-            return [replace(each, kinds=frozenset({"add", "remove"}), closed=frozenset()) for each in found]
-        return [replace(each, kinds=frozenset({"const"})) for each in found] if is_const else found
+def _property(node: Node, marks: Member, names: dict[str, str]) -> Member:
+    accessors = node.child_by_field_name("accessors")
+    kinds, closed, failing = set[str](), set[str](), set[str]()
+    for accessor in accessors.named_children if accessors else []:
+        kind = _text(accessor.child_by_field_name("name")).replace("init", "set")
+        kinds.add(kind)
+        if _modifiers(accessor) & {"private", "internal"} and "protected" not in _modifiers(accessor):
+            closed.add(kind)
+        if _obsolete(accessor) == "error":
+            failing.add(kind)
+    return replace(
+        marks,
+        kinds=frozenset(kinds or {"get"}),
+        name="Item" if node.type == "indexer_declaration" else _text(node.child_by_field_name("name")),
+        value=spell(node.child_by_field_name("type"), names),
+        parameters=_parameters(node, names),
+        closed=frozenset(closed),
+        failing=frozenset(failing),
+    )
 
-    def _method(self, owner: Declared, header: list[str], marks: Member) -> list[Member]:
-        """A method, an operator or a constructor; none for what implements an interface by its name."""
-        given = split(self._balanced()[1:-1], ",")
-        self._until("{", ";", "=>")
-        self._body()
-        names, kind, name, value = self._names, "method", "", header[:-1]
-        if header == [owner.name.split(".")[-1].split("`")[0]]:
-            kind = "constructor"
-        elif "operator" in header:
-            at = header.index("operator")
-            converts = header[at - 1] in ("implicit", "explicit")
-            word = header[at - 1] if converts else "".join(header[at + 1 :])
-            name = UNARY[word] if len(given) == 1 and word in UNARY else OPERATORS.get(word, word)
-            value = header[at + 1 :] if converts else header[:at]
-        else:
-            if header[-1] == ">":
-                start = opening(header)
-                parts = split(header[start + 1 : -1], ",")
-                names = names | {part[-1]: f"!!{i}" for i, part in enumerate(parts)}
-                header = header[:start]
-            name, value = header[-1], header[:-1]
-            if not value or value[-1] == ".":
-                return []
-        parameters = tuple(parameter(part, names) for part in given)
-        return [replace(marks, kinds=frozenset({kind}), name=name, value=spell(value, names), parameters=parameters)]
 
-    def _values(self, header: list[str], marks: Member) -> list[Member]:
-        """A property, an indexer, an event, or fields; none for what implements an interface by its name."""
-        if "this" in header:
-            at = header.index("this")
-            given = tuple(parameter(part, self._names) for part in split(header[at + 2 : -1], ","))
-            header, marks = [*header[:at], "Item"], replace(marks, parameters=given)
-        first, *others = split(header, ",")
-        names, value, kinds, number = [first[-1], *(part[-1] for part in others)], first[:-1], {"field"}, ""
-        if self._peek() == "{":
-            kinds, marks = self._accessors(marks)
-            if self._peek() == "=":  # what an automatic property begins with
-                self._body()
-        elif self._peek() == "=>":
-            kinds = {"get"}
-            self._body()
-        else:
-            while self._peek() in ("=", ","):
-                if self._take() == "=":
-                    number = "".join(self._until(",", ";"))
-                else:
-                    names.append(self._until(",", ";", "=")[0])
-            self._take()
-        if value and value[-1] == ".":
-            return []
-        marks = replace(marks, kinds=frozenset(kinds), value=spell(value, self._names), number=number)
-        return [replace(marks, name=name) for name in names]
+def _method(node: Node, marks: Member, names: dict[str, str]) -> Member:
+    names = names | {each: f"!!{i}" for i, each in enumerate(_type_parameters(node))}
+    parameters = _parameters(node, names)
+    name = node.child_by_field_name("name")
+    sign = node.child_by_field_name("operator")
+    value = node.child_by_field_name("returns") or node.child_by_field_name("type")
+    if node.type == "conversion_operator_declaration":
+        name_text = OPERATORS["implicit" if any(_text(child) == "implicit" for child in node.children) else "explicit"]
+    elif sign is not None:
+        word = _text(sign)
+        name_text = UNARY[word] if len(parameters) == 1 and word in UNARY else OPERATORS.get(word, word)
+    else:
+        name_text = "" if node.type == "constructor_declaration" else _text(name)
+    kinds = frozenset({_METHODS[node.type]})
+    return replace(
+        marks, kinds=kinds, name=name_text, value=spell(value, names) if value else "", parameters=parameters
+    )
 
-    def _accessors(self, marks: Member) -> tuple[set[str], Member]:
-        self._take()
-        kinds, closed, failing = set[str](), set[str](), set[str]()
-        while self._peek() not in ("", "}"):
-            obsolete, modifiers = self._attributes(), self._modifiers()
-            kind = self._take().replace("init", "set")
-            kinds.add(kind)
-            if modifiers & {"private", "internal"} and "protected" not in modifiers:
-                closed.add(kind)
-            if obsolete == "error":
-                failing.add(kind)
-            self._body() if self._peek() in ("{", "=>") else self._take()
-        self._take()
-        return kinds, replace(marks, closed=frozenset(closed), failing=frozenset(failing))
+
+def _parameters(node: Node, names: dict[str, str]) -> tuple[str, ...]:
+    listed = node.child_by_field_name("parameters")
+    if listed is None:
+        return ()
+    found = [_parameter(child, names) for child in listed.named_children if child.type == "parameter"]
+    if any(child.type == "params" for child in listed.children):  # its type and name stand in the list itself
+        found.append(spell(listed.child_by_field_name("type"), names))
+    return tuple(found)
+
+
+def _parameter(node: Node, names: dict[str, str]) -> str:
+    written = "".join(f"{_text(child)} " for child in _children(node, "modifier"))
+    passed = PASSED.search(written)
+    optional = " =" if any(child.type in ("=", "equals_value_clause") for child in node.children) else ""
+    return (f"{passed[1]} " if passed else "") + spell(node.child_by_field_name("type"), names) + optional
+
+
+def spell(node: Node | None, names: dict[str, str]) -> str:
+    """A type as one word, without namespaces; `names` says what stands for some."""
+    text = re.sub(r"\s+", "", BARE.sub("", _text(node)))
+    text = re.sub(r"\w+(?:\.|::)(?=\w)", "", text)
+    text = re.sub(r"\w+", lambda word: names.get(word[0], SYSTEM.get(word[0], word[0])), text)
+    return re.sub(r"([\w.<>!,\[\]]+)\?", r"Nullable<\1>", text)
+
+
+def _type_parameters(node: Node) -> list[str]:
+    listed = _children(node, "type_parameter_list")
+    return [_text(one.child_by_field_name("name")) for one in _children(listed[0], "type_parameter")] if listed else []
+
+
+def _modifiers(node: Node) -> set[str]:
+    return {_text(child) for child in _children(node, "modifier")}
+
+
+def _is_open(node: Node) -> bool:
+    return bool(_modifiers(node) & {"public", "protected"})
+
+
+def _obsolete(node: Node) -> str:
+    """Whether a declaration is obsolete: as a warning, or as an error."""
+    for attributes in _children(node, "attribute_list"):
+        if match := re.search(r"\bObsolete(?:Attribute)?\b(\(.*)?", _text(attributes), re.DOTALL):
+            return "error" if re.search(r",\s*(?:error:\s*)?true\s*\)", match[1] or "") else "warning"
+    return ""
+
+
+def _children(node: Node, kind: str) -> list[Node]:
+    return [child for child in node.children if child.type == kind]
+
+
+def _text(node: Node | None) -> str:
+    return node.text.decode() if node is not None and node.text else ""

@@ -10,7 +10,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from csharp_words import words
+from csharp_source import accesses, syntax
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests" / "unity")]
@@ -61,14 +61,17 @@ def _parsed(line: str) -> Used:
 
 def named(members: Collection[Used], engine: str) -> list[Used]:
     """Without those values, which a compiler puts in place, that no source of the package names on an engine."""
-    text = "\n".join(
-        " ".join(words(file.read_text(), {*engine_symbols(engine), *assembly.defines(platform, packages=True)}))
+    accessed = {
+        access
         for platform in PLAYERS
         for assembly in assemblies().values()
         for file in assembly.sources()
-    )
+        for access in accesses(
+            syntax(file.read_text(), {*engine_symbols(engine), *assembly.defines(platform, packages=True)})
+        )
+    }
     return [
         used
         for used in members
-        if used.kind not in ("enum", "const") or f"{used.type.split('.')[-1]} . {used.name} " in text
+        if used.kind not in ("enum", "const") or f"{used.type.split('.')[-1]}.{used.name}" in accessed
     ]
