@@ -63,7 +63,7 @@ def one_ends_and_the_other_is_refused_or_ends(pair: Pair) -> bool:
 
 
 def leftovers(directory: Path) -> list[Path]:
-    return [path for path in directory.rglob("*") if ".part" in path.name or path.name == ".lock"]
+    return [path for path in directory.rglob("*") if ".part" in path.name]
 
 
 def bake(output: Path, work: Path) -> list[str]:
