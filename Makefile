@@ -9,7 +9,7 @@ DEMO := build/demo
 WORKERS ?= 2
 PYTEST := $(BIN)/pytest --numprocesses $(WORKERS) --dist worksteal
 
-.PHONY: demo test test-long test-web test-files test-wheel gallery mutants docs check package wheel setup clean
+.PHONY: demo test test-long test-web test-files test-wheel gallery mutants docs check package npm wheel setup clean
 
 # A quarter of the preset's frames: a first picture soon.
 demo: $(VENV)/.demo
@@ -69,6 +69,11 @@ check: setup
 # With nothing but Python.
 package:
 	$(PYTHON) tools/pack_upm.py
+
+# The browser player as build/mua-player-*.tgz; needs Node and npm.
+npm: setup
+	npm ci --no-audit --no-fund --prefix tests/web
+	$(BIN)/python tools/pack_npm.py
 
 wheel: setup
 	rm -rf python/build  # what an older checkout had would go in too
