@@ -31,7 +31,7 @@ float stored(StructuredBuffer<uint> words, uint3 tensorLayout, uint index)
     uint lane = index & ((1u << tensorLayout.x) - 1);
     float value = 0;
     if (tensorLayout.x == STORED_F32)
-        value = asfloat(word);
+        value = asfloat(word | lane); // lane is 0, and the word an integer on every device: README.md
     else if (tensorLayout.x == STORED_F16)
         value = halfAt(word, lane);
     else

@@ -119,14 +119,15 @@ SplatVaryings splatVertex(uint vertex, uint eye, float2 screen, float4x4 viewPro
     float2 major = unpackHalves(eye == 0 ? tail.y : tail.z);
     float2 deviations = float2(length(major), halfAt(tail.w, eye));
     float2 axis = major / max(deviations.x, LEAST_NORM);
+    bool seen = deviations.y > 0;
+    float3 centre = seen ? asfloat(head.xyz) : 0; // chosen as integers, so that head.w stays one: README.md
 
     float2 wide = splatWide(deviations);
     float2 corner = splatCorner(vertex % 6);
     float2 pixels = splatOffset(axis, wide, corner);
-    float4 clip = mul(viewProjection, float4(asfloat(head.xyz), 1));
+    float4 clip = mul(viewProjection, float4(centre, 1));
     float2 place = clip.xy / clip.w + pixels * float2(2, -2) / screen;
     float depth = clamp(clip.z / clip.w, LEAST_DEPTH, 1);
-    bool seen = deviations.y > 0;
 
     SplatVaryings varyings;
     varyings.position = float4(2, 2, 0, 1);

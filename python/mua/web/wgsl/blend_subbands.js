@@ -62,7 +62,7 @@ fn stored_0( _S1 : vec3<u32>,  _S2 : u32) -> f32
     var value_0 : f32;
     if(_S3 == u32(0))
     {
-        value_0 = (bitcast<f32>((word_2)));
+        value_0 = (bitcast<f32>(((word_2 | (lane_2)))));
     }
     else
     {
@@ -96,7 +96,7 @@ fn stored_1( _S11 : vec3<u32>,  _S12 : u32) -> f32
     var value_1 : f32;
     if(_S13 == u32(0))
     {
-        value_1 = (bitcast<f32>((word_3)));
+        value_1 = (bitcast<f32>(((word_3 | (lane_3)))));
     }
     else
     {
@@ -240,7 +240,7 @@ fn stored_0( _S1 : vec3<u32>,  _S2 : u32) -> f32
     var value_0 : f32;
     if(_S3 == u32(0))
     {
-        value_0 = (bitcast<f32>((word_2)));
+        value_0 = (bitcast<f32>(((word_2 | (lane_2)))));
     }
     else
     {
@@ -291,7 +291,7 @@ fn stored_1( _S13 : vec3<u32>,  _S14 : u32) -> f32
     var value_2 : f32;
     if(_S15 == u32(0))
     {
-        value_2 = (bitcast<f32>((word_3)));
+        value_2 = (bitcast<f32>(((word_3 | (lane_3)))));
     }
     else
     {
@@ -342,7 +342,7 @@ fn stored_2( _S25 : vec3<u32>,  _S26 : u32) -> f32
     var value_4 : f32;
     if(_S27 == u32(0))
     {
-        value_4 = (bitcast<f32>((word_4)));
+        value_4 = (bitcast<f32>(((word_4 | (lane_4)))));
     }
     else
     {

@@ -441,7 +441,7 @@ fn stored_0( _S14 : vec3<u32>,  _S15 : u32) -> f32
     var value_0 : f32;
     if(_S16 == u32(0))
     {
-        value_0 = (bitcast<f32>((word_2)));
+        value_0 = (bitcast<f32>(((word_2 | (lane_2)))));
     }
     else
     {

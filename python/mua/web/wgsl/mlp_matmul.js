@@ -41,7 +41,7 @@ fn stored_0( _S1 : vec3<u32>,  _S2 : u32) -> f32
     var value_0 : f32;
     if(_S3 == u32(0))
     {
-        value_0 = (bitcast<f32>((word_2)));
+        value_0 = (bitcast<f32>(((word_2 | (lane_2)))));
     }
     else
     {
@@ -68,7 +68,7 @@ fn stored_1( _S7 : vec3<u32>,  _S8 : u32) -> f32
     var value_1 : f32;
     if(_S9 == u32(0))
     {
-        value_1 = (bitcast<f32>((word_3)));
+        value_1 = (bitcast<f32>(((word_3 | (lane_3)))));
     }
     else
     {
@@ -206,7 +206,7 @@ fn stored_0( _S1 : vec3<u32>,  _S2 : u32) -> f32
     var value_0 : f32;
     if(_S3 == u32(0))
     {
-        value_0 = (bitcast<f32>((word_2)));
+        value_0 = (bitcast<f32>(((word_2 | (lane_2)))));
     }
     else
     {
@@ -233,7 +233,7 @@ fn stored_1( _S7 : vec3<u32>,  _S8 : u32) -> f32
     var value_1 : f32;
     if(_S9 == u32(0))
     {
-        value_1 = (bitcast<f32>((word_3)));
+        value_1 = (bitcast<f32>(((word_3 | (lane_3)))));
     }
     else
     {

@@ -152,13 +152,23 @@ fn splatVertex_0( _S8 : u32,  _S9 : u32,  _S10 : vec2<f32>,  _S11 : mat4x4<f32>)
     var _S13 : f32 = length(major_0);
     var _S14 : f32 = halfAt_0(tail_0.w, _S9);
     var deviations_2 : vec2<f32> = vec2<f32>(_S13, _S14);
+    var axis_1 : vec2<f32> = major_0 / vec2<f32>(max(_S13, 1.17549435082228751e-38f));
+    var seen_0 : bool = _S14 > 0.0f;
+    var centre_0 : vec3<f32>;
+    if(seen_0)
+    {
+        centre_0 = (bitcast<vec3<f32>>((head_0.xyz)));
+    }
+    else
+    {
+        centre_0 = vec3<f32>(vec3<i32>(i32(0)));
+    }
     var wide_2 : vec2<f32> = splatWide_0(deviations_2);
     var corner_2 : vec2<f32> = splatCorner_0(_S8 % u32(6));
-    var clip_0 : vec4<f32> = (((vec4<f32>((bitcast<vec3<f32>>((head_0.xyz))), 1.0f)) * (_S11)));
+    var clip_0 : vec4<f32> = (((vec4<f32>(centre_0, 1.0f)) * (_S11)));
     var _S15 : f32 = clip_0.w;
-    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S15) + splatOffset_0(major_0 / vec2<f32>(max(_S13, 1.17549435082228751e-38f)), wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S10;
+    var place_0 : vec2<f32> = clip_0.xy / vec2<f32>(_S15) + splatOffset_0(axis_1, wide_2, corner_2) * vec2<f32>(2.0f, -2.0f) / _S10;
     var depth_0 : f32 = clamp(clip_0.z / _S15, 0.0f, 1.0f);
-    var seen_0 : bool = _S14 > 0.0f;
     var varyings_0 : SplatVaryings_0;
     varyings_0.position_0 = vec4<f32>(2.0f, 2.0f, 0.0f, 1.0f);
     if(seen_0)

@@ -533,7 +533,7 @@ fn projectTexel_0( texel_3 : u32) -> u32
         second_2.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
     var splat_0 : u32 = u32(2) * (Constants_0.first_splat_0 + texel_3);
-    var _S61 : vec2<u32> = vec2<u32>(vec2<i32>(i32(0)));
+    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_5.centre_0))), u32(0));
     if((first_3.deviations_1.x) > 0.0f)
     {
         _S60 = true;
@@ -542,22 +542,18 @@ fn projectTexel_0( texel_3 : u32) -> u32
     {
         _S60 = (second_2.deviations_1.x) > 0.0f;
     }
-    var color_1 : vec2<u32>;
     var key_0 : u32;
     if(_S60)
     {
-        var color_2 : vec2<u32> = packedColors_0(gaussian_5, texel_3);
-        splats_0[splat_0 + u32(1)] = vec4<u32>(color_2.y, packedAxis_0(first_3), packedAxis_0(second_2), packBounded_0(vec2<f32>(first_3.deviations_1.y, second_2.deviations_1.y)));
-        var _S62 : u32 = depthKey_0(gaussian_5.centre_0);
-        color_1 = color_2;
-        key_0 = _S62;
+        var color_1 : vec2<u32> = packedColors_0(gaussian_5, texel_3);
+        splats_0[splat_0][i32(3)] = color_1.x;
+        splats_0[splat_0 + u32(1)] = vec4<u32>(color_1.y, packedAxis_0(first_3), packedAxis_0(second_2), packBounded_0(vec2<f32>(first_3.deviations_1.y, second_2.deviations_1.y)));
+        key_0 = depthKey_0(gaussian_5.centre_0);
     }
     else
     {
-        color_1 = _S61;
         key_0 = u32(65535);
     }
-    splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_5.centre_0))), color_1.x);
     return key_0;
 }
 
@@ -567,12 +563,12 @@ var<workgroup> groupKeys_0 : array<u32, i32(256)>;
 @workgroup_size(256, 1, 1)
 fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_index) place_3 : u32)
 {
-    var _S63 : u32 = thread_0.x;
+    var _S61 : u32 = thread_0.x;
     var key_1 : u32;
-    if(_S63 < (Constants_0.texel_count_0))
+    if(_S61 < (Constants_0.texel_count_0))
     {
-        var _S64 : u32 = projectTexel_0(_S63);
-        key_1 = _S64;
+        var _S62 : u32 = projectTexel_0(_S61);
+        key_1 = _S62;
     }
     else
     {
@@ -581,16 +577,16 @@ fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(wo
     groupKeys_0[place_3] = key_1;
     workgroupBarrier();
     var pair_0 : u32 = u32(2) * place_3;
-    var _S65 : bool;
+    var _S63 : bool;
     if(pair_0 < u32(256))
     {
-        _S65 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
+        _S63 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
     }
     else
     {
-        _S65 = false;
+        _S63 = false;
     }
-    if(_S65)
+    if(_S63)
     {
         keys_0[(Constants_0.first_splat_0 + u32(256) * group_0.x) / u32(2) + place_3] = ((groupKeys_0[pair_0]) | ((((groupKeys_0[pair_0 + u32(1)]) << (u32(16))))));
     }
