@@ -1,5 +1,5 @@
 // fxc's command line over Microsoft's d3dcompiler_47.dll, for machines without the Windows SDK; tools/README.md says how
-// to build and run it. Takes -T PROFILE, -E ENTRY, -Fo OUTPUT, -I DIRECTORY, -D NAME[=VALUE], -nologo and one file.
+// to build and run it. Takes -T PROFILE, -E ENTRY, -Fo OUTPUT, -I DIRECTORY, -D NAME[=VALUE], -Gec, -nologo and one file.
 
 #define CINTERFACE
 #define COBJMACROS
@@ -13,6 +13,7 @@ enum { MOST = 16 };
 static const char *profile, *entry, *output, *file, *directories[MOST];
 static D3D_SHADER_MACRO macros[MOST + 1];
 static int directory_count, macro_count;
+static UINT flags = D3DCOMPILE_OPTIMIZATION_LEVEL3;
 
 static char *read_file(const char *path, UINT *size) {
   FILE *stream = fopen(path, "rb");
@@ -54,6 +55,10 @@ static int read_arguments(int count, char **arguments) {
   for (int i = 1; i < count; i++) {
     char *argument = arguments[i];
     if (!strcmp(argument, "-nologo")) continue;
+    if (!strcmp(argument, "-Gec")) {
+      flags |= D3DCOMPILE_ENABLE_BACKWARDS_COMPATIBILITY;
+      continue;
+    }
     if (argument[0] != '-') {
       file = argument;
       continue;
@@ -79,7 +84,7 @@ int main(int count, char **arguments) {
   ID3DInclude includes = {&methods};
   ID3DBlob *code = NULL, *messages = NULL;
   HRESULT result = D3DCompile(
-      text, size, file, macros, &includes, entry, profile, D3DCOMPILE_OPTIMIZATION_LEVEL3, 0, &code, &messages);
+      text, size, file, macros, &includes, entry, profile, flags, 0, &code, &messages);
   if (messages) fputs(ID3D10Blob_GetBufferPointer(messages), stderr);
   if (FAILED(result)) return 1;
   FILE *stream = output ? fopen(output, "wb") : NULL;

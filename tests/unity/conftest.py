@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import component
+import engine_shaders
 import pipelines
 import pytest
 from csharp import CSharp
@@ -61,3 +62,12 @@ def universal(
 ) -> pipelines.Recorded:
     """A run in each mode of URP."""
     return record(request.param)
+
+
+@pytest.fixture(scope="session")
+def engine() -> engine_shaders.Engine:
+    """Unity's own compilers of shaders."""
+    found = engine_shaders.find()
+    if found is None:
+        pytest.skip(f"needs {engine_shaders.NEEDS}: the engine's own include files and translator run this test")
+    return found

@@ -203,7 +203,7 @@ class LayeredDevice:
 
     def _written(self, group: Any, one: Bound) -> Any:
         buffer, _ = self._buffer(len(one.content), USAGES[one.uniform], one.content)
-        info = vk.VkDescriptorBufferInfo(buffer, 0, vk.VK_WHOLE_SIZE)
+        info = vk.VkDescriptorBufferInfo(buffer, 0, len(one.content))
         return vk.VkWriteDescriptorSet(
             dstSet=group,
             dstBinding=one.binding,

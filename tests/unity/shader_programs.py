@@ -46,9 +46,9 @@ class Program:
     def __str__(self) -> str:
         return f"{self.shader.split('/')[-1]} {self.name}"
 
-    def write(self, folder: Path, *defines: str) -> Path:
+    def write(self, folder: Path, *defines: str, stand_in: bool = True) -> Path:
         """The program as a file in a folder, with what it includes beside it and with definitions before it."""
-        for source in (*RUNTIME.joinpath("Shaders").glob("*.hlsl"), *STAND_IN.iterdir()):
+        for source in (*RUNTIME.joinpath("Shaders").glob("*.hlsl"), *(STAND_IN.iterdir() if stand_in else ())):
             folder.joinpath(source.name).write_text(source.read_text().replace(KERNELS_PACKAGE, ""))
         path = folder / f"{self.name}.hlsl"
         path.write_text("".join(f"#define {define}\n" for define in defines) + self.text)

@@ -7,13 +7,14 @@ import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
+from engine_shaders import Engine
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
@@ -28,11 +29,16 @@ from mua.gpu.reflect import Constant
 from mua.kernels.splat_project import pack_colors
 from mua.player.draw import SortedSplats, SplatRenderer, image_format
 
+if TYPE_CHECKING:
+    from layers import LayeredDevice
+
 SCREEN = (160, 200)
 LEAST_PSNR = 80.0  # dB where splats are; matrices are rounded to float32 on another way
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME_AT = 3 / 24  # seconds into a clip of 24 Hz
 MODES = ("indirect", "direct")
+STEREO = ("multiview", "instanced")
+LARGEST_PSNR_OF_OTHER = 40.0  # dB, of an eye against the other's image
 
 
 @dataclass(frozen=True)
@@ -110,6 +116,20 @@ def instanced(csharp: CSharp, frame_program: Path, device: Device, tmp_path_fact
     return record(csharp, frame_program, device, tmp_path_factory.mktemp("instanced"), count=2, instances=2)
 
 
+@pytest.fixture(scope="module")
+def two_eyes(both: Scene, instanced: Scene) -> dict[str, Scene]:
+    return {"multiview": both, "instanced": instanced}
+
+
+@pytest.fixture(scope="module")
+def layered() -> "Iterator[LayeredDevice]":
+    pytest.importorskip("vulkan", reason="needs PyPI's vulkan, which the development requirements bring")
+    from layers import LayeredDevice
+
+    with LayeredDevice() as device:
+        yield device
+
+
 @pytest.fixture
 def painter(device: Device, tmp_path: Path) -> "Painter":
     return Painter(device, tmp_path)
@@ -160,11 +180,14 @@ class Painter:
         return np.split(target.image(draw, half), len(scene.cameras), axis=1)
 
 
-def agree(found: Array, expected: Array) -> None:
-    """Over the pixels that either covers."""
+def psnr(found: Array, expected: Array) -> float:
+    """Over the pixels that either covers, dB."""
     covered = (found[..., 3] > 0) | (expected[..., 3] > 0)
-    error = np.mean(np.square(found - expected)[covered])
-    assert -10 * np.log10(max(error, 1e-12)) > LEAST_PSNR
+    return float(-10 * np.log10(max(np.mean(np.square(found - expected)[covered]), 1e-12)))
+
+
+def agree(found: Array, expected: Array) -> None:
+    assert psnr(found, expected) > LEAST_PSNR
 
 
 def seen(image: Array) -> bool:
@@ -192,19 +215,58 @@ def test_counts_of_draws(mono: Scene, instanced: Scene) -> None:
         assert 0 < indirect.arguments[0] < direct.arguments[0]
 
 
+def both_layers(
+    painter: Painter, device: "LayeredDevice", scene: Scene, stereo: str, engine: Engine | None, mode: str = "indirect"
+) -> Array:
+    """[2, H, W, 4] of one pass, compiled with stand-ins or as Unity does it."""
+    import both_eyes
+
+    drawn = both_eyes.led(scene.drawn[mode])
+    program = painter.passes[drawn.pass_index]
+    if engine is None:
+        compiled = both_eyes.by_stand_in(program, stereo, drawn, painter.folder)
+    else:
+        compiled = both_eyes.by_engine(engine, program, stereo, drawn, painter.folder)
+    return both_eyes.picture(device, compiled, drawn, stereo, SCREEN)
+
+
+def agree_in_both(layers: Array, expected: list[Array]) -> None:
+    """Each layer with its eye, and neither with the other's; `pytest -s` shows by how much."""
+    found = [[psnr(layer, eye) for eye in expected] for layer in layers]
+    print("\nlayers against eyes, dB:", *(f"{error:.1f}" for errors in found for error in errors))
+    for layer in (0, 1):
+        assert found[layer][layer] > LEAST_PSNR
+        assert found[layer][1 - layer] < LARGEST_PSNR_OF_OTHER
+
+
 @pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("eye", [0, 1])
-def test_each_instance_draws_its_eye(painter: Painter, instanced: Scene, eye: int, mode: str) -> None:
-    drawn = instanced.drawn[mode]
-    doubled = replace(drawn, arguments=(drawn.arguments[0], 2))
-    expected = painter.player(instanced)
-    agree(painter.unity(doubled, variant="instanced", replayed_layer=eye), expected[eye])
+@pytest.mark.parametrize("stereo", STEREO)
+def test_one_pass_draws_each_eye_into_its_layer(
+    painter: Painter, layered: "LayeredDevice", two_eyes: dict[str, Scene], mode: str, stereo: str
+) -> None:
+    scene = two_eyes[stereo]
+    agree_in_both(both_layers(painter, layered, scene, stereo, None, mode), painter.player(scene))
 
 
-@pytest.mark.parametrize("variant", ["multiview", "mobile"])
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("stereo", STEREO)
+def test_one_pass_draws_each_eye_as_unity_compiles_it(
+    painter: Painter, layered: "LayeredDevice", two_eyes: dict[str, Scene], engine: Engine, mode: str, stereo: str
+) -> None:
+    scene = two_eyes[stereo]
+    agree_in_both(both_layers(painter, layered, scene, stereo, engine, mode), painter.player(scene))
+
+
+def test_a_single_eye_is_drawn_into_both_layers(painter: Painter, layered: "LayeredDevice", mono: Scene) -> None:
+    """Where a pipeline draws a camera without stereo by a pass with it."""
+    (expected,) = painter.player(mono)
+    for layer in both_layers(painter, layered, mono, "multiview", None):
+        agree(layer, expected)
+
+
 @pytest.mark.parametrize("eye", [0, 1])
-def test_each_view_of_a_multiview_pass_draws_its_eye(painter: Painter, both: Scene, eye: int, variant: str) -> None:
-    found = painter.unity(both.drawn["indirect"], variant=variant, replayed_view=eye)
+def test_each_view_draws_its_eye_with_halves(painter: Painter, both: Scene, eye: int) -> None:
+    found = painter.unity(both.drawn["indirect"], variant="mobile", replayed_view=eye)
     agree(found, painter.player(both)[eye])
 
 
@@ -227,12 +289,6 @@ def test_the_eyes_differ(painter: Painter, both: Scene) -> None:
     left, right = painter.player(both)
     with pytest.raises(AssertionError):
         agree(left, right)
-
-
-def test_a_single_eye_serves_both_views(painter: Painter, mono: Scene) -> None:
-    """Where a pipeline draws a camera without stereo by a pass with it."""
-    found = painter.unity(mono.drawn["indirect"], variant="multiview", replayed_view=1)
-    agree(found, painter.player(mono)[0])
 
 
 @pytest.mark.parametrize("shift", [-2.0, 2.0], ids=["lower", "upper"])

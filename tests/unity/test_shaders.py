@@ -6,10 +6,14 @@ from pathlib import Path
 import pytest
 import shader_compilers
 import shader_rules
-from check_shaders import messages
+from check_shaders import kernel_shaders, messages
+from engine_shaders import GAMMA, STEREO, VULKAN, Engine, words_as_floats
+from engine_shaders import VARIANTS as ENGINE_VARIANTS
 from shader_compilers import Compiler
 from shader_programs import SAMPLES, SHADERS, VARIANTS, Program, programs
-from shader_source import closing
+from shader_source import Shader, closing
+
+from mua.gpu import sources
 
 PROGRAMS = [program for path in (*SHADERS, *SAMPLES) for program in programs(path)]
 COMPILERS = ["glslang", *(name for name in ("dxc", "fxc") if shader_compilers.find(name))]  # one there must be
@@ -33,6 +37,35 @@ def test_every_variant_compiles_without_a_warning(
         path = program.write(tmp_path, *VARIANTS[variant], *space)
         for entry, stage in ((program.vertex, "vert"), (program.fragment, "frag")):
             assert messages(compiler, path, entry, stage) == [], f"{entry} {space}"
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=str)
+def test_every_variant_compiles_with_the_engines_own_includes(tmp_path: Path, engine: Engine, program: Program) -> None:
+    path = engine.write(program, tmp_path)
+    for defines in ENGINE_VARIANTS:
+        for entry, stage in ((program.vertex, "vert"), (program.fragment, "frag")):
+            compiled, said = engine.bytecode(path, entry, stage, defines)
+            assert compiled.is_file(), f"{entry} {defines}: {said}"
+            assert said == [], f"{entry} {defines}"
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=str)
+def test_draws_keep_words_that_are_no_numbers_as_integers(tmp_path: Path, engine: Engine, program: Program) -> None:
+    """A float of such bits may be a denormal, which devices flush to zero."""
+    path = engine.write(program, tmp_path)
+    for stereo in STEREO.values():
+        for entry, stage in ((program.vertex, "vert"), (program.fragment, "frag")):
+            assert words_as_floats(engine.glsl(path, entry, stage, (*VULKAN, *stereo, *GAMMA))) == [], (
+                f"{entry} {stereo}"
+            )
+
+
+@pytest.mark.parametrize("shader", kernel_shaders(), ids=lambda shader: shader.path.stem)
+def test_kernels_keep_words_that_are_no_numbers_as_integers(tmp_path: Path, engine: Engine, shader: Shader) -> None:
+    path = tmp_path / shader.path.name
+    path.write_text(shader.path.read_text())
+    for entry, defines in sources.kernels(shader.path.read_text()).items():
+        assert words_as_floats(engine.glsl(path, entry, "comp", (*VULKAN, *defines))) == [], entry
 
 
 def test_only_words_that_every_compiler_takes() -> None:
