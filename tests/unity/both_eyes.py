@@ -106,8 +106,8 @@ def _block(size: int, offsets: dict[str, int], drawn: Drawn) -> bytes:
 def led(drawn: Drawn) -> Drawn:
     """The same draw after clear splats amid the others.
 
-    Mesa 22's software device notes a new view with the first triangles that it need not clip. Those that it clips before
-    these go into the layer of the view before.
+    Mesa 22 notes a new view with the first triangles that it need not clip. Those that it clips before go into the
+    layer of the view before.
     """
     splats = drawn.buffers["splats"].reshape(-1, SPLAT_WORDS)
     clear = np.zeros(SPLAT_WORDS, np.uint32)
