@@ -66,6 +66,15 @@ def synthetic_components(rng: np.random.Generator, width: int, seed: int) -> Com
     )
 
 
+def with_random_poses(avatar: Avatar, frames: int) -> Avatar:
+    """With a clip of random turns and places of all joints, far outside of what training showed."""
+    rng, skeleton, own = np.random.default_rng(1), avatar.rig.skeleton, avatar.components
+    shape = (frames, len(skeleton.names))
+    turns = rotation.normalize(rng.normal(size=(*shape, 4)))
+    clip = Clip("random poses", 24.0, turns, skeleton.bind_translations + rng.normal(size=(*shape, 3)) / 4)
+    return replace(avatar, clips=(clip,), components=replace(own, directions=100 * own.directions))
+
+
 def with_surface(avatar: Avatar) -> Avatar:
     """The same avatar with triangles over its texels, as bakes store them."""
     from mua.rig.triangulate import triangulate  # here, because it needs more packages than an avatar

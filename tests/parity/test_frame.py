@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from frame_errors import PosedFrame
-from synthetic_avatar import sparse_avatar, synthetic_avatar
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses
 
 from mua.arrays import Array
 from mua.asset import write
@@ -35,6 +35,7 @@ MOST_KEYS = 4.0  # of 65535, by which splats so far from where they belong may b
 COLOR_BOUND = 1 / 512  # half a step of 8 bits
 OPACITY_BOUND = 2**-10  # a half float below 1, and a logit in one, both of which a GPU may round towards zero
 LEAST_PSNR = 50.0  # dB of an image against the CPU rasteriser's
+FAR = 0.9  # outside of training
 FEWER_THAN = 31  # dispatches in a frame
 OPACITY = 10  # channel
 
@@ -122,6 +123,20 @@ def test_frames_agree_with_the_reference_on_the_same_stored_values(
         assert errors.color < COLOR_BOUND
         assert errors.opacity < OPACITY_BOUND
         assert errors.key <= errors.key_bound < MOST_KEYS
+
+
+def test_poses_far_outside_of_training_agree(device: Device, tmp_path: Path) -> None:
+    frame = opened(device, with_random_poses(synthetic_avatar(1), 6), tmp_path)
+    (gpu,) = frame.avatars
+    clip = gpu.avatar.avatar.clips[0]
+    for index in range(len(clip)):
+        posed = PosedFrame(device, frame, clip, index, eyes=1, screen=256)
+        assert gpu.outside == pytest.approx(posed.exact.outside, abs=1e-12)
+        assert gpu.outside > FAR
+        errors = posed.errors()
+        assert errors.position < POSITION_BOUND
+        assert errors.color < COLOR_BOUND
+        assert errors.opacity < OPACITY_BOUND
 
 
 @pytest.mark.parametrize("storage", ["f32", "i8"])

@@ -4,18 +4,15 @@ import base64
 import io
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from synthetic_avatar import synthetic_avatar, with_surface
+from synthetic_avatar import synthetic_avatar, with_random_poses, with_surface
 from web.browser import Browser, Page, Serve
 
-from mua import rotation
 from mua.arrays import Array
-from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.write import encode
 from mua.camera import EYE_DISTANCE, Camera, stereo
@@ -321,7 +318,7 @@ def test_a_handle_says_how_far_outside_of_training_the_pose_is(opened: Open, sma
 def test_poses_far_outside_of_training_look_as_on_the_desktop(opened: Open, device: Device, tmp_path: Path) -> None:
     """Every joint turned at random; networks that read such a pose as it is would throw splats out of the image."""
     file = tmp_path / "a.muaavatar"
-    file.write_bytes(encode(with_random_poses(synthetic_avatar()), storage="f32"))
+    file.write_bytes(encode(with_random_poses(synthetic_avatar(), 3), storage="f32"))
     page, avatar = opened(a=file.read_bytes()), read(file)
     assert load(page) == ""
     page.evaluate("player.camera.distance *= 1.5")
@@ -335,14 +332,6 @@ def test_poses_far_outside_of_training_look_as_on_the_desktop(opened: Open, devi
         assert covered.any()
         assert not covered[:, [0, -1]].any()
         assert not covered[[0, -1]].any()
-
-
-def with_random_poses(avatar: Avatar) -> Avatar:
-    """With a clip of random turns of all joints, and networks whose components are a hundred times as large."""
-    rng, clip, own = np.random.default_rng(1), avatar.clips[0], avatar.components
-    shape = (3, *clip.rotations.shape[1:])
-    turned = replace(clip, rotations=rotation.normalize(rng.normal(size=shape)), translations=clip.translations[:3])
-    return replace(avatar, clips=(turned,), components=replace(own, directions=100 * own.directions))
 
 
 def test_playing_moves_the_time_and_the_picture(opened: Open, small: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from malformed import DAMAGED, MALFORMED, UNPACKABLE, malformed
 from mutants import mutant, packed_mutant
-from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
+from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses, with_surface
 
 from mua.arrays import Array
 from mua.asset import write
@@ -133,7 +133,9 @@ def faster(avatar: Avatar) -> Avatar:
 
 @pytest.mark.parametrize("storage", ["i8", "packed"])
 @pytest.mark.parametrize(
-    "change", [with_surface, faster, lambda avatar: sparse_avatar(2)], ids=["own", "rate", "sparse"]
+    "change",
+    [with_surface, faster, lambda avatar: sparse_avatar(2), lambda avatar: with_random_poses(avatar, 6)],
+    ids=["own", "rate", "sparse", "far outside of training"],
 )
 def test_values_are_those_of_python(tmp_path: Path, change: Any, storage: Any) -> None:
     path = tmp_path / "a.muaavatar"
