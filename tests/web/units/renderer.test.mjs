@@ -1,8 +1,12 @@
 // What a renderer makes of the poses that it is given, and what it holds of each avatar; the device is a stand-in.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { Device } from "../../../python/mua/web/device.js";
+import { read } from "../../../python/mua/web/format/read.js";
 import { Renderer } from "../../../python/mua/web/renderer.js";
+import { fakeGpu } from "./gpu.mjs";
 
 const LOOK = { camera: { azimuth: 0, elevation: 0, distance: 3, target: [0, 1, 0], fov: 0.5 }, stereo: false, level: "full", budget: null };
 const SKELETON = { names: ["root"], parents: [-1], root: 0, bindTranslations: new Float32Array(3), translated: [] };
@@ -81,30 +85,62 @@ test("an avatar that goes leaves the others and gives its memory back", () => {
   assert.deepEqual([renderer.slots, first.freed, second.freed], [[second], 1, 0]);
 });
 
-/** A device whose buffers and textures are counted. */
-function counting() {
-  const device = { held: 0, gpu: { createTexture: () => ((device.held += 1), { destroy: () => (device.held -= 1) }) } };
-  return device;
+const content = readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url));
+const golden = await read(Uint8Array.from(content).buffer);
+
+/** A renderer on a device that computes nothing. */
+function opened() {
+  const gpu = fakeGpu();
+  const device = new Device({ info: {} }, gpu);
+  const context = { configure() {}, unconfigure() {} };
+  return { gpu, device, renderer: new Renderer(device, { width: 4, height: 4, getContext: () => context }, {}) };
 }
 
-globalThis.GPUTextureUsage = { RENDER_ATTACHMENT: 16, COPY_SRC: 1 };
+test("avatars that came and went leave no memory behind", async () => {
+  const { gpu, renderer } = opened();
+  const before = [renderer.bytes, gpu.held.size];
+  const [first, second] = [await renderer.add(golden), await renderer.add(golden)];
+  const whole = await renderer.add(golden);
+  renderer.replace(first, whole);
+  assert.deepEqual(renderer.slots, [whole, second]);
+  renderer.remove(second);
+  renderer.remove(whole);
+  assert.deepEqual([renderer.bytes, gpu.held.size], before);
+});
 
-test("a saved picture leaves no memory behind, also where it cannot be read", async () => {
-  for (const broken of [true, false]) {
-    const device = counting();
-    device.gpu.createBuffer = () => {
-      throw new Error(broken ? "no room" : "");
-    };
-    const renderer = { device, canvas: { width: 4, height: 4 }, submit: () => assert.equal(device.held, 1) };
-    await assert.rejects(Renderer.prototype.picture.call(renderer, [], LOOK));
-    assert.equal(device.held, 0);
-  }
+test("an avatar that the device has no room for is a sentence, and the others keep theirs", async () => {
+  const { gpu, renderer } = opened();
+  const slot = await renderer.add(golden);
+  const before = [renderer.bytes, gpu.held.size];
+  gpu.lacking = { message: "out of memory" };
+  await assert.rejects(renderer.add(golden), { name: "AvatarError", message: /too little free memory for this avatar/ });
+  assert.deepEqual([renderer.slots, renderer.bytes, gpu.held.size], [[slot], ...before]);
+});
+
+test("an avatar of which a buffer is too large for the device is given back", async () => {
+  const { gpu, renderer } = opened();
+  const before = [renderer.bytes, gpu.held.size];
+  gpu.limits.maxBufferSize = 4096;
+  await assert.rejects(renderer.add(golden), { name: "AvatarError", message: /more than the 4096 that this device can bind/ });
+  assert.deepEqual([renderer.slots, renderer.bytes, gpu.held.size], [[], ...before]);
 });
 
 test("an avatar whose kernels do not compile is given back", async () => {
-  const slot = slotOf();
-  const renderer = { decoding: Promise.reject(new Error("no kernel")), device: {}, upload: async () => slot, removed: [] };
-  renderer.remove = (one) => renderer.removed.push(one);
-  renderer.decoding.catch(() => {});
-  await assert.rejects(Renderer.prototype.add.call(renderer, { geometry: {}, appearance: {} }));
+  const { gpu, renderer } = opened();
+  await renderer.decoding;
+  const before = [renderer.bytes, gpu.held.size];
+  gpu.broken = "UpsampleTexels";
+  await assert.rejects(renderer.add(golden), /does not compile/);
+  assert.deepEqual([renderer.slots, renderer.bytes, gpu.held.size], [[], ...before]);
+});
+
+test("a saved picture leaves no memory behind, also where it cannot be read", async () => {
+  const { gpu, device, renderer } = opened();
+  const held = gpu.held.size;
+  renderer.submit = () => assert.equal(gpu.held.size, held + 1);
+  gpu.createBuffer = () => {
+    throw new Error("no room");
+  };
+  await assert.rejects(renderer.picture([], LOOK), /no room/);
+  assert.deepEqual([gpu.held.size, device.bytes], [held, 0]);
 });
