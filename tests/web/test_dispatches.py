@@ -3,6 +3,7 @@
 import json
 import subprocess
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +88,7 @@ def test_the_browser_makes_the_desktops_dispatches(tmp_path: Path, storage: Any)
     avatar, file = synthetic_avatar(), tmp_path / "a.muaavatar"
     write(file, avatar, storage=storage)
     box = avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[0]
-    camera = orbit(box, screen=(96, 64), azimuth=0.4)
+    camera = replace(orbit(box, screen=(96, 64), azimuth=0.4), near=0.005)  # as of a small figure
     cameras = stereo(camera, 0.063)
     device = open_device(None)
     expected, found = desktop(device, file, cameras), browser(file, cameras)
