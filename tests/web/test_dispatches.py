@@ -14,7 +14,7 @@ from web.test_modules import SECONDS, pytestmark
 
 from mua import rotation
 from mua.asset import write
-from mua.camera import Camera, orbit, stereo
+from mua.camera import Camera, orbit, perspective, stereo
 from mua.coarser import coarsest
 from mua.gpu import Buffer, Commands, Device, open_device
 from mua.gpu.kernel import Kernel
@@ -88,7 +88,8 @@ def test_the_browser_makes_the_desktops_dispatches(tmp_path: Path, storage: Any)
     avatar, file = synthetic_avatar(), tmp_path / "a.muaavatar"
     write(file, avatar, storage=storage)
     box = avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[0]
-    camera = replace(orbit(box, screen=(96, 64), azimuth=0.4), near=0.005)  # as of a small figure
+    nearer = perspective(0.6, aspect=96 / 64, near=0.005)  # as for a small figure
+    camera = replace(orbit(box, screen=(96, 64), azimuth=0.4), projection=nearer)
     cameras = stereo(camera, 0.063)
     device = open_device(None)
     expected, found = desktop(device, file, cameras), browser(file, cameras)
