@@ -60,6 +60,8 @@ def test_a_capture_becomes_an_avatar_and_so_does_its_teacher(capture: Path, tmp_
         (("--teacher", "absent"), "--teacher absent: there is no such directory"),
         (("--teacher", "{folder}"), "it holds no teacher.json"),
         (("{capture}", "--height", "1.7"), "--height: the capture's own capture.json says it"),
+        (("{capture}", "--scale", "2"), "--scale: the capture's own capture.json says it"),
+        (("{capture}", "--uv", "unwrap"), "--uv: the capture's own capture.json says it"),
         (("{capture}", "--detail", "head=2"), "--detail: the capture's own capture.json says it"),
         (("{capture}", "--leave-out", "hat"), "--leave-out: the capture's own capture.json says it"),
         (("{capture}", "--check"), "mua-capture check"),

@@ -149,10 +149,14 @@ def test_missing_frames_and_cameras_are_named(damaged: Capture) -> None:
 
 
 def test_a_picture_of_another_size_is_named(damaged: Capture) -> None:
-    image = damaged.files("walk", 1, "left").image
-    Image.new("RGBA", (9, 7)).save(image)
-    (told,) = everything(damaged).problems
-    assert told.startswith(f"Camera left, clip walk, frame 1: {image}: the image is 9 x 7 pixels; ")
+    """Once for each camera and clip."""
+    views = [("front", 1), ("left", 1), ("left", 2)]
+    images = [damaged.files("walk", frame, camera).image for camera, frame in views]
+    for image in images:
+        Image.new("RGBA", (9, 7)).save(image)
+    front, left = everything(damaged).problems
+    assert front.startswith(f"Camera front, clip walk, frame 1: {images[0]}: the image is 9 x 7 pixels; ")
+    assert left.startswith(f"Camera left, clip walk, frame 1: {images[1]}: the image is 9 x 7 pixels; ")
 
 
 def test_a_video_that_ends_early_is_named(damaged: Capture) -> None:

@@ -9,7 +9,7 @@ from bvh_files import BVH
 
 from mua import rotation
 from mua.errors import InputError
-from mua.motion.load import counted, load_motions, same_joints
+from mua.motion.load import counted, load_motions, same_joints, unique_names
 from mua.motion.read import read_motion
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
@@ -44,6 +44,21 @@ def test_puts_motion_on_joints_of_other_names_by_a_mapping(motion: Path) -> None
     assert len(clips[0]) == 3
     turned = rotation.multiply(rotation.conjugate(clips[0].rotations[0, 1]), clips[0].rotations[2, 1])
     assert np.degrees(2 * np.arccos(abs(turned[0]))) == pytest.approx(20, abs=1e-6)
+
+
+def test_puts_motion_on_joints_whose_parts_the_characters_file_says(motion: Path) -> None:
+    source = read_motion(motion)[0]
+    other = twice_as_large(source.skeleton)
+    said = {"j0": "hips", "j1": "spine"}
+    (loaded,) = load_motions(motion, other, mapping=None, rate=10.0, said=said, refuse=False)
+    assert sorted(loaded.matches.chains) == [0, 1]
+    (silent,) = load_motions(motion, other, mapping=None, rate=10.0, refuse=False)
+    assert 1 not in silent.matches.chains
+
+
+def test_clips_of_one_name_are_numbered_from_the_second_on() -> None:
+    clips = [Clip(name, 30.0, np.zeros((1, 1, 4)), np.zeros((1, 1, 3))) for name in ("a", "b", "a", "a")]
+    assert [clip.name for clip in unique_names(clips)] == ["a", "b", "a 2", "a 3"]
 
 
 def test_refuses_motion_whose_joints_match_none_and_names_the_file(motion: Path) -> None:

@@ -13,7 +13,7 @@ from together import errors, start
 
 from mua.channels import CHANNELS
 from mua.errors import InputError
-from mua.recording import PlannedClip, Recording, TeacherWriter, parts, record
+from mua.recording import PlannedClip, Recording, TeacherWriter, damage, parts, record
 from mua.recording.parts import divide, first_texture, join_parts, part_directory, record_share, share
 
 
@@ -67,6 +67,7 @@ def test_any_number_of_processes_makes_the_same_files(whole: Recording, tmp_path
         join_parts(tmp_path / f"{processes}", plan(synthetic_rig()))
     assert_same(Recording(tmp_path / "1"), whole)
     assert content(tmp_path / "1") == content(tmp_path / "2") == content(tmp_path / "5")
+    damage.check(tmp_path / "5", plan(synthetic_rig()), rate=RATE, whole=True)  # else the next run would record it anew
 
 
 def test_a_writer_goes_on_with_what_was_joined(tmp_path: Path) -> None:

@@ -162,6 +162,16 @@ def test_a_damaged_avatar_is_not_shared(command: Commands, tmp_path: Path) -> No
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("more", [(), ("--single-file",)])
+def test_an_avatar_that_is_damaged_beside_a_sound_one_is_named(
+    command: Commands, avatar_file: Path, tmp_path: Path, more: tuple[str, ...]
+) -> None:
+    (tmp_path / "bad.muaavatar").write_bytes(b"not an avatar")
+    output = tmp_path / ("out.html" if more else "out")
+    assert "bad.muaavatar" in command("share", avatar_file, tmp_path / "bad.muaavatar", *more, "-o", output).sentence
+    assert not output.exists()
+
+
 def test_an_unknown_clip_is_told_before_anything_is_written(
     command: Commands, avatar_file: Path, tmp_path: Path
 ) -> None:
@@ -299,6 +309,11 @@ def test_a_part_that_is_not_there_is_refused(port: int, asked: str) -> None:
 @pytest.mark.parametrize("asked", ["bytes=0-1,4-5", "lines=1-2", "bytes=-"])
 def test_what_is_no_single_range_is_answered_by_the_whole(port: int, asked: str) -> None:
     assert ask(port, "/my%20hero.muaavatar", Range=asked)[::2] == (200, BYTES)
+
+
+def test_a_browser_keeps_nothing_for_the_next_run_at_the_same_address(port: int) -> None:
+    for path in ("/", "/my%20hero.muaavatar"):
+        assert ask(port, path)[1]["Cache-Control"] == "no-store"
 
 
 def test_a_head_has_no_body(port: int) -> None:

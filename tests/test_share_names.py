@@ -41,6 +41,9 @@ def test_a_single_file_holds_avatars_of_24_mb(tmp_path: Path) -> None:
     os.truncate(avatar, 24_000_001)
     with pytest.raises(InputError, match=r"--single-file: the avatars have 24\.0 MB"):
         require_small([avatar])
+    os.truncate(avatar, 13_000_000)
+    with pytest.raises(InputError, match=r"--single-file: the avatars have 26\.0 MB"):
+        require_small([avatar, avatar])
 
 
 def test_a_folder_that_cannot_be_put_in_place_leaves_the_old_one_there(

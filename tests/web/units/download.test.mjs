@@ -10,10 +10,11 @@ const { setTimeout: later } = globalThis;
 let answers; // of the server, one after the other: [status, first byte, end] of what is sent before the connection breaks
 let asked; // the range of each request
 let waits; // milliseconds between them
+let headers; // that each answer has beside the length, one after the other
 
 globalThis.setTimeout = (act, wait) => (waits.push(wait), later(act));
-globalThis.fetch = async (_, { headers } = {}) => {
-  asked.push(headers?.Range ?? null);
+globalThis.fetch = async (_, { headers: given } = {}) => {
+  asked.push(given?.Range ?? null);
   const [status, begin = 0, end = begin] = answers.shift() ?? [503];
   const left = status === 206 ? CONTENT.length - begin : CONTENT.length;
   const body = new ReadableStream({
@@ -24,10 +25,10 @@ globalThis.fetch = async (_, { headers } = {}) => {
       this.sent = true;
     },
   });
-  return new Response(body, { status, statusText: status === 500 ? "Internal Server Error" : "", headers: { "content-length": left } });
+  return new Response(body, { status, statusText: status === 500 ? "Internal Server Error" : "", headers: { "content-length": left, ...headers.shift() } });
 };
 
-beforeEach(() => ([asked, waits] = [[], []]));
+beforeEach(() => ([asked, waits, headers] = [[], [], []]));
 
 async function fetched(...given) {
   answers = given;
@@ -63,4 +64,38 @@ test("a server out of reach is a sentence", async () => {
   globalThis.fetch = () => Promise.reject(new TypeError("Failed to fetch"));
   await assert.rejects(fetched(), { message: /a.muaavatar cannot be fetched: the server is out of reach/ });
   globalThis.fetch = fetch;
+});
+
+for (const [mark, first, then] of [
+  ["etag", { etag: "one" }, { etag: "two" }],
+  ["last-modified", { "last-modified": "Monday" }, { "last-modified": "Tuesday" }],
+  ["length", {}, { "content-length": "50" }],
+])
+  test(`a file of another ${mark} is not joined to the first part`, async () => {
+    headers = [first, then];
+    await assert.rejects(fetched([200, 0, 40], [206, 40, 100]), { message: "a.muaavatar has changed on the server while it was fetched; load it again." });
+    headers = [first, first];
+    assert.deepEqual(await fetched([200, 0, 40], [206, 40, 100]), CONTENT);
+  });
+
+test("a server that sends another part than was asked for is a sentence", async () => {
+  headers = [{}, { "content-range": "bytes 30-99/100" }];
+  await assert.rejects(fetched([200, 0, 40], [206, 40, 100]), /sends another part of it than was asked for/);
+});
+
+test("of a file that is packed on the way nobody knows the length: it is not asked for in parts", async () => {
+  headers = [{ "content-encoding": "gzip", "content-length": "30" }];
+  await assert.rejects(fetched([200, 0, 40], [206, 40, 100]), /was not fetched whole/);
+  assert.equal(asked.length, 1);
+  headers = [{ "content-encoding": "gzip", "content-length": "30" }];
+  assert.deepEqual(await fetched([200, 0, 100]), CONTENT);
+});
+
+test("how far it is is said, of all where that is known", async () => {
+  const told = [];
+  for (const given of [{}, { "content-encoding": "br" }]) {
+    [answers, headers] = [[[200, 0, 100]], [given]];
+    await new Download("http://host/a%20b.muaavatar").whole((...said) => told.push(said));
+  }
+  assert.deepEqual(told, [[1, "Fetching a b.muaavatar: 0.0 of 0.0 MB"], [0, "Fetching a b.muaavatar: 0.0 MB"]]);
 });

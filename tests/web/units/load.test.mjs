@@ -1,15 +1,16 @@
-// What is said of a file that is no avatar.
+// What reads an avatar and what is shown of it meanwhile, and what is said of a file that is none.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { loadHere } from "../../../python/mua/web/load.js";
+import { load as loadApart, loadHere } from "../../../python/mua/web/load.js";
 
 const sound = Uint8Array.from(readFileSync(new URL("../../golden/synthetic.muaavatar", import.meta.url)));
 const load = (content, name) => loadHere(name ? new File([content], name) : new Blob([content]), () => {});
 
 for (const [what, content, said] of [
   ["a page", "\n<!doctype html><title>Not found</title>", "this is a web page and not an avatar; is its address right?"],
+  ["a page without a doctype", "<html><body>Not found", "this is a web page and not an avatar; is its address right?"],
   ["another file", "PK\x03\x04 and the rest of it", "this is not an avatar; expected a .muaavatar file."],
   ["two bytes", "no", "the file has 2 bytes, too few for a .muaavatar"],
 ])
@@ -23,4 +24,68 @@ test("an avatar that is damaged is said so, with the code of the fault", async (
   damaged[damaged.length >> 1] ^= 255;
   await assert.rejects(load(damaged, "a.muaavatar"), ({ code, message }) => code !== "" && message.startsWith("a.muaavatar: ") && /damaged/.test(message));
   assert.equal((await load(sound, "a.muaavatar")).clips.length, 1);
+});
+
+/** A worker that answers what it is sent with these messages, or fails; and how often one was ended. */
+function working(...messages) {
+  const worker = { ended: 0 };
+  globalThis.Worker = class {
+    terminate() {
+      worker.ended += 1;
+    }
+
+    postMessage(source) {
+      worker.source = source;
+      for (const data of messages) queueMicrotask(() => (data === "fails" ? this.onerror(new Event("error")) : this.onmessage({ data })));
+    }
+  };
+  return worker;
+}
+
+test("a worker reads an avatar, tells how far it is and what is there, and is ended", async () => {
+  globalThis.document = { baseURI: "http://host/folder/page.html" };
+  const worker = working({ progress: { fraction: 0.5, sentence: "half" } }, { preview: "a part" }, { avatar: "all of it" });
+  const told = [];
+  const found = await loadApart("a.muaavatar", (...said) => told.push(said), (part) => told.push(part));
+  assert.deepEqual([found, told], ["all of it", [[0.5, "half"], "a part"]]);
+  assert.deepEqual([worker.source, worker.ended], ["http://host/folder/a.muaavatar", 1]);
+});
+
+test("what a worker finds wrong is an error of the page's own, with code and field, and the worker is ended", async () => {
+  const worker = working({ told: { message: "It is damaged.", code: "checksum", field: "clips" } });
+  await assert.rejects(loadApart(new Blob([sound]), () => {}), { name: "AvatarError", message: "It is damaged.", code: "checksum", field: "clips" });
+  assert.equal(worker.ended, 1);
+});
+
+test("a page that forbids workers reads an avatar itself", async () => {
+  const worker = working("fails");
+  assert.equal((await loadApart(new Blob([sound]), () => {})).clips.length, 1);
+  assert.equal(worker.ended, 1);
+  globalThis.Worker = class {
+    constructor() {
+      throw new Error("forbidden");
+    }
+  };
+  assert.equal((await loadApart(new Blob([sound]), () => {})).clips.length, 1);
+});
+
+test("what is there of a file is shown while its rest does not come", async () => {
+  const packed = readFileSync(new URL("../../golden/packed.muaavatar", import.meta.url));
+  let release;
+  globalThis.fetch = async () => {
+    const body = new ReadableStream({
+      async start(stream) {
+        stream.enqueue(Uint8Array.from(packed.subarray(0, packed.length - 10)));
+        await new Promise((done) => (release = done));
+        stream.enqueue(Uint8Array.from(packed.subarray(packed.length - 10)));
+        stream.close();
+      },
+    });
+    return new Response(body, { headers: { "content-length": packed.length } });
+  };
+  const parts = [];
+  const late = setTimeout(() => release(), 10_000);
+  const loaded = loadHere("http://host/packed.muaavatar", () => {}, (part) => (parts.push(part), clearTimeout(late), release()));
+  assert.equal((await loaded).clips.length, 1);
+  assert.equal(parts.length, 1);
 });
