@@ -89,12 +89,13 @@ def test_what_all_frames_have_in_common_and_what_the_users_show_besides_add_up()
 
     size = np.linalg.norm(targets, axis=1)
     noise = 10 * np.maximum(size / np.sqrt(np.square(size[~own]).mean()), LEAST)
-    common = np.linalg.solve(kernel(x, x) + np.diag(noise), targets)
-    left = targets[own] - kernel(x[own], x) @ common
+    mean = targets[~own].mean(0)
+    common = np.linalg.solve(kernel(x, x) + np.diag(noise), targets - mean)
+    left = targets[own] - mean - kernel(x[own], x) @ common
     narrower = math.sqrt(wide * WIDTH * reach)
     besides = np.linalg.solve(kernel(x[own], x[own], narrower) + RIDGE * np.eye(own.sum()), left)
     trust = np.exp(-cdist(new, x[own], "sqeuclidean").min(1) / reach)
-    expected = kernel(new, x) @ common + trust[:, None] * (kernel(new, x[own], narrower) @ besides)
+    expected = mean + kernel(new, x) @ common + trust[:, None] * (kernel(new, x[own], narrower) @ besides)
     assert np.abs(found.numpy() - expected).max() < 1e-3 * np.abs(expected).max()
 
 
@@ -105,6 +106,12 @@ def test_the_users_frames_are_kept_and_end_with_them() -> None:
     far = x[~own]
     assert (function(far) - targets[~own]).square().sum() > 0.5 * targets[~own].square().sum()
     assert function(far).square().sum() < 0.2 * targets[~own].square().sum()
+
+
+def test_far_from_all_frames_is_the_mean_of_those_that_are_not_the_users() -> None:
+    x, targets, own = users_and_range()
+    function = fit_beyond(x, targets, own, beyond=10.0, generator=torch.Generator().manual_seed(1))
+    assert torch.allclose(function(x[:3] + 1e3), targets[~own].mean(0).repeat(3, 1), atol=1e-5)
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -118,11 +125,13 @@ def test_one_or_two_frames_of_the_user_are_given_back(count: int) -> None:
 def test_where_no_frame_is_the_users_all_are_smoothed() -> None:
     x, targets, _ = users_and_range()
     none = torch.zeros(len(x), dtype=torch.bool)
-    found = fit_beyond(x, targets, none, beyond=10.0, generator=torch.Generator().manual_seed(1))(x)
+    mean = targets.mean(0)
+    found = fit_beyond(x, targets, none, beyond=10.0, generator=torch.Generator().manual_seed(1))(x) - mean
     size = targets.norm(dim=1)
     noise = 10 * (size / size.square().mean().sqrt()).clamp(min=LEAST)
-    assert torch.allclose(found, fit_smoother(x, targets, generator=torch.Generator(), noise=noise)(x), atol=1e-5)
-    assert 0 < found.square().sum() < 0.2 * targets.square().sum()
+    around = fit_smoother(x, targets - mean, generator=torch.Generator(), noise=noise)(x)
+    assert torch.allclose(found, around, atol=1e-5)
+    assert 0 < found.square().sum() < 0.2 * (targets - mean).square().sum()
 
 
 def test_values_go_through_a_matrix() -> None:

@@ -50,6 +50,19 @@ class Smoother:
 
 
 @dataclass(frozen=True, eq=False)
+class Constant:
+    """The same values at every point."""
+
+    values: Tensor  # [K]
+
+    def __call__(self, x: Tensor) -> Tensor:
+        return self.values.repeat(len(x), 1)
+
+    def through(self, matrix: Tensor) -> "Constant":
+        return Constant(self.values @ matrix)
+
+
+@dataclass(frozen=True, eq=False)
 class Sum:
     """The sum of functions, of which each may see the points turned."""
 
@@ -103,17 +116,20 @@ def fit_beyond(
 ) -> Sum:
     """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them.
 
-    Where no frame is the user's, it is what they have in common.
+    Far from all frames it is the mean of the others: the mean of a walk is less like other motion. Where no frame is
+    the user's, it is what they have in common.
     """
     size = targets.norm(dim=1)
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
-    common = fit_smoother(x, targets, generator=generator, noise=beyond * relative.clamp(min=LEAST))
+    mean = Constant(targets[~own].mean(0))
+    around = fit_smoother(x, targets - mean.values, generator=generator, noise=beyond * relative.clamp(min=LEAST))
+    common = Sum((mean, around))
     if not own.any():
-        return Sum((common,))
+        return common
     reach = spread(x[own]) or 1.0
-    width = math.sqrt(common.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
+    width = math.sqrt(around.width * WIDTH * reach)  # wide, yet not so wide that small motion is flat within it
     besides = fit_smoother(x[own], targets[own] - common(x[own]), generator=generator, width=width)
-    return Sum((common, replace(besides, reach=reach)))
+    return Sum((*common.terms, replace(besides, reach=reach)))
 
 
 def spread(x: Tensor) -> float:
