@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import cache
+from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
@@ -24,8 +25,16 @@ VISITS = 32  # to each point: the function's values there are computed once
 POINTS_AT_ONCE = 1 << 9
 FORGONE = 1e-4  # of the spread of what a part sees
 GENERALISATION = Generalisation()
-# The noise that values of frames beyond the user's motion are granted: light follows the pose, cloth its history too.
-SHAPE, COLOUR = 10.0, 0.1
+
+
+class Beyond(NamedTuple):
+    """What frames beyond the user's motion count for."""
+
+    noise: float  # that their values are granted: light follows the pose, cloth its history too
+    fades: bool  # whether the function fades to the mean of these frames; else to that of the user's
+
+
+CLOTH, LIGHT = Beyond(10.0, fades=False), Beyond(0.1, fades=True)
 
 
 def regress(
@@ -40,7 +49,7 @@ def regress(
     expand: Tensor | None = None,  # [K, M]
     locality: Locality | None = None,
     own: Tensor | None = None,  # [F] bool, the frames of the user's motion; None: all
-    beyond: float = SHAPE,
+    beyond: Beyond = CLOTH,
     generalisation: Generalisation = GENERALISATION,
 ) -> Conditioned:
     """An MLP from components to targets, or to targets @ expand, taught the smooth function through them.
@@ -105,7 +114,7 @@ def fit_local(
     *,
     generator: torch.Generator,
     own: Tensor | None = None,  # [F] bool
-    beyond: float = SHAPE,
+    beyond: Beyond = CLOTH,
 ) -> Smooth:
     """The smooth function of components through `goal`; with `locality` a sum over parts, as each sees the pose."""
     z, back = components(inputs), components.back()
@@ -113,7 +122,7 @@ def fit_local(
     def fit(x: Tensor) -> Smooth:
         if own is None:
             return fit_smoother(x, goal, generator=generator)
-        return fit_beyond(x, goal, own, beyond=beyond, generator=generator)
+        return fit_beyond(x, goal, own, beyond=beyond.noise, fades=beyond.fades, generator=generator)
 
     if locality is None:
         return fit(z)

@@ -113,15 +113,17 @@ def fit_beyond(
     *,
     beyond: float,  # variance of the noise that other frames' values are granted
     generator: torch.Generator,
+    fades: bool = True,  # to the mean of the frames that are not the user's
 ) -> Sum:
     """What all frames have in common, heavily smoothed, plus what the user's show besides, which ends with them.
 
-    Far from all frames it is the mean of the others: the mean of a walk is less like other motion. Where no frame is
-    the user's, it is what they have in common.
+    Far from all frames it is 0, the mean of the user's, or where `fades` is given the mean of the others: the mean of a
+    walk is less like other motion. Where no frame is the user's, it is what they have in common.
     """
     size = targets.norm(dim=1)
     relative = size / size[~own].square().mean().sqrt().clamp(min=torch.finfo(size.dtype).tiny)
-    mean = Constant(targets[~own].mean(0))
+    others = targets[~own] if fades else torch.zeros_like(targets[:1])
+    mean = Constant(others.mean(0))
     around = fit_smoother(x, targets - mean.values, generator=generator, noise=beyond * relative.clamp(min=LEAST))
     common = Sum((mean, around))
     if not own.any():

@@ -23,7 +23,7 @@ from mua.student.model import Branch, Student, lowpass_texels
 from mua.student.negligible import drop_negligible, freeze_channels
 from mua.student.optimise import Progress, Report, Run
 from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
-from mua.student.regress import COLOUR, SHAPE, regress
+from mua.student.regress import CLOTH, LIGHT, regress
 from mua.student.sensitivity import STAGE as SENSITIVITIES
 from mua.student.settings import Settings, StageName
 from mua.student.source import Source, hold
@@ -287,7 +287,7 @@ def start_branch(
         expand=targets.expand,
         locality=local,
         own=None if frames is None else frames == 1,
-        beyond=COLOUR if light else SHAPE,
+        beyond=LIGHT if light else CLOTH,
         hidden=settings.hidden,
         schedule=settings.regression,
         stage=stage,
