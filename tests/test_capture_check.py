@@ -372,7 +372,8 @@ def test_a_camera_that_fits_less_well_for_no_known_reason_is_worth_a_remark(
 ) -> None:
     for image in damaged.folder.glob("images/*/left/*.png"):
         pixels = np.array(Image.open(image))
-        pixels[distance_transform_edt(pixels[..., 3] == 0) < 1.1, 3] = 255
+        pixels[..., 3] = np.maximum(pixels[..., 3], np.roll(pixels[..., 3], (1, 1), axis=(0, 1)))
+        pixels[..., 3] = np.maximum(pixels[..., 3], np.roll(pixels[..., 3], (-1, -1), axis=(0, 1)))
         Image.fromarray(pixels).save(image)
     checked = everything(damaged)
     assert checked.problems == ()

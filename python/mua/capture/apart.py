@@ -21,7 +21,7 @@ def cameras_apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
     """Cameras that fit worse than the others and what explains it, and views that fit worse than their camera."""
     for name, of in by_camera(views).items():
         mean, others = mean_overlap(of), _others(views, name)
-        if mean < others - TRIED and (told := _explained(posed, of)) is not None:
+        if mean < others - TRIED and (told := _explained(posed, of, others - BELOW)) is not None:
             yield f"Camera {name}: overlaps by {mean:.0%}, the others typically by {others:.0%}; {told}."
         elif mean < OUTLIER * others:
             yield _camera_apart(posed, of, views, mean, others)
@@ -58,14 +58,14 @@ def _others(views: Sequence[Seen], name: str) -> float:
     return float(np.median(means)) if means else 0.0
 
 
-def _explained(posed: Posed, of: Sequence[Seen]) -> str | None:
-    """The change of a camera's clock or place that makes it fit."""
+def _explained(posed: Posed, of: Sequence[Seen], least: float) -> str | None:
+    """The change of a camera's clock or place that makes it fit by `least`."""
     person = np.mean([posed.vertices[view.clip][view.frame].mean(axis=0) for view in of], axis=0)
     distance = float(np.linalg.norm(of[0].camera.position - person))
     time, place = in_time(posed, of), in_place(drawn(posed, of), distance)
-    if time is not None and time.gain > max(BETTER, place.gain):
+    if time is not None and time.then > least and time.gain > max(BETTER, place.gain):
         return f"it would by {time.then:.0%} if {_moment(time)}"
-    if place.gain > BETTER:
+    if place.then > least and place.gain > BETTER:
         return (
             f"it would by {place.then:.0%} if it pointed {100 * place.change:.1f} cm beside (at the person): calibrate "
             "it again"

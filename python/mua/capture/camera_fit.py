@@ -9,7 +9,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.capture.camera import CaptureCamera
 from mua.capture.fit import Posed, Seen, mean_overlap
-from mua.capture.lens import undistorted
+from mua.capture.lens import distorted
 from mua.capture.outline import FINER, fine_silhouette, overlap
 
 TRIED = 6  # views of a camera that other places are tried on
@@ -99,8 +99,8 @@ def _mean(cameras: Sequence[Sequence[Drawn]], places: Sequence[tuple[Array, Arra
 
 
 def _bent(camera: CaptureCamera, k1: float) -> tuple[Array, Array]:
-    """Where a pinhole shows what each pixel of a lens does."""
-    x, y = undistorted(*_straight(camera), (k1, 0.0, 0.0, 0.0, 0.0))
+    """Where a pinhole shows what each pixel of a lens does, to the first order, which no lens makes fold over."""
+    x, y = distorted(*_straight(camera), (-k1, 0.0, 0.0, 0.0, 0.0))
     return x * camera.focal[0] + camera.centre[0], y * camera.focal[1] + camera.centre[1]
 
 

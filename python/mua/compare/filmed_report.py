@@ -93,7 +93,8 @@ def nobody_there(shots: Sequence[Shot]) -> list[str]:
     for camera in dict.fromkeys(shot.camera for shot in shots):
         own = [shot for shot in shots if shot.camera == camera]
         places = ", ".join(f"{shot.clip} {shot.frame}" for shot in own[:NAMED]) + (", ..." if len(own) > NAMED else "")
-        told.append(f"Camera {camera}: nobody is seen in {len(own)} views, which count nowhere: {places}.")
+        counted = "1 view, which counts" if len(own) == 1 else f"{len(own)} views, which count"
+        told.append(f"Camera {camera}: nobody is seen in {counted} nowhere: {places}.")
     return told
 
 
