@@ -396,14 +396,16 @@ def test_a_camera_whose_frames_are_counted_otherwise_is_named(damaged: Capture, 
 def test_a_distortion_that_was_left_out_is_named(small_capture: Capture, tmp_path: Path, k1: float) -> None:
     """Of wide lenses, near enough that the person fills the image: elsewhere it does little."""
     wide = tuple(
-        replace(camera, focal=(40.0, 40.0), centre=(SIDE / 2, SIDE / 2), world_to_camera=nearer(camera))
+        replace(camera, focal=(50.0, 50.0), centre=(SIDE / 2, SIDE / 2), world_to_camera=nearer(camera))
         for camera in small_capture.cameras
     )
     near = replace(small_capture, cameras=wide, images=f"{tmp_path}/{{clip}}/{{camera}}/{{frame}}.png")
     posed = Posed.of(near, near.clips)
     rows, columns = np.mgrid[:SIDE, :SIDE] + 0.5
-    x, y = undistorted((columns - SIDE / 2) / 40, (rows - SIDE / 2) / 40, (k1, 0.0, 0.0, 0.0, 0.0))
-    column, row = ((40 * at + SIDE / 2).clip(0, SIDE - 1).astype(int) for at in (x, y))
+    seen = np.stack([columns, rows]) / 50 - SIDE / 100
+    seen *= np.minimum(1, 0.8 / np.linalg.norm(seen, axis=0))  # farther out, where nobody is, the lens folds over
+    x, y = undistorted(*seen, (k1, 0.0, 0.0, 0.0, 0.0))
+    column, row = ((50 * at + SIDE / 2).clip(0, SIDE - 1).astype(int) for at in (x, y))
     for clip, camera in product(near.clips, wide):
         for frame in range(clip.frames):
             mask = posed.covers(clip.name, frame, camera)[row, column]
