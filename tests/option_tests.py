@@ -132,6 +132,7 @@ HELD = {
         **dict.fromkeys(("preset", "seconds", "steps", "seed"), KEPT),
         **dict.fromkeys(("frames", "views", "own_mesh", "lpips_weights", "device"), COUNTED),
         "teacher": "eval_capture.test_the_command_compares_a_teacher_with_the_pictures",
+        "images": "eval_capture.test_the_command_compares_a_teacher_with_the_pictures",
         **dict.fromkeys(("train_on", "scale"), SIZED),
     }),
     "capture check": Held("mua.cli.capture", "check", {

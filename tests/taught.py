@@ -92,7 +92,6 @@ def material(change: Callable[[Seen, int], Seen] = lambda seen, camera: seen) ->
     return Material(
         Views(FRAMES, CAMERAS, lambda frame, camera: seen[frame, camera]),
         [motion()[2 * frame] for frame in range(FRAMES)],
-        [[frame] * 3 for frame in range(FRAMES)],
     )
 
 

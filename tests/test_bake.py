@@ -23,11 +23,12 @@ from mua.baking.order import Order
 from mua.baking.pipeline import bake, parts
 from mua.baking.plan import HeldOut, plan, split
 from mua.baking.recorded import recording_key
-from mua.baking.sources import RATE, load_character
+from mua.baking.sources import load_character
 from mua.channels import ATTRIBUTES
 from mua.errors import InputError
 from mua.locks import DirectoryLock
 from mua.pose.clip import Clip, Stretches, is_range
+from mua.pose.encoding import RATE
 from mua.pose.resample import resample
 from mua.recording import PlannedClip, Recording
 from mua.rig.bounds import playback_bounds

@@ -1,8 +1,9 @@
 """mua-capture check: what is right passes, and each thing that cannot be right has its sentence."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ from mua.arrays import Array
 from mua.capture import Capture, sheet, write_capture
 from mua.capture.camera import CaptureCamera
 from mua.capture.check import Checked, check_capture
-from mua.capture.fit import Seen, chosen_frames, look_at
+from mua.capture.fit import Posed, Seen, chosen_frames, look_at
+from mua.capture.lens import undistorted
 from mua.capture.outline import overlap, pixels, rough_overlap, silhouette
 from mua.capture.sheet import MASK, OUTLINE, check_sheet
 from mua.player.video import write_video
@@ -313,3 +315,111 @@ def test_the_command_fails_where_something_cannot_be_right(command: Commands, da
 def test_the_command_refuses_a_picture_it_cannot_write(small_capture: Capture, command: Commands) -> None:
     ended = command("capture", "check", small_capture.folder, "-o", "check.bmp")
     assert ended.sentence == "error: --output check.bmp: the suffix is .bmp, expected .png or .jpg"
+
+
+def test_cameras_whose_masks_are_sometimes_empty_are_named_and_these_count_nowhere(
+    small_capture: Capture, damaged: Capture, command: Commands
+) -> None:
+    for clip, frame in (("walk", 1), ("reach", 0)):
+        Image.new("RGBA", (SIDE, SIDE)).save(damaged.files(clip, frame, "right").image)
+    checked = everything(damaged)
+    told = "Camera right: 2 of 6 masks that were looked at are empty and count nowhere, first clip walk, frame 1."
+    assert (checked.problems, checked.remarks) == ((), (told,))
+    (right,) = (fit for fit in checked.cameras if fit.camera.name == "right")
+    (sound,) = (fit for fit in everything(small_capture).cameras if fit.camera.name == "right")
+    assert right.mean == pytest.approx(sound.mean, abs=0.02)
+    assert right.least is not None
+    assert right.least.mask.any()
+    ended = command("capture", "check", damaged.folder, "--frames", 0)
+    assert ended.status == 0
+    assert f"remark: {told}" in ended.out
+
+
+def invert(images: Iterable[Path]) -> None:
+    for image in images:
+        pixels = np.array(Image.open(image))
+        pixels[..., 3] = 255 - pixels[..., 3]
+        Image.fromarray(pixels).save(image)
+
+
+@pytest.mark.parametrize(("camera", "named"), [("left", "Camera left"), ("*", "All cameras")])
+def test_inverted_masks_are_named(damaged: Capture, camera: str, named: str) -> None:
+    invert(damaged.folder.glob(f"images/*/{camera}/*.png"))
+    (told,) = check_capture(damaged, frames=2).problems
+    assert re.fullmatch(rf"{named}: masks are inverted, by 9\d% they fit what is black; expected white .*\.", told), (
+        told
+    )
+
+
+def test_a_camera_that_is_two_centimetres_off_is_named(small_capture: Capture) -> None:
+    """By how far, too: nothing else is said of the others."""
+    front, left, *others = small_capture.cameras
+    matrix = left.world_to_camera.copy()
+    matrix[:2, 3] += 0.014, -0.014
+    capture = replace(small_capture, cameras=(front, replace(left, world_to_camera=matrix), *others))
+    (told,) = everything(capture).problems
+    found = re.fullmatch(
+        r"Camera left: overlaps by 8\d%, the others typically by 9\d%; it would by 9\d% if it pointed (\d\.\d) cm "
+        r"beside \(at the person\): calibrate it again\.",
+        told,
+    )
+    assert found is not None, told
+    assert float(found[1]) == pytest.approx(2, abs=0.6)
+
+
+def test_a_camera_that_fits_less_well_for_no_known_reason_is_worth_a_remark(
+    small_capture: Capture, damaged: Capture
+) -> None:
+    for image in damaged.folder.glob("images/*/left/*.png"):
+        pixels = np.array(Image.open(image))
+        pixels[..., 3] = np.maximum(pixels[..., 3], np.roll(pixels[..., 3], (1, 1), axis=(0, 1)))
+        pixels[..., 3] = np.maximum(pixels[..., 3], np.roll(pixels[..., 3], (-1, -1), axis=(0, 1)))
+        Image.fromarray(pixels).save(image)
+    checked = everything(damaged)
+    assert checked.problems == ()
+    (told,) = checked.remarks
+    assert re.fullmatch(r"Camera left: overlaps by \d\d%, the others typically by 9\d%: look at its masks, .*", told)
+
+
+@pytest.mark.parametrize(("by", "number"), [(1, "1 frame higher"), (-1, "1 frame lower")])
+def test_a_camera_whose_frames_are_counted_otherwise_is_named(damaged: Capture, by: int, number: str) -> None:
+    images = [damaged.files("walk", frame, "left").image for frame in range(FRAMES["walk"])]
+    shown = [image.read_bytes() for image in images]
+    for frame, image in enumerate(images):
+        image.write_bytes(shown[min(max(frame + by, 0), len(shown) - 1)])
+    checked = everything(replace(damaged, clips=damaged.clips[:1]))
+    (told,) = (one for one in checked.problems if "clip" not in one)
+    assert re.search(rf"^Camera left: .* it would by 9\d% if its images were numbered {number}\.$", told), told
+
+
+@pytest.mark.parametrize("k1", [-0.2, 0.0])
+def test_a_distortion_that_was_left_out_is_named(small_capture: Capture, tmp_path: Path, k1: float) -> None:
+    """Of wide lenses, near enough that the person fills the image: elsewhere it does little."""
+    wide = tuple(
+        replace(camera, focal=(50.0, 50.0), centre=(SIDE / 2, SIDE / 2), world_to_camera=nearer(camera))
+        for camera in small_capture.cameras
+    )
+    near = replace(small_capture, cameras=wide, images=f"{tmp_path}/{{clip}}/{{camera}}/{{frame}}.png")
+    posed = Posed.of(near, near.clips)
+    rows, columns = np.mgrid[:SIDE, :SIDE] + 0.5
+    seen = np.stack([columns, rows]) / 50 - SIDE / 100
+    seen *= np.minimum(1, 0.8 / np.linalg.norm(seen, axis=0))  # farther out, where nobody is, the lens folds over
+    x, y = undistorted(*seen, (k1, 0.0, 0.0, 0.0, 0.0))
+    column, row = ((50 * at + SIDE / 2).clip(0, SIDE - 1).astype(int) for at in (x, y))
+    for clip, camera in product(near.clips, wide):
+        for frame in range(clip.frames):
+            mask = posed.covers(clip.name, frame, camera)[row, column]
+            place = near.files(clip.name, frame, camera.name).image
+            place.parent.mkdir(parents=True, exist_ok=True)
+            Image.fromarray(np.dstack([np.zeros((SIDE, SIDE, 3), np.uint8), 255 * mask.astype(np.uint8)])).save(place)
+    problems = check_capture(near).problems
+    if k1 == 0:
+        assert problems == ()
+    else:
+        assert re.search(r"would by 9\d\.\d% if k1 of each camera's distortion were 0\.[23] smaller", problems[0])
+
+
+def nearer(camera: CaptureCamera) -> Array:
+    matrix = camera.world_to_camera.copy()
+    matrix[2, 3] -= 1.7  # of the 3.2 metres to the figure
+    return matrix

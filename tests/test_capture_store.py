@@ -186,23 +186,44 @@ def test_the_empty_set_is_read_once(small_capture: Capture, tmp_path: Path, monk
     assert read == [tmp_path / "front.png"]
 
 
-def test_a_video_that_ends_early_is_told_where_its_frame_is_wanted(tmp_path: Path) -> None:
+def assert_nobody(view: View) -> None:
+    """A whole image without the person."""
+    assert view.empty
+    assert view.image.shape == (SIDE, SIDE, 3)
+    assert view.pinhole.size == (SIDE, SIDE)
+
+
+def test_after_a_video_ends_nobody_is_seen(tmp_path: Path) -> None:
     capture = filmed(tmp_path / "filmed")
     longer = replace(capture, clips=(replace(capture.clips[0], first_image=2), capture.clips[1]))
     store = ViewStore(longer, tmp_path / "store")
     store.view("walk", 1, "left")
-    with pytest.raises(InputError, match=r"left\.mp4: has 4 frames; frame 4, counted from 0, is wanted"):
-        store.view("walk", 2, "left")
+    assert_nobody(store.view("walk", 2, "left"))
 
 
-def test_a_video_of_masks_that_ends_early_is_told_where_its_frame_is_wanted(tmp_path: Path) -> None:
+def test_after_a_video_of_masks_ends_nobody_is_seen(tmp_path: Path) -> None:
     capture = filmed(tmp_path / "filmed")
     masks = (np.full((SIDE, SIDE, 3), 255, np.uint8) for _ in range(2))
     write_video(tmp_path / "filmed" / "mask" / "walk" / "left.mp4", masks, rate=30)
     store = ViewStore(capture, tmp_path / "store")
     same(store.view("walk", 1, "left"), capture.view("walk", 1, "left", crop=True))
-    with pytest.raises(InputError, match=r"left\.mp4: has 2 frames; frame 2, counted from 0, is wanted"):
-        store.view("walk", 2, "left")
+    assert_nobody(store.view("walk", 2, "left"))
+
+
+def test_where_an_image_is_missing_nobody_is_seen_until_it_is_there(tmp_path: Path) -> None:
+    capture = make_capture(tmp_path / "filmed")
+    image = capture.files("walk", 2, "left").image
+    content = image.read_bytes()
+    image.unlink()
+    assert_nobody(ViewStore(capture, tmp_path / "store").view("walk", 2, "left"))
+    image.write_bytes(content)
+    assert not ViewStore(capture, tmp_path / "store").view("walk", 2, "left").empty
+
+
+def test_a_missing_background_is_an_error(tmp_path: Path) -> None:
+    capture = replace(make_capture(tmp_path / "filmed"), backgrounds="{camera}.png")
+    with pytest.raises(InputError, match=r"left\.png: there is no such file"):
+        ViewStore(capture, tmp_path / "store").view("walk", 2, "left")
 
 
 def test_a_video_of_another_size_is_refused(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from captures import TEXELS, make_capture, motions
+from captures import SIDE, TEXELS, make_capture, motions
 from commands import Commands
 from compared import SETTINGS as QUICK
 from PIL import Image
@@ -126,6 +126,7 @@ def test_the_command_compares_a_teacher_with_the_pictures(
     monkeypatch.setattr("mua.cli.filmed_evaluation.Lpips", lambda path: lambda image, truth: float(path.read_text()))
     (tmp_path / "weights").write_text("0.25")
     given = ("--teacher", teacher, "--frames", "1", "--lpips-weights", tmp_path / "weights")
+    given = (*given, "--images", tmp_path / "images")
     ended = command("eval", capture, *given, "-o", tmp_path / "evaluation")
     assert ended.status == 0, ended
     lines = list(csv.DictReader((tmp_path / "evaluation" / "results.csv").read_text().splitlines()))
@@ -138,6 +139,43 @@ def test_the_command_compares_a_teacher_with_the_pictures(
             assert sheet.height > 30
     assert len(list((tmp_path / "evaluation" / "work" / "views").rglob("*.png"))) == 2
     assert not (tmp_path / "evaluation" / "curve.png").exists()
+    for clip, frame in (("walk", 2), ("reach", 1)):
+        written = {
+            name: np.asarray(Image.open(tmp_path / "images" / clip / "above" / f"{frame:06d}_{name}.png")) / 255
+            for name in ("image", "mean_texture", "teacher")
+        }
+        scores = {line["entry"]: float(line["psnr"]) for line in lines if line["clip"] == clip}
+        for name in ("mean texture", "teacher"):
+            of_8_bits = likeness(written[name.replace(" ", "_")], written["image"]).psnr
+            assert of_8_bits == pytest.approx(scores[name], abs=0.2)
+
+
+def test_views_without_the_person_count_nowhere_and_are_named(
+    capture: Path, teacher: Path, tmp_path: Path, command: Commands
+) -> None:
+    spoilt = make_capture(tmp_path / "spoilt")
+    Image.new("RGBA", (SIDE, SIDE)).save(spoilt.files("walk", 1, "above").image)
+    spoilt.files("reach", 0, "above").image.unlink()
+    rows = {}
+    for folder in (capture, spoilt.folder):
+        output = tmp_path / f"evaluation of {folder.name}"
+        ended = command("eval", folder, "--teacher", teacher, "--frames", "2", "-o", output)
+        assert ended.status == 0, ended
+        rows[folder] = list(csv.DictReader((output / "results.csv").read_text().splitlines()))
+        text = (output / "results.md").read_text()
+    assert "- 2 images of figure" in text
+    assert "- Camera above: nobody is seen in 2 views, which count nowhere: walk 1, reach 0." in text
+    places = {(line["clip"], line["frame"]) for line in rows[spoilt.folder]}
+    assert places == {("walk", "3"), ("reach", "1")}
+    assert rows[spoilt.folder] == [line for line in rows[capture] if (line["clip"], line["frame"]) in places]
+
+
+def test_a_capture_in_which_nobody_is_seen_is_a_sentence(teacher: Path, tmp_path: Path, command: Commands) -> None:
+    spoilt = make_capture(tmp_path / "spoilt")
+    for image in spoilt.folder.glob("images/*/above/*.png"):
+        image.unlink()
+    ended = command("eval", spoilt.folder, "--teacher", teacher, "--frames", "1", "-o", tmp_path / "evaluation")
+    assert "capture.json: nobody is seen in any of the 2 views by cameras with held_out" in ended.sentence
 
 
 def test_the_command_trains_systems_at_several_sizes_and_once(
@@ -244,6 +282,10 @@ def test_a_recording_of_another_character_is_refused(
 ) -> None:
     ended = command("eval", capture, "--teacher", teacher, "--system", "ours", "--train-on", written)
     assert f"--train-on {written}: its joints are not those of the capture's template" in ended.sentence
+
+
+def test_images_are_those_of_a_capture(written: Path, command: Commands) -> None:
+    assert "--images x: only applies to a comparison with" in command("eval", written, "--images", "x").sentence
 
 
 def test_systems_of_a_recording_have_one_size(written: Path, command: Commands) -> None:

@@ -218,11 +218,24 @@ def test_masks_that_are_all_empty_are_a_sentence(capture: Path, tmp_path: Path, 
     assert not (tmp_path / "teacher" / "teacher.json").exists()
 
 
-def test_a_camera_without_pictures_is_a_sentence(capture: Path, tmp_path: Path, teach: Teach) -> None:
+def test_missing_pictures_are_said_once_and_do_not_end_the_training(
+    capture: Path, tmp_path: Path, teach: Teach
+) -> None:
     given = copied(capture, tmp_path / "capture")
     spoilt_pictures(given, lambda image: None, "left")
-    sentence = teach(given, "-o", tmp_path / "teacher", "--texels", TEXELS, "--steps", "12").sentence
-    assert re.search(r"camera left, clip walk, frame \d: .*left/.*\.png: there is no such file", sentence)
+    ended = teach(given, "-o", tmp_path / "teacher", *OPTIONS)
+    assert ended.status == 0, ended
+    said = re.findall(
+        r"Camera left: has no images: there is no .*\.png\. .* count nowhere\.", " ".join(ended.out.split())
+    )
+    assert len(said) == 1, ended.out
+    assert (tmp_path / "teacher" / "teacher.json").is_file()
+
+
+def test_a_capture_without_any_picture_is_a_sentence(capture: Path, tmp_path: Path, teach: Teach) -> None:
+    given = copied(capture, tmp_path / "capture")
+    spoilt_pictures(given, lambda image: None)
+    assert re.search(r"\.png: there is no such file", teach(given, "-o", tmp_path / "teacher", *OPTIONS).sentence)
 
 
 @pytest.mark.parametrize(

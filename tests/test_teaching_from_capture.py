@@ -12,9 +12,12 @@ from captures import FRAMES, make_capture
 from PIL import Image
 from taught import FEW, SETTINGS, material, motion, teacher
 
+from mua import rotation
 from mua.arrays import Array
-from mua.capture import Capture
+from mua.baking.taught_motion import filmed_clips
+from mua.capture import Capture, CaptureClip
 from mua.errors import InputError
+from mua.motion.poses_file import write_poses
 from mua.teaching.from_capture import OUTLINES, Filmed, Outlines, material_of, preview_of, read_filmed, refinement_of
 from mua.teaching.lesson import Lesson
 from mua.teaching.preview import Preview, picture_of, psnr
@@ -69,15 +72,58 @@ def test_a_view_is_that_of_the_capture_and_weighs_what_its_mask_is_trusted(captu
 def test_each_frame_has_the_poses_of_its_own_clip(both: Filmed) -> None:
     """Frames are numbered over all clips; before its first frame a clip is held still."""
     own = material_of(both)
-    assert (own.views.frames, len(own.windows), len(own.poses)) == (6, 6, 6)
-    assert own.poses[0] == [0, 0, 0]
-    assert own.poses[4] == [4, 4, 4]
-    assert [poses[0] for poses in own.poses] == list(range(6))
-    assert all(4 <= pose <= 5 for poses in own.poses[4:] for pose in poses)
+    assert (own.views.frames, len(own.windows)) == (6, 6)
+    clips = [clip.name for clip in both.clips for _ in range(len(clip))]
+    for (clip, frame), window in zip(
+        [(clip, i - clips.index(clip)) for i, clip in enumerate(clips)], own.windows, strict=True
+    ):
+        motion = both.capture.motion(clip)
+        joints = both.subject.rig.skeleton.skinning(motion.rotations, motion.translations)
+        wanted = [joints[max(frame - age, 0)] for age in range(3)]
+        np.testing.assert_allclose(window.joints, wanted, atol=1e-5)
     refinement = refinement_of(both, replace(FEW, refine=3.0))
     assert refinement is not None
-    for window, poses in zip(own.windows, own.poses, strict=True):
-        torch.testing.assert_close(refinement(poses).detach(), window.joints, atol=1e-5, rtol=0)
+    for frame, window in enumerate(own.windows):
+        torch.testing.assert_close(refinement(frame).detach(), window.joints, atol=1e-5, rtol=0)
+
+
+@pytest.mark.parametrize("rate", [6.0, 15.0, 25.0, 60.0])
+def test_windows_are_a_thirtieth_of_a_second_apart_at_any_rate_of_the_images(
+    capture: Capture, tmp_path: Path, rate: float
+) -> None:
+    """In the teacher that is trained, in what is recorded of it, and so in the file: as long between the same poses."""
+    whole = capture.whole_motion("walk")
+    turning = np.arange(41) / 30  # seconds; the poses of the motion's file, in which the root moves at a steady pace
+    steady = replace(
+        whole,
+        rotations=np.repeat(whole.rotations[:1], 41, axis=0),
+        translations=np.repeat(whole.translations[:1], 41, axis=0),
+    )
+    root = capture.surfaces.skeleton.root
+    steady.translations[:, root, 0] += turning**2
+    write_poses(tmp_path / "steady.npz", capture.surfaces.skeleton, steady)
+    first, frames = round(0.2 * rate), 4
+    clip = CaptureClip("walk", tmp_path / "steady.npz", first, frames)
+    own = replace(capture, rate=rate, clips=(clip,))
+    filmed = read_filmed(own, replace(FEW, texels=32, rows=ROWS), CPU, views=tmp_path / "views")
+    (walk,) = filmed.clips
+    path = steady.translations[0, root, 0]
+    for frame, window in enumerate(filmed.windows(walk)):
+        seconds = (first + frame) / rate - np.minimum(np.arange(3) / 30, frame / rate)
+        moved = dual_places(window.joints[:, root].double().numpy(), root, own)
+        np.testing.assert_allclose(moved - path, seconds**2, atol=1.5e-3)
+    assert filmed.subject.encoding.rate == 30
+    (recorded, *_) = filmed_clips(own)
+    assert recorded.rate == 30
+    at = first / rate + np.arange(len(recorded)) / 30
+    np.testing.assert_allclose(recorded.translations[:, root, 0] - path, at**2, atol=1.5e-3)
+
+
+def dual_places(joints: Array, joint: int, capture: Capture) -> Array:
+    """Where a joint [k, 8] is along X."""
+    skeleton = capture.surfaces.skeleton
+    rest = skeleton.world(skeleton.bind_rotations, skeleton.bind_translations)[1][joint]
+    return np.stack([rotation.dual_transform(own, rest)[0] for own in joints])
 
 
 def test_points_beside_the_person_change_nothing_for_the_others(filmed: Filmed, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,6 +29,7 @@ from mua.teaching.measured import MeasuredSurfaces, measured_surfaces, read_surf
 from mua.teaching.motion_deformation import MotionDeformation
 from mua.teaching.template_training import TemplateSettings
 from mua.teaching.trained import TrainedTeacher
+from mua.teaching.windows import windows
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 TRIANGLES = [(0, 2, 1), (0, 1, 3), (1, 2, 3)]
@@ -104,8 +106,10 @@ def test_a_surface_is_measured_by_the_size_of_the_figure(tmp_path: Path) -> None
         posed = dual_transform(blend_vertices(joints, own.skin_indices, own.skin_weights), own.mesh.vertices)
         file = write_ply(tmp_path / "a.ply", posed, own.mesh.faces)
         capture = SimpleNamespace(meshes="", place=lambda *_, file=file, **__: file)
-        subject = SimpleNamespace(rig=own, encoding=avatar.encoding)
-        surfaces = measured_surfaces(SimpleNamespace(capture=capture, subject=subject, clips=avatar.clips))  # type: ignore[arg-type]
+        subject = SimpleNamespace(rig=own)
+        seen = partial(windows, own.skeleton, avatar.encoding)
+        filmed = SimpleNamespace(capture=capture, subject=subject, clips=avatar.clips, windows=seen)
+        surfaces = measured_surfaces(filmed)  # type: ignore[arg-type]
         assert surfaces is not None
         cloud = surfaces.observe(0, torch.Generator()).cloud
         assert cloud is not None

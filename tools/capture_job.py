@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from virtual_studio import Run, chosen_runs, held_back, on_the_spot, ring
 
 from mua.arrays import Array
-from mua.baking.sources import RATE, load_clips
+from mua.baking.sources import load_clips
 from mua.capture import Capture, CaptureClip, write_capture
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_character
@@ -22,6 +22,7 @@ from mua.export.character_glb import motion_glb
 from mua.files import replacing, write_bytes
 from mua.motion.load import unique_names
 from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.rig.character import Character
 from mua.rig.surface_points import interpolate, spread_points
 from mua.teachers.simulated_surface import SimulatedSurface

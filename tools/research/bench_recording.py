@@ -10,7 +10,8 @@ import time
 from pathlib import Path
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
-from mua.baking.sources import RATE, load_character
+from mua.baking.sources import load_character
+from mua.pose.encoding import RATE
 from mua.recording import TeacherWriter
 from mua.teachers.simulated import SimulatedTeacher
 from mua.teachers.teacher import TeacherFrame

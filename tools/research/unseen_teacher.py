@@ -15,11 +15,12 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.atlas.detail import read_detail
-from mua.baking.sources import RATE, load_character
+from mua.baking.sources import load_character
 from mua.errors import InputError
 from mua.files import replacing
 from mua.motion.load import load_motions
 from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.recording.encode import align_rotations
 from mua.rig.character import Character
 from mua.teachers.simulated import SimulatedTeacher

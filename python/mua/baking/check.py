@@ -10,7 +10,7 @@ import numpy as np
 
 from mua.baking.listener import Listener
 from mua.baking.order import Order
-from mua.baking.sources import RATE, ordered_character
+from mua.baking.sources import ordered_character
 from mua.errors import InputError
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity, compare
@@ -22,6 +22,7 @@ from mua.motion.match import JointPair, joint_pairs, match_joints, require_limbs
 from mua.motion.quality import MotionQuality, measure_motion
 from mua.motion.source import SourceMotion
 from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.rig.character import Character
 
 WITHOUT_FILE = "the procedural character has no file, so there is nothing to compare its splats with"

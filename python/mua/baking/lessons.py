@@ -8,6 +8,7 @@ import torch
 
 from mua.baking.listener import Listener
 from mua.capture import open_capture
+from mua.capture.inventory import missing_files
 from mua.checkpoint import Checkpoints, run_key
 from mua.processes import Processes
 from mua.student.optimise import Progress, Run
@@ -39,6 +40,8 @@ def carry_out(
     """Train the teacher of a capture and write it to `output`; the first of several processes writes and reports."""
     listener.stage("capture")
     capture = open_capture(folder)
+    for sentence in missing_files(capture):
+        listener.note(f"{sentence} Views without image or mask count nowhere.")
     filmed = read_filmed(capture, settings, device, views=output / "work" / "views")
     if weights is None:
         listener.note("without --lpips-weights no perceptual term is trained on")
@@ -96,7 +99,7 @@ class _Reporter:
         if progress.stage != self._stage:
             self._stage, self._score = progress.stage, ""
             self._listener.stage(progress.stage)
-        if self._preview.due(progress.step, progress.steps):
+        if self._preview.seen and self._preview.due(progress.step, progress.steps):
             name = f"{progress.stage.replace(' ', '_')}_{progress.step:07d}"
             self._score = f", {self._preview(self._lesson, name, moving=progress.stage == TEXTURE):.1f} dB"
         loss = f"loss {progress.loss:.4f}{self._score}"

@@ -12,10 +12,10 @@ from mua.motion.load import counted, load_motions, unique_names
 from mua.motion.planted_feet import Feet
 from mua.motion.quality import measure_motion
 from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.pose.resample import resample
 from mua.rig.character import Character
 
-RATE = 30.0  # frames per second of every clip, and of the window that the student sees
 ATLAS = 1024  # texels of the base-colour atlas along a side
 
 

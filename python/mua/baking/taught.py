@@ -13,7 +13,6 @@ from mua.baking.plan import split
 from mua.baking.playback import choose
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import TAUGHT
-from mua.baking.sources import RATE
 from mua.baking.taught_motion import filmed_clips, plan_headings, put_on, taught_settings
 from mua.capture import open_capture
 from mua.files import require_writable
@@ -66,7 +65,7 @@ def _motion(
     held_out: list[str] = []
     if order.character is not None:
         capture = open_capture(order.character)
-        own = filmed_clips(capture, RATE)
+        own = filmed_clips(capture)
         held_out = [clip.name for clip in capture.clips if clip.held_out]
     given, notes = put_on(rig, roles, order.motions, mapping=order.mapping, feet=order.feet)
     for sentence in notes:

@@ -16,6 +16,7 @@ from mua.baking.sources import load_clips
 from mua.capture import Capture
 from mua.motion.planted_feet import Feet
 from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
 from mua.recording import PlannedClip
@@ -32,9 +33,9 @@ def taught_settings(settings: Settings, texels: int) -> Settings:
     return replace(settings, texels=texels, generalisation=replace(settings.generalisation, heading=False))
 
 
-def filmed_clips(capture: Capture, rate: float) -> list[Clip]:
-    """The motion of a capture's clips, held-out ones too, at `rate` frames per second."""
-    return [resample(capture.motion(clip.name), rate) for clip in capture.clips]
+def filmed_clips(capture: Capture) -> list[Clip]:
+    """The motion of a capture's clips, held-out ones too, at the rate of recordings."""
+    return [resample(capture.moving(clip.name), RATE) for clip in capture.clips]
 
 
 def put_on(

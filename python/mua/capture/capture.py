@@ -1,5 +1,6 @@
 """What a capture is: cameras around a person, clips that they filmed, and where the files lie."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,13 +10,14 @@ from typing import TypeVar
 from mua.atlas.surfaces import Surfaces
 from mua.atlas.uv import build_atlas
 from mua.capture.camera import CaptureCamera
-from mua.capture.poses import cut_poses, template_poses
+from mua.capture.poses import cut_poses, every, template_poses
 from mua.capture.view import Files, View, read_view
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
 from mua.inputs import CAPTURE
 from mua.pose.clip import Clip
+from mua.pose.encoding import RATE
 from mua.rig.character import Character
 
 FORMAT, VERSION = "mua-capture", 1
@@ -114,12 +116,25 @@ class Capture:
 
         Errors: InputError where the motion cannot be read, does not fit the template, or is too short.
         """
+        return every(self.moving(clip), self.steps)
+
+    def moving(self, clip: str) -> Clip:
+        """The same motion with the poses between frames: `steps` from one frame to the next."""
         filmed = self.clip(clip)
-        return cut_poses(self.whole_motion(clip), filmed.motion, first=filmed.first, frames=filmed.frames)
+        whole = self._poses(clip, self.steps)
+        return cut_poses(whole, filmed.motion, first=filmed.first, frames=filmed.frames, steps=self.steps)
+
+    @property
+    def steps(self) -> int:
+        """From one frame to the next, so that poses are at least as close in time as those of a window."""
+        return math.ceil(RATE / self.rate)
 
     def whole_motion(self, clip: str) -> Clip:
         """All poses of a clip's motion, also those before and after what was filmed."""
-        return template_poses(self.clip(clip).motion, self.surfaces, rate=self.rate, name=clip)
+        return self._poses(clip, 1)
+
+    def _poses(self, clip: str, steps: int) -> Clip:
+        return template_poses(self.clip(clip).motion, self.surfaces, rate=steps * self.rate, name=clip)
 
 
 Named = TypeVar("Named", CaptureCamera, CaptureClip)

@@ -8,7 +8,7 @@ import numpy as np
 from mua.capture.camera import CaptureCamera
 from mua.capture.capture import Capture
 from mua.capture.diagnose import misplaced_tracks, remarks, unlikely
-from mua.capture.fit import Posed, Seen, chosen_frames, look_at
+from mua.capture.fit import Posed, Seen, chosen_frames, look_at, mean_overlap
 from mua.capture.inventory import missing_files
 from mua.errors import InputError
 
@@ -23,13 +23,18 @@ class CameraFit:
 
     @property
     def mean(self) -> float | None:
-        """Mean overlap of outline and mask."""
-        return float(np.mean([view.overlap for view in self.views])) if self.views else None
+        """Mean overlap of outline and mask, of views with the person."""
+        return mean_overlap(self._filled) if self._filled else None
 
     @property
     def least(self) -> Seen | None:
         """The view that fits worst."""
-        return min(self.views, key=lambda view: view.overlap, default=None)
+        return min(self._filled, key=lambda view: view.overlap, default=None)
+
+    @property
+    def _filled(self) -> list[Seen]:
+        """Views with the person: others count nowhere."""
+        return [view for view in self.views if view.mask.any()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +74,9 @@ def check_capture(capture: Capture, *, frames: int | None = None) -> Checked:
         )
         for camera in capture.cameras
     )
-    return Checked(capture, cameras, tuple(problems), tuple(remarks(views)), capture.surfaces.notes, posed)
+    return Checked(
+        capture, cameras, tuple(problems), tuple(remarks(views, fits=not problems)), capture.surfaces.notes, posed
+    )
 
 
 def _posed(capture: Capture, problems: list[str]) -> Posed:

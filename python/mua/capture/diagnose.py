@@ -1,22 +1,19 @@
 """What cannot be right in a capture, from how the template fits the masks: a sentence each, most of all first."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import groupby
 
 import numpy as np
 
 from mua.arrays import Array
+from mua.capture.apart import GAIN, POOR, cameras_apart, cameras_below, missing_lens
 from mua.capture.capture import Capture
 from mua.capture.conventions import better_convention
-from mua.capture.fit import Posed, Seen, mean_overlap
+from mua.capture.fit import Posed, Seen, by_camera, mean_overlap
 from mua.capture.outline import POINTS, overlap, posed_template, rough_overlap, silhouette
 from mua.capture.tracks import PointTracks, read_tracks
 from mua.errors import InputError
 
 GOOD = 0.8  # mean overlap that a skinned template reaches also with loose clothes
-POOR = 0.6  # of overlap, below which outline and mask are not of the same thing
-OUTLIER = 0.75  # of the median overlap, below which a view or camera stands apart from others
-GAIN = 0.1  # of overlap, by which another frame or camera must fit a mask better
 SHIFT_GAIN = 0.03  # the same for all views of a clip together
 FAR = 100.0  # metres from the template to cameras, beyond which lengths have another unit
 FARTHEST_SHIFT = 30  # frames by which images and poses may be apart
@@ -29,6 +26,9 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
     """All that is unlikely to be meant; where one thing explains all the rest, it alone."""
     told = list(_empty(views))
     filled = [view for view in views if view.mask.any()]
+    inverted = _inverted(filled)
+    told += _inverted_told(inverted, filled)
+    filled = [view for view in filled if view.camera.name not in inverted]
     if mean_overlap(filled) < POOR and filled and (found := better_convention(posed, filled)) is not None:
         convention, fitting, now = found
         return [*told, f"Outlines and masks overlap by {now:.0%}; they would by {fitting:.0%} if {convention}."]
@@ -38,7 +38,7 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
     filled = [view for view in filled if view.camera.name not in unseen]
     if shifted := list(_shifted(capture, posed, filled)):
         return told + shifted
-    apart = list(_apart(posed, filled))
+    apart = [*cameras_apart(posed, filled), *missing_lens(posed, filled)]
     if not apart and filled and mean_overlap(filled) < POOR:
         apart = [
             f"Outlines and masks overlap by {mean_overlap(filled):.0%}, and no other axes, units or frames that were "
@@ -47,14 +47,19 @@ def unlikely(capture: Capture, posed: Posed, views: Sequence[Seen]) -> list[str]
     return told + apart
 
 
-def remarks(views: Sequence[Seen]) -> list[str]:
-    """What is possible but worth a look: an overlap between what is wrong and what is good."""
-    mean = mean_overlap(views)
-    if not views or mean >= GOOD:
-        return []
+def remarks(views: Sequence[Seen], *, fits: bool) -> list[str]:
+    """What is possible but worth a look: masks without the person and, where all else `fits`, low overlaps."""
+    filled = [view for view in views if view.mask.any()]
+    told, mean = list(_sometimes_empty(views)), mean_overlap(filled)
+    if not fits or not filled:
+        return told
+    told += cameras_below(filled)
+    if mean >= GOOD:
+        return told
     return [
+        *told,
         f"Outlines and masks overlap by {mean:.0%} on average; {GOOD:.0%} or more is usual, also with loose clothes. "
-        "Compare template, poses and masks in the image that -o writes."
+        "Compare template, poses and masks in the image that -o writes.",
     ]
 
 
@@ -87,20 +92,42 @@ def _tracked_away(tracks: PointTracks, vertices: Array) -> float:
     return float(np.median(np.linalg.norm(apart, axis=2).min(axis=1)))
 
 
-def _by_camera(views: Sequence[Seen]) -> Mapping[str, list[Seen]]:
-    ordered = sorted(views, key=lambda view: view.camera.name)
-    return {name: list(of) for name, of in groupby(ordered, key=lambda view: view.camera.name)}
-
-
 def _empty(views: Sequence[Seen]) -> Iterator[str]:
-    for name, of in _by_camera(views).items():
+    for name, of in by_camera(views).items():
         if not any(view.mask.any() for view in of):
             yield f"Camera {name}: all masks that were looked at ({len(of)}) are empty."
 
 
+def _sometimes_empty(views: Sequence[Seen]) -> Iterator[str]:
+    for name, of in by_camera(views).items():
+        empty = [view for view in of if not view.mask.any()]
+        if 0 < len(empty) < len(of):
+            yield (
+                f"Camera {name}: {len(empty)} of {len(of)} masks that were looked at are empty and count nowhere, "
+                f"first clip {empty[0].clip}, frame {empty[0].frame}."
+            )
+
+
+def _inverted(views: Sequence[Seen]) -> dict[str, float]:
+    """Cameras whose masks fit the template far better the other way round, and how well then."""
+    inverse = {n: float(np.mean([overlap(v.covered, ~v.mask) for v in of])) for n, of in by_camera(views).items()}
+    return {n: inverse[n] for n, of in by_camera(views).items() if inverse[n] > max(POOR, mean_overlap(of) + GAIN)}
+
+
+def _inverted_told(inverted: Mapping[str, float], views: Sequence[Seen]) -> Iterator[str]:
+    every = len(inverted) > 1 and len(inverted) == len(by_camera(views))
+    named = (
+        {"All cameras": float(np.mean([*inverted.values()]))}
+        if every
+        else {f"Camera {n}": inverted[n] for n in inverted}
+    )
+    for name, fitting in named.items():
+        yield f"{name}: masks are inverted, by {fitting:.0%} they fit what is black; expected white for the person."
+
+
 def _unseen(views: Sequence[Seen]) -> list[str]:
     """Cameras in none of whose views the template is."""
-    return [name for name, of in _by_camera(views).items() if not any(view.covered.any() for view in of)]
+    return [name for name, of in by_camera(views).items() if not any(view.covered.any() for view in of)]
 
 
 def _far(capture: Capture, posed: Posed) -> Iterator[str]:
@@ -143,42 +170,3 @@ def _best_shift(capture: Capture, posed: Posed, views: Sequence[Seen]) -> tuple[
     ]
     best = int(np.argmax(exact))
     return shifts[nearest[best]], float(exact[best])
-
-
-def _apart(posed: Posed, views: Sequence[Seen]) -> Iterator[str]:
-    """Cameras that fit worse than the others, and views that fit worse than others of their camera."""
-    means = {name: mean_overlap(of) for name, of in _by_camera(views).items()}
-    typical = float(np.median(list(means.values()))) if means else 0.0
-    for name, of in _by_camera(views).items():
-        if means[name] < OUTLIER * typical:
-            yield _camera_apart(posed, of, views, means[name], typical)
-            continue
-        middle = float(np.median([view.overlap for view in of]))
-        yield from (_view_apart(posed, view, middle) for view in of if view.overlap < OUTLIER * middle)
-
-
-def _camera_apart(posed: Posed, of: Sequence[Seen], views: Sequence[Seen], mean: float, typical: float) -> str:
-    """Whose images these may be: those of the camera whose calibration fits them best."""
-    name, told = of[0].camera.name, f"overlaps by {mean:.0%}, a camera typically by {typical:.0%}"
-    others = {view.camera.name: view.camera for view in views if view.camera.size == of[0].camera.size}
-    fits = {
-        other: float(np.mean([overlap(posed.covers(v.clip, v.frame, camera), v.mask) for v in of]))
-        for other, camera in others.items()
-    }
-    best = max(fits, key=lambda other: fits[other])
-    if best != name and fits[best] > max(mean + GAIN, POOR):
-        return f"Camera {name}: {told}; its images fit the calibration of camera {best} by {fits[best]:.0%}."
-    return f"Camera {name}: {told}; its calibration, or which images it has, cannot be right."
-
-
-def _view_apart(posed: Posed, view: Seen, middle: float) -> str:
-    """Which frame a mask may be of."""
-    fits = [
-        overlap(posed.covers(view.clip, frame, view.camera), view.mask)
-        for frame in range(len(posed.vertices[view.clip]))
-    ]
-    best = int(np.argmax(fits))
-    told = f"{str(view).capitalize()}: overlaps by {view.overlap:.0%}, its camera typically by {middle:.0%}"
-    if best != view.frame and fits[best] > max(view.overlap + GAIN, POOR):
-        return f"{told}; the mask fits frame {best} by {fits[best]:.0%}."
-    return f"{told}; the mask or the pose cannot be right."

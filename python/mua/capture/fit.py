@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
@@ -66,6 +67,12 @@ def look_at(capture: Capture, posed: Posed, clip: str, frame: int, camera: Captu
     small = smaller(camera, rows)
     covered = posed.covers(clip, frame, small)
     return Seen(clip, frame, small, mask, covered, overlap(covered, mask))
+
+
+def by_camera(views: Sequence[Seen]) -> Mapping[str, list[Seen]]:
+    """Views of each camera by its name."""
+    ordered = sorted(views, key=lambda view: view.camera.name)
+    return {name: list(of) for name, of in groupby(ordered, key=lambda view: view.camera.name)}
 
 
 def mean_overlap(views: Sequence[Seen]) -> float:

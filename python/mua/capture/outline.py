@@ -33,6 +33,11 @@ def pixels(camera: CaptureCamera, points: Array) -> tuple[Array, Array]:
 
 def silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
     """Whether the surface with `vertices` [V, 3] and `faces` [F, 3] covers each pixel's middle, [H, W] bool."""
+    return fine_silhouette(vertices, faces, camera)[FINER // 2 :: FINER, FINER // 2 :: FINER]
+
+
+def fine_silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
+    """The same of every part of a pixel, [FINER H, FINER W] bool."""
     places, depth = pixels(camera, vertices)
     width, height = camera.size
     corners = places[faces[(depth[faces] > NEAR).all(axis=1)]]
@@ -41,7 +46,7 @@ def silhouette(vertices: Array, faces: Array, camera: CaptureCamera) -> Array:
     draw = ImageDraw.Draw(picture)
     for triangle in np.clip(corners[seen] * FINER, -1e5, 1e5).reshape(-1, 6).tolist():
         draw.polygon(triangle, fill=1)
-    return np.asarray(picture)[FINER // 2 :: FINER, FINER // 2 :: FINER]
+    return np.asarray(picture)
 
 
 def overlap(covered: Array, mask: Array) -> float:

@@ -7,7 +7,7 @@ from PIL import Image, UnidentifiedImageError
 
 from mua.arrays import Array
 from mua.atlas.pictures import in_8_bits
-from mua.capture.video import VIDEOS, video_frame
+from mua.capture.video import VIDEOS, MissingImage, video_frame
 from mua.errors import InputError
 
 
@@ -17,9 +17,9 @@ def read_picture(
     number: int,  # of the frame, where the file is a video
     size: tuple[int, int],  # width, height, pixels, that it must have
 ) -> Array:
-    """Colours [H, W, 3] uint8 sRGB, or [H, W, 4] with alpha; raises InputError for anything else."""
+    """Colours [H, W, 3] uint8 sRGB, or [H, W, 4] with alpha; raises MissingImage or, for anything else, InputError."""
     if not path.is_file():
-        raise InputError(f"{path}: there is no such file")
+        raise MissingImage(f"{path}: there is no such file")
     if path.suffix.lower() in VIDEOS:
         frame = video_frame(path, number)
         require_size(path, (frame.shape[1], frame.shape[0]), size)

@@ -32,9 +32,15 @@ def template_poses(
     return clip
 
 
-def cut_poses(clip: Clip, motion: Path, *, first: int, frames: int) -> Clip:
-    """`frames` poses from `first` on; raises InputError where there are not so many."""
-    if len(clip) < first + frames:
+def cut_poses(clip: Clip, motion: Path, *, first: int, frames: int, steps: int) -> Clip:
+    """From frame `first` to the last of `frames`, each `steps` poses apart; raises InputError for too few poses."""
+    there = -(-len(clip) // steps)
+    if there < first + frames:
         wanted = f"clip {clip.name!r} needs {frames} from pose {first} on"
-        raise InputError(f"{motion}: has {len(clip)} poses at {clip.rate:g} frames per second; {wanted}")
-    return clip.cut(slice(first, first + frames))
+        raise InputError(f"{motion}: has {there} poses at {clip.rate / steps:g} frames per second; {wanted}")
+    return clip.cut(slice(steps * first, steps * (first + frames - 1) + 1))
+
+
+def every(clip: Clip, steps: int) -> Clip:
+    """Every so many poses of a clip, at the rate that they have then."""
+    return replace(clip.cut(slice(None, None, steps)), rate=clip.rate / steps)

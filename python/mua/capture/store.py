@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -15,8 +15,8 @@ from mua.arrays import Array
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.capture import Capture
 from mua.capture.pictures import as_mask, read_mask, read_picture, require_size
-from mua.capture.video import VIDEOS, video_frames
-from mua.capture.view import MARGIN, Box, Filmed, View, in_steps, look, smaller, view_of
+from mua.capture.video import VIDEOS, MissingImage, video_frames
+from mua.capture.view import MARGIN, Box, Filmed, View, in_steps, look, nobody, smaller, view_of
 from mua.files import replacing
 from mua.rendering import to_bytes
 
@@ -25,7 +25,10 @@ QUICK = 1  # of PNG's levels of compression
 
 
 class ViewStore:
-    """`view` gives what `Capture.view` does with the same crop and rows, from a folder where it is there already."""
+    """`view` gives what `Capture.view` does with the same crop and rows, from a folder where it is there already.
+
+    Where image or mask is missing, it gives a view without the person.
+    """
 
     def __init__(
         self, capture: Capture, folder: Path, *, crop: bool = True, rows: int | None = None, limit: int = LIMIT
@@ -34,16 +37,24 @@ class ViewStore:
         self._capture, self._folder, self._crop, self._rows = capture, folder, crop, rows
         self._room = limit - sum(file.stat().st_size for file in folder.rglob("*.png"))
         self._background = cache(self._read_background)
+        self._missing: set[tuple[str, int, str]] = set()  # clip, frame and camera that were looked for once
 
     def view(self, clip: str, frame: int, camera: str) -> View:
         """A view; where one frame of a video is missing, the clip's frames are decoded and stored from there on."""
         filmed = self._capture.camera(camera)
-        place = self._place(clip, frame, filmed)
+        place, rows = self._place(clip, frame, filmed), self._height(filmed)
+        if (clip, frame, camera) in self._missing:
+            return nobody(filmed, rows=rows)
         if not place.is_file() and self._room > 0 and self._is_video(clip, filmed):
-            self._store_rest(clip, frame, filmed)
+            with suppress(MissingImage):  # of this frame or of a later one
+                self._store_rest(clip, frame, filmed)
         if place.is_file():
             return self._read(place, filmed)
-        view = self._capture.view(clip, frame, camera, crop=self._crop, rows=self._height(filmed))
+        try:
+            view = self._capture.view(clip, frame, camera, crop=self._crop, rows=rows)
+        except MissingImage:
+            self._missing.add((clip, frame, camera))
+            return nobody(filmed, rows=rows)
         self._write(place, view)
         return view
 
@@ -77,7 +88,8 @@ class ViewStore:
         return None if self._rows is None else min(self._rows, camera.size[1])
 
     def _is_video(self, clip: str, camera: CaptureCamera) -> bool:
-        return self._capture.files(clip, 0, camera.name).image.suffix.lower() in VIDEOS
+        image = self._capture.files(clip, 0, camera.name).image
+        return image.suffix.lower() in VIDEOS and image.is_file()
 
     def _place(self, clip: str, frame: int, camera: CaptureCamera) -> Path:
         """Where a view is stored; the name tells all that it was made from."""

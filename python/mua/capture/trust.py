@@ -28,11 +28,14 @@ class MaskTrust:
         motions = {clip.name: capture.motion(clip.name) for clip in capture.clips}
         self._joints = {n: surfaces.skeleton.skinning(m.rotations, m.translations) for n, m in motions.items()}
         found = [*_some(capture, self._overlap)]
-        self.usual = float(np.median(found or [0]))
-        if found and not any(found):
+        self.usual = float(np.median([one for one in found if one] or [0]))  # empty masks say nothing
+        if not any(found):
             clip = next(clip for clip in capture.clips if not clip.held_out)
             camera = next(camera for camera in capture.cameras if not camera.held_out)
-            files = capture.files(clip.name, chosen_frames(capture, clip, None)[0], camera.name)
+            frame = chosen_frames(capture, clip, None)[0]
+            if not found:
+                capture.view(clip.name, frame, camera.name)  # says why it cannot be read, as all others
+            files = capture.files(clip.name, frame, camera.name)
             raise InputError(
                 f"{files.mask or files.image}: none of {len(found)} masks that were looked at, of which this is the "
                 f"first, shows the posed template; mua-capture check {capture.folder} says why"

@@ -12,6 +12,11 @@ import numpy as np
 from mua.arrays import Array
 from mua.errors import InputError
 
+
+class MissingImage(InputError):
+    """Raised where a capture has no image of a frame: there is no such file, or a video ends before."""
+
+
 VIDEOS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v")
 EARLIER = 0.5  # frames: rounding of times must not skip the frame that is looked for
 EACH_ONCE = ("-fps_mode", "passthrough")  # none is left out or shown twice to keep a rate
@@ -23,7 +28,7 @@ def video_frame(path: Path, number: int) -> Array:
     with closing(video_frames(path, number)) as frames:
         for frame in frames:
             return frame
-    raise InputError(f"{path}: has {count_frames(path)} frames; frame {number}, counted from 0, is wanted")
+    raise MissingImage(f"{path}: has {count_frames(path)} frames; frame {number}, counted from 0, is wanted")
 
 
 def video_frames(path: Path, first: int = 0) -> Generator[Array, None, None]:

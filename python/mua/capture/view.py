@@ -12,6 +12,7 @@ from mua.capture.lens import undistort
 from mua.capture.pictures import read_mask, read_picture
 from mua.capture.smaller import area_average
 from mua.errors import InputError
+from mua.inputs import require_file
 
 MARGIN = 0.05  # of the longer side of the box around a mask, left free on each side of it
 COVERED = 0.5 / 255  # of a mask; what is less is nothing in 8 bits
@@ -42,6 +43,11 @@ class View:
         """The pinhole as images are drawn with it."""
         return self.pinhole.camera()
 
+    @property
+    def empty(self) -> bool:
+        """Whether nobody is in it: such a view counts nowhere."""
+        return not bool((self.mask > COVERED).any())
+
 
 @dataclass(frozen=True, eq=False)
 class Filmed:
@@ -56,6 +62,7 @@ def read_view(files: Files, camera: CaptureCamera, *, crop: bool = False, rows: 
     """Read a view; see `Capture.view`."""
     background = None
     if files.background is not None:
+        require_file(files.background)
         background = read_picture(files.background, number=0, size=camera.size)[..., :3]
     return view_of(filmed(files, camera), camera, crop=crop, rows=rows, background=background)
 
@@ -69,6 +76,13 @@ def filmed(files: Files, camera: CaptureCamera) -> Filmed:
     if image.shape[2] < 4:
         raise InputError(f"{files.image}: has no alpha; expected it to have one, or capture.json to name masks")
     return Filmed(image[..., :3], image[..., 3:], clear=True)
+
+
+def nobody(camera: CaptureCamera, *, rows: int | None = None) -> View:
+    """The view that stands for one whose image or mask is missing."""
+    pinhole = replace(smaller(camera, rows), distortion=UNDISTORTED)
+    width, height = pinhole.size
+    return View(np.zeros((height, width, 3), np.float32), np.zeros((height, width), np.float32), pinhole)
 
 
 def view_of(

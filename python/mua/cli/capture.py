@@ -212,8 +212,8 @@ def _show(console: Console, checked: "Checked") -> None:
         say(console, f"problem: {problem}")
     if not checked.problems:
         say(console, "Nothing was found that cannot be right.")
-        for remark in checked.remarks:
-            say(console, f"remark: {remark}")
+    for remark in checked.remarks:
+        say(console, f"remark: {remark}")
 
 
 def _row(fit: "CameraFit") -> tuple[str, ...]:

@@ -65,6 +65,14 @@ OPTIONS = {
     "seed": Annotated[int, typer.Option(help="Seed of all random numbers.")],
     "device": Annotated[str | None, typer.Option(help="Graphics device: its number or part of its name.")],
     "output": Annotated[Path, typer.Option("--output", "-o", help="Directory to write to.")],
+    "images": Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder to write every image that was measured to: the captured one, the teacher's and the avatars', "
+            "as clip/camera/frame_name.png; where RECORDING is a capture.",
+            show_default="none",
+        ),
+    ],
 }
 
 
@@ -88,6 +96,8 @@ def evaluate(**options: Any) -> None:
             raise InputError(f"--scale {order.scale[0]:g}: only applies to a comparison with the images of a capture")
         if order.train_on is not None:
             raise InputError(f"--train-on {order.train_on}: only applies to a comparison with the images of a capture")
+        if order.images is not None:
+            raise InputError(f"--images {order.images}: only applies to a comparison with the images of a capture")
         if order.teacher is not None:
             raise InputError(
                 f"--teacher {order.teacher}: can only be compared with the images of a capture, not with a recording"

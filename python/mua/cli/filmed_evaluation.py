@@ -8,7 +8,7 @@ from pathlib import Path
 import torch
 
 from mua.baking.recorded import recording_key
-from mua.baking.taught_motion import plan_headings, taught_settings
+from mua.baking.taught_motion import filmed_clips, plan_headings, taught_settings
 from mua.capture import Capture, open_capture
 from mua.capture.store import ViewStore
 from mua.checkpoint import Checkpoints, run_key
@@ -20,8 +20,10 @@ from mua.compare.filmed_systems import sized, trained_entries
 from mua.compare.motion import training_frames
 from mua.compare.order import ALL, SYSTEM_NAMES, EvaluationOrder
 from mua.compare.system import Budget
+from mua.errors import InputError
 from mua.files import replacing, write_bytes
 from mua.locks import DirectoryLock
+from mua.pose.encoding import RATE
 from mua.recording import Recording
 from mua.recording.workers import record_by_workers
 from mua.splatting.perceptual import Lpips
@@ -41,23 +43,42 @@ def compare(order: EvaluationOrder) -> None:
     entries += [filmed.avatar_entry(path, template) for path in order.avatars]
     console = printer()
     with DirectoryLock(work, name=f"-o {order.output}"), Display(console) as display:
-        about = [f"{len(chosen)} images of {capture.name}, inside the box around the mask, over white."]
+        said: list[str] = []
         if order.system:
             systems, said = _systems(order, capture, work, display)
-            entries, about = [*entries, *systems], [*about, *said]
+            entries = [*entries, *systems]
         display.stage("images")
-        judged = []
-        kept = set(filmed_report.sheet_shots(chosen))
-        see = ViewStore(capture, work / "views").view
-        for one in filmed.judge(capture, chosen, entries, see=see, kept=kept, lpips=lpips):
-            judged.append(one)
-            display.step(len(judged), len(chosen))
+        looked_at = _looked_at(order, capture, chosen, entries, lpips, display)
+    judged = [one for one in looked_at if one.scores]
+    if not judged:
+        raise InputError(f"{capture.file}: nobody is seen in any of the {len(chosen)} views by cameras with held_out")
+    about = [f"{len(judged)} images of {capture.name}, inside the box around the mask, over white."]
+    about += [*filmed_report.nobody_there([one.shot for one in looked_at if not one.scores]), *said]
     found = standing.standings(judged, entries)
     about += standing.sentences(found)
     written = _write(order.output, judged, entries, about, found)
     console.print(filmed_report.table(judged, entries))
     for sentence in [*about, f"{order.output}: {', '.join(written)}"]:
         console.print(sentence, highlight=False, soft_wrap=True, markup=False)
+
+
+def _looked_at(
+    order: EvaluationOrder,
+    capture: Capture,
+    chosen: Sequence[filmed.Shot],
+    entries: Sequence[filmed.FilmedEntry],
+    lpips: Lpips | None,
+    display: Display,
+) -> list[filmed.Judged]:
+    """Every view; only those of the contact sheets keep their images in memory."""
+    shown, see = set(filmed_report.sheet_shots(chosen)), ViewStore(capture, order.output / "work" / "views").view
+    kept, found = shown if order.images is None else set(chosen), []
+    for one in filmed.judge(capture, chosen, entries, see=see, kept=kept, lpips=lpips):
+        if order.images is not None:
+            filmed_report.write_images(order.images, one)
+        found.append(one if one.shot in shown else replace(one, pictures={}))
+        display.step(len(found), len(chosen))
+    return found
 
 
 def _systems(
@@ -104,11 +125,11 @@ def _systems(
 
 def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: Display) -> Recording:
     """What the teacher shows of the capture's training poses, at most so many."""
-    own = [capture.motion(clip.name) for clip in capture.clips if not clip.held_out]
-    names = [clip.name for clip in own]
+    names = [clip.name for clip in capture.clips if not clip.held_out]
+    own = [clip for clip in filmed_clips(capture) if clip.name in names]
     planned = plan_headings(capture.surfaces.skeleton, own, [], filmed=names, frames=frames)
     planned = [replace(clip, whole=frozenset()) for clip in planned]
-    key = recording_key([*teacher_bytes(teacher), str(capture.rate).encode()], planned)
+    key = recording_key(teacher_bytes(teacher), planned)
     directory = work / f"recording-{key}"
     total = sum(len(clip.wanted) for clip in planned)
     display.stage("recording")
@@ -117,7 +138,7 @@ def _record(teacher: Path, capture: Capture, frames: int, work: Path, display: D
         planned,
         directory,
         jobs=1,
-        rate=capture.rate,
+        rate=RATE,
         progress=lambda done, _: display.step(done, total),
         note=display.note,
     )

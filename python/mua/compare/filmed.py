@@ -23,9 +23,8 @@ from mua.compare.metrics import LPIPS_UNIT
 from mua.decode import Splats, decode, pose_splats
 from mua.errors import InputError
 from mua.pose.clip import Clip
-from mua.pose.encoding import PoseEncoding
-from mua.pose.resample import sample
 from mua.pose.skeleton import Skeleton
+from mua.pose.windows import window_of
 from mua.rendering import to_bytes
 from mua.splatting.likeness import structural_similarity
 from mua.splatting.perceptual import Lpips
@@ -81,7 +80,7 @@ class Judged:
 
     shot: Shot
     pictures: dict[str, Array]  # [H, W, 3] uint8
-    scores: dict[str, Likeness]
+    scores: dict[str, Likeness]  # none where nobody is in the view
 
 
 def shots(capture: Capture, most: int | None) -> list[Shot]:
@@ -130,14 +129,6 @@ def avatar_entry(path: Path, template: Skeleton) -> FilmedEntry:
     return FilmedEntry(path.stem, show, file_cost(path, avatar))
 
 
-def window_of(clip: Clip, frame: int, encoding: PoseEncoding) -> Clip:
-    """The window of poses that ends at a frame of a clip, newest first, at the encoding's rate."""
-    ages = np.arange(encoding.window)
-    if clip.rate == encoding.rate:
-        return clip.cut(np.maximum(frame - ages, 0))
-    return sample(clip, np.maximum(frame * encoding.rate / clip.rate - ages, 0), rate=encoding.rate)
-
-
 def require_skeleton(name: str, own: Skeleton, template: Skeleton) -> None:
     """Raises InputError where joints are not the template's, by name and by place."""
     if own.names != template.names:
@@ -157,15 +148,21 @@ def judge(
     kept: Collection[Shot] = (),  # those whose images are kept
     lpips: Lpips | None = None,
 ) -> Iterator[Judged]:
-    """Each view in turn; views of one frame follow each other, so that every entry decodes a frame once."""
-    motions = {clip.name: capture.motion(clip.name) for clip in capture.clips}
+    """Each view in turn; views of one frame follow each other, so that every entry decodes a frame once.
+
+    Views without the person have neither images nor scores.
+    """
+    motions = {clip.name: capture.moving(clip.name) for clip in capture.clips}
     decoded: dict[str, Splats] = {}
     last = None
     for shot in chosen:
+        view = see(shot.clip, shot.frame, shot.camera)
+        if view.empty:
+            yield Judged(shot, {}, {})
+            continue
         if (shot.clip, shot.frame) != last:
             last = shot.clip, shot.frame
-            decoded = {one.name: one.show(motions[shot.clip], shot.frame) for one in entries}
-        view = see(shot.clip, shot.frame, shot.camera)
+            decoded = {one.name: one.show(motions[shot.clip], capture.steps * shot.frame) for one in entries}
         truth = view.mask[..., None] * view.image + (1 - view.mask[..., None])
         pictures = {name: drawn(splats, view.camera) for name, splats in decoded.items()}
         scores = {name: likeness(picture, truth, lpips=lpips) for name, picture in pictures.items()}

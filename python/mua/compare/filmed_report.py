@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
@@ -16,6 +17,7 @@ from mua.compare.filmed import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Sho
 from mua.compare.order import OURS
 from mua.compare.standing import Standing
 from mua.fidelity.strips import GAIN, caption, difference
+from mua.files import replacing
 from mua.rendering import to_bytes
 
 DIGITS = {"psnr": 2, "ssim": 4, "flip": 4, "lpips": 2}
@@ -24,6 +26,7 @@ COSTS = ("M parameters", "MFLOP")
 NOTHING = "-"
 LEAST_WIDTH = 190  # pixels of an image under its caption
 SHEET_ROWS = 6
+NAMED = 4  # views without the person that are named of each camera
 
 
 def rows(judged: Sequence[Judged], entries: Sequence[FilmedEntry]) -> list[list[str]]:
@@ -82,6 +85,25 @@ def as_json(
     ]
     whole = {"about": list(about), "entries": told, "standings": [asdict(one) for one in found]}
     return json.dumps(whole, indent=1, allow_nan=False) + "\n"
+
+
+def nobody_there(shots: Sequence[Shot]) -> list[str]:
+    """A sentence for each camera of which some views show nobody."""
+    told = []
+    for camera in dict.fromkeys(shot.camera for shot in shots):
+        own = [shot for shot in shots if shot.camera == camera]
+        places = ", ".join(f"{shot.clip} {shot.frame}" for shot in own[:NAMED]) + (", ..." if len(own) > NAMED else "")
+        counted = "1 view, which counts" if len(own) == 1 else f"{len(own)} views, which count"
+        told.append(f"Camera {camera}: nobody is seen in {counted} nowhere: {places}.")
+    return told
+
+
+def write_images(folder: Path, one: Judged) -> None:
+    """The captured image of a view and every entry's: clip/camera/frame_entry.png."""
+    for name, picture in one.pictures.items():
+        place = folder / one.shot.clip / one.shot.camera / f"{one.shot.frame:06d}_{name.replace(' ', '_')}.png"
+        with replacing(place) as temporary:
+            Image.fromarray(picture).save(temporary)
 
 
 def sheet_shots(chosen: Sequence[Shot]) -> list[Shot]:

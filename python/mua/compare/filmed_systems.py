@@ -12,7 +12,7 @@ import numpy as np
 from mua.checkpoint import Checkpoints
 from mua.compare.cost import Cost, learnt_cost
 from mua.compare.entries import sentence
-from mua.compare.filmed import FilmedEntry, Show, window_of
+from mua.compare.filmed import FilmedEntry, Show
 from mua.compare.motion import motion_of
 from mua.compare.network import NetworkSystem
 from mua.compare.order import OURS
@@ -20,6 +20,7 @@ from mua.compare.system import Budget, Sizes, TrainingFrames
 from mua.compare.systems import SYSTEMS, train_or_restore
 from mua.decode import Splats, pose_splats
 from mua.pose.clip import Clip
+from mua.pose.windows import window_of
 from mua.student.optimise import Report
 
 STEPS_OF_TWO = 8  # sizes that are tried for equal cost from one scale to its double

@@ -38,3 +38,4 @@ class EvaluationOrder:
     seed: int = 0
     device: str | None = None
     output: Path = Path("evaluation")
+    images: Path | None = None  # folder for the images that were measured, where the recording is a capture

@@ -31,10 +31,13 @@ def describe(
     encoding: PoseEncoding,
     rotations: Array,  # [F, J, 4] local, unit
     translations: Array,  # [F, J, 3] local, metres
+    *,
+    windows: Array | None = None,  # [N, k] frames of each window, newest first; None: those that end at every frame
 ) -> Array:
-    """Descriptors [F, D] float64 of every frame of a clip; before its first frame, the clip is held still."""
-    window = np.arange(len(rotations))[:, None] - np.arange(encoding.window)
-    return _gather(encoding, _frames(skeleton, encoding, rotations, translations), np.maximum(window, 0))
+    """Descriptors [N, D] float64 of windows of a clip; before its first frame, the clip is held still."""
+    if windows is None:
+        windows = np.maximum(np.arange(len(rotations))[:, None] - np.arange(encoding.window), 0)
+    return _gather(encoding, _frames(skeleton, encoding, rotations, translations), windows)
 
 
 def describe_window(

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 from mua.arrays import Array
 
+RATE = 30.0  # frames per second between the poses of a window: in every teacher, recording, file and player
+
 
 class Part(NamedTuple):
     """Numbers of a descriptor that belong together."""

@@ -23,7 +23,7 @@ def frames_at(clip: Clip, rate: float) -> int:
 
 def sample(
     clip: Clip,
-    frames: Array,  # [N] int, from 0, each below frames_at(clip, rate)
+    frames: Array,  # [N] from 0, each below frames_at(clip, rate); whole where `rate` is the clip's
     *,
     rate: float,
 ) -> Clip:

@@ -14,7 +14,8 @@ from mua.capture.trust import MaskTrust
 from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.descriptor import choose_joints, choose_translated
-from mua.pose.encoding import PoseEncoding
+from mua.pose.encoding import RATE, PoseEncoding
+from mua.pose.windows import window_of
 from mua.rig.moving import moving_joints
 from mua.splatting.projection import Eye
 from mua.teachers.bones import figure_scale
@@ -51,7 +52,9 @@ class Filmed:
         return [camera for camera in self.capture.cameras if not camera.held_out]
 
     def windows(self, clip: Clip) -> list[Window]:
-        return windows(self.subject.rig.skeleton, self.subject.encoding, clip)
+        """The window of every frame; where frames are far apart, the motion says what was between them."""
+        moving, steps = self.capture.moving(clip.name), self.capture.steps
+        return windows(self.subject.rig.skeleton, self.subject.encoding, moving, every=steps)
 
     def see(self, clip: str, frame: int, camera: CaptureCamera) -> Seen:
         """A view, cut to the person; raises InputError that names camera, clip and frame where it cannot be read."""
@@ -86,7 +89,7 @@ def read_filmed(
     used = moving_joints(still.rig)
     encoding = PoseEncoding(
         choose_joints(character.skeleton, clips, used),
-        rate=capture.rate,
+        rate=RATE,
         window=settings.window,
         translated=choose_translated(character.skeleton, clips, used),
     )
@@ -97,15 +100,9 @@ def read_filmed(
 def material_of(filmed: Filmed, perceptual: Perceptual | None = None) -> Material:
     """The views of all training frames; frames of one clip follow each other."""
     frames = [(clip.name, frame) for clip in filmed.clips for frame in range(len(clip))]
-    starts = np.cumsum([0, *(len(clip) for clip in filmed.clips)])
-    poses = [
-        [int(start) + row for row in filmed.subject.encoding.frames(frame)]
-        for start, clip in zip(starts[:-1], filmed.clips, strict=True)
-        for frame in range(len(clip))
-    ]
     cameras = filmed.cameras
     views = Views(len(frames), len(cameras), lambda frame, camera: filmed.see(*frames[frame], cameras[camera]))
-    return Material(views, [window for clip in filmed.clips for window in filmed.windows(clip)], poses, perceptual)
+    return Material(views, [window for clip in filmed.clips for window in filmed.windows(clip)], perceptual)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,15 +124,17 @@ class Outlines:
         views = self.material.views
         cameras = torch.randperm(views.cameras, generator=generator)[:OUTLINES]
         seen = [views.see(frame, camera) for camera in cameras.tolist()]
-        return Observed(outlines=[Outline(one.eye, one.mask) for one in seen])
+        return Observed(outlines=[Outline(one.eye, one.mask) for one in seen if one.weight > 0])
 
 
 def refinement_of(filmed: Filmed, settings: TeacherSettings) -> PoseRefinement | None:
     """The refinement of all training frames; None where poses are taken as they are."""
     if not settings.refine:
         return None
+    moving, steps = [filmed.capture.moving(clip.name) for clip in filmed.clips], filmed.capture.steps
+    poses = [window_of(clip, frame, filmed.subject.encoding) for clip in moving for frame in range(0, len(clip), steps)]
     rotations, translations = (
-        torch.from_numpy(np.concatenate([getattr(clip, name) for clip in filmed.clips]))
+        torch.from_numpy(np.stack([getattr(window, name) for window in poses]))
         for name in ("rotations", "translations")
     )
     rig = filmed.subject.rig
@@ -145,8 +144,17 @@ def refinement_of(filmed: Filmed, settings: TeacherSettings) -> PoseRefinement |
 
 def preview_of(filmed: Filmed, folder: Path) -> Preview:
     """The middle of a training clip and of one that is held out, by a camera that is held out; if there are such."""
-    camera = next((camera for camera in filmed.capture.cameras if camera.held_out), filmed.capture.cameras[0])
     chosen: Sequence[Clip] = [*filmed.clips[:1], *filmed.held[:1]]
-    middles = [(clip, len(clip) // 2) for clip in chosen]
-    seen = [(filmed.see(clip.name, frame, camera), filmed.windows(clip)[frame]) for clip, frame in middles]
-    return Preview(folder, seen)
+    found = [(clip, shown) for clip in chosen if (shown := _middle(filmed, clip)) is not None]
+    return Preview(folder, [(seen, filmed.windows(clip)[frame]) for clip, (seen, frame) in found])
+
+
+def _middle(filmed: Filmed, clip: Clip) -> tuple[Seen, int] | None:
+    """The view with a person that is nearest to the middle of a clip, and its frame; held-out cameras come first."""
+    cameras = sorted(filmed.capture.cameras, key=lambda camera: not camera.held_out)
+    for camera in cameras:
+        for frame in sorted(range(len(clip)), key=lambda frame: abs(frame - len(clip) // 2)):
+            seen = filmed.see(clip.name, frame, camera)
+            if seen.mask.any():
+                return seen, frame
+    return None

@@ -24,11 +24,10 @@ Perceptual = Callable[[Tensor, Tensor], Tensor]  # of two images [1, 3, H, W] in
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """What a training has of a person; windows and rows of poses are those of the frames of `views`."""
+    """What a training has of a person; windows are those of the frames of `views`."""
 
     views: Views
     windows: Sequence[Window]
-    poses: Sequence[list[int]]  # of each frame's window, newest first, among those of the refinement
     perceptual: Perceptual | None = None
     tracks: Sequence[TexelTracks] = ()  # of each frame, where points were followed
 
@@ -74,7 +73,7 @@ class Lesson(nn.Module):
         window = self._material.windows[frame].to(self.looks.device)
         if self.refinement is None:
             return window
-        joints = self.refinement(self._material.poses[frame])
+        joints = self.refinement(frame)
         newest = joints[0]
         return Window(joints, window.descriptors, self.refinement.place(newest), self.refinement.back(newest))
 
@@ -88,10 +87,13 @@ class Lesson(nn.Module):
         window = self.window(index)
         frame = self.teacher(window, look=self.looks[index], moving=moving)
         splats = self.teacher.splats(frame, window.joints[0])
-        seen = [self._material.views.see(index, camera) for camera, _ in views]
+        seen = [(self._material.views.see(index, camera), camera, colour) for camera, colour in views]
+        seen = [of for of in seen if of[0].weight > 0]  # where nobody is, nothing is drawn
         loss = len(views) * (self._restraint(frame, index) + self._misalignment(frame, splats, index))
-        pictures = draw_views(splats, [one.eye for one in seen], by=self._rasteriser)
-        for (camera, colour), one, drawn in zip(views, seen, pictures, strict=True):
+        if not seen:
+            return loss + 0 * frame.texture.sum()  # that has a gradient in every stage
+        pictures = draw_views(splats, [one.eye for one, _, _ in seen], by=self._rasteriser)
+        for (one, camera, colour), drawn in zip(seen, pictures, strict=True):
             image = self.correction(drawn, camera)
             background = colour if one.background is None else one.background
             shown = image[..., :3] + (1 - image[..., 3:]) * background

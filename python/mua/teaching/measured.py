@@ -14,7 +14,6 @@ from mua import rotation
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.kernels.dq_skinning import blend_vertices
-from mua.pose.descriptor import describe
 from mua.rig.character import Mesh
 from mua.teachers.bones import figure_scale
 from mua.teaching.from_capture import Filmed
@@ -60,13 +59,11 @@ def measured_surfaces(filmed: Filmed) -> MeasuredSurfaces | None:
     missing = next((file for file in files if not file.is_file()), None)
     if missing is not None:
         raise InputError(f"{missing}: there is no such file; capture.json names a mesh for every frame")
-    skeleton, encoding = rig.skeleton, filmed.subject.encoding
-    described = [describe(skeleton, encoding, clip.rotations, clip.translations) for clip in filmed.clips]
-    joints = [skeleton.skinning(clip.rotations, clip.translations) for clip in filmed.clips]
-    duals = blend_vertices(joints[0][0], rig.skin_indices, rig.skin_weights)
+    windows = [window for clip in filmed.clips for window in filmed.windows(clip)]
+    duals = blend_vertices(windows[0].joints[0].double().numpy(), rig.skin_indices, rig.skin_weights)
     return MeasuredSurfaces(
-        torch.from_numpy(np.concatenate(described)).float(),
-        torch.from_numpy(np.concatenate(joints)).float(),
+        torch.stack([window.descriptors[0] for window in windows]),
+        torch.stack([window.joints[0] for window in windows]),
         files,
         figure_scale(rig.mesh.vertices),
         unit_of(files[0], rotation.dual_transform(duals, rig.mesh.vertices)),

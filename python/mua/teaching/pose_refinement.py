@@ -15,16 +15,16 @@ VANISHES = 1e-4  # length of a twist that says of no heading: who is upside down
 class PoseRefinement(nn.Module):
     """Of the frames of one training; unseen motion is posed as it is given."""
 
-    rotations: Tensor  # [F, J, 4]
-    translations: Tensor  # [F, J, 3]
+    rotations: Tensor  # [F, k, J, 4]
+    translations: Tensor  # [F, k, J, 3]
     unbind: Tensor  # [J, 8]
     rest: Tensor  # [3] of the root in the bind pose, metres
 
     def __init__(
         self,
         skeleton: Skeleton,
-        rotations: Tensor,  # [F, J, 4] local
-        translations: Tensor,  # [F, J, 3] local, metres
+        rotations: Tensor,  # [F, k, J, 4] local, of each frame's window, newest first
+        translations: Tensor,  # [F, k, J, 3] local, metres
         *,
         most: float,  # degrees about each axis
         size: float = 1.0,  # of the figure over that of a person
@@ -40,16 +40,14 @@ class PoseRefinement(nn.Module):
         self.moves = nn.Parameter(torch.zeros(len(rotations), 3))  # of the root, in shares of `farthest`
         self.turns = nn.Parameter(torch.zeros(len(rotations), len(self.parents), 3))  # half angles in shares of `most`
 
-    def forward(
-        self,
-        frames: list[int],  # of a window
-    ) -> Tensor:
-        """Dual quaternions [k, J, 8], bind pose to world."""
-        half = torch.tanh(self.turns[frames]) * (self.most / 2)
+    def forward(self, frame: int) -> Tensor:
+        """Dual quaternions [k, J, 8] of a frame's window, bind pose to world: what is off is off in all of it."""
+        half = torch.tanh(self.turns[frame]) * (self.most / 2)
         turn = nn.functional.normalize(torch.cat([torch.ones_like(half[..., :1]), half], dim=-1), dim=-1)
-        moved = torch.zeros_like(self.translations[frames])
-        moved[:, self.root] = torch.tanh(self.moves[frames]) * self.farthest
-        return self._skinning(multiply(self.rotations[frames], turn), self.translations[frames] + moved)
+        moved = torch.zeros_like(self.translations[frame])
+        moved[:, self.root] = torch.tanh(self.moves[frame]) * self.farthest
+        rotations = self.rotations[frame]
+        return self._skinning(multiply(rotations, turn.expand_as(rotations)), self.translations[frame] + moved)
 
     def place(
         self,

@@ -1,7 +1,6 @@
 """A taught teacher as what is recorded and distilled (mua.teachers.teacher)."""
 
 from collections.abc import Container, Iterator
-from dataclasses import replace
 
 import torch
 
@@ -27,8 +26,7 @@ class TrainedTeacher:
 
     def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
         """Whole frames where wanted, else poses."""
-        encoding = replace(self.description.encoding, rate=clip.rate)
-        for index, window in enumerate(windows(self.rig.skeleton, encoding, clip)):
+        for index, window in enumerate(windows(self.rig.skeleton, self.description.encoding, clip)):
             if index not in wanted:
                 yield clip.pose(index)
                 continue
