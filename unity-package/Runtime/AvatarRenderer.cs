@@ -60,7 +60,7 @@ namespace Mua
 
     /// <summary>
     /// Shows an avatar where its GameObject stands: one of its own clips, or the pose of transforms that something else
-    /// moves. The character faces the GameObject's forward axis; scale is not supported.
+    /// moves. The character faces the GameObject's forward axis, and follows a scale that is the same along all axes.
     /// </summary>
     [ExecuteAlways, DisallowMultipleComponent, AddComponentMenu("MUA/Avatar"), DefaultExecutionOrder(1000)]
     public sealed class AvatarRenderer : MonoBehaviour
