@@ -25,14 +25,14 @@ namespace Mua
         private bool isScaleReported, isLevelReported;
         private int level;
 
-        /// <summary>Begins to load an imported avatar, or the file where that is null.</summary>
-        public AvatarInstance(AvatarRenderer owner, AvatarAsset avatar, string file)
+        /// <summary>Begins to load what `open` opens.</summary>
+        public AvatarInstance(AvatarRenderer owner, Func<AvatarLoader> open)
         {
             this.owner = owner;
             try
             {
                 resources = AvatarResources.Require();
-                loader = avatar != null ? AvatarLoader.Of(avatar) : AvatarLoader.Of(file);
+                loader = open();
                 State = AvatarState.Loading;
             }
             catch (InvalidOperationException error)
