@@ -43,7 +43,7 @@ from mua.player.surface import surface_mesh
 SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME = 3  # of a clip of 24 Hz
-PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 1.3)  # Unity's position, then rotation (x, y, z, w), then size
+PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.9)  # Unity's position, then rotation (x, y, z, w), then size
 PASSES = ("Geometry", "Mesh", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 MAP = 512  # pixels along a shadow map
