@@ -7,6 +7,7 @@ import tarfile
 from collections.abc import Callable
 from pathlib import Path
 
+import lint_upm
 import pack_upm
 import pytest
 
@@ -167,3 +168,25 @@ def test_writes_and_checks(tmp_path: Path, capsys: pytest.CaptureFixture[str], m
     ] * 3
     assert [path.name for path in target.parent.iterdir()] == ["avatar.tgz"]
     assert pack_upm.default_output().name == "com.mua.avatar-0.1.0.tgz"
+
+
+def test_a_folder_holds_what_the_tarball_does_and_keeps_its_git(files: dict[str, bytes], tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".git" / "HEAD").write_text("ref: refs/heads/upm\n")
+    (tmp_path / "package.json").write_text("{}")
+    (tmp_path / "Gone").mkdir()
+    (tmp_path / "Gone" / "older.cs").write_text("")
+    pack_upm.write_folder(files, tmp_path)
+    assert (tmp_path / ".git" / "HEAD").is_file()
+    written = {path.relative_to(tmp_path).as_posix(): path for path in tmp_path.rglob("*") if path.is_file()}
+    assert {path: file.read_bytes() for path, file in written.items() if not path.startswith(".git/")} == files
+    (tmp_path / ".git" / "HEAD").unlink()
+    (tmp_path / ".git").rmdir()
+    assert lint_upm.faults([tmp_path]) == []
+
+
+def test_a_folder_of_something_else_is_left_alone(files: dict[str, bytes], tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("mine")
+    with pytest.raises(SystemExit, match=r"thesis\.txt and no package\.json"):
+        pack_upm.write_folder(files, tmp_path)
+    assert (tmp_path / "thesis.txt").read_text() == "mine"

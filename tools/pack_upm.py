@@ -2,6 +2,7 @@
 
 The kernels become com.mua.avatar/ComputeShaders, byte for byte and with the GUIDs that they have; shaders include them
 from there, and the dependency goes. Golden files and the guide come along. The same checkout gives the same bytes.
+--folder writes the same files as a folder, for a branch or repository that a git URL installs.
 --check holds a tarball, or what would be packed where none is given, to the checkout and to Unity's rules.
 """
 
@@ -10,6 +11,7 @@ import gzip
 import io
 import json
 import re
+import shutil
 import sys
 import tarfile
 import tempfile
@@ -147,6 +149,16 @@ def unpack(files: Mapping[str, bytes], folder: Path) -> None:
         target.write_bytes(content)
 
 
+def write_folder(files: Mapping[str, bytes], folder: Path) -> None:
+    """Put the package in place of a folder's files; hidden ones, such as .git, stay."""
+    kept = [path for path in folder.iterdir() if not path.name.startswith(".")] if folder.is_dir() else []
+    if kept and not (folder / "package.json").is_file():
+        raise SystemExit(f"{folder}: holds {kept[0].name} and no package.json, expected an older package or no files")
+    for path in kept:
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    unpack(files, folder)
+
+
 def default_output() -> Path:
     """Where the tarball goes, named by its version."""
     version = json.loads((PACKAGE / "package.json").read_text())["version"]
@@ -157,12 +169,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", nargs="?", const="", metavar="FILE", help="hold a tarball to this checkout")
     parser.add_argument("-o", "--output", type=Path, default=None, metavar="FILE", help="build/<name>-<version>.tgz")
+    parser.add_argument("--folder", type=Path, metavar="FOLDER", help="write a folder in place of a tarball")
     arguments = parser.parse_args()
     packed = Path(arguments.check).read_bytes() if arguments.check else pack(contents())
     if found := faults(packed, arguments.check or "the tarball"):
         sys.exit("\n".join(found))
-    output = arguments.output or default_output()
-    if arguments.check is None:
+    output = arguments.folder or arguments.output or default_output()
+    if arguments.folder:
+        write_folder(contents(), output)
+    elif arguments.check is None:
         output.parent.mkdir(parents=True, exist_ok=True)
         partial = output.with_name(output.name + ".part")
         partial.write_bytes(packed)

@@ -112,7 +112,7 @@ class Scene:
         return {
             "view": np.stack([c.view for c in eyes]),
             "projection": np.stack([c.projection for c in eyes]),
-            "bounds_low": np.append(self.bounds[0], 0),
+            "bounds_low": np.append(self.bounds[0], 1),
             "bounds_high": np.append(self.bounds[1], 0),
             "screen": np.array(self.cameras[0].screen),
             "near": NEAR,

@@ -136,7 +136,7 @@ def test_an_avatar_stands_where_its_parents_carry_it(story: Story) -> None:
     np.testing.assert_allclose(turned[:3], [5 + z, 1 + y, -x], atol=1e-5)
     np.testing.assert_allclose(turned[3:], before[[5, 4, 3]], atol=1e-5)
     assert int(told["turned"][0]) == len(FRAME_ORDER) - FRAME_ORDER.index("BlendVertices")
-    assert "which avatars ignore" in told["message"][0]  # the parent's scale
+    assert "only one scale for all axes" in told["message"][0]
 
 
 def test_an_avatar_casts_no_shadow_before_it_has_a_shape(story: Story) -> None:
@@ -153,11 +153,19 @@ def test_a_camera_draws_the_avatars_of_its_layers_alone(story: Story) -> None:
     assert float(told["shadow size"][0]) == pytest.approx(1, abs=1e-5)
 
 
-def test_a_scale_is_refused_once(story: Story) -> None:
+def test_an_avatar_is_as_large_as_its_parents_make_it(story: Story) -> None:
     told = story("IsScaled", "first")
+    plain, double, none, stretched, mirrored = (np.array(line.split(), float) for line in told["box"])
+    np.testing.assert_allclose(double, 2 * plain, atol=1e-5)
+    assert np.abs(none).max() < 1e-3
+    np.testing.assert_allclose(stretched, plain, atol=1e-5)  # at its own size
+    np.testing.assert_allclose(mirrored[3:], plain[3:], atol=1e-5)
+    posed = len(FRAME_ORDER) - FRAME_ORDER.index("BlendVertices")
+    assert told["posed"][1] == str(posed)
+    assert told["said"][:3] == [""] * 3
     assert told["state"] == ["Ready"]
     assert len(told["log"]) == 1
-    assert "avatars ignore" in told["log"][0]
+    assert "only one scale for all axes" in told["log"][0]
 
 
 def test_views_of_each_avatar_are_drawn_from_its_own_buffers(story: Story, folder: Path) -> None:

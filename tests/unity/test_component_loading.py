@@ -112,5 +112,14 @@ def test_a_scene_keeps_every_setting_of_a_component(story: Story) -> None:
     assert story("IsCopied", "first")["copy"] == ["Ready 0.5 Mesh Half False True"]
 
 
+def test_bytes_load_as_their_file_does(story: Story) -> None:
+    told = story("LoadsBytes", "first", "second", "damaged")
+    name = synthetic_avatar(2).name
+    assert told["state"] == [f"Ready {name}", "Empty", f"Ready {name}", "Failed ", "Failed ", "Empty"]
+    of_bytes, of_file = told["message"]
+    assert of_bytes.startswith("downloaded: ")
+    assert of_bytes.partition(": ")[2] == of_file.partition(".muaavatar: ")[2] != ""
+
+
 def test_a_component_that_is_off_loads_once_it_is_on(story: Story) -> None:
     assert story("LoadsWhileDisabled", "first")["state"] == ["Empty", "Ready", "Empty"]

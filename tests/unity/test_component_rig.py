@@ -94,3 +94,7 @@ def test_an_avatar_without_clips_returns_to_its_bind_pose_when_its_rig_goes(stor
     write(folder / "mute.muaavatar", replace(synthetic_avatar(1), clips=()))
     before, meanwhile, after = story("LeavesRigWithoutClips", "first", "mute")["middle"]
     assert before == after != meanwhile
+
+
+def test_a_larger_rig_gives_the_same_pose(story: Story) -> None:
+    assert float(story("FollowsScaledRig", "first")["off"][0]) < TRANSLATED

@@ -91,7 +91,7 @@ def record(csharp: CSharp, program: Path, device: Device, folder: Path, *, count
     box = np.stack([centres.min(axis=0), centres.max(axis=0)])
     upper = np.stack([box.mean(axis=0), (box[0] + 3 * box[1]) / 4])
     cameras = eyes(upper, count)
-    lines = [f"decode 0 {FRAME_AT + 1e-3!r} 0 0 0 0 0 0 1"]
+    lines = [f"decode 0 {FRAME_AT + 1e-3!r} 0 0 0 0 0 0 1 1"]
     lines += [*seen_by(eyes(box, count), instances), "sort all"]
     lines += [*seen_by(cameras, instances), "sort upper", *(f"draw {mode}" for mode in MODES), ""]
     scenario.write_text("\n".join(lines))

@@ -185,6 +185,19 @@ def test_an_avatar_is_dropped_into_the_scene(story: Story, sound: Path) -> None:
     assert [float(value) for value in made[2:5]] == [1, 0, 2]
 
 
+def test_an_avatar_is_dropped_on_the_hierarchy(story: Story, sound: Path) -> None:
+    told = story("DropsOnRows", sound)
+    assert told["drop"] == [["Copy"]] * 4
+    assert told["parent"] == [["row", "3"], ["row", "3"], ["none", "0"], ["row", "3"]]
+    assert told["other"] == [["None"]]
+
+
+def test_the_scene_view_frames_and_picks_what_is_drawn(story: Story, sound: Path) -> None:
+    told = story("IsFramed", sound)
+    assert (told["one"], told["both"]) == ([["True", "True"]], [["True", "True"]])
+    assert (told["clicked"], told["empty"]) == ([["1", "True"]], [["1", "False"]])
+
+
 def test_an_opened_prefab_is_apart_from_the_scene(story: Story, sound: Path) -> None:
     """The scene view shows the avatars of the prefab, the game view those of the scene."""
     count = len(synthetic_avatar().rig.texels.texels)

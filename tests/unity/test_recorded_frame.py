@@ -46,10 +46,10 @@ MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
 POSES = 12
 VISIBLE_WORD = 4  # of `arguments`
 STAND_INS = Path(__file__).parent / "stand_ins"
-PLACES = (  # Unity's position, then rotation (x, y, z, w)
-    (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-    (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446),
-    (-0.4, 0.0, 0.3, 0.0, -0.9, 0.2, 0.38730),
+PLACES = (  # Unity's position, then rotation (x, y, z, w), then size
+    (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0),
+    (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 1.7),
+    (-0.4, 0.0, 0.3, 0.0, -0.9, 0.2, 0.38730, 0.4),
 )
 
 
@@ -85,10 +85,17 @@ def program(csharp: CSharp) -> Path:
 
 
 def place_of(numbers: tuple[float, ...]) -> Array:
-    """The rigid dual quaternion of a Unity position and rotation, in the kernels' world."""
-    x, y, z, *turn = np.asarray(numbers, np.float32).astype(float)
+    """The rigid dual quaternion of a Unity position and rotation, in the kernels' world; the size comes before it."""
+    x, y, z, *turn, _ = np.asarray(numbers, np.float32).astype(float)
     i, j, k, w = turn
     return rotation.dual_from_rigid(rotation.normalize(np.array([w, i, -j, -k])), np.array([-x, y, z]))
+
+
+def standing(splats: Splats, numbers: tuple[float, ...]) -> Splats:
+    """A posed avatar in a place of PLACES, as large as it says: the reference of a scaled avatar."""
+    size = float(np.float32(numbers[-1]))
+    larger = replace(splats, mesh=size * splats.mesh, centres=size * splats.centres, bounds=size * splats.bounds)
+    return moved(replace(larger, scales=size * splats.scales), place_of(numbers))
 
 
 class Recorded:
@@ -112,7 +119,7 @@ class Recorded:
     def _exact(self, shot: Shot) -> Splats:
         return joined(
             [
-                moved(decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64), place_of(place))
+                standing(decode_clip_frame(avatar, avatar.clips[0], frame=frame, dtype=np.float64), place)
                 for avatar, frame, place in zip(self.shown(shot), shot.frames, PLACES, strict=False)
             ]
         )
@@ -149,7 +156,7 @@ class Recorded:
         """The box [2, 3] around the boxes of all avatars, each turned and moved with its avatar, metres."""
         corners = []
         for avatar, frame, place in zip(self.avatars, shot.frames, PLACES, strict=False):
-            box = avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[frame]
+            box = place[-1] * (avatar.bounds + root_positions(avatar.rig, avatar.clips[0])[frame])
             corners.append(rotation.dual_transform(place_of(place), np.stack(np.meshgrid(*box.T)).reshape(3, -1).T))
         return np.stack([np.min(corners, axis=(0, 1)), np.max(corners, axis=(0, 1))])
 
@@ -210,7 +217,7 @@ def test_a_crowd_of_more_splats_than_a_group_sorts_is_in_order_too(
     files = [tmp_path / f"{index}.muaavatar" for index in range(count)]
     for index, file in enumerate(files):
         write(file, avatar, storage="f16")
-        place = (0.1 * (index % 3), 0.0, 0.15 * index, 0.0, 0.0, 0.0, 1.0)
+        place = (0.1 * (index % 3), 0.0, 0.15 * index, 0.0, 0.0, 0.0, 1.0, 1.0)
         lines.append(f"decode {index} {0.1 * index!r} " + " ".join(map(repr, (*place, 0))))
     camera = orbit(np.array([[-1, -1, -3], [1, 2, 1]]), screen=(64, 48), azimuth=0.7, elevation=0.3)
     numbers = np.concatenate([(camera.view @ MIRROR).ravel(), camera.projection.ravel()])

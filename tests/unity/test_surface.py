@@ -15,7 +15,7 @@ import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
-from replay import Drawn, replay
+from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
 from test_recorded_frame import MIRROR, STAND_INS, place_of
@@ -43,7 +43,7 @@ from mua.player.surface import surface_mesh
 SCREEN = (160, 200)
 GAMMA = ("UNITY_COLORSPACE_GAMMA",)
 FRAME = 3  # of a clip of 24 Hz
-PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446)  # Unity's position, then rotation (x, y, z, w)
+PLACE = (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 0.9)  # Unity's position, then rotation (x, y, z, w), then size
 PASSES = ("Geometry", "Mesh", "Skeleton", "ShadowCaster")
 VIEWS = PASSES[:3]
 MAP = 512  # pixels along a shadow map
@@ -189,7 +189,7 @@ def skeleton_strokes(parents: Array, joints: Array) -> Iterator[Stroke]:
 
 def placed(points: Array) -> Array:
     """Points of the avatar's own space where it stands, in the kernels' world."""
-    return rotation.dual_transform(place_of(PLACE), points)
+    return rotation.dual_transform(place_of(PLACE), PLACE[-1] * points)
 
 
 def half(plane: float | None) -> tuple[float, tuple[int, int, int, int]] | None:
@@ -298,9 +298,11 @@ def shadow_depths(painter: Painter, matrix: Array) -> Array:
     pipeline = painter.device.pipeline(path, program.vertex, "DepthFrag", **states)
     names = {slot.name for stage in pipeline.stages for slot in stage.buffers}
     buffers = {name: painter.device.buffer(drawn.buffers[name], name=name) for name in names}
+    (slot,) = (stage.constants["size"] for stage in pipeline.stages if "size" in stage.constants)
+    size = value("ShadowCaster", slot, *drawn.constants["size"])
 
     def draw(render_pass: wgpu.GPURenderPassEncoder) -> None:
-        pipeline.bind(render_pass, buffers, unity_MatrixVP=matrix)
+        pipeline.bind(render_pass, buffers, unity_MatrixVP=matrix, size=size)
         render_pass.draw(len(painter.scene.avatar.rig.mesh.vertices))
 
     target = Target(painter.device, "rgba32float", (MAP, MAP), 0.0, painter.folder)

@@ -63,15 +63,49 @@ namespace Mua.Editor
         private static void Register()
         {
 #if UNITY_6000_3_OR_NEWER
-            DragAndDrop.AddDropHandlerV2(Drop);
+            DragAndDrop.AddDropHandlerV2(DropOnScene);
+            DragAndDrop.AddDropHandlerV2(DropOnHierarchy);
 #else
-            DragAndDrop.AddDropHandler(Drop);
+            DragAndDrop.AddDropHandler(DropOnScene);
+            DragAndDrop.AddDropHandler(DropOnHierarchy);
 #endif
         }
 
-        private static DragAndDropVisualMode Drop(
+        private static DragAndDropVisualMode DropOnScene(
             Object dropUpon, Vector3 worldPosition, Vector2 viewportPosition, Transform parentForDraggedObjects,
             bool perform)
+        {
+            return Drop(parentForDraggedObjects, worldPosition, perform);
+        }
+
+#if UNITY_6000_3_OR_NEWER
+        private static DragAndDropVisualMode DropOnHierarchy(
+            EntityId target, HierarchyDropFlags flags, Transform parentForDraggedObjects, bool perform)
+        {
+            return DropOnRow(EditorUtility.EntityIdToObject(target), flags, parentForDraggedObjects, perform);
+        }
+#else
+        private static DragAndDropVisualMode DropOnHierarchy(
+            int target, HierarchyDropFlags flags, Transform parentForDraggedObjects, bool perform)
+        {
+            return DropOnRow(EditorUtility.InstanceIDToObject(target), flags, parentForDraggedObjects, perform);
+        }
+#endif
+
+        /// <summary>Below the object of a row, or beside it where the drop is between rows; `above` is set in a prefab.</summary>
+        private static DragAndDropVisualMode DropOnRow(Object row, HierarchyDropFlags flags, Transform above, bool perform)
+        {
+            Transform parent = above;
+            if (row is GameObject target)
+            {
+                bool isUpon = (flags & HierarchyDropFlags.DropUpon) != 0;
+                Transform beside = target.transform.parent == null ? above : target.transform.parent;
+                parent = isUpon ? target.transform : beside;
+            }
+            return Drop(parent, parent == null ? Vector3.zero : parent.position, perform);
+        }
+
+        private static DragAndDropVisualMode Drop(Transform parent, Vector3 position, bool perform)
         {
             Object[] dragged = DragAndDrop.objectReferences;
             if (dragged.Length != 1 || !(dragged[0] is AvatarAsset asset))
@@ -80,7 +114,7 @@ namespace Mua.Editor
             }
             if (perform)
             {
-                Selection.activeObject = AvatarObject.Create(asset, parentForDraggedObjects, worldPosition);
+                Selection.activeObject = Create(asset, parent, position);
             }
             return DragAndDropVisualMode.Copy;
         }

@@ -27,6 +27,35 @@ namespace Mua.Editor
             return shown.State == AvatarState.Loading || (shown.State == AvatarState.Ready && Application.isPlaying);
         }
 
+        /// <summary>The scene view asks by this name what F frames: the avatar, and not the point where it stands.</summary>
+        public bool HasFrameBounds()
+        {
+            return targets.Cast<AvatarRenderer>().Any(shown => shown.State == AvatarState.Ready);
+        }
+
+        /// <summary>Box of all that are selected, in Unity's world, metres.</summary>
+        public Bounds OnGetFrameBounds()
+        {
+            Bounds[] boxes = targets.Cast<AvatarRenderer>().Select(shown => shown.Bounds).ToArray();
+            Bounds all = boxes[0];
+            foreach (Bounds box in boxes)
+            {
+                all.Encapsulate(box);
+            }
+            return all;
+        }
+
+        /// <summary>What a click in the scene view hits, where gizmos are shown: an invisible box about the avatar.</summary>
+        [DrawGizmo(GizmoType.Pickable | GizmoType.Selected | GizmoType.NonSelected)]
+        internal static void DrawPickable(AvatarRenderer shown, GizmoType type)
+        {
+            if (shown.State == AvatarState.Ready)
+            {
+                Gizmos.color = Color.clear;
+                Gizmos.DrawCube(shown.Bounds.center, shown.Bounds.size);
+            }
+        }
+
         public override void OnInspectorGUI()
         {
             var shown = (AvatarRenderer)target;

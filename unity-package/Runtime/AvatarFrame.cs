@@ -66,10 +66,13 @@ namespace Mua
         /// <summary>[V, 3] canonical vertices of the decode that is shown, metres.</summary>
         public GraphicsBuffer Mesh => shown.Mesh;
 
-        /// <summary>[2 V] dual quaternions of the last pose.</summary>
+        /// <summary>How many times as large as baked the last pose is.</summary>
+        public float Size { get; private set; } = 1;
+
+        /// <summary>[2 V] dual quaternions of the last pose, to the world divided by Size.</summary>
         public GraphicsBuffer VertexDq { get; private set; }
 
-        /// <summary>[2 J] dual quaternions of the last pose.</summary>
+        /// <summary>[2 J] likewise.</summary>
         public GraphicsBuffer Joints { get; private set; }
 
         /// <summary>Whether a decode is shown: until then the buffers hold nothing.</summary>
@@ -105,11 +108,11 @@ namespace Mua
         /// </summary>
         /// <param name="rotations">[k, J, 4] local joint rotations, newest first.</param>
         /// <param name="translations">[k, J, 3] local joint translations, metres.</param>
-        /// <param name="place">From the avatar's space to the right-handed world.</param>
+        /// <param name="place">Where the avatar stands.</param>
         /// <param name="level">Of detail, 0 being the finest.</param>
         public void Decode(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
-            in DualQuaternion place, int level = 0)
+            in AvatarPlace place, int level = 0)
         {
             DecodeChannels(commands, rotations, translations, level);
             Repose(commands, rotations, translations, place);
@@ -157,7 +160,7 @@ namespace Mua
         /// <summary>Appends what moves the decoded avatar into another pose, [J, 4] and [J, 3] as for Decode.</summary>
         public void Repose(
             CommandBuffer commands, ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations,
-            in DualQuaternion place)
+            in AvatarPlace place)
         {
             WritePose(rotations, translations, place);
             Pose(commands);
@@ -165,7 +168,7 @@ namespace Mua
 
         /// <summary>Sets Low and High for a pose [J, 4] and [J, 3] that need not be drawn; nothing goes to the device.</summary>
         public void Stand(
-            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, in DualQuaternion place)
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, in AvatarPlace place)
         {
             skeleton.Set(rotations, translations);
             WriteBounds(place);
@@ -196,15 +199,16 @@ namespace Mua
         }
 
         private void WritePose(
-            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, in DualQuaternion place)
+            ReadOnlySpan<double> rotations, ReadOnlySpan<double> translations, in AvatarPlace place)
         {
             skeleton.Set(rotations, translations);
-            skeleton.WriteSkinning(place, MemoryMarshal.Cast<Vector4, float>(new Span<Vector4>(jointValues)));
+            skeleton.WriteSkinning(place.Rigid, MemoryMarshal.Cast<Vector4, float>(new Span<Vector4>(jointValues)));
             Joints.SetData(jointValues);
+            Size = place.Size;
             WriteBounds(place);
         }
 
-        private void WriteBounds(in DualQuaternion place)
+        private void WriteBounds(in AvatarPlace place)
         {
             float[] box = Avatar.Avatar.Bounds;
             var low = new Vector3(float.MaxValue, float.MaxValue, float.MaxValue);

@@ -25,14 +25,14 @@ namespace Mua
         private bool isScaleReported, isLevelReported;
         private int level;
 
-        /// <summary>Begins to load an imported avatar, or the file where that is null.</summary>
-        public AvatarInstance(AvatarRenderer owner, AvatarAsset avatar, string file)
+        /// <summary>Begins to load what `open` opens.</summary>
+        public AvatarInstance(AvatarRenderer owner, Func<AvatarLoader> open)
         {
             this.owner = owner;
             try
             {
                 resources = AvatarResources.Require();
-                loader = avatar != null ? AvatarLoader.Of(avatar) : AvatarLoader.Of(file);
+                loader = open();
                 State = AvatarState.Loading;
             }
             catch (InvalidOperationException error)
@@ -111,10 +111,12 @@ namespace Mua
                 return;
             }
             hasMoved |= placement.Follow(owner.transform);
-            if (!isScaleReported && !AvatarSpace.IsRigid(owner.transform.lossyScale))
+            if (!isScaleReported && !AvatarPlace.IsUniform(owner.transform.lossyScale))
             {
                 isScaleReported = true;
-                Warn("the GameObject has the scale " + owner.transform.lossyScale + ", which avatars ignore; set it to 1.");
+                Warn(
+                    "the GameObject has the scale " + owner.transform.lossyScale
+                    + ", but avatars follow only one scale for all axes, which is not negative; it is shown at scale 1.");
             }
             if (motion.LosesRig())
             {
@@ -184,7 +186,7 @@ namespace Mua
             return new AvatarSeen
             {
                 Distance = distance,
-                Texel = buffers.TexelLength * Math.Abs(focal) / Math.Max(distance, eyes.Near),
+                Texel = Decoded.Size * buffers.TexelLength * Math.Abs(focal) / Math.Max(distance, eyes.Near),
                 Counts = buffers.SplatCounts,
                 Level = level,
             };

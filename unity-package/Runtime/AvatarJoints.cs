@@ -18,7 +18,7 @@ namespace Mua
         private readonly Transform root;
         private readonly Transform[] joints; // null where there is none
         private readonly double[] turned; // [J, 4] rotations in the root's space
-        private readonly double[] placed; // [J, 3] positions there, metres
+        private readonly double[] placed; // [J, 3] positions there, metres of the unscaled rig
         private readonly bool[] moves; // [J] whether a joint's place is read, and not that of the bind pose
 
         /// <summary>InvalidOperationException where no transform below `root` has a joint's name.</summary>
@@ -56,6 +56,8 @@ namespace Mua
         {
             root.GetPositionAndRotation(out Vector3 origin, out Quaternion turn);
             Quaternion back = Quaternion.Inverse(turn);
+            float size = AvatarPlace.SizeOf(root.lossyScale);
+            double shrink = size > 0 ? 1.0 / size : 1;
             for (int joint = 0; joint < joints.Length; joint++)
             {
                 int parent = skeleton.Parents[joint];
@@ -72,7 +74,7 @@ namespace Mua
                 Vector3D offset = Vector3D.Load(skeleton.BindTranslations, joint);
                 if (moves[joint] && joints[joint] != null)
                 {
-                    Vector3D at = AvatarSpace.Position(back * (joints[joint].position - origin));
+                    Vector3D at = shrink * AvatarSpace.Position(back * (joints[joint].position - origin));
                     offset = above.Conjugate.Rotate(at - start);
                 }
                 offset.Store(translations, joint);

@@ -60,7 +60,7 @@ namespace Mua
 
     /// <summary>
     /// Shows an avatar where its GameObject stands: one of its own clips, or the pose of transforms that something else
-    /// moves. The character faces the GameObject's forward axis; scale is not supported.
+    /// moves. The character faces the GameObject's forward axis, and follows a scale that is the same along all axes.
     /// </summary>
     [ExecuteAlways, DisallowMultipleComponent, AddComponentMenu("MUA/Avatar"), DefaultExecutionOrder(1000)]
     public sealed class AvatarRenderer : MonoBehaviour
@@ -95,6 +95,8 @@ namespace Mua
         private AvatarInstance shown; // null while there is nothing to show
         private AvatarAsset loaded; // as avatar and file were when they took effect
         private string loadedFile = "";
+        private byte[] given; // a file's bytes in place of avatar and file; not saved in the scene
+        private string givenName = "";
         private bool isEdited; // the inspector has changed a field
 
         /// <summary>The imported avatar that is shown; null where it came from a file.</summary>
@@ -228,6 +230,7 @@ namespace Mua
         {
             avatar = asset;
             file = "";
+            given = null;
             Reload();
         }
 
@@ -236,6 +239,20 @@ namespace Mua
         {
             avatar = null;
             file = path;
+            given = null;
+            Reload();
+        }
+
+        /// <summary>
+        /// Shows the avatar of a file's bytes, from a download, a stream or a TextAsset; they must not be changed while the
+        /// component has them, and are not saved in the scene. Messages call the avatar `name`.
+        /// </summary>
+        public void Load(byte[] content, string name = "an avatar in memory")
+        {
+            avatar = null;
+            file = "";
+            given = content;
+            givenName = name;
             Reload();
         }
 
@@ -274,6 +291,7 @@ namespace Mua
             isEdited = false;
             if (avatar != loaded || file != loadedFile)
             {
+                given = null;
                 Reload();
             }
             else
@@ -289,15 +307,22 @@ namespace Mua
             isEdited = false;
             loaded = avatar;
             loadedFile = file;
-            if (!isActiveAndEnabled || (avatar == null && string.IsNullOrEmpty(file)))
+            if (!isActiveAndEnabled || (given == null && avatar == null && string.IsNullOrEmpty(file)))
             {
                 return;
             }
-            shown = new AvatarInstance(this, avatar, file);
+            shown = new AvatarInstance(this, Open);
             if (!Application.isPlaying)
             {
                 shown.Update();
             }
+        }
+
+        private AvatarLoader Open()
+        {
+            return given != null ? AvatarLoader.Of(given, givenName)
+                : avatar != null ? AvatarLoader.Of(avatar)
+                : AvatarLoader.Of(file);
         }
 
         private void Release()

@@ -9,8 +9,6 @@ namespace Mua
     /// </summary>
     internal static class AvatarSpace
     {
-        private const float ScaleSlack = 1e-3f;
-
         public static Vector3D Position(Vector3 unity)
         {
             return new Vector3D(-unity.x, unity.y, unity.z);
@@ -31,12 +29,6 @@ namespace Mua
             return new Quaternion((float)avatar.X, (float)-avatar.Y, (float)-avatar.Z, (float)avatar.W);
         }
 
-        /// <summary>From an avatar's space to the right-handed world that its GameObject stands in.</summary>
-        public static DualQuaternion Place(Vector3 position, Quaternion rotation)
-        {
-            return DualQuaternion.FromRigid(Rotation(rotation), Position(position));
-        }
-
         /// <summary>Right-handed world to eye, of Unity's left-handed world to the same eye.</summary>
         public static Matrix4x4 View(Matrix4x4 unityView)
         {
@@ -55,12 +47,44 @@ namespace Mua
             box.SetMinMax(new Vector3(-high.x, low.y, low.z), new Vector3(-low.x, high.y, high.z));
             return box;
         }
+    }
 
-        /// <summary>Whether a transform is rigid; a dual quaternion holds no scale.</summary>
-        public static bool IsRigid(Vector3 scale)
+    /// <summary>From an avatar's space to the right-handed world: rigid, then made larger about the world's origin.</summary>
+    internal readonly struct AvatarPlace
+    {
+        private const float SizeSlack = 1e-3f; // of the largest axis
+        private const float LeastSize = 1e-4f; // a speck: the smallest to divide a position by
+
+        /// <summary>To the world divided by Size; a dual quaternion holds no scale.</summary>
+        public DualQuaternion Rigid { get; }
+
+        /// <summary>How many times as large as baked.</summary>
+        public float Size { get; }
+
+        /// <summary>Of Unity's position, rotation and size.</summary>
+        public AvatarPlace(Vector3 position, Quaternion rotation, float size = 1)
         {
-            return Mathf.Abs(scale.x - 1) < ScaleSlack && Mathf.Abs(scale.y - 1) < ScaleSlack
-                && Mathf.Abs(scale.z - 1) < ScaleSlack;
+            Size = Mathf.Max(size, LeastSize);
+            Rigid = DualQuaternion.FromRigid(AvatarSpace.Rotation(rotation), 1.0 / Size * AvatarSpace.Position(position));
+        }
+
+        /// <summary>The point in the right-handed world, metres.</summary>
+        public Vector3D Transform(in Vector3D point)
+        {
+            return (double)Size * Rigid.Transform(point);
+        }
+
+        /// <summary>Whether a scale is one size along all axes, and not mirrored.</summary>
+        public static bool IsUniform(Vector3 scale)
+        {
+            float slack = SizeSlack * Mathf.Abs(scale.x);
+            return scale.x >= 0 && Mathf.Abs(scale.y - scale.x) <= slack && Mathf.Abs(scale.z - scale.x) <= slack;
+        }
+
+        /// <summary>The size of a scale: 1 where it is not uniform.</summary>
+        public static float SizeOf(Vector3 scale)
+        {
+            return IsUniform(scale) ? scale.x : 1;
         }
     }
 
@@ -69,22 +93,24 @@ namespace Mua
     {
         private Vector3 position;
         private Quaternion rotation;
+        private Vector3 scale;
         private bool isKnown;
 
-        /// <summary>From the avatar's space to the right-handed world.</summary>
-        public DualQuaternion Value { get; private set; }
+        public AvatarPlace Value { get; private set; }
 
         /// <summary>Takes where `transform` is now; whether that is another place than before.</summary>
         public bool Follow(Transform transform)
         {
             transform.GetPositionAndRotation(out Vector3 at, out Quaternion turned);
-            if (isKnown && at.Equals(position) && turned.Equals(rotation))
+            Vector3 large = transform.lossyScale;
+            if (isKnown && at.Equals(position) && turned.Equals(rotation) && large.Equals(scale))
             {
                 return false;
             }
             position = at;
             rotation = turned;
-            Value = AvatarSpace.Place(at, turned);
+            scale = large;
+            Value = new AvatarPlace(at, turned, AvatarPlace.SizeOf(large));
             isKnown = true;
             return true;
         }

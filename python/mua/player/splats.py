@@ -139,7 +139,7 @@ class SplatFrame(Generic[P]):
             },
             view=np.stack([camera.view for camera in pair]),
             projection=np.stack([camera.projection for camera in pair]),
-            bounds_low=np.append(low, 1),
+            bounds_low=np.append(low, 1),  # at the size that it was baked with
             bounds_high=np.append(high, 1),
             screen=np.array(cameras[0].screen),
             near=cameras[0].near,

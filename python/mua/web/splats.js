@@ -111,7 +111,7 @@ export class SplatFrame {
       {
         view: [...left.view, ...right.view],
         projection: [...left.projection, ...right.projection],
-        bounds_low: [...box.slice(0, 3), 1],
+        bounds_low: [...box.slice(0, 3), 1], // at the size that it was baked with
         bounds_high: [...box.slice(3), 1],
         screen: left.screen,
         near: left.near,

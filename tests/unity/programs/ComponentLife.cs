@@ -83,6 +83,38 @@ namespace Mua
                 new[] { box.center.x, box.center.y, box.center.z, box.size.x, box.size.y, box.size.z }, one => one.ToString())));
         }
 
+        /// <summary>Bytes that are sound, switched off and on, damaged, none; then a field of the inspector.</summary>
+        private static void LoadsBytes()
+        {
+            AvatarRenderer shown = Show(files[0]);
+            shown.Load(File.ReadAllBytes(files[1]), "downloaded");
+            Settle(shown);
+            shown.enabled = false;
+            Frames(1);
+            Say("state", shown.State);
+            shown.enabled = true;
+            Settle(shown);
+            shown.Load(File.ReadAllBytes(files[2]), "downloaded");
+            Settle(shown);
+            Say("message", shown.Message);
+            shown.Load(files[2]);
+            Settle(shown);
+            Say("message", shown.Message);
+            shown.Load((byte[])null);
+            Frames(1);
+            Say("state", shown.State);
+        }
+
+        private static void Settle(AvatarRenderer shown)
+        {
+            for (int i = 0; i < Patience && shown.State == AvatarState.Loading; i++)
+            {
+                Thread.Sleep(1);
+                Frames(1);
+            }
+            Say("state", shown.State + " " + shown.AvatarName);
+        }
+
         /// <summary>A file, an asset, a file, an asset that cannot be shown, nothing; then a field of the inspector.</summary>
         private static void ShowsOneAfterAnother()
         {

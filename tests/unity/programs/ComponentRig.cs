@@ -190,12 +190,40 @@ namespace Mua
             Say("state", shown.State);
         }
 
+        /// <summary>Sizes along with parents, then scales that are not one size.</summary>
         private static void IsScaled()
         {
             AvatarRenderer shown = Show(files[0]);
-            shown.transform.localScale = new Vector3(2, 2, 2);
-            Frames(20);
+            shown.IsPlaying = false;
+            GameObject parent = Make("parent");
+            shown.transform.SetParent(parent.transform, false);
+            shown.transform.localPosition = new Vector3(0.5f, 0, 0);
+            foreach (Vector3 scale in new[] { new Vector3(1, 1, 1), new Vector3(2, 2, 2), new Vector3(0, 0, 0), new Vector3(1, 2, 1), new Vector3(-2, 2, 2) })
+            {
+                parent.transform.localScale = scale;
+                Say("posed", Dispatches(1));
+                SayBox(shown);
+                Say("said", shown.Message);
+            }
             Say("state", shown.State);
+        }
+
+        /// <summary>A rig that is three times as large as the character gives the same pose.</summary>
+        private static void FollowsScaledRig()
+        {
+            var rig = new Rig();
+            var joints = rig.Bind();
+            var rotations = new double[4 * rig.Joints.Length];
+            double[] before = new double[3 * rig.Joints.Length], after = new double[before.Length];
+            joints.Read(rotations, before);
+            rig.Root.localScale = new Vector3(3, 3, 3);
+            joints.Read(rotations, after);
+            double most = 0;
+            for (int i = 0; i < before.Length; i++)
+            {
+                most = Math.Max(most, Math.Abs(after[i] - before[i]));
+            }
+            Say("off", most);
         }
     }
 }

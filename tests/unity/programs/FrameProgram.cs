@@ -80,7 +80,7 @@ namespace Mua
             else if (words[0] == "decode")
             {
                 double seconds = double.Parse(words[2], CultureInfo.InvariantCulture);
-                Actors[(int)Scenario.Number(words, 1)].Decode(Commands, seconds, Scenario.Place(words, 3), words.Length > 10 ? (int)Scenario.Number(words, 10) : 0);
+                Actors[(int)Scenario.Number(words, 1)].Decode(Commands, seconds, Scenario.Place(words, 3), words.Length > 11 ? (int)Scenario.Number(words, 11) : 0);
             }
             else if (words[0] == "sort")
             {
@@ -131,7 +131,7 @@ namespace Mua
         /// <summary>Bytes that so many frames ask of the managed heap.</summary>
         private static long Again(int count, SplatFrame splats)
         {
-            DualQuaternion place = AvatarSpace.Place(Vector3.zero, Quaternion.identity);
+            var place = new AvatarPlace(Vector3.zero, Quaternion.identity);
             long before = 0;
             for (int i = -WarmUp; i < count; i++)
             {

@@ -126,6 +126,44 @@ namespace Mua.Editor
             Tell();
         }
 
+        /// <summary>Upon a row of the Hierarchy, between the rows of its children, and below all rows.</summary>
+        private static void DropsOnRows()
+        {
+            Place(files);
+            typeof(AvatarObject).GetMethod("Register", Hidden).Invoke(null, null);
+            AvatarAsset asset = AvatarObject.Find();
+            var row = new GameObject("row");
+            row.transform.position = new Vector3(3, 0, 0);
+            foreach (string way in new[] { "upon", "between", "nothing", "prefab" })
+            {
+                Transform made = Selection.activeObject is GameObject last ? last.transform : null;
+                GameObject target = way == "upon" ? row : way == "between" ? made.gameObject : null;
+                Transform above = way == "prefab" ? row.transform : null;
+                Say("drop", Drag.DropOnRow(target, way == "upon", above, asset));
+                made = ((GameObject)Selection.activeObject).transform;
+                Say("parent", made.parent == null ? "none" : made.parent.name, made.position.x);
+            }
+            Say("other", Drag.DropOnRow(row, true, null, asset.Thumbnail));
+        }
+
+        /// <summary>What F frames of one and of two avatars, and what a click may hit; none of it before there is an avatar.</summary>
+        private static void IsFramed()
+        {
+            Place(files);
+            AvatarAsset asset = AvatarObject.Find();
+            AvatarRenderer first = AvatarObject.Create(asset, null, Vector3.zero).GetComponent<AvatarRenderer>();
+            AvatarRenderer second = AvatarObject.Create(asset, null, new Vector3(5, 0, 0)).GetComponent<AvatarRenderer>();
+            PlayerLoop.Frame(1);
+            Say("one", Inspectors.Open<AvatarRendererEditor>(first).OnGetFrameBounds().Equals(first.Bounds), first.Bounds.size.y > 0);
+            Bounds both = Inspectors.Open<AvatarRendererEditor>(first, second).OnGetFrameBounds();
+            Say("both", both.Contains(first.Bounds.center), both.Contains(second.Bounds.center));
+            AvatarRendererEditor.DrawPickable(second, GizmoType.NonSelected);
+            Say("clicked", Gizmos.Cubes.Count, Gizmos.Cubes[0].Equals(second.Bounds));
+            var empty = new GameObject("empty").AddComponent<AvatarRenderer>();
+            AvatarRendererEditor.DrawPickable(empty, GizmoType.NonSelected);
+            Say("empty", Gizmos.Cubes.Count, Inspectors.Open<AvatarRendererEditor>(empty).HasFrameBounds());
+        }
+
         /// <summary>An avatar of an opened prefab and one of the scene, to the cameras of either.</summary>
         private static void OpensPrefab()
         {

@@ -1,7 +1,7 @@
 // What the package draws of avatars beside their splats. Arguments: `grid AVATAR TARGET` writes the three arrays of the texel
 // grid, each after its length, or says why there is none; `draw KERNELS RECORDING SCENARIO AVATARS..` records the surfaces of the last avatar, which
 // shares its splats with those before it. The scenario: `screen WIDTH HEIGHT NEAR`, then up to two lines `eye VIEW[16]
-// PROJECTION[16]` of Unity's matrices, row by row, then `decode SECONDS PLACE[7]`: Unity's position and rotation (x, y, z, w).
+// PROJECTION[16]` of Unity's matrices, row by row, then `decode SECONDS PLACE[8]`: Unity's position, rotation (x, y, z, w), size.
 using System;
 using System.Collections.Generic;
 using System.Globalization;

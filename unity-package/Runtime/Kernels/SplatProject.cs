@@ -46,7 +46,7 @@ namespace Mua
             project.Set(commands, Keys, frame.Keys);
             project.Set(commands, View, eyes.View);
             project.Set(commands, Projection, eyes.Projection);
-            project.Set(commands, BoundsLow, new Vector4(low.x, low.y, low.z, 1));
+            project.Set(commands, BoundsLow, new Vector4(low.x, low.y, low.z, avatar.Size));
             project.Set(commands, BoundsHigh, new Vector4(high.x, high.y, high.z, 1));
             project.Set(commands, Screen, eyes.Screen);
             project.Set(commands, Near, eyes.Near);

@@ -30,6 +30,7 @@ namespace Mua
         private static readonly int Color = Shader.PropertyToID("color");
         private static readonly int Styles = Shader.PropertyToID("styles");
         private static readonly int Screen = Shader.PropertyToID("screen");
+        private static readonly int Size = Shader.PropertyToID("size");
         private static readonly int FirstSplat = Shader.PropertyToID("first_splat");
         private static readonly int EyeCount = Shader.PropertyToID("eye_count");
 
@@ -79,6 +80,7 @@ namespace Mua
         {
             mesh.SetBuffer(VertexDq, frame.VertexDq);
             mesh.SetBuffer(Mesh, frame.Mesh);
+            mesh.SetFloat(Size, frame.Size);
             mesh.SetVector(Color, MeshColor);
             Bind(mesh, eyes);
             return AvatarDraw.Direct(Material, MeshPass, mesh, indices.count, indices);
@@ -88,6 +90,7 @@ namespace Mua
         public AvatarDraw BindSkeleton(AvatarFrame frame, AvatarEyes eyes, GraphicsBuffer rest, GraphicsBuffer strokes)
         {
             skeleton.SetBuffer(Joints, frame.Joints);
+            skeleton.SetFloat(Size, frame.Size);
             skeleton.SetBuffer(Rest, rest);
             skeleton.SetBuffer(Strokes, strokes);
             skeleton.SetVectorArray(Styles, StrokeStyles);
@@ -101,6 +104,7 @@ namespace Mua
         {
             shadow.SetBuffer(VertexDq, frame.VertexDq);
             shadow.SetBuffer(Mesh, frame.Mesh);
+            shadow.SetFloat(Size, frame.Size);
             return shadow;
         }
 

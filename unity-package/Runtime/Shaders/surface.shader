@@ -16,9 +16,9 @@ Shader "Hidden/MUA/Surface"
         StructuredBuffer<uint4> splats; // [2 M] of all avatars, 32 bytes each; the centre is read
         StructuredBuffer<uint> ring_starts; // [N + 1] into ring
         StructuredBuffer<uint2> ring; // the other corners of the triangles about each texel
-        StructuredBuffer<float4> vertex_dq; // [V, 2] real and dual part, bind pose to world
+        StructuredBuffer<float4> vertex_dq; // [V, 2] real and dual part, bind pose to the world divided by size
         StructuredBuffer<float> mesh; // [V, 3] canonical, metres
-        StructuredBuffer<float4> joints; // [J, 2] real and dual part, bind pose to world
+        StructuredBuffer<float4> joints; // [J, 2] likewise
         StructuredBuffer<float4> rest; // [J] positions in the bind pose, metres
         StructuredBuffer<uint4> strokes; // [S] two joints and a style; a dot names one joint twice
 
@@ -27,6 +27,7 @@ Shader "Hidden/MUA/Surface"
         float4 color; // sRGB
         float4 styles[4]; // of strokes: sRGB, and width in pixels
         float4 screen; // width and height of one eye, pixels
+        float size; // how many times as large as baked the avatar is
         uint first_splat; // of the avatar
         uint eye_count;
 
@@ -94,7 +95,7 @@ Shader "Hidden/MUA/Surface"
             Varyings MeshVert(Attributes attributes)
             {
                 UNITY_SETUP_INSTANCE_ID(attributes);
-                return litVertex(surfaceVertex(attributes.vertex, vertex_dq, mesh), 0);
+                return litVertex(size * surfaceVertex(attributes.vertex, vertex_dq, mesh), 0);
             }
 
             float4 MeshFrag(Varyings varyings) : SV_Target
@@ -126,7 +127,7 @@ Shader "Hidden/MUA/Surface"
 
             float3 joint(uint index)
             {
-                return dualTransform(joints[2 * index], joints[2 * index + 1], rest[index].xyz);
+                return size * dualTransform(joints[2 * index], joints[2 * index + 1], rest[index].xyz);
             }
 
             SkeletonVaryings SkeletonVert(Attributes attributes)
@@ -166,7 +167,7 @@ Shader "Hidden/MUA/Surface"
 
             float4 ShadowVert(uint vertex : SV_VertexID) : SV_Position
             {
-                return shadowPosition(surfaceVertex(vertex, vertex_dq, mesh));
+                return shadowPosition(size * surfaceVertex(vertex, vertex_dq, mesh));
             }
 
             float4 ShadowFrag() : SV_Target

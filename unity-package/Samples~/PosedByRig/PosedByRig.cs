@@ -42,6 +42,9 @@ namespace Mua.Samples.PosedByRig
             if (rig != null)
             {
                 transform.SetPositionAndRotation(rig.position, rig.rotation);
+                Transform above = transform.parent;
+                float size = above == null ? 1 : above.lossyScale.x;
+                transform.localScale = size > 0 ? rig.lossyScale / size : rig.lossyScale;
             }
         }
 

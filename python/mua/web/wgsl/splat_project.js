@@ -237,12 +237,13 @@ fn poseTexel_0( texel_1 : u32) -> Gaussian_0
     var own_0 : vec4<f32> = vec4<f32>(offset_0.w, turn_0.xyz);
     var own_1 : vec4<f32> = own_0 / vec4<f32>(max(length(own_0), 1.17549435082228751e-38f));
     var gaussian_0 : Gaussian_0;
-    gaussian_0.centre_0 = dualTransform_0(dq_0.real_0, dq_0.dual_0, offset_0.xyz + vec3<f32>(barycentric_1.x) * _S33 + vec3<f32>(barycentric_1.y) * _S34 + vec3<f32>(barycentric_1.z) * _S35);
-    var deviations_0 : vec3<f32> = exp(min(vec3<f32>(turn_0.w, scale_1.xy), vec3<f32>(10.0f)));
-    var _S36 : vec4<f32> = quaternionMultiply_0(dq_0.real_0, own_1);
-    var _S37 : array<vec3<f32>, i32(3)> = gaussian_0.rows_1;
-    scaledAxes_0(_S36, deviations_0, &(_S37));
-    gaussian_0.rows_1 = _S37;
+    var _S36 : vec3<f32> = vec3<f32>(Constants_0.bounds_low_0.w);
+    gaussian_0.centre_0 = _S36 * dualTransform_0(dq_0.real_0, dq_0.dual_0, offset_0.xyz + vec3<f32>(barycentric_1.x) * _S33 + vec3<f32>(barycentric_1.y) * _S34 + vec3<f32>(barycentric_1.z) * _S35);
+    var deviations_0 : vec3<f32> = _S36 * exp(min(vec3<f32>(turn_0.w, scale_1.xy), vec3<f32>(10.0f)));
+    var _S37 : vec4<f32> = quaternionMultiply_0(dq_0.real_0, own_1);
+    var _S38 : array<vec3<f32>, i32(3)> = gaussian_0.rows_1;
+    scaledAxes_0(_S37, deviations_0, &(_S38));
+    gaussian_0.rows_1 = _S38;
     gaussian_0.opacity_0 = activatedOpacity_0(scale_1.z);
     gaussian_0.rotation_0 = dq_0.real_0;
     gaussian_0.normal_0 = vec3<f32>(vec3<i32>(i32(0)));
@@ -260,25 +261,25 @@ fn placeBefore_0( eye_0 : u32,  gaussian_1 : Gaussian_0) -> vec3<f32>
 
 fn majorAxis_0( difference_0 : f32,  b_1 : f32,  spread_0 : f32) -> vec2<f32>
 {
-    var _S38 : vec2<f32> = vec2<f32>(spread_0 + difference_0, b_1);
+    var _S39 : vec2<f32> = vec2<f32>(spread_0 + difference_0, b_1);
     var axis_0 : vec2<f32>;
     if(difference_0 < 0.0f)
     {
-        var _S39 : f32 = abs(b_1);
-        var _S40 : f32;
+        var _S40 : f32 = abs(b_1);
+        var _S41 : f32;
         if(b_1 < 0.0f)
         {
-            _S40 = difference_0 - spread_0;
+            _S41 = difference_0 - spread_0;
         }
         else
         {
-            _S40 = spread_0 - difference_0;
+            _S41 = spread_0 - difference_0;
         }
-        axis_0 = vec2<f32>(_S39, _S40);
+        axis_0 = vec2<f32>(_S40, _S41);
     }
     else
     {
-        axis_0 = _S38;
+        axis_0 = _S39;
     }
     if(spread_0 < 9.999999960041972e-13f)
     {
@@ -297,15 +298,15 @@ struct Ellipse_0
 fn project_0( gaussian_2 : Gaussian_0,  eye_1 : u32) -> Ellipse_0
 {
     var place_1 : vec3<f32> = placeBefore_0(eye_1, gaussian_2);
-    var _S41 : f32 = - place_1.z;
-    var _S42 : vec2<f32> = vec2<f32>(0.5f);
-    const _S43 : vec2<f32> = vec2<f32>(1.0f, -1.0f);
+    var _S42 : f32 = - place_1.z;
+    var _S43 : vec2<f32> = vec2<f32>(0.5f);
+    const _S44 : vec2<f32> = vec2<f32>(1.0f, -1.0f);
     var focal_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.projection_0.data_1[eye_1].data_0[i32(1)][i32(1)]);
     var skew_0 : vec2<f32> = vec2<f32>(Constants_0.projection_0.data_1[eye_1].data_0[i32(2)][i32(0)], Constants_0.projection_0.data_1[eye_1].data_0[i32(2)][i32(1)]);
-    var _S44 : vec2<f32> = vec2<f32>(max(_S41, Constants_0.near_0));
-    var ndc_0 : vec2<f32> = place_1.xy / _S44 * focal_0 - skew_0;
+    var _S45 : vec2<f32> = vec2<f32>(max(_S42, Constants_0.near_0));
+    var ndc_0 : vec2<f32> = place_1.xy / _S45 * focal_0 - skew_0;
     var slope_0 : vec2<f32> = (clamp(ndc_0, vec2<f32>(-1.29999995231628418f), vec2<f32>(1.29999995231628418f)) + skew_0) / focal_0;
-    var magnification_0 : vec2<f32> = _S42 * Constants_0.screen_0 * _S43 * focal_0 / _S44;
+    var magnification_0 : vec2<f32> = _S43 * Constants_0.screen_0 * _S44 * focal_0 / _S45;
     var column_0 : vec3<f32> = vec3<f32>(magnification_0.x) * (vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(0)]) + vec3<f32>(slope_0.x) * vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)]));
     var row_1 : vec3<f32> = vec3<f32>(magnification_0.y) * (vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(1)]) + vec3<f32>(slope_0.y) * vec3<f32>(Constants_0.view_0.data_1[eye_1].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_1].data_0[i32(2)][i32(2)]));
     var across_0 : vec3<f32> = vec3<f32>(column_0.x) * gaussian_2.rows_1[i32(0)] + vec3<f32>(column_0.y) * gaussian_2.rows_1[i32(1)] + vec3<f32>(column_0.z) * gaussian_2.rows_1[i32(2)];
@@ -317,18 +318,18 @@ fn project_0( gaussian_2 : Gaussian_0,  eye_1 : u32) -> Ellipse_0
     var difference_1 : f32 = 0.5f * (a_1 - c_0);
     var spread_1 : f32 = sqrt(difference_1 * difference_1 + b_2 * b_2);
     var ellipse_0 : Ellipse_0;
-    ellipse_0.middle_0 = (ndc_0 * _S43 + vec2<f32>(1.0f)) * _S42 * Constants_0.screen_0;
+    ellipse_0.middle_0 = (ndc_0 * _S44 + vec2<f32>(1.0f)) * _S43 * Constants_0.screen_0;
     ellipse_0.axis_1 = majorAxis_0(difference_1, b_2, spread_1);
-    var _S45 : vec2<f32>;
-    if(_S41 > (Constants_0.near_0))
+    var _S46 : vec2<f32>;
+    if(_S42 > (Constants_0.near_0))
     {
-        _S45 = sqrt(max(vec2<f32>(mean_0 + spread_1, mean_0 - spread_1), vec2<f32>(0.00009999999747379f)));
+        _S46 = sqrt(max(vec2<f32>(mean_0 + spread_1, mean_0 - spread_1), vec2<f32>(0.00009999999747379f)));
     }
     else
     {
-        _S45 = vec2<f32>(vec2<i32>(i32(0)));
+        _S46 = vec2<f32>(vec2<i32>(i32(0)));
     }
-    ellipse_0.deviations_1 = _S45;
+    ellipse_0.deviations_1 = _S46;
     return ellipse_0;
 }
 
@@ -347,8 +348,8 @@ fn splatWide_0( deviations_2 : vec2<f32>) -> vec2<f32>
 fn splatExtent_0( axis_2 : vec2<f32>,  wide_0 : vec2<f32>) -> vec2<f32>
 {
     var size_0 : vec2<f32> = abs(axis_2);
-    var _S46 : f32 = wide_0.y;
-    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S46) + vec2<f32>(((wide_0.x - _S46) * (size_0.x + size_0.y))) * size_0);
+    var _S47 : f32 = wide_0.y;
+    return vec2<f32>(2.0150001049041748f) * (vec2<f32>(_S47) + vec2<f32>(((wide_0.x - _S47) * (size_0.x + size_0.y))) * size_0);
 }
 
 fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
@@ -384,8 +385,8 @@ fn isSeen_0( ellipse_1 : Ellipse_0,  opacity_1 : f32) -> bool
 
 fn eyePosition_0( eye_3 : u32) -> vec3<f32>
 {
-    var _S47 : mat4x4<f32> = mat4x4<f32>(Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(3)]);
-    return vec3<f32>(- _S47[i32(0)].w) * _S47[i32(0)].xyz - vec3<f32>(_S47[i32(1)].w) * _S47[i32(1)].xyz - vec3<f32>(_S47[i32(2)].w) * _S47[i32(2)].xyz;
+    var _S48 : mat4x4<f32> = mat4x4<f32>(Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(0)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(1)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(2)], Constants_0.view_0.data_1[eye_3].data_0[i32(0)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(1)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(2)][i32(3)], Constants_0.view_0.data_1[eye_3].data_0[i32(3)][i32(3)]);
+    return vec3<f32>(- _S48[i32(0)].w) * _S48[i32(0)].xyz - vec3<f32>(_S48[i32(1)].w) * _S48[i32(1)].xyz - vec3<f32>(_S48[i32(2)].w) * _S48[i32(2)].xyz;
 }
 
 fn splatColor_0( centre_1 : vec3<f32>,  rotation_1 : vec4<f32>,  sh_0 : array<vec3<f32>, i32(4)>,  camera_0 : vec3<f32>) -> vec3<f32>
@@ -402,22 +403,13 @@ fn colorScale_0( exponent_0 : u32) -> f32
 
 fn packColors_0( first_1 : vec3<f32>,  second_0 : vec3<f32>,  opacity_2 : f32) -> vec2<u32>
 {
-    var _S48 : vec3<f32> = vec3<f32>(0.5f);
-    var mean_1 : vec3<f32> = _S48 * (first_1 + second_0);
-    var tint_0 : vec3<f32> = _S48 * (first_1 - second_0);
+    var _S49 : vec3<f32> = vec3<f32>(0.5f);
+    var mean_1 : vec3<f32> = _S49 * (first_1 + second_0);
+    var tint_0 : vec3<f32> = _S49 * (first_1 - second_0);
     var needed_0 : vec3<f32> = max(mean_1, abs(tint_0) * vec3<f32>(16.23809432983398438f));
-    var _S49 : f32 = max(max(needed_0.x, needed_0.y), needed_0.z);
-    var _S50 : i32;
-    if(_S49 > 1.0f)
-    {
-        _S50 = i32(1);
-    }
-    else
-    {
-        _S50 = i32(0);
-    }
+    var _S50 : f32 = max(max(needed_0.x, needed_0.y), needed_0.z);
     var _S51 : i32;
-    if(_S49 > 2.0f)
+    if(_S50 > 1.0f)
     {
         _S51 = i32(1);
     }
@@ -425,20 +417,29 @@ fn packColors_0( first_1 : vec3<f32>,  second_0 : vec3<f32>,  opacity_2 : f32) -
     {
         _S51 = i32(0);
     }
-    var _S52 : i32 = _S50 + _S51;
-    if(_S49 > 4.0f)
+    var _S52 : i32;
+    if(_S50 > 2.0f)
     {
-        _S50 = i32(1);
+        _S52 = i32(1);
     }
     else
     {
-        _S50 = i32(0);
+        _S52 = i32(0);
     }
-    var exponent_1 : u32 = u32(_S52 + _S50);
-    var _S53 : vec3<f32> = vec3<f32>((1023.0f / colorScale_0(exponent_1)));
-    var _S54 : vec3<u32> = vec3<u32>(min(mean_1 * _S53, vec3<f32>(vec3<u32>(u32(1023)))) + _S48);
-    var _S55 : vec3<u32> = vec3<u32>(clamp(tint_0 * _S53, vec3<f32>(-63.0f), vec3<f32>(63.0f)) + vec3<f32>(64.5f));
-    return vec2<u32>(((((((_S54.x) | ((((_S54.y) << (u32(10))))))) | ((((_S54.z) << (u32(20))))))) | (((exponent_1 << (u32(30)))))), (((((u32(opacity_2 * 2047.0f + 0.5f) | ((((_S55.x) << (u32(11))))))) | ((((_S55.y) << (u32(18))))))) | ((((_S55.z) << (u32(25)))))));
+    var _S53 : i32 = _S51 + _S52;
+    if(_S50 > 4.0f)
+    {
+        _S51 = i32(1);
+    }
+    else
+    {
+        _S51 = i32(0);
+    }
+    var exponent_1 : u32 = u32(_S53 + _S51);
+    var _S54 : vec3<f32> = vec3<f32>((1023.0f / colorScale_0(exponent_1)));
+    var _S55 : vec3<u32> = vec3<u32>(min(mean_1 * _S54, vec3<f32>(vec3<u32>(u32(1023)))) + _S49);
+    var _S56 : vec3<u32> = vec3<u32>(clamp(tint_0 * _S54, vec3<f32>(-63.0f), vec3<f32>(63.0f)) + vec3<f32>(64.5f));
+    return vec2<u32>(((((((_S55.x) | ((((_S55.y) << (u32(10))))))) | ((((_S55.z) << (u32(20))))))) | (((exponent_1 << (u32(30)))))), (((((u32(opacity_2 * 2047.0f + 0.5f) | ((((_S56.x) << (u32(11))))))) | ((((_S56.y) << (u32(18))))))) | ((((_S56.z) << (u32(25)))))));
 }
 
 fn packedColors_0( gaussian_4 : Gaussian_0,  texel_2 : u32) -> vec2<u32>
@@ -487,48 +488,48 @@ fn depthKey_0( centre_2 : vec3<f32>) -> u32
     {
         depthOf_1 = depthOf_0;
     }
-    var _S56 : vec3<f32> = depthOf_1.xyz;
-    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S56;
-    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S56;
+    var _S57 : vec3<f32> = depthOf_1.xyz;
+    var low_0 : vec3<f32> = Constants_0.bounds_low_0.xyz * _S57;
+    var high_0 : vec3<f32> = Constants_0.bounds_high_0.xyz * _S57;
     var spare_0 : f32 = 0.5f * distance(Constants_0.bounds_low_0.xyz, Constants_0.bounds_high_0.xyz);
-    var _S57 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
-    var _S58 : f32 = depthOf_1.w;
-    var farthest_0 : f32 = dot(max(low_0, high_0), _S57) + _S58 + spare_0;
-    return u32(saturate((farthest_0 - (dot(centre_2, _S56) + _S58)) / max(farthest_0 - max(dot(min(low_0, high_0), _S57) + _S58 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
+    var _S58 : vec3<f32> = vec3<f32>(vec3<i32>(i32(1)));
+    var _S59 : f32 = depthOf_1.w;
+    var farthest_0 : f32 = dot(max(low_0, high_0), _S58) + _S59 + spare_0;
+    return u32(saturate((farthest_0 - (dot(centre_2, _S57) + _S59)) / max(farthest_0 - max(dot(min(low_0, high_0), _S58) + _S59 - spare_0, Constants_0.near_0), 1.00000000317107685e-30f)) * 65534.0f + 0.5f);
 }
 
 fn projectTexel_0( texel_3 : u32) -> u32
 {
     var gaussian_5 : Gaussian_0 = poseTexel_0(texel_3);
-    var _S59 : Ellipse_0 = project_0(gaussian_5, u32(0));
-    var first_3 : Ellipse_0 = _S59;
-    var second_2 : Ellipse_0 = _S59;
+    var _S60 : Ellipse_0 = project_0(gaussian_5, u32(0));
+    var first_3 : Ellipse_0 = _S60;
+    var second_2 : Ellipse_0 = _S60;
     if((Constants_0.eyes_0) == u32(2))
     {
         second_2 = project_0(gaussian_5, u32(1));
     }
-    var _S60 : bool;
+    var _S61 : bool;
     if(isBehind_0(gaussian_5, u32(0)))
     {
-        _S60 = true;
+        _S61 = true;
     }
     else
     {
-        _S60 = !isSeen_0(first_3, gaussian_5.opacity_0);
+        _S61 = !isSeen_0(first_3, gaussian_5.opacity_0);
     }
-    if(_S60)
+    if(_S61)
     {
         first_3.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
     if(isBehind_0(gaussian_5, Constants_0.eyes_0 - u32(1)))
     {
-        _S60 = true;
+        _S61 = true;
     }
     else
     {
-        _S60 = !isSeen_0(second_2, gaussian_5.opacity_0);
+        _S61 = !isSeen_0(second_2, gaussian_5.opacity_0);
     }
-    if(_S60)
+    if(_S61)
     {
         second_2.deviations_1 = vec2<f32>(vec2<i32>(i32(0)));
     }
@@ -536,14 +537,14 @@ fn projectTexel_0( texel_3 : u32) -> u32
     splats_0[splat_0] = vec4<u32>((bitcast<vec3<u32>>((gaussian_5.centre_0))), u32(0));
     if((first_3.deviations_1.x) > 0.0f)
     {
-        _S60 = true;
+        _S61 = true;
     }
     else
     {
-        _S60 = (second_2.deviations_1.x) > 0.0f;
+        _S61 = (second_2.deviations_1.x) > 0.0f;
     }
     var key_0 : u32;
-    if(_S60)
+    if(_S61)
     {
         var color_1 : vec2<u32> = packedColors_0(gaussian_5, texel_3);
         splats_0[splat_0][i32(3)] = color_1.x;
@@ -563,12 +564,12 @@ var<workgroup> groupKeys_0 : array<u32, i32(256)>;
 @workgroup_size(256, 1, 1)
 fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(workgroup_id) group_0 : vec3<u32>, @builtin(local_invocation_index) place_3 : u32)
 {
-    var _S61 : u32 = thread_0.x;
+    var _S62 : u32 = thread_0.x;
     var key_1 : u32;
-    if(_S61 < (Constants_0.texel_count_0))
+    if(_S62 < (Constants_0.texel_count_0))
     {
-        var _S62 : u32 = projectTexel_0(_S61);
-        key_1 = _S62;
+        var _S63 : u32 = projectTexel_0(_S62);
+        key_1 = _S63;
     }
     else
     {
@@ -577,16 +578,16 @@ fn SplatProject(@builtin(global_invocation_id) thread_0 : vec3<u32>, @builtin(wo
     groupKeys_0[place_3] = key_1;
     workgroupBarrier();
     var pair_0 : u32 = u32(2) * place_3;
-    var _S63 : bool;
+    var _S64 : bool;
     if(pair_0 < u32(256))
     {
-        _S63 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
+        _S64 = (u32(256) * group_0.x + pair_0) < (Constants_0.texel_count_0);
     }
     else
     {
-        _S63 = false;
+        _S64 = false;
     }
-    if(_S63)
+    if(_S64)
     {
         keys_0[(Constants_0.first_splat_0 + u32(256) * group_0.x) / u32(2) + place_3] = ((groupKeys_0[pair_0]) | ((((groupKeys_0[pair_0 + u32(1)]) << (u32(16))))));
     }

@@ -27,7 +27,7 @@ namespace Mua
             translations = new double[3 * file.Encoding.Window * file.Skeleton.JointCount];
         }
 
-        public void Decode(CommandBuffer commands, double seconds, in DualQuaternion place, int level = 0)
+        public void Decode(CommandBuffer commands, double seconds, in AvatarPlace place, int level = 0)
         {
             Clip.ReadWindow((int)Clip.Position(seconds), Buffers.Avatar.Encoding.Window, rotations, translations);
             Frame.Decode(commands, rotations, translations, place, level);

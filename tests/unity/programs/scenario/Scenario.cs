@@ -1,4 +1,4 @@
-// Words of a scenario: the numbers, Unity's matrices row by row, and places (position x, y, z, then rotation x, y, z, w).
+// Words of a scenario: the numbers, Unity's matrices row by row, and places (position x, y, z, then rotation x, y, z, w, then size).
 using System.Globalization;
 using Mua.Format;
 using UnityEngine;
@@ -22,12 +22,12 @@ namespace Mua
             return matrix;
         }
 
-        public static DualQuaternion Place(string[] words, int first)
+        public static AvatarPlace Place(string[] words, int first)
         {
             var position = new Vector3(Number(words, first), Number(words, first + 1), Number(words, first + 2));
             var rotation = new Quaternion(
                 Number(words, first + 3), Number(words, first + 4), Number(words, first + 5), Number(words, first + 6));
-            return AvatarSpace.Place(position, rotation);
+            return new AvatarPlace(position, rotation, Number(words, first + 7));
         }
     }
 }

@@ -11,6 +11,13 @@ namespace UnityEditor
             StandIns.Dialogs.Shown.Add(message);
             return StandIns.Dialogs.Answer;
         }
+#if UNITY_6000_3_OR_NEWER
+        public static UnityEngine.Object EntityIdToObject(UnityEngine.EntityId entityId) { return null; }
+#else
+        internal static UnityEngine.Object[] Rows = new UnityEngine.Object[1]; // objects by the ids that drops have
+
+        public static UnityEngine.Object InstanceIDToObject(int instanceID) { return Rows[instanceID]; }
+#endif
         public static void SetDirty(UnityEngine.Object target) { StandIns.Dialogs.Dirtied.Add(target.GetType().Name); }
     }
 }

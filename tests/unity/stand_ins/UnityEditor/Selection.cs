@@ -40,6 +40,11 @@ namespace UnityEditor
         }
     }
 
+    [Flags]
+    public enum GizmoType { Pickable = 1, NotInSelectionHierarchy = 2, NonSelected = 32, Selected = 4, Active = 8, InSelectionHierarchy = 16 }
+
+    public sealed class DrawGizmo : Attribute { public DrawGizmo(GizmoType gizmo) { } }
+
     public class SceneAsset : Object { }
 
     public class SceneView { public static void RepaintAll() { StandIns.Asked.Repaints++; } }

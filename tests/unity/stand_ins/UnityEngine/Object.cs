@@ -4,6 +4,10 @@ using System.Collections.Generic;
 
 namespace UnityEngine
 {
+#if UNITY_6000_3_OR_NEWER
+    public struct EntityId { }
+
+#endif
     [Flags]
     public enum HideFlags
     {

@@ -34,9 +34,19 @@ namespace UnityEngine
         public Color(float r, float g, float b, float a) { this.r = r; this.g = g; this.b = b; this.a = a; }
         public Color(float r, float g, float b) { this.r = r; this.g = g; this.b = b; a = 1; }
 
+        public static Color clear { get { return new Color(0, 0, 0, 0); } }
+
         public static implicit operator Vector4(Color c) { return new Vector4(c.r, c.g, c.b, c.a); }
         public static implicit operator Color(Vector4 v) { return new Color(v.x, v.y, v.z, v.w); }
         public static Color operator *(Color a, float b) { return new Color(a.r * b, a.g * b, a.b * b, a.a * b); }
+    }
+
+    public sealed class Gizmos
+    {
+        public static readonly System.Collections.Generic.List<Bounds> Cubes = new System.Collections.Generic.List<Bounds>(); // not Unity's
+
+        public static Color color { get; set; }
+        public static void DrawCube(Vector3 center, Vector3 size) { Cubes.Add(new Bounds(center, size)); }
     }
 
     public struct Rect
