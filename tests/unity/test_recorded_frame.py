@@ -1,7 +1,7 @@
 """The package's own frames, run by mono over stand-ins that record them and replayed on Vulkan, against decode()."""
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
