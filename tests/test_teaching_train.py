@@ -113,7 +113,7 @@ def test_a_camera_with_colours_of_its_own_does_not_stain_the_teacher(tmp_path: P
         red = torch.tensor([0.1, 0, 0]) * (1 if camera else -1)
         return replace(seen, image=(seen.image + red).clamp(0, 1))
 
-    longer = replace(SETTINGS, texture=Schedule(steps=25, batch=4, lr=2e-2))
+    longer = replace(SETTINGS, texture=Schedule(steps=40, batch=4, lr=3e-3))
     lesson = taught(tmp_path, settings=longer, shown=material(redder))
     change = lesson.correction.change - lesson.correction.change.mean(dim=0)
     assert change[1, 0].sum() > 0.01
@@ -303,7 +303,7 @@ def test_all_that_is_learnt_beside_the_mean_texture_has_a_rate() -> None:
     rates = {id(parameter): rate for learnt, rate in _rates(lesson) for parameter in learnt}
     wanted = {name: id(parameter) for name, parameter in lesson.named_parameters() if name != "teacher.mean"}
     assert set(rates) == set(wanted.values())
-    assert rates[wanted["teacher.still"]] == 10 * rates[wanted["looks"]] == 10 * rates[wanted["refinement.turns"]]
+    assert rates[wanted["teacher.still"]] == 60 * rates[wanted["looks"]] == 60 * rates[wanted["refinement.turns"]]
 
 
 @torch.no_grad()
