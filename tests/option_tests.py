@@ -122,8 +122,8 @@ HELD = {
         "doctor": "deploy_doctor.test_the_command_shows_every_check_and_names_those_that_are_not_ok",
     }),
     "teach": Held("mua.baking.teach", "teach", {
-        **dict.fromkeys(("preset", "steps", "texels", "drivable", "refine", "lpips_weights", "seed"), TAUGHT),
-        **dict.fromkeys(("capture", "output"), TAUGHT),
+        **dict.fromkeys(("capture", "output", "preset", "steps", "texels", "drivable", "colour_correction"), TAUGHT),
+        **dict.fromkeys(("refine", "lpips_weights", "seed"), TAUGHT),
         "rasteriser": "gsplat_views.test_gsplat_that_is_not_installed_is_a_sentence",
         "device": "teach_options.test_a_gpu_that_is_not_there_is_named",
     }),

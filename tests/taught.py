@@ -69,11 +69,15 @@ def looks_of_pictures(truth: TeacherModel) -> torch.Tensor:
     return 0.3 * torch.sin(across)
 
 
-def material(change: Callable[[Seen, int], Seen] = lambda seen, camera: seen) -> Material:
-    """Images of a teacher whose colours and folds depend on the pose; `change` is done to those of each camera."""
+def material(change: Callable[[Seen, int], Seen] = lambda seen, camera: seen, *, sun: float = 0.0) -> Material:
+    """Images of a teacher whose colours and folds depend on the pose; `change` is done to those of each camera.
+
+    By `sun`, of 1, what faces +X is brighter and what faces -X darker.
+    """
     truth = teacher()
     with torch.no_grad():
         truth.mean.copy_(looks_of_pictures(truth))
+        truth.light.gains[0] = sun
     seen = {}
     for frame in range(FRAMES):
         window = motion()[2 * frame]

@@ -52,6 +52,7 @@ TEACH = {
     "steps": 7,
     "texels": 64,
     "drivable": True,
+    "colour_correction": False,
     "refine": 2.0,
     "lpips_weights": "weights.pth",
     "rasteriser": "gsplat",

@@ -118,6 +118,9 @@ def renderer(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
         class cycles:
             seed = 0
 
+        class render:
+            """Whose border is set."""
+
         camera = ""
 
     def picture(scene: Scene, file: Path) -> None:

@@ -134,7 +134,7 @@ def test_what_is_the_same_goes_on_with_what_was_trained(
 
 @pytest.mark.parametrize(
     "changed",
-    [{"seed": 1}, {"refine": 2.0}, {"drivable": True}, {"lpips_weights": None}],
+    [{"seed": 1}, {"refine": 2.0}, {"drivable": True}, {"colour_correction": False}, {"lpips_weights": None}],
     ids=lambda changed: next(iter(changed)),
 )
 def test_another_option_is_another_training(
@@ -187,13 +187,15 @@ def test_another_capture_is_another_training(
 def test_a_teacher_says_what_it_was_trained_with(capture: Path, lpips: Path, tmp_path: Path, command: Commands) -> None:
     ended = command(
         *("teach", capture, "-o", tmp_path / "t", "--preset", "small", "--steps", 1, "--texels", 80, "--drivable"),
-        *("--refine", 1.5, "--lpips-weights", lpips, "--seed", 3, "--device", "cpu"),
+        *("--no-colour-correction", "--refine", 1.5, "--lpips-weights", lpips, "--seed", 3, "--device", "cpu"),
     )
     assert ended.status == 0, ended
     assert "no perceptual term" not in ended.out
     said = json.loads((tmp_path / "t" / "teacher.json").read_text())["settings"]
-    told = {name: said[name] for name in ("channels", "texels", "drivable", "refine", "seed")}
-    assert told == {"channels": 5, "texels": 80, "drivable": True, "refine": 1.5, "seed": 3}
+    told = {name: said[name] for name in ("channels", "texels", "drivable", "colour_correction", "refine", "seed")}
+    assert told == {
+        **{"channels": 5, "texels": 80, "drivable": True, "colour_correction": False, "refine": 1.5, "seed": 3}
+    }
     assert (said["mean"]["steps"], said["texture"]["steps"]) == (FEW.mean.steps, 1)
     assert load_teacher(tmp_path / "t")[0].rig.texels.size == 80
 

@@ -30,6 +30,7 @@ LAMP_DISTANCE, LAMP_SIDE = 2.5, 1.6  # of the figure's size
 OPEN_SKY = (0.16, 0.21, 0.3)  # light from all around in the sun: red, green, blue
 SUN = ((-0.65, 0.75, 0.35), (1.0, 0.93, 0.82), 2.6)  # direction to it, colour, irradiance
 SUN_DEGREES = 0.53  # across
+BORDER = 4  # pixels around the figure that are rendered; the rest of an image is empty
 
 
 def render(job_file: Path, *, threads: int) -> None:
@@ -42,11 +43,13 @@ def render(job_file: Path, *, threads: int) -> None:
         return
     scene = _scene(job, threads)
     cameras = {camera["name"]: _camera(scene, camera, job["size"]) for camera in job["cameras"]}
+    given = {camera["name"]: camera for camera in job["cameras"]}
     surface = _surface(scene, folder, job)
     for mesh, pictures in groupby(missing, key=lambda one: one["mesh"]):
         _place(surface, folder / mesh)
         for one in pictures:
             scene.camera = cameras[one["camera"]]
+            _border(scene, given[one["camera"]], _vertices(folder / mesh), size=job["size"])
             scene.cycles.seed = one["seed"]
             _picture(scene, folder / one["image"])
             done += 1
@@ -129,6 +132,18 @@ def _camera(scene: Any, camera: dict[str, Any], size: int) -> Any:
     placed.matrix_world = Matrix(to_world.tolist())
     scene.collection.objects.link(placed)
     return placed
+
+
+def _border(scene: Any, camera: dict[str, Any], vertices: Any, *, size: int) -> None:
+    """Render nothing but the box around the figure, in an image of the same size."""
+    to_camera = np.array(camera["world_to_camera"])
+    seen = vertices @ to_camera[:3, :3].T + to_camera[:3, 3]
+    pixels = camera["focal"] * seen[:, :2] / seen[:, 2:] + camera["centre"]
+    left, upper = np.clip((pixels.min(axis=0) - BORDER) / size, 0, 1).tolist()
+    right, lower = np.clip((pixels.max(axis=0) + BORDER) / size, 0, 1).tolist()
+    scene.render.use_border, scene.render.use_crop_to_border = True, False
+    scene.render.border_min_x, scene.render.border_max_x = left, right
+    scene.render.border_min_y, scene.render.border_max_y = 1 - lower, 1 - upper
 
 
 def _surface(scene: Any, folder: Path, job: dict[str, Any]) -> Any:

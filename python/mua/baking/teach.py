@@ -31,6 +31,7 @@ def teach(
     steps: int | None = None,
     texels: int | None = None,
     drivable: bool = False,
+    colour_correction: bool = True,
     refine: float = 0.0,
     lpips_weights: PathLike | None = None,
     rasteriser: Rasteriser = "mua",
@@ -54,7 +55,12 @@ def teach(
         mua.teach("captures/anna", output="teachers/anna", preset="small")
     """
     settings = _settings(preset, steps=steps, texels=texels, refine=refine, seed=seed)
-    settings = replace(settings, drivable=drivable, rasteriser=one_of(rasteriser, "rasteriser", get_args(Rasteriser)))
+    settings = replace(
+        settings,
+        drivable=drivable,
+        colour_correction=colour_correction,
+        rasteriser=one_of(rasteriser, "rasteriser", get_args(Rasteriser)),
+    )
     if settings.rasteriser == "gsplat" and find_spec("gsplat") is None:
         raise InputError("--rasteriser gsplat: the Python package gsplat is not installed; pip install gsplat")
     output, weights = as_path(output, "output"), None
@@ -96,7 +102,7 @@ def _settings(name: str, *, steps: int | None, texels: int | None, refine: float
     if texels is not None:
         if whole_number(texels, "texels") < LEAST_TEXELS or texels % COARSE_TEXELS:
             raise InputError(f"--texels {texels}: expected a multiple of {COARSE_TEXELS} from {LEAST_TEXELS} on")
-        settings = replace(settings, texels=texels)
+        settings = replace(settings, texels=texels, rows=settings.rows * texels // settings.texels)
     if whole_number(seed, "seed") < 0:
         raise InputError(f"--seed {seed}: expected 0 or more")
     degrees = float(finite_array(refine, "refine", ()))

@@ -30,6 +30,13 @@ OPTIONS = {
     "drivable": Annotated[
         bool, typer.Option("--drivable", help="Learn first how motion deforms the template, from meshes or masks.")
     ],
+    "colour_correction": Annotated[
+        bool,
+        typer.Option(
+            "--colour-correction/--no-colour-correction",
+            help="Learn how cameras differ in colour; without, all are taken to show colours alike.",
+        ),
+    ],
     "refine": Annotated[
         float,
         typer.Option(

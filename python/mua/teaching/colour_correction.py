@@ -17,9 +17,11 @@ class ColourCorrection(nn.Module):
         camera: int,
     ) -> Tensor:
         """The image [H, W, 4] as that camera shows it."""
-        own = self.change[camera] - self.change.mean(dim=0)
-        return torch.cat([image[..., :3] + image @ own.T, image[..., 3:]], dim=-1)
+        return torch.cat([image[..., :3] + image @ self._own()[camera].T, image[..., 3:]], dim=-1)
 
-    def size(self) -> Tensor:
-        """The mean square of what is learnt."""
-        return self.change.square().mean()
+    def unlikeness(self) -> Tensor:
+        """The mean square by which cameras differ from the mean of all, of the sum over their twelve numbers."""
+        return self._own().square().sum(dim=(1, 2)).mean()
+
+    def _own(self) -> Tensor:
+        return self.change - self.change.mean(dim=0)

@@ -20,7 +20,7 @@ from mua.teaching.model import Subject, TeacherModel
 from mua.teaching.settings import LossWeights, TeacherSettings
 
 FILE, RIG, WEIGHTS = "teacher.json", "rig.npz", "weights.pt"
-FORMAT, VERSION = "mua-teacher", 1
+FORMAT, VERSION = "mua-teacher", 2
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,8 @@ def _described(file: Path) -> Description:
         said: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         if (said["format"], said["version"]) != (FORMAT, VERSION):
             raise InputError(
-                f"{file}: format is {said['format']!r}, version {said['version']!r}; expected {FORMAT!r}, 1"
+                f"{file}: format is {said['format']!r}, version {said['version']!r}; expected {FORMAT!r}, {VERSION}; "
+                "mua-teach trains it again"
             )
         own, encoding = dict(said["settings"]), dict(said["encoding"])
         own["weights"] = LossWeights(**own["weights"])

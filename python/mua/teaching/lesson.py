@@ -46,6 +46,7 @@ class Lesson(nn.Module):
         super().__init__()
         self.teacher = teacher
         self.correction = ColourCorrection(material.views.cameras)
+        self.colour_correction = settings.colour_correction  # or it stays none
         self.looks = nn.Parameter(torch.zeros(material.views.frames, settings.code))
         self.refinement = refinement
         self._material, self._weights, self._rasteriser = material, settings.weights, settings.rasteriser
@@ -121,7 +122,7 @@ class Lesson(nn.Module):
     def _restraint(self, frame: Frame, index: int) -> Tensor:
         """Keeps what images do not decide near nothing."""
         loss = self._weights.residual * frame.added[:, GEOMETRY].square().mean()
-        beside = self.correction.size() + self.looks[index].square().sum()
+        beside = self.looks[index].square().sum()
         if self.refinement is not None:
             beside = beside + self.refinement.size()
-        return loss + self._weights.correction * beside
+        return loss + self._weights.beside * beside + self._weights.correction * self.correction.unlikeness()

@@ -15,6 +15,7 @@ from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise_views
 from mua.teachers.bones import figure_scale
+from mua.teaching.light import Light
 from mua.teaching.settings import Rasteriser, TeacherSettings
 from mua.teaching.template import DrivableTemplate
 from mua.teaching.template_training import TemplateSettings, template_of
@@ -59,6 +60,7 @@ class TeacherModel(nn.Module):
         self.template = template_of(rig, subject.encoding, TemplateSettings()) if drivable else DrivableTemplate(rig)
         self.mean = nn.Parameter(torch.zeros(len(rig.texels.texels), 3))  # of the colour, in display values
         self.still = nn.Parameter(torch.zeros_like(self.surfels))  # what the networks' mean adds, in units
+        self.light = Light()
         self.nets = TexelNets(
             rig,
             window=settings.window,
@@ -82,8 +84,14 @@ class TeacherModel(nn.Module):
             return Frame(template.canonical[0], mean, torch.zeros_like(mean), template.posed[0])
         added = self.nets(template.posed, window.root, window.back, self.look if look is None else look)
         added = MOST_RESIDUAL * torch.tanh(added / MOST_RESIDUAL)
-        texture = mean + (self.still + added) * self.nets.units
+        texture = self._lit(mean + (self.still + added) * self.nets.units, template.posed[0])
         return Frame(template.canonical[0], texture, added, template.posed[0])
+
+    def _lit(self, texture: Tensor, posed: Tensor) -> Tensor:
+        """The texture [N, 23] with its colours in the light that falls on the posed template [V, 3]."""
+        colours = 0.5 + SH_C0 * texture[:, CONSTANT]
+        lit = (colours * self.light(self.nets.surface.facing(posed)) - 0.5) / SH_C0
+        return torch.cat([texture[:, : CONSTANT.start], lit, texture[:, CONSTANT.stop :]], dim=1)
 
     def mean_texture(self) -> Tensor:
         """[N, 23] the surfels in the mean colours of the images."""

@@ -19,7 +19,8 @@ class LossWeights:
     perceptual: float = 0.1  # of LPIPS, where its weights are given
     tracks: float = 0.02  # of tracked points' squared distance in centimetres on a person, where there are tracks
     residual: float = 1e-3  # of the square of what the networks add to the geometry, in `texels.UNITS`
-    correction: float = 1e-2  # of the square of what cameras' colours and frames' codes are away from none
+    beside: float = 1e-2  # of the square of frames' codes and of the refinement of poses
+    correction: float = 0.1  # of the square of what a camera's colours differ from those of the others
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class TeacherSettings:
     window: int = 3  # k, poses that a frame is told from
     code: int = 0  # numbers of a frame's look, for one pose that looks several ways; 0: looks differ by pose alone
     refine: float = 0.0  # degrees by which a joint of a frame may be turned to fit the images
+    colour_correction: bool = True  # whether cameras may differ in colour
     drivable: bool = False  # whether motion deforms the template, or its skin alone
     weights: LossWeights = field(default_factory=LossWeights)
     rasteriser: Rasteriser = "mua"  # what draws the images in training

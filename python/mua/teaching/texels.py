@@ -6,6 +6,7 @@ reads it as it stands in the world, because light does.
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
 from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
 from mua.rig.rig import Rig
@@ -45,6 +46,14 @@ class SurfaceTextures(nn.Module):
         surface = torch.cat([posed, normals(posed, self.faces)], dim=2)
         values = torch.einsum("nc,kncd->kdn", self.barycentrics, surface[:, self.corners])
         return self.image(values.flatten(0, 1))[None]
+
+    def facing(
+        self,
+        posed: Tensor,  # [V, 3]
+    ) -> Tensor:
+        """Unit normals [N, 3] at the valid texels."""
+        corners = normals(posed, self.faces)[self.corners]
+        return functional.normalize(torch.einsum("nc,ncd->nd", self.barycentrics, corners), dim=-1, eps=1e-12)
 
     def image(
         self,
@@ -104,4 +113,4 @@ def normals(
     total = torch.zeros_like(vertices)
     for corner in range(3):
         total = total.index_add(-2, faces[:, corner], across)
-    return torch.nn.functional.normalize(total, dim=-1, eps=1e-12)
+    return functional.normalize(total, dim=-1, eps=1e-12)

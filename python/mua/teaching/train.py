@@ -15,7 +15,7 @@ MEAN, TEXTURE = "mean texture", "texels"
 STAGES = (MEAN, TEXTURE)
 CHECKPOINT_STEPS = 50  # a step takes up to seconds
 # Learning rates over that of the networks: of numbers that each touch a texel, a frame or a camera alone.
-STILL_RATE, BESIDE_RATE = 10.0, 1.0
+STILL_RATE, LIGHT_RATE, BESIDE_RATE = 60.0, 20.0, 1.0
 
 
 def train_teacher(lesson: Lesson, material: Material, settings: TeacherSettings, *, run: Run) -> None:
@@ -47,10 +47,17 @@ def train_teacher(lesson: Lesson, material: Material, settings: TeacherSettings,
 
 def _rates(lesson: Lesson) -> list[tuple[list[nn.Parameter], float]]:
     """What the networks' training learns, and its learning rate over theirs."""
-    beside = [lesson.correction.change, *([lesson.looks] if lesson.looks.numel() else [])]
+    teacher = lesson.teacher
+    beside = [lesson.correction.change] if lesson.colour_correction else []
+    beside += [lesson.looks] if lesson.looks.numel() else []
     if lesson.refinement is not None:
         beside += [lesson.refinement.turns, lesson.refinement.moves]
-    return [(list(lesson.teacher.nets.parameters()), 1.0), ([lesson.teacher.still], STILL_RATE), (beside, BESIDE_RATE)]
+    return [
+        (list(teacher.nets.parameters()), 1.0),
+        ([teacher.still], STILL_RATE),
+        ([teacher.light.gains], LIGHT_RATE),
+        *([(beside, BESIDE_RATE)] if beside else []),
+    ]
 
 
 def _loss(model: Callable[..., Tensor], *, material: Material, batch: int, run: Run, moving: bool) -> Tensor:
