@@ -78,7 +78,7 @@ HELD = {
         "what": "export_gltf.test_trimesh_reads_the_detailed_geometry_with_its_colours",
         "motion": WRITTEN + "test_motion_of_another_file_is_exported_too",
         "mapping": WRITTEN + "test_a_mapping_says_which_joint_moves_and_a_name_which_of_several_motions",
-        "axes": WRITTEN + "test_a_ply_is_y_down_and_a_spz_y_up_unless_asked",
+        "axes": WRITTEN + "test_splats_of_all_formats_stand_alike_y_down_unless_asked",
     }),
     "share": Held("mua.cli.share", "share", {
         "files": "share.test_avatars_of_one_name_and_of_odd_names_all_have_a_place",

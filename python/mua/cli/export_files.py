@@ -12,7 +12,7 @@ from rich.progress import track
 
 from mua.asset.read import read
 from mua.errors import InputError
-from mua.export.formats import Y_DOWN, frame_content, held, write_clip
+from mua.export.formats import SPLAT_FORMATS, frame_content, held, write_clip
 from mua.export.frames import ExportFrames
 from mua.export.kinds import Kind, is_directory
 from mua.export.sequence import file_names, write_all
@@ -48,7 +48,7 @@ def write(output: Path, kind: Kind, source: Source, *, frames: str | None, axes:
             write_clip(kind, temporary, exported, posed)
     else:
         paths = _paths(output, kind, exported.numbers)
-        down = kind.suffix in Y_DOWN if axes is None else axes == "y-down"
+        down = kind.suffix in SPLAT_FORMATS if axes is None else axes == "y-down"
         contents = (frame_content(kind, exported, number, down=down) for number in exported.numbers)
         write_all(zip(paths, _with_progress(contents, output, len(paths)), strict=True))
     typer.echo(_told(paths, held(kind, exported)))

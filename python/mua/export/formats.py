@@ -12,7 +12,7 @@ from mua.export.ply import ply_bytes
 from mua.export.splats import HALF_TURN_Z, WorldSplats, turned, world_splats
 from mua.export.spz import spz_bytes
 
-Y_DOWN = (".ply", ".compressed.ply")  # which viewers take for Y down, as 3D Gaussian Splatting writes them
+# Viewers take all of them for Y down, as 3D Gaussian Splatting writes them.
 SPLAT_FORMATS: dict[str, Callable[[WorldSplats], bytes]] = {
     ".ply": ply_bytes,
     ".compressed.ply": compressed_ply_bytes,

@@ -24,7 +24,7 @@ COEFFICIENT_STEPS = 128.0  # -1 to 1
 
 
 def spz_bytes(splats: WorldSplats) -> bytes:
-    """The content of a .spz; Y should be up, as its specification says."""
+    """The content of a .spz."""
     fraction = _fraction(splats.centres)
     header = struct.pack("<4sIIBBBB", MAGIC, VERSION, len(splats), DEGREE, fraction, ANTIALIASED, 0)
     arrays = (
