@@ -15,8 +15,16 @@ SENTENCE = f"({SHADOW}.querySelector('.says').hidden ? '' : {SHADOW}.querySelect
 # A device whose loss a test can bring about.
 LOSABLE = """Object.defineProperty(GPUDevice.prototype, "lost", { get() {
   globalThis.lose = (reason) => { this.destroy(); this.told({ reason, message: "" }); };
-  return new Promise((resolve) => { this.told = resolve; });
+  return (this.losing ??= new Promise((resolve) => { this.told = resolve; }));
 } });"""
+# How often the page asked for a device, and for what has to be compiled.
+COUNTED = """globalThis.asked = {};
+for (const [kind, name] of [[GPUAdapter, "requestDevice"], [GPUDevice, "createShaderModule"],
+  ...["Compute", "Render"].flatMap((of) => ["", "Async"].map((end) => [GPUDevice, `create${of}Pipeline${end}`]))]) {
+  const made = kind.prototype[name];
+  asked[name] = 0;
+  kind.prototype[name] = function (...given) { asked[name] += 1; return made.apply(this, given); };
+}"""
 
 
 def avatar(name: str, clips: Sequence[object] = CLIPS, **more: object) -> bytes:

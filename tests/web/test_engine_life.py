@@ -1,13 +1,14 @@
 """The engine in a browser from the first load to the last: memory, a lost device, files that are wrong."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from web.browser import Browser, Serve
+from web.browser import Browser, Page, Serve
 from web.conftest import PLAIN
-from web.pages import LOSABLE
+from web.pages import COUNTED, LOSABLE
 from web.test_engine import Open, load, opened, screenshot, small
 
 from mua.share.site import Site, player_files
@@ -101,3 +102,61 @@ def test_an_element_that_changes_before_its_first_picture_shows_one(
     assert page.evaluate("[told, element.avatars.length]") == [["load"], 1]
     assert page.told["errors"] == []
     page.close()
+
+
+BESIDE = """(async () => { const beside = document.createElement("mua-avatar");
+  beside.src = "a.muaavatar";
+  document.body.append(beside);
+  await new Promise((load) => beside.addEventListener("load", load));
+  return beside;
+})()"""
+GROUPS = "[...first.player.renderer.device.binders].reduce((sum, { groups }) => sum + groups.length, 0)"
+
+
+@pytest.fixture
+def one_of_two(browser: Browser, serve: Serve, small: Path) -> Iterator[Page]:
+    """A page that shows an element, `first`; BESIDE adds another one."""
+    site: Site = {**player_files(), "index.html": b"<!doctype html>", "a.muaavatar": small.read_bytes()}
+    page = browser.page(serve(site), size=(160, 400), before=COUNTED + LOSABLE)
+    page.evaluate("import('./element.js').then(() => 0)")
+    page.evaluate(f"{BESIDE}.then((it) => (globalThis.first = it, first.player.renderer.compile())).then(() => 0)")
+    yield page
+    assert page.told["errors"] == []
+    page.close()
+
+
+def test_a_second_element_uses_the_device_of_the_first_and_compiles_nothing(one_of_two: Page) -> None:
+    page = one_of_two
+    before = page.evaluate("({ ...asked })")
+    assert before["requestDevice"] == 1
+    page.evaluate(f"{BESIDE}.then((it) => (globalThis.second = it, second.player.renderer.compile())).then(() => 0)")
+    assert page.evaluate("({ ...asked })") == before
+    pixels = "(async (of) => [...new Uint8Array(await (await of.screenshot()).arrayBuffer())])"
+    picture = page.evaluate(f"{pixels}(second)")
+    assert picture == page.evaluate(f"{pixels}(first)")
+    page.evaluate("first.remove()")
+    page.wait("first.player === null")
+    assert picture == page.evaluate(f"{pixels}(second)")
+
+
+def test_elements_that_come_and_go_leave_nothing_on_the_device_of_those_that_stay(one_of_two: Page) -> None:
+    page = one_of_two
+    page.evaluate("first.screenshot().then(() => 0)")
+    before = page.evaluate(GROUPS)
+    held = page.evaluate("first.player.bytes")
+    for _ in range(3):
+        page.evaluate(f"{BESIDE}.then(async (it) => (await it.screenshot(), it.remove())).then(() => 0)")
+    assert page.evaluate(f"[{GROUPS}, first.player.bytes]") == [before, held]
+
+
+def test_all_elements_come_back_after_their_device_is_lost(one_of_two: Page) -> None:
+    page = one_of_two
+    page.evaluate(f"{BESIDE}.then((it) => (globalThis.second = it, 0))")
+    page.evaluate("new Promise((resolve) => setTimeout(resolve, 2100))")  # a device lost at once is given up
+    page.evaluate('(first.player.renderer.device.lost, lose("unknown"))')
+    page.wait("[first, second].every(({ player }) => player.renderer && player.bytes > 0)")
+    assert page.evaluate("[asked.requestDevice, first.player.renderer.device === second.player.renderer.device]") == [
+        2,
+        True,
+    ]
+    assert page.evaluate("second.screenshot().then(({ size }) => size > 500)")

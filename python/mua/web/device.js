@@ -8,7 +8,7 @@ const CAPACITY = 1 << 18; // bytes: a thousand dispatches may wait for one submi
 const RAISED_LIMITS = ["maxBufferSize", "maxStorageBufferBindingSize", "maxTextureDimension2D"]; // as much as the device has
 const LEAST_BUFFERS = 8; // that one stage binds
 
-/** An open device, counting what it holds. */
+/** An open device. */
 export class Device {
   /** @throws {AvatarError} where the browser has none */
   static async open(/** @type {import("./player.js").PlayerOptions} */ options = {}) {
@@ -37,11 +37,14 @@ export class Device {
     const { vendor, architecture, description } = adapter.info;
     this.name = description || [vendor, architecture].filter(Boolean).join(" ");
     this.gpu = gpu;
+    this.lost = gpu.lost;
+    this.since = performance.now();
     this.timestamps = gpu.features.has("timestamp-query");
     this.uniforms = new Uniforms(gpu);
-    this.bytes = 0; // that buffers of `buffer` hold
     /** @type {Map<unknown, unknown>} */
     this.known = new Map();
+    /** @type {Set<{forget: (buffers: Set<GPUBuffer>) => void}>} */
+    this.binders = new Set(); // that remember buffers which they bound
   }
 
   /**
@@ -58,7 +61,6 @@ export class Device {
       throw new AvatarError(`${label}: ${size} bytes are more than the ${most} that this device can bind.`);
     const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST | GPUBufferUsage.COPY_SRC | more;
     const buffer = this.gpu.createBuffer({ label, size, usage });
-    this.bytes += size;
     if (typeof content !== "number") this.write(buffer, content);
     return buffer;
   }
@@ -73,9 +75,11 @@ export class Device {
     this.gpu.queue.writeBuffer(buffer, whole, rest);
   }
 
-  free(/** @type {GPUBuffer} */ buffer) {
-    this.bytes -= buffer.size;
-    buffer.destroy();
+  /** Give buffers back, and what was bound of them. */
+  free(/** @type {GPUBuffer[]} */ buffers) {
+    const given = new Set(buffers);
+    for (const binder of this.binders) binder.forget(given);
+    for (const buffer of given) buffer.destroy();
   }
 
   /** What was made for a key, once. @template T @param {unknown} key @param {() => T} make @returns {T} */
@@ -113,9 +117,14 @@ export class Memory {
     return made;
   }
 
+  /** Bytes of its buffers. */
+  get bytes() {
+    return this.held.reduce((sum, { size }) => sum + size, 0);
+  }
+
   /** May be called twice. */
   free() {
-    for (const buffer of this.held.splice(0)) this.device.free(buffer);
+    this.device.free(this.held.splice(0));
     for (const texture of this.textures.splice(0)) texture.destroy();
   }
 }

@@ -62,14 +62,16 @@ export class Engine {
   /** A renderer whose device, where it is lost, is replaced. */
   async opened() {
     const renderer = await Renderer.open(this.canvas, this.options);
-    const since = performance.now();
-    renderer.device.gpu.lost.then(({ reason }) => {
+    const { lost, since, gpu } = renderer.device;
+    lost.then(({ reason }) => {
       if (reason === "destroyed" || this.disposed) return;
       if (this.renderer === renderer) this.recover(performance.now() - since);
       else this.lost.add(renderer); // recovering with it finds that out
     });
-    renderer.device.gpu.onuncapturederror = ({ error }) =>
+    const { signal } = renderer.closed;
+    const refused = (/** @type {GPUUncapturedErrorEvent} */ { error }) =>
       this.tell(new AvatarError(`The graphics device refused: ${error.message}`));
+    gpu.addEventListener("uncapturederror", refused, { signal });
     return renderer;
   }
 
@@ -333,7 +335,7 @@ export class Engine {
     this.stop();
     this.leaveVR();
     this.disposed = true;
-    for (const { slot } of this.entries.splice(0)) slot.memory.free();
+    this.entries = [];
     this.renderer?.destroy();
     this.renderer = null;
   }

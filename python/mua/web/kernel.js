@@ -39,6 +39,7 @@ class Bindings {
     this.layout = device.gpu.createBindGroupLayout({ label: shader.entry, entries });
     /** @type {{buffers: GPUBuffer[], group: GPUBindGroup}[]} */
     this.groups = [];
+    device.binders.add(this);
   }
 
   /** The bind group of these buffers, made once for the same ones. */
@@ -58,6 +59,11 @@ class Bindings {
     const group = this.device.gpu.createBindGroup({ label: this.shader.entry, layout: this.layout, entries });
     this.groups.push({ buffers, group });
     return group;
+  }
+
+  /** Drop the groups of buffers that are given back. */
+  forget(/** @type {Set<GPUBuffer>} */ given) {
+    this.groups = this.groups.filter(({ buffers }) => !buffers.some((buffer) => given.has(buffer)));
   }
 
   /** Dynamic offsets of a dispatch or draw with these constants. */
@@ -144,6 +150,8 @@ export class Pipeline {
     this.gpu = gpu;
     /** @type {GPURenderPipeline | null} */
     this.pipeline = null;
+    /** @type {Promise<GPURenderPipeline> | null} */
+    this.compiling = null;
     /** @type {GPURenderPipelineDescriptor} */
     this.described = {
       label: vertex.entry,
@@ -157,7 +165,8 @@ export class Pipeline {
 
   /** Compile beside others, before it is needed. */
   async compile() {
-    this.pipeline ??= await this.gpu.createRenderPipelineAsync(this.described);
+    this.compiling ??= this.gpu.createRenderPipelineAsync(this.described);
+    this.pipeline ??= await this.compiling;
   }
 
   /** Set the pipeline, its buffers and its constants for the draws that follow in a pass. */

@@ -1,11 +1,11 @@
-// A device and what it holds of the avatars, and the pictures that it draws of them. A lost device's renderer is left behind
-// and another one made.
+// What the page's device holds of the avatars of one player, and the pictures that it draws of them. A lost device's renderer is
+// left behind and another one made.
 
 import { camerasOf } from "./camera.js";
 import { AvatarBuffers } from "./buffers.js";
 import { KERNELS as DECODING, kernelsFor } from "./channels.js";
 import { window } from "./clip.js";
-import { Device, Memory } from "./device.js";
+import { Memory } from "./device.js";
 import { readOrder, writeOrder } from "./early.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
@@ -15,6 +15,7 @@ import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
 import { COLOR, DEPTH, Scene } from "./scene.js";
 import { DecodeSchedule } from "./schedule.js";
+import { giveBack, takeDevice } from "./shared.js";
 import { PROJECTING, SORTING, SplatFrame } from "./splats.js";
 import { Timing } from "./timing.js";
 import { BlendVertices } from "./wgsl/dq_skinning.js";
@@ -32,17 +33,17 @@ export class Renderer {
     /** @type {HTMLCanvasElement} */ canvas,
     /** @type {import("./player.js").PlayerOptions} */ options,
   ) {
-    const device = await Device.open(options);
+    const device = await takeDevice(options);
     try {
       return new Renderer(device, canvas, options);
     } catch (error) {
-      device.gpu.destroy();
+      giveBack(device);
       throw error;
     }
   }
 
   constructor(
-    /** @type {Device} */ device,
+    /** @type {import("./device.js").Device} */ device,
     /** @type {HTMLCanvasElement} */ canvas,
     /** @type {import("./player.js").PlayerOptions} */ options,
   ) {
@@ -62,7 +63,7 @@ export class Renderer {
     /** @type {Promise<unknown> | null} */
     this.sorting = null; // once the first picture is there
     this.ready = false; // to draw at once
-    this.destroyed = false;
+    this.closed = new AbortController();
     /** @type {Slot[]} */
     this.slots = [];
     /** @type {SplatFrame | null} */
@@ -241,16 +242,23 @@ export class Renderer {
     }
   }
 
-  /** Bytes of buffers that the device holds. */
+  get destroyed() {
+    return this.closed.signal.aborted;
+  }
+
+  /** Bytes of the device's buffers that hold these avatars. */
   get bytes() {
-    return this.device.bytes;
+    return [this.shared, ...this.slots.map(({ memory }) => memory)].reduce((sum, { bytes }) => sum + bytes, 0);
   }
 
   destroy() {
-    this.destroyed = true;
+    this.closed.abort();
+    for (const slot of this.slots) slot.memory.free();
     this.rearrange([]);
+    this.scene.free();
+    this.timing.free();
     this.context.unconfigure();
-    this.device.gpu.destroy();
+    giveBack(this.device);
   }
 }
 

@@ -16,7 +16,8 @@ export class Scene {
   constructor(/** @type {import("./device.js").Device} */ device, /** @type {number[]} */ background) {
     this.device = device;
     this.background = background; // premultiplied sRGB and alpha
-    this.splats = new Pipeline(device, SplatVert, SplatFrag, { color: COLOR, depth: DEPTH, blend: true });
+    const over = () => new Pipeline(device, SplatVert, SplatFrag, { color: COLOR, depth: DEPTH, blend: true });
+    this.splats = device.once("splats", over);
     /** @type {GPUTexture | null} */
     this.depth = null;
   }
@@ -68,6 +69,10 @@ export class Scene {
       this.depth = this.device.gpu.createTexture({ size: [width, height], format: DEPTH, usage });
     }
     return this.depth;
+  }
+
+  free() {
+    this.depth?.destroy();
   }
 }
 

@@ -43,6 +43,10 @@ export class Timing {
     };
   }
 
+  free() {
+    for (const one of [this.queries, this.resolved, this.read]) one?.destroy();
+  }
+
   take(/** @type {BigInt64Array} */ times) {
     STAGES.forEach((stage, i) => {
       const newest = Number(times[2 * i + 1] - times[2 * i]) / 1e6;

@@ -21,11 +21,20 @@ let uploading; // called with each avatar that a device takes up, before it has 
 class FakeRenderer {
   slots = [];
   drawn = [];
-  destroyed = false;
+  closed = new AbortController();
   ready = true;
   bytes = 0;
   projecting = Promise.resolve();
-  device = { gpu: { lost: new Promise((lose) => (this.lose = lose)), queue: { onSubmittedWorkDone: async () => {} } } };
+  gpu = Object.assign(new EventTarget(), { queue: { onSubmittedWorkDone: async () => {} } });
+  device = { gpu: this.gpu, since: performance.now(), lost: new Promise((lose) => (this.lose = lose)) };
+
+  get destroyed() {
+    return this.closed.signal.aborted;
+  }
+
+  refuse(message) {
+    this.gpu.dispatchEvent(Object.assign(new Event("uncapturederror"), { error: { message } }));
+  }
 
   async add(one) {
     await uploading(one);
@@ -52,7 +61,8 @@ class FakeRenderer {
   }
 
   destroy() {
-    this.destroyed = true;
+    for (const slot of this.slots.splice(0)) slot.memory.free();
+    this.closed.abort();
   }
 }
 
@@ -186,7 +196,7 @@ test("nothing is told of a player that was disposed of", async () => {
   await engine.put(avatar, null, true);
   uploading = async () => (engine.dispose(), Promise.reject(new Error("gone")));
   await engine.recover(LONG);
-  devices[0].device.gpu.onuncapturederror({ error: { message: "destroyed" } });
+  devices[0].refuse("destroyed");
   assert.deepEqual([devices[1].destroyed, told], [true, []]);
 });
 
@@ -209,4 +219,12 @@ test("before its first picture an avatar is not outside of training", async () =
   const entry = await engine.put(avatar, null, true);
   entry.slot.frame = new Proxy({}, { get: () => undefined });
   assert.equal(entry.handle.outsideTraining, 0);
+});
+
+test("what the device refuses is told, until the player is disposed of", async () => {
+  const { engine, told } = await begun();
+  devices[0].refuse("too large");
+  engine.dispose();
+  devices[0].refuse("gone");
+  assert.deepEqual(told, ["The graphics device refused: too large"]);
 });

@@ -95,7 +95,7 @@ async function opened() {
     fail: (error) => told.failed.push(error),
     ended: () => (told.ended += 1),
   };
-  const headset = await Headset.open({ gpu }, asks);
+  const headset = await Headset.open({ gpu, free() {} }, asks);
   return { headset, gpu, told, session: xr.session };
 }
 
