@@ -25,6 +25,15 @@ if (found) [found.src, found.clip, found.speed, found.controls] = ["hero.muaavat
 export const made: MuaAvatar = document.createElement("mua-avatar");
 export const shown = (element: MuaAvatar): number => element.avatars.length;
 """
+IN_REACT = """
+import { useRef } from "react";
+import type { MuaAvatar } from "@mua/player/react";
+export const Hero = ({ clip }: { clip?: string }) => {
+  const element = useRef<MuaAvatar>(null);
+  const said = ({ detail }: CustomEvent<Error>) => alert(detail.message);
+  return <mua-avatar ref={element} src="hero.muaavatar" clip={clip} speed={0.5} controls onerror={said} />;
+};
+"""
 WRONG = 'import { createPlayer } from "@mua/player";\nexport const wrong: Promise<number> = createPlayer(1);\n'
 
 
@@ -41,11 +50,21 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def compiled(folder: Path, program: str) -> str:
+def compiled(folder: Path, program: str, name: str = "use.ts") -> str:
     """What tsc says of a program beside the installed package."""
-    (folder / "use.ts").write_text(program)
+    (folder / name).write_text(program)
     line = ["node", str(pack_npm.TSC), "--noEmit", "--strict", "--skipLibCheck", "--module", "ES2022"]
-    line += ["--moduleResolution", "bundler", "--target", "ES2024", "--lib", "ES2024,DOM,DOM.Iterable", "use.ts"]
+    line += [
+        "--moduleResolution",
+        "bundler",
+        "--target",
+        "ES2024",
+        "--lib",
+        "ES2024,DOM,DOM.Iterable",
+        "--jsx",
+        "react-jsx",
+        name,
+    ]
     return subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False).stdout
 
 
@@ -72,6 +91,16 @@ def test_its_entries_are_there(installed: Path) -> None:
 
 def test_a_program_can_use_its_types(installed: Path) -> None:
     assert compiled(installed, USE) == ""
+
+
+def test_react_knows_the_element_and_its_properties(installed: Path) -> None:
+    types = installed / "node_modules" / "@types"
+    if not types.exists():
+        types.symlink_to(pack_npm.TESTS / "node_modules" / "@types")
+        (installed / "node_modules" / "csstype").symlink_to(pack_npm.TESTS / "node_modules" / "csstype")
+    assert compiled(installed, IN_REACT, "use.tsx") == ""
+    wrong = IN_REACT.replace("speed={0.5}", 'speed="fast"')
+    assert "Type 'string' is not assignable to type 'number" in compiled(installed, wrong, "use.tsx")
 
 
 def test_its_types_find_a_mistake(installed: Path) -> None:

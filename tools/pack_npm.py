@@ -22,6 +22,30 @@ declare global {
   }
 }
 """
+# The same for JSX of React 19.
+REACT = """import type { DetailedHTMLProps, HTMLAttributes } from "react";
+import type { MuaAvatar } from "./element.js";
+import type { PROPERTIES } from "./properties.js";
+
+export * from "./element.js";
+
+interface Listeners {
+  onload?: (event: CustomEvent) => void;
+  onerror?: (event: CustomEvent<Error>) => void;
+  onprogress?: (event: CustomEvent<{ totalProgress: number }>) => void;
+  onpicture?: (event: Event) => void;
+}
+
+declare module "react" {
+  namespace JSX {
+    interface IntrinsicElements {
+      "mua-avatar": DetailedHTMLProps<HTMLAttributes<MuaAvatar>, MuaAvatar> &
+        Partial<Pick<MuaAvatar, (typeof PROPERTIES)[number]>> &
+        Listeners;
+    }
+  }
+}
+"""
 ENTRIES = ("player.js", "element.js")  # what others import
 
 
@@ -46,6 +70,7 @@ def write_types(folder: Path) -> None:
     written.unlink()
     element = folder / "types" / "element.d.ts"
     element.write_text(element.read_text() + TAG)
+    (folder / "types" / "react.d.ts").write_text(REACT)
 
 
 def pack(output: Path) -> Path:

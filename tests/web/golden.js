@@ -32,7 +32,7 @@ globalThis.replay = async (stem, number) => {
   device.gpu.queue.submit([encoder.finish()]);
   const written = shaders[golden.entry].buffers.filter((slot) => !slot.read_only);
   const found = await Promise.all(written.map(async ({ name }) => [name, await download(given[name])]));
-  for (const buffer of Object.values(given)) device.free(buffer);
+  device.free(Object.values(given));
   return Object.fromEntries(found);
 };
 

@@ -110,7 +110,10 @@ BESIDE = """(async () => { const beside = document.createElement("mua-avatar");
   await new Promise((load) => beside.addEventListener("load", load));
   return beside;
 })()"""
-GROUPS = "[...first.player.renderer.device.binders].reduce((sum, { groups }) => sum + groups.length, 0)"
+# What the device remembers of avatars, and how many players it would tell of its loss.
+REMEMBERED = """(() => { const { binders, losing } = first.player.renderer.device;
+  return [[...binders].reduce((sum, { groups }) => sum + groups.length, 0), losing.size];
+})()"""
 
 
 @pytest.fixture
@@ -129,7 +132,8 @@ def test_a_second_element_uses_the_device_of_the_first_and_compiles_nothing(one_
     page = one_of_two
     before = page.evaluate("({ ...asked })")
     assert before["requestDevice"] == 1
-    page.evaluate(f"{BESIDE}.then((it) => (globalThis.second = it, second.player.renderer.compile())).then(() => 0)")
+    page.evaluate(f"{BESIDE}.then((it) => (globalThis.second = it, 0))")
+    assert page.evaluate("second.player.renderer.ready"), "its first picture waits for no compilation"
     assert page.evaluate("({ ...asked })") == before
     pixels = "(async (of) => [...new Uint8Array(await (await of.screenshot()).arrayBuffer())])"
     picture = page.evaluate(f"{pixels}(second)")
@@ -142,18 +146,18 @@ def test_a_second_element_uses_the_device_of_the_first_and_compiles_nothing(one_
 def test_elements_that_come_and_go_leave_nothing_on_the_device_of_those_that_stay(one_of_two: Page) -> None:
     page = one_of_two
     page.evaluate("first.screenshot().then(() => 0)")
-    before = page.evaluate(GROUPS)
+    before = page.evaluate(REMEMBERED)
     held = page.evaluate("first.player.bytes")
     for _ in range(3):
         page.evaluate(f"{BESIDE}.then(async (it) => (await it.screenshot(), it.remove())).then(() => 0)")
-    assert page.evaluate(f"[{GROUPS}, first.player.bytes]") == [before, held]
+    assert page.evaluate(f"[{REMEMBERED}, first.player.bytes]") == [before, held]
 
 
 def test_all_elements_come_back_after_their_device_is_lost(one_of_two: Page) -> None:
     page = one_of_two
     page.evaluate(f"{BESIDE}.then((it) => (globalThis.second = it, 0))")
     page.evaluate("new Promise((resolve) => setTimeout(resolve, 2100))")  # a device lost at once is given up
-    page.evaluate('(first.player.renderer.device.lost, lose("unknown"))')
+    page.evaluate('lose("unknown")')
     page.wait("[first, second].every(({ player }) => player.renderer && player.bytes > 0)")
     assert page.evaluate("[asked.requestDevice, first.player.renderer.device === second.player.renderer.device]") == [
         2,

@@ -121,18 +121,29 @@ def test_swipes_over_an_element_scroll_the_page_around_it_and_turn_the_figure(op
     assert abs(page.evaluate("fake.camera.elevation")) < 0.15
 
 
-def test_the_bar_leaves_a_small_element_to_the_figure(opened: Open) -> None:
+BAR = {"play", "scrub", "clips", "settings", "vr"}
+
+
+@pytest.mark.parametrize(("size", "bar"), [((240, 192), BAR), ((400, 300), BAR | {"whole"})], ids=["tiny", "small"])
+def test_the_bar_leaves_a_small_element_to_the_figure(opened: Open, size: tuple[int, int], bar: set[str]) -> None:
     page = opened(before="globalThis.fakeHeadset = 'willing'")
-    page.evaluate(f"({ELEMENT}.style.cssText = 'width: 240px; height: 192px', 0)")
-    page.wait(f"{part('canvas')}.clientWidth === 240")
+    page.evaluate(f"({ELEMENT}.style.cssText = 'width: {size[0]}px; height: {size[1]}px', 0)")
+    page.wait(f"{part('canvas')}.clientWidth === {size[0]}")
     page.evaluate(SETTLED)
-    assert page.evaluate(f"{part('.bar')}.offsetHeight") < 0.25 * 192
+    assert page.evaluate(f"{part('.bar')}.offsetHeight") < 0.25 * size[1]
     shown = page.evaluate(
         f"[...{part('.bar')}.children].filter((one) => one.checkVisibility())"
         ".map((one) => [one.className, one.getBoundingClientRect().right])"
     )
-    assert {name for name, _ in shown} == {"play", "scrub", "clips", "settings", "vr"}
-    assert max(right for _, right in shown) <= 240
+    assert {name for name, _ in shown} == bar
+    assert max(right for _, right in shown) <= size[0]
+
+
+def test_an_element_of_which_only_the_height_is_given_stays_in_its_place(opened: Open) -> None:
+    page = opened()
+    page.evaluate("(document.querySelector('main').style.width = '320px', 0)")
+    page.evaluate(f"({ELEMENT}.style.cssText = 'height: 300px; aspect-ratio: 4 / 3', 0)")
+    assert page.evaluate(f"[{ELEMENT}.offsetWidth, {ELEMENT}.offsetHeight]") == [320, 300]
 
 
 def test_a_page_with_the_policy_of_the_guide_plays_and_shows_its_poster(browser: Browser, serve: Serve) -> None:

@@ -110,3 +110,57 @@ def test_what_cannot_be_shown_is_said_and_the_picture_stays(opened: Open) -> Non
     assert page.evaluate(f"[fake.show.splats, told, {SENTENCE}]") == [True, [said], said]
     page.evaluate(f"{ELEMENT}.show = 'mesh'")
     assert page.evaluate("[fake.show.splats, fake.show.mesh]") == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("attribute", "value", "said"),
+    [
+        ("clip", "dnace", 'clip="dnace": hero has no such clip, only walk, wave.'),
+        ("speed", "fast", 'speed="fast": expected a number.'),
+    ],
+)
+def test_what_cannot_be_asked_for_is_said(opened: Open, attribute: str, value: str, said: str) -> None:
+    page = opened({"src": "hero.muaavatar", attribute: value})
+    page.wait(f"{SENTENCE} === {json.dumps(said)}")
+    assert page.evaluate("[fake.clip, fake.speed]") == ["walk", 1]
+    page.evaluate(f"{ELEMENT}.{attribute} = {json.dumps({'clip': 'wave', 'speed': '2'}[attribute])}")
+    page.evaluate(f"({ELEMENT}.setAttribute('{attribute}', '{value}'))")
+    page.wait(f"{SENTENCE} === {json.dumps(said)}")
+
+
+def test_a_clip_of_another_avatar_may_be_set_before_its_src(opened: Open) -> None:
+    listen = """addEventListener("DOMContentLoaded", () => { globalThis.told = [];
+      document.querySelector("mua-avatar").addEventListener("error", ({ detail }) => told.push(detail.message));
+    })"""
+    other = avatar("other", [{"name": "bow", "seconds": 1.0, "frames": 30}])
+    page = opened({"src": "hero.muaavatar"}, files={"other": other}, before=listen)
+    page.evaluate(f"(({ELEMENT}.clip = 'bow'), ({ELEMENT}.src = 'other.muaavatar'))")
+    page.wait("fake.avatars[0]?.name === 'other'")
+    page.evaluate(SETTLED)
+    assert page.evaluate("[fake.clip, told]") == ["bow", []]
+
+
+def test_an_element_tells_how_far_it_is_and_when_it_is_loaded(opened: Open) -> None:
+    listen = """addEventListener("DOMContentLoaded", () => { globalThis.told = [];
+      const element = document.querySelector("mua-avatar");
+      element.addEventListener("progress", ({ detail }) => told.push([detail.totalProgress, element.loaded]));
+      element.addEventListener("load", () => told.push(["load", element.loaded]));
+    })"""
+    page = opened(before=listen)
+    page.wait("told.length === 2")
+    assert page.evaluate("told") == [[0.5, False], ["load", True]]
+    page.evaluate(f"{ELEMENT}.src = 'absent.muaavatar'")
+    assert page.evaluate(f"{ELEMENT}.loaded") is False
+    page.wait(f"{SENTENCE}.includes('404')")
+    assert page.evaluate(f"{ELEMENT}.loaded") is False
+
+
+def test_the_poster_is_back_until_another_avatar_is_drawn(opened: Open) -> None:
+    page = opened({"src": "hero.muaavatar", "poster": "icon.svg"})
+    page.wait(f"{part('.poster')}.hidden")
+    page.evaluate(
+        f"(globalThis.fakeHold = new Promise((go) => (globalThis.go = go)), {ELEMENT}.src = 'hero.muaavatar?2', 0)"
+    )
+    page.wait(f"!{part('.poster')}.hidden")
+    page.evaluate("(go(), 0)")
+    page.wait(f"{part('.poster')}.hidden && {LOADED}")

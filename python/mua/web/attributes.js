@@ -13,9 +13,12 @@ const ASKED = {
   clip(player, value) {
     if (value && player.clips.some(({ name }) => name === value)) player.clip = value;
   },
-  speed: (player, value) => (player.speed = numberIn(value, 1)),
-  level: (player, value) => (player.level = levelNamed(value)),
-  budget: (player, value) => (player.budget = value === null ? null : numberIn(value, Infinity)),
+  speed: (player, value) => (player.speed = asked("speed", value, "a number", numberIn(value)) ?? 1),
+  level(player, value) {
+    const level = levelNamed(value);
+    player.level = asked("level", value, "auto, full or texels along a side", level === "auto" && value !== level ? null : level) ?? "auto";
+  },
+  budget: (player, value) => (player.budget = asked("budget", value, "a number of splats", numberIn(value))),
   stereo: (player, value) => (player.stereo = value !== null),
   follow: (player, value) => (player.follow = value !== null),
   show(player, value) {
@@ -28,6 +31,20 @@ const ASKED = {
   },
 };
 
+/** What an attribute was found to ask for; null where it is left out. @template T @param {string} name @param {string | null} value @param {string} expected @param {T | null} found @returns {T | null} */
+function asked(name, value, expected, found) {
+  if (value && found === null) throw new AvatarError(`${name}="${value}": expected ${expected}.`);
+  return found;
+}
+
+/** Why the clip that is asked for does not play, where all that was to be loaded is there; nothing where it does. */
+export function missingClip(/** @type {import("./element.js").MuaAvatar} */ { loaded, avatars, attributes }) {
+  const name = attributes.getNamedItem("clip")?.value;
+  const clips = avatars[0]?.clips.map((clip) => clip.name) ?? [];
+  if (!loaded || !name || clips.includes(name)) return null;
+  return new AvatarError(`clip="${name}": ${avatars[0].name} has no such clip, only ${clips.join(", ") || "its bind pose"}.`);
+}
+
 /** Those that a player can be asked for. */
 export const ASKABLE = Object.keys(ASKED);
 
@@ -38,12 +55,12 @@ export function adopt(/** @type {Player} */ player, /** @type {HTMLElement} */ e
 
 /** The number that an attribute holds. */
 export function numberOf(/** @type {HTMLElement} */ element, /** @type {string} */ name, /** @type {number} */ otherwise) {
-  return numberIn(element.getAttribute(name), otherwise);
+  return numberIn(element.getAttribute(name)) ?? otherwise;
 }
 
-function numberIn(/** @type {string | null} */ text, /** @type {number} */ otherwise) {
+function numberIn(/** @type {string | null} */ text) {
   const value = Number.parseFloat(text ?? "");
-  return Number.isFinite(value) ? value : otherwise;
+  return Number.isFinite(value) ? value : null;
 }
 
 /** What a player is asked for by a name in the panel or an attribute: by the distance, the finest, or texels along a side. @returns {import("./player.js").Level} */

@@ -81,9 +81,21 @@ export class Controls {
     });
   }
 
+  /** Show an image until an avatar is drawn; none without an address. */
+  setPoster(/** @type {string | null} */ address) {
+    this.poster.hidden = !address || this.avatar.avatars.length > 0;
+    if (address) this.poster.src = address;
+  }
+
   openPanel(/** @type {boolean} */ open) {
     this.panel.hidden = !open;
     this.settings.setAttribute("aria-expanded", String(open));
+  }
+
+  /** Open the panel at the times of each stage, or close them. */
+  toggleTimes() {
+    this.times.open = Boolean(this.panel.hidden) || !this.times.open;
+    this.openPanel(true);
   }
 
   /** Say how far loading is. */

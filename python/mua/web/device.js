@@ -37,14 +37,29 @@ export class Device {
     const { vendor, architecture, description } = adapter.info;
     this.name = description || [vendor, architecture].filter(Boolean).join(" ");
     this.gpu = gpu;
-    this.lost = gpu.lost;
     this.since = performance.now();
+    /** @type {string | null} */
+    this.lost = null; // why, once it is
+    /** @type {Set<(reason: string) => void>} */
+    this.losing = new Set(); // told of it
+    gpu.lost.then(({ reason }) => {
+      this.lost = reason;
+      for (const told of [...this.losing]) told(reason);
+    });
     this.timestamps = gpu.features.has("timestamp-query");
     this.uniforms = new Uniforms(gpu);
     /** @type {Map<unknown, unknown>} */
     this.known = new Map();
     /** @type {Set<{forget: (buffers: Set<GPUBuffer>) => void}>} */
     this.binders = new Set(); // that remember buffers which they bound
+  }
+
+  /** Be told when it is lost, until a signal. */
+  whenLost(/** @type {(reason: string) => void} */ told, /** @type {AbortSignal | undefined} */ until = undefined) {
+    const { lost } = this;
+    if (lost) return queueMicrotask(() => told(lost));
+    this.losing.add(told);
+    until?.addEventListener("abort", () => this.losing.delete(told));
   }
 
   /**

@@ -18,17 +18,18 @@
 //
 // Each is a property too; both may be set before, while and after an avatar loads, as play(), pause() and seek() may be called.
 // `outsideTraining` tells how far the pose last drawn is from those of training, 0 to 1.
-// Events: `load` when an avatar is shown, `error` with the error in `detail`, `picture` when the first one is drawn.
+// Events: `progress` with `detail.totalProgress` of 0 to 1, `load` when an avatar is shown, `error` with the error in `detail`,
+// `picture` when the first one is drawn.
 
 import { Asked } from "./asked.js";
-import { adopt, ASKABLE, FOLLOWED, levelNamed, namesOf, numberOf } from "./attributes.js";
+import { adopt, ASKABLE, FOLLOWED, levelNamed, missingClip, namesOf, numberOf } from "./attributes.js";
 import { Controls } from "./controls.js";
 import { acceptFiles } from "./drop.js";
 import { listen } from "./hands.js";
 import { pressed, SHOWN } from "./keys.js";
 import { Loading } from "./loading.js";
 import { look } from "./look.js";
-import { Loop } from "./loop.js";
+import { lessMotion, Loop } from "./loop.js";
 import { AvatarError, offersVR } from "./player.js";
 import { Attributed } from "./properties.js";
 import { Stage } from "./stage.js";
@@ -74,6 +75,7 @@ export class MuaAvatar extends Attributed {
       opened: (player) => this.#begin(player),
       show: (first) => this.#show(first),
       withdraw: () => this.#withdraw(),
+      emptied: () => this.#controls.setPoster(this.getAttribute("poster")),
     });
     const moved = () => this.#redraw();
     listen(this.#controls.canvas, { camera: () => this.player?.camera, framed: () => this.#stage.framed, moved });
@@ -98,11 +100,17 @@ export class MuaAvatar extends Attributed {
 
   attributeChangedCallback(/** @type {string} */ name, /** @type {string | null} */ before, /** @type {string | null} */ value) {
     if (before === value) return;
-    if (name === "poster") this.#setPoster(value);
+    if (name === "poster") this.#controls.setPoster(value);
     else if (name === "src") this.isConnected && void this.reload();
     else if (name === "azimuth" || name === "elevation") this.resetView();
     else this.#adopt(name);
+    if (name === "clip") queueMicrotask(() => this.#missClip()); // src may change with it
     this.#redraw();
+  }
+
+  /** Whether all that was to be loaded is shown. */
+  get loaded() {
+    return this.#loading.done && this.avatars.length > 0;
   }
 
   /** What draws; null until an avatar is asked for. @returns {Player | null} */
@@ -242,9 +250,7 @@ export class MuaAvatar extends Attributed {
 
   /** Open the panel at the times of each stage, or close them. */
   toggleTimes() {
-    const { times, panel } = this.#controls;
-    times.open = Boolean(panel.hidden) || !times.open;
-    this.#controls.openPanel(true);
+    this.#controls.toggleTimes();
   }
 
   /** Turn as a drag of so many pixels does. */
@@ -320,6 +326,7 @@ export class MuaAvatar extends Attributed {
     for (const name of first ? ASKABLE : ["clip"]) this.#adopt(name);
     if (first) this.#arrange();
     if (first && this.player) this.#asked.seek(this.player);
+    this.#missClip();
     this.#redraw();
     this.#fit(); // the bar has taken its place
     await this.#loop.draw();
@@ -341,9 +348,15 @@ export class MuaAvatar extends Attributed {
     }
   }
 
+  /** Say so where the clip that is asked for is not there. */
+  #missClip() {
+    const missing = missingClip(this);
+    if (missing) this.#loading.fail(missing);
+  }
+
   /** After a part of an avatar was shown whose rest is damaged or did not come. */
   async #withdraw() {
-    this.#setPoster(this.getAttribute("poster"));
+    this.#controls.setPoster(this.getAttribute("poster"));
     this.#arrange();
     await this.player?.draw();
   }
@@ -383,17 +396,6 @@ export class MuaAvatar extends Attributed {
     [canvas.width, canvas.height] = [width, height];
     this.#redraw();
   }
-
-  #setPoster(/** @type {string | null} */ address) {
-    const { poster } = this.#controls;
-    poster.hidden = !address || this.avatars.length > 0;
-    if (address) poster.src = address;
-  }
 }
 
-/** Whether the reader asked the system for less motion. */
-function lessMotion() {
-  return matchMedia("(prefers-reduced-motion: reduce)").matches;
-}
-
-globalThis.customElements?.define("mua-avatar", MuaAvatar);
+if (!globalThis.customElements?.get("mua-avatar")) globalThis.customElements?.define("mua-avatar", MuaAvatar);

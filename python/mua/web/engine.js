@@ -62,16 +62,16 @@ export class Engine {
   /** A renderer whose device, where it is lost, is replaced. */
   async opened() {
     const renderer = await Renderer.open(this.canvas, this.options);
-    const { lost, since, gpu } = renderer.device;
-    lost.then(({ reason }) => {
-      if (reason === "destroyed" || this.disposed) return;
-      if (this.renderer === renderer) this.recover(performance.now() - since);
+    const { device, closed: { signal } } = renderer;
+    const lost = (/** @type {string} */ reason) => {
+      if (reason === "destroyed") return;
+      if (this.renderer === renderer) this.recover(performance.now() - device.since);
       else this.lost.add(renderer); // recovering with it finds that out
-    });
-    const { signal } = renderer.closed;
+    };
+    device.whenLost(lost, signal);
     const refused = (/** @type {GPUUncapturedErrorEvent} */ { error }) =>
       this.tell(new AvatarError(`The graphics device refused: ${error.message}`));
-    gpu.addEventListener("uncapturederror", refused, { signal });
+    device.gpu.addEventListener("uncapturederror", refused, { signal });
     return renderer;
   }
 
@@ -112,11 +112,11 @@ export class Engine {
   /** @returns {Promise<AvatarHandle>} */
   async load(
     /** @type {string | ArrayBuffer | File} */ source,
-    /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {}, onPart = () => {} } = {},
+    /** @type {import("./player.js").LoadOptions} */ { onProgress = () => {}, onPart = () => {}, signal } = {},
   ) {
     const progressive = new ProgressiveLoad(this, onPart);
     try {
-      const avatar = await load(source, onProgress, (part) => progressive.show(part));
+      const avatar = await load(source, onProgress, (part) => progressive.show(part), signal);
       onProgress(0.9, "Preparing the graphics device");
       const handle = await progressive.complete(avatar);
       onProgress(1, "Ready");

@@ -18,7 +18,9 @@ export async function load(
   /** @type {Source} */ source,
   /** @type {Progress} */ progress,
   /** @type {Preview} */ preview = () => {},
+  /** @type {AbortSignal | undefined} */ signal = undefined,
 ) {
+  signal?.throwIfAborted();
   const absolute = typeof source === "string" ? new URL(source, document.baseURI).href : source;
   const worker = startWorker();
   if (!worker) return loadHere(absolute, progress, preview);
@@ -34,6 +36,7 @@ export async function load(
         event.preventDefault();
         resolve(loadHere(absolute, progress, preview)); // a page that forbids workers
       };
+      signal?.addEventListener("abort", () => reject(signal.reason)); // the worker ends, and its download with it
       worker.postMessage(absolute);
     });
   } finally {

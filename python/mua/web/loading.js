@@ -10,6 +10,7 @@ import { AvatarError, createPlayer } from "./player.js";
  * @typedef {object} Asks what loading asks of the element
  * @property {(player: Player) => void} opened a player is there, and shows nothing yet
  * @property {(first: boolean) => Promise<void>} show draws what was loaded, of which the first part was or was not shown before
+ * @property {() => void} emptied nothing is shown any more
  * @property {() => Promise<void>} withdraw after a part was shown whose rest is damaged or did not come
  */
 
@@ -23,6 +24,8 @@ export class Loading {
   /** @type {Source[]} */
   #sources = [];
   #run = 0; // counts what src has been
+  #left = 0; // sources that are still to be shown
+  #stopping = new AbortController(); // of what is being loaded
 
   /** @param {MuaAvatar} avatar @param {import("./controls.js").Controls} controls @param {Asks} asks */
   constructor(avatar, controls, asks) {
@@ -34,6 +37,11 @@ export class Loading {
   /** Whether a player is there or being made. */
   get begun() {
     return Boolean(this.player ?? this.#opening);
+  }
+
+  /** Whether nothing is to be loaded any more. */
+  get done() {
+    return this.#left === 0;
   }
 
   /** Load what src names, anew. */
@@ -48,26 +56,32 @@ export class Loading {
   /** Show more avatars beside those that are there. */
   async add(/** @type {Source[]} */ sources) {
     const run = this.#run;
-    for (const source of sources) {
+    this.#left += sources.length;
+    for (const [i, source] of sources.entries()) {
       this.#sources.push(source);
       try {
-        await this.#load(source, run);
+        await this.#load(source, run, (share) => (i + share) / sources.length);
       } catch (error) {
         this.#sources = this.#sources.filter((each) => each !== source || typeof source === "string");
-        if (run === this.#run) this.fail(error);
-        return;
+        if (run !== this.#run) return;
+        this.#left -= sources.length - i;
+        return this.fail(error);
       }
       if (run !== this.#run) return; // another src since
     }
   }
 
-  async #load(/** @type {Source} */ source, /** @type {number} */ run) {
-    const { controls } = this;
+  /** @param {Source} source @param {number} run @param {(share: number) => number} ofAll */
+  async #load(source, run, ofAll) {
+    const { avatar, controls } = this;
+    const { signal } = this.#stopping;
     controls.load(0, "Starting the player");
     const player = await this.#open();
     if (run !== this.#run) return;
     const onProgress = (/** @type {number} */ share, /** @type {string} */ sentence) => {
-      if (run === this.#run) controls.load(share, sentence);
+      if (run !== this.#run) return;
+      controls.load(share, sentence);
+      avatar.dispatchEvent(new CustomEvent("progress", { detail: { totalProgress: ofAll(share) } }));
     };
     const address = typeof source === "string" ? new URL(source, document.baseURI).href : source;
     let begun = false; // with a part of it
@@ -78,12 +92,13 @@ export class Loading {
       await this.asks.show(first);
     };
     try {
-      const handle = await player.load(address, { onProgress, onPart: (part) => void onPart(part).catch(() => {}) });
+      const handle = await player.load(address, { signal, onProgress, onPart: (part) => void onPart(part).catch(() => {}) });
       if (run !== this.#run) return handle.remove();
+      this.#left -= 1;
       await this.asks.show(!begun);
       controls.hush({ wrong: false });
       controls.update();
-      this.avatar.dispatchEvent(new CustomEvent("load", { detail: handle }));
+      avatar.dispatchEvent(new CustomEvent("load", { detail: handle }));
     } catch (error) {
       if (begun && run === this.#run) await this.asks.withdraw();
       throw error;
@@ -110,7 +125,10 @@ export class Loading {
   dispose() {
     this.#run += 1;
     const opening = this.#opening;
-    [this.#opening, this.player, this.#sources] = [null, null, []];
+    this.#stopping.abort();
+    this.#stopping = new AbortController();
+    [this.#opening, this.player, this.#sources, this.#left] = [null, null, [], 0];
+    this.asks.emptied();
     if (opening) this.#closed = opening.then((player) => player.dispose(), () => {}); // why it did not open has been said
   }
 

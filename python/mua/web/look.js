@@ -24,16 +24,17 @@ const RULES = `
   color-scheme: light dark;
   position: relative;
   display: block;
+  box-sizing: border-box;
   overflow: hidden;
+  width: 100%; /* also where a page gives it a height */
   min-height: 12rem;
   aspect-ratio: 4 / 3;
   background: var(--back);
   color: var(--front);
   font: 0.9375rem/1.4 system-ui, sans-serif;
-  container: avatar / inline-size;
 }
 :host([hidden]), [hidden] { display: none !important; }
-.frame { position: absolute; inset: 0; --bar: 0px; }
+.frame { position: absolute; inset: 0; container: avatar / size; --bar: 0px; }
 canvas, .poster { position: absolute; inset: 0; width: 100%; height: calc(100% - var(--bar)); }
 canvas { touch-action: pan-y; cursor: grab; } /* a swipe up or down scrolls the page */
 :host(:fullscreen) canvas { touch-action: none; }
@@ -147,12 +148,15 @@ progress { width: 14rem; max-width: 100%; accent-color: var(--accent); }
   button, select, .panel label, .panel li { min-height: 2.75rem; }
   button { min-width: 2.75rem; padding: 0 0.5rem; display: inline-grid; place-items: center; }
 }
-@container avatar (max-width: 24rem) {
+@container avatar (max-width: 24rem) or ((max-width: 40rem) and (max-height: 22rem)) {
   .bar { flex-wrap: nowrap; padding-block: 0.2rem; }
-  .bar :is(.clock, .speed, .picture, .whole) { display: none; }
+  .bar :is(.clock, .speed, .picture) { display: none; }
   .bar .scrub { flex: 1 1 3rem; min-width: 2rem; }
   .bar .clips { flex: 0 1 6rem; min-width: 0; }
   .bar button { min-width: 2.25rem; }
   .bar :is(button, select, .scrub) { min-height: 2.25rem; height: 2.25rem; }
+}
+@container avatar (max-width: 24rem) {
+  .bar .whole { display: none; }
 }
 `;

@@ -5,6 +5,11 @@ const LONGEST_STEP = 0.25; // seconds that count for one picture, so that nothin
 /** @typedef {import("./element.js").MuaAvatar} MuaAvatar */
 /** @typedef {{tick: (seconds: number) => void, drawn: () => void, fail: (error: unknown) => void}} Asks tick: with every picture while it plays; drawn: after one while it does not */
 
+/** Whether the reader asked the system for less motion. */
+export function lessMotion() {
+  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
 export class Loop {
   #drawing = false;
   #changed = false;

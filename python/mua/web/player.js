@@ -54,6 +54,7 @@ export { AvatarError, offersVR };
  * @property {(fraction: number, sentence: string) => void} [onProgress] fraction of 0 to 1
  * @property {(avatar: AvatarHandle) => void} [onPart] a part of the avatar can be drawn, or more of it: of a packed file, its
  *   mesh and then coarser splats. The handle is the one that `load` gives at last; where loading fails, the part goes again
+ * @property {AbortSignal} [signal] ends the download; `load` rejects with its reason
  */
 
 /**

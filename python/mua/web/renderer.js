@@ -9,7 +9,7 @@ import { Memory } from "./device.js";
 import { readOrder, writeOrder } from "./early.js";
 import { AvatarError } from "./error.js";
 import { AvatarFrame } from "./frame.js";
-import { kernelsOf } from "./kernel.js";
+import { areCompiled, kernelsOf } from "./kernel.js";
 import { Levels, levelsOf } from "./levels.js";
 import { Overlays } from "./overlays.js";
 import { readPicture } from "./picture.js";
@@ -81,6 +81,7 @@ export class Renderer {
       this.remove(slot);
       throw error;
     }
+    if (areCompiled(this.device, SORTING)) await this.compile(); // for another player of the page
     return slot;
   }
 

@@ -19,14 +19,13 @@ for (const [name, value, wanted] of [
   ["clip", null, "walk"],
   ["speed", "0.5", 0.5],
   ["speed", "0", 0],
-  ["speed", "fast", 1],
   ["speed", null, 1],
   ["level", "full", "full"],
   ["level", "384", 384],
   ["level", "auto", "auto"],
   ["level", null, "auto"],
   ["budget", "20000", 20000],
-  ["budget", "many", Infinity],
+  ["level", "", "auto"],
   ["budget", null, null],
   ["stereo", "", true],
   ["stereo", null, false],
@@ -38,6 +37,17 @@ for (const [name, value, wanted] of [
   test(`${name}=${value === null ? "(none)" : `"${value}"`} asks for ${JSON.stringify(wanted)}`, () => {
     assert.ok(ASKABLE.includes(name));
     assert.deepEqual(asked(name, value)[name], wanted);
+  });
+
+for (const [name, value, said] of [
+  ["speed", "fast", 'speed="fast": expected a number.'],
+  ["level", "high", 'level="high": expected auto, full or texels along a side.'],
+  ["budget", "many", 'budget="many": expected a number of splats.'],
+])
+  test(`${name}="${value}" is said to be wrong, and changes nothing`, () => {
+    const player = { ...fakePlayer(), [name]: 3 };
+    assert.throws(() => asked(name, value, player), { name: "AvatarError", message: said });
+    assert.equal(player[name], 3);
   });
 
 test("without show, what is shown stays", () => {

@@ -26,7 +26,11 @@ class FakeRenderer {
   bytes = 0;
   projecting = Promise.resolve();
   gpu = Object.assign(new EventTarget(), { queue: { onSubmittedWorkDone: async () => {} } });
-  device = { gpu: this.gpu, since: performance.now(), lost: new Promise((lose) => (this.lose = lose)) };
+  device = {
+    gpu: this.gpu,
+    since: performance.now(),
+    whenLost: (told, until) => (this.lose = ({ reason }) => until.aborted || told(reason)),
+  };
 
   get destroyed() {
     return this.closed.signal.aborted;

@@ -89,3 +89,15 @@ test("what is there of a file is shown while its rest does not come", async () =
   assert.equal((await loaded).clips.length, 1);
   assert.equal(parts.length, 1);
 });
+
+test("a download that is stopped ends its worker, and says why", async () => {
+  const worker = working();
+  const stopping = new AbortController();
+  const stopped = () => loadApart("http://host/a.muaavatar", () => {}, () => {}, stopping.signal);
+  const loads = stopped();
+  stopping.abort(new Error("another one"));
+  await assert.rejects(loads, { message: "another one" });
+  assert.deepEqual([worker.source, worker.ended], ["http://host/a.muaavatar", 1]);
+  await assert.rejects(stopped(), { message: "another one" });
+  assert.equal(worker.ended, 1, "none is begun afterwards");
+});

@@ -23,8 +23,9 @@ class FakePlayer {
   disposed = false;
   loaded = [];
 
-  async load(source, { onProgress, onPart }) {
+  async load(source, { onProgress, onPart, signal }) {
     this.loaded.push(source);
+    this.signal = signal;
     const handle = { splats: 5, remove: () => (this.avatars = this.avatars.filter((each) => each !== handle)) };
     const show = () => this.avatars.includes(handle) || this.avatars.push(handle);
     const part = (splats = 5) => (show(), onPart({ ...handle, splats }));
@@ -52,10 +53,11 @@ function begun(attributes = {}) {
   const done = [];
   const say = (name) => (...given) => void done.push([name, ...given]);
   const element = new FakeElement(attributes);
-  for (const name of ["load", "error"]) element.addEventListener(name, ({ detail }) => done.push([name, detail.message ?? "handle"]));
+  for (const name of ["load", "error", "progress"])
+    element.addEventListener(name, ({ detail }) => done.push([name, detail.message ?? detail.totalProgress ?? "handle"]));
   const controls = Object.fromEntries(["load", "hush", "update", "say"].map((name) => [name, say(`controls.${name}`)]));
   Object.assign(controls, { canvas: {}, poster: { hidden: true } });
-  const asks = { opened: say("opened"), show: async (first) => say("show")(first), withdraw: async () => say("withdraw")() };
+  const asks = { opened: say("opened"), show: async (first) => say("show")(first), withdraw: async () => say("withdraw")(), emptied: say("emptied") };
   const loading = new Loading(element, controls, asks);
   Object.defineProperty(element, "player", { get: () => loading.player });
   const named = (name) => done.filter(([each]) => each === name).map(([, ...given]) => given);
@@ -267,4 +269,37 @@ test("a canvas has one player at a time, and those that nobody waits for are not
   await Promise.all(loads);
   assert.deepEqual(players.map(({ disposed, loaded }) => [disposed, loaded]), [[true, []], [false, ["http://host/folder/c"]]]);
   assert.deepEqual([named("load").length, named("error")], [1, []]);
+});
+
+test("how far all of src is, and whether it is there, is told", async () => {
+  const { loading, named } = begun({ src: "a b" });
+  answers.a = ({ onProgress }) => onProgress(0.5, "half");
+  answers.b = ({ onProgress }) => (assert.equal(loading.done, false), onProgress(1, "Ready"));
+  const loads = loading.reload();
+  assert.equal(loading.done, false);
+  await loads;
+  assert.deepEqual([named("progress"), loading.done], [[[0.25], [1]], true]);
+});
+
+test("what failed is no longer waited for, nor what should have followed it", async () => {
+  const { loading } = begun({ src: "a b" });
+  answers.a = () => Promise.reject(new AvatarError("damaged"));
+  await loading.reload();
+  assert.deepEqual([players[0].loaded.length, loading.done], [1, true]);
+});
+
+test("a download that nobody waits for any more ends", async () => {
+  const { loading, element } = begun({ src: "a" });
+  let go;
+  answers.a = () => new Promise((done) => (go = done));
+  const loads = loading.reload();
+  await settled();
+  const { signal } = players[0];
+  assert.equal(signal.aborted, false);
+  element.attributes.src = "b";
+  const others = loading.reload();
+  assert.equal(signal.aborted, true);
+  go();
+  await Promise.all([loads, others]);
+  assert.deepEqual([players[1].signal.aborted, loading.done], [false, true]);
 });

@@ -1,4 +1,4 @@
-// Which players of a page share a device, and when it is opened, closed and lost; the devices are stand-ins.
+// Which players of a page share a device, when it is opened, closed and lost, and who is told; the devices are stand-ins.
 
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
@@ -6,7 +6,6 @@ import { Device } from "../../../python/mua/web/device.js";
 import { giveBack, takeDevice } from "../../../python/mua/web/shared.js";
 
 const LATER = 60_000; // milliseconds
-const settled = () => new Promise((done) => setImmediate(done));
 
 let devices; // that were opened
 mock.timers.enable({ apis: ["setTimeout"] });
@@ -14,12 +13,12 @@ mock.timers.enable({ apis: ["setTimeout"] });
 class FakeDevice {
   destroyed = 0;
   gpu = { destroy: () => (this.destroyed += 1) };
-  lost = new Promise((lose) => (this.lose = lose));
+  lose = () => this.told?.();
+  whenLost = (told) => (this.told = told);
 }
 
-beforeEach(async () => {
+beforeEach(() => {
   for (const one of devices ?? []) one.lose();
-  await settled();
   devices = [];
   Device.open = async () => devices[devices.push(new FakeDevice()) - 1];
 });
@@ -58,7 +57,6 @@ test("after a loss all players have one other device, and may give back the one 
   const first = await takeDevice();
   await takeDevice();
   first.lose({ reason: "unknown" });
-  await settled();
   const [again, too] = await Promise.all([takeDevice(), takeDevice()]);
   assert.deepEqual([devices.length, again === too, again === first], [2, true, false]);
   giveBack(first);
@@ -73,4 +71,21 @@ test("a device that does not open is asked for again", async () => {
   for (const asked of [takeDevice(), takeDevice()]) await assert.rejects(asked, { message: "no adapter" });
   Device.open = open;
   assert.equal(await takeDevice(), devices[0]);
+});
+
+test("those that still want to know are told once that a device is lost, and those that ask later at once", async () => {
+  globalThis.GPUBufferUsage = {};
+  let lose;
+  const lost = new Promise((done) => (lose = done));
+  const device = new Device({ info: {} }, { lost, features: new Set(), createBuffer: () => ({}) });
+  const [told, gone] = [[], new AbortController()];
+  device.whenLost((reason) => told.push(["stays", reason]));
+  device.whenLost((reason) => told.push(["gone", reason]), gone.signal);
+  gone.abort();
+  assert.equal(device.losing.size, 1);
+  lose({ reason: "unknown" });
+  await lost;
+  device.whenLost((reason) => told.push(["later", reason]));
+  await null;
+  assert.deepEqual(told, [["stays", "unknown"], ["later", "unknown"]]);
 });
