@@ -80,6 +80,8 @@ def test_attributes_say_how_finely_avatars_are_shown_and_whether_the_camera_foll
     page.evaluate(f"{ELEMENT}.setAttribute('level', 'full'), {ELEMENT}.removeAttribute('budget')")
     assert page.evaluate("[fake.level, fake.budget]") == ["full", None]
     page.evaluate(f"{ELEMENT}.setAttribute('level', 'none')")
+    assert page.evaluate("fake.level") == "full", "what is no level is said, and changes nothing"
+    page.evaluate(f"{ELEMENT}.removeAttribute('level')")
     assert page.evaluate("fake.level") == "auto"
 
 

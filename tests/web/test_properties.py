@@ -141,12 +141,13 @@ def test_a_clip_of_another_avatar_may_be_set_before_its_src(opened: Open) -> Non
 
 
 def test_an_element_tells_how_far_it_is_and_when_it_is_loaded(opened: Open) -> None:
-    listen = """addEventListener("DOMContentLoaded", () => { globalThis.told = [];
+    page = opened()
+    page.evaluate("""(() => { globalThis.told = [];
       const element = document.querySelector("mua-avatar");
       element.addEventListener("progress", ({ detail }) => told.push([detail.totalProgress, element.loaded]));
       element.addEventListener("load", () => told.push(["load", element.loaded]));
-    })"""
-    page = opened(before=listen)
+      element.src = "hero.muaavatar?again";
+    })()""")
     page.wait("told.length === 2")
     assert page.evaluate("told") == [[0.5, False], ["load", True]]
     page.evaluate(f"{ELEMENT}.src = 'absent.muaavatar'")

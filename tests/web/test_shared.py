@@ -236,7 +236,9 @@ def test_the_poster_is_framed_as_the_figure(
     more = {"show": "splats", "azimuth": str(front(*begins))}
     page = opened(player_site([avatar_file], Shown("Hero", more=more)))
     page.evaluate(f"({ELEMENT}.style.cssText = '{style}', {ELEMENT}.controls = false, {ELEMENT}.seek(0), 0)")
-    page.wait(f"{SHADOW}.querySelector('canvas').clientHeight === {size[1]}")
+    page.wait(
+        f"(({{ width, height }}) => width === {size[0]} && height === {size[1]})({SHADOW}.querySelector('canvas'))"
+    )
     page.evaluate(f"{ELEMENT}.resetView()")
     url = page.evaluate(f"""{ELEMENT}.screenshot().then((blob) => new Promise((done) => {{
       const reader = Object.assign(new FileReader(), {{ onload: () => done(reader.result) }});
