@@ -38,8 +38,9 @@ function asked(name, value, expected, found) {
 }
 
 /** Why the clip that is asked for does not play, where all that was to be loaded is there; nothing where it does. */
-export function missingClip(/** @type {import("./element.js").MuaAvatar} */ { loaded, avatars, attributes }) {
-  const name = attributes.getNamedItem("clip")?.value;
+export function missingClip(/** @type {import("./element.js").MuaAvatar} */ element) {
+  const { loaded, avatars } = element;
+  const name = element.getAttribute("clip");
   const clips = avatars[0]?.clips.map((clip) => clip.name) ?? [];
   if (!loaded || !name || clips.includes(name)) return null;
   return new AvatarError(`clip="${name}": ${avatars[0].name} has no such clip, only ${clips.join(", ") || "its bind pose"}.`);

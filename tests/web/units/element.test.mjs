@@ -35,7 +35,7 @@ class FakePlayer {
 
   async load(source) {
     if (refused.some((end) => String(source).endsWith(end))) throw new Error("no such file");
-    const handle = { name: String(source).split("/").at(-1), notes: "", splats: 5, bounds: box(1), levels: [64, 32, 16], outsideTraining: 0.25 };
+    const handle = { name: String(source).split("/").at(-1), notes: "", clips: CLIPS, splats: 5, bounds: box(1), levels: [64, 32, 16], outsideTraining: 0.25 };
     handle.remove = () => (this.avatars = this.avatars.filter((each) => each !== handle));
     this.avatars.push(handle);
     this.clips = CLIPS;

@@ -16,6 +16,7 @@ export function fakeGpu({ most = 1 << 28 } = {}) {
     return one;
   };
   return Object.assign(gpu, {
+    lost: new Promise(() => {}),
     features: new Set(),
     limits: { maxBufferSize: most, maxStorageBufferBindingSize: most },
     queue: { submit() {}, onSubmittedWorkDone: async () => {}, writeBuffer: (...given) => gpu.written.push(given) },

@@ -27,7 +27,8 @@ class FakeRenderer {
   ready = true;
   done = [];
   projecting = Promise.resolve();
-  device = { gpu: { lost: new Promise(() => {}), queue: { onSubmittedWorkDone: async () => {} } } };
+  closed = new AbortController();
+  device = { whenLost() {}, gpu: Object.assign(new EventTarget(), { queue: { onSubmittedWorkDone: async () => {} } }) };
 
   async add() {
     return { memory: { free() {} }, frame: { outside: 0 } };

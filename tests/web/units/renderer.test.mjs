@@ -93,7 +93,7 @@ function opened() {
   const gpu = fakeGpu();
   const device = new Device({ info: {} }, gpu);
   const context = { configure() {}, unconfigure() {} };
-  return { gpu, device, renderer: new Renderer(device, { width: 4, height: 4, getContext: () => context }, {}) };
+  return { gpu, renderer: new Renderer(device, { width: 4, height: 4, getContext: () => context }, {}) };
 }
 
 test("avatars that came and went leave no memory behind", async () => {
@@ -135,12 +135,12 @@ test("an avatar whose kernels do not compile is given back", async () => {
 });
 
 test("a saved picture leaves no memory behind, also where it cannot be read", async () => {
-  const { gpu, device, renderer } = opened();
+  const { gpu, renderer } = opened();
   const held = gpu.held.size;
   renderer.submit = () => assert.equal(gpu.held.size, held + 1);
   gpu.createBuffer = () => {
     throw new Error("no room");
   };
   await assert.rejects(renderer.picture([], LOOK), /no room/);
-  assert.deepEqual([gpu.held.size, device.bytes], [held, 0]);
+  assert.deepEqual([gpu.held.size, renderer.bytes], [held, 0]);
 });
