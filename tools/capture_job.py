@@ -19,14 +19,14 @@ from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.export.character_glb import motion_glb
-from mua.files import replacing, write_bytes
+from mua.files.write import replacing, write_bytes
 from mua.motion.load import unique_names
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.character import Character
 from mua.rig.surface_points import interpolate, spread_points
-from mua.teachers.simulated_surface import SimulatedSurface
-from mua.teachers.surface import SkinnedSurface
+from mua.teachers.simulated.simulated_surface import SimulatedSurface
+from mua.teachers.simulated.surface import SkinnedSurface
 
 ATLAS = 2048  # texels of the rendered image of all materials along a side
 IMAGES, MESHES = "images/{clip}/{camera}/{frame:06d}.png", "meshes/{clip}/{frame:06d}.ply"

@@ -19,8 +19,8 @@ from pathlib import Path
 import csharp_source
 from csharp_source import Declared, Member
 from engine_use import CSharp, Used, engine_symbols, named, used_members
+from package_compiler import ENGINES
 from rich.console import Console
-from test_compiles import ENGINES
 
 YEARS = range(2017, 2024)  # of engines before 6000
 SYMBOLS = ("UNITY_EDITOR", "ENABLE_VR", "ENABLE_VR_MODULE", "ENABLE_XR_MODULE", "ENABLE_INPUT_SYSTEM")

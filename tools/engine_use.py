@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests" / "unity")]
 
 from csharp import CSharp  # noqa: E402 with the tests' modules on the path
-from test_compiles import PLAYERS, STAND_INS, Compiler, assemblies, engine_symbols  # noqa: E402
+from package_compiler import PLAYERS, STAND_INS, Compiler, assemblies, engine_symbols  # noqa: E402
 
 LISTER = Path(__file__).with_name("used_members.cs")
 

@@ -8,7 +8,7 @@ import numpy as np
 
 import mua
 from mua import rotation
-from mua.decode import pose_splats
+from mua.avatar.decode import pose_splats
 from mua.pose.skeleton import Skeleton
 from mua.rig.character import Mesh
 from mua.rig.rig import Rig

@@ -18,23 +18,23 @@ from typing import TYPE_CHECKING, Any
 
 from mua.errors import InputError
 from mua.extras import naming_extras
+from mua.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from mua.asset.avatar import Avatar
     from mua.asset.read import read as load
     from mua.asset.write import write as save
+    from mua.avatar.camera import Camera
+    from mua.avatar.decode import Splats
+    from mua.avatar.rendering import render
     from mua.baking.bake import bake
-    from mua.baking.teach import teach
-    from mua.baking.train import train
-    from mua.camera import Camera
+    from mua.baking.distil import train
+    from mua.baking.train_teacher import teach
     from mua.characters.load import load_rig
-    from mua.decode import Splats
     from mua.pose.clip import Clip
     from mua.pose.skeleton import Pose
     from mua.recording import Recording, TeacherWriter
-    from mua.rendering import render
 
-__version__ = "0.1.0"
 __all__ = [
     "Avatar",
     "Camera",
@@ -55,19 +55,19 @@ __all__ = [
 
 _PLACES = {
     "Avatar": "mua.asset.avatar:Avatar",
-    "Camera": "mua.camera:Camera",
+    "Camera": "mua.avatar.camera:Camera",
     "Clip": "mua.pose.clip:Clip",
     "Pose": "mua.pose.skeleton:Pose",
     "Recording": "mua.recording:Recording",
-    "Splats": "mua.decode:Splats",
+    "Splats": "mua.avatar.decode:Splats",
     "TeacherWriter": "mua.recording:TeacherWriter",
     "bake": "mua.baking.bake:bake",
     "load": "mua.asset.read:read",
     "load_rig": "mua.characters.load:load_rig",
-    "render": "mua.rendering:render",
+    "render": "mua.avatar.rendering:render",
     "save": "mua.asset.write:write",
-    "teach": "mua.baking.teach:teach",
-    "train": "mua.baking.train:train",
+    "teach": "mua.baking.train_teacher:teach",
+    "train": "mua.baking.distil:train",
 }
 
 

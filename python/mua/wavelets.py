@@ -16,8 +16,8 @@ import torch
 from torch import Tensor
 
 from mua.arrays import Array
+from mua.channels import DYNAMIC_LEVELS, STATIC_LEVELS
 from mua.errors import InputError
-from mua.levels import DYNAMIC_LEVELS, STATIC_LEVELS
 
 
 class Bands(NamedTuple):

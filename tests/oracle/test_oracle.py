@@ -20,18 +20,18 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
+from mua.avatar.camera import orbit
+from mua.avatar.coarser import coarsest
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import frame_bounds, visible
 from mua.baking.order import Order
 from mua.baking.pipeline import bake
-from mua.camera import orbit
-from mua.coarser import coarsest
-from mua.decode import decode_clip_frame
 from mua.kernels.splat_draw import splat_colors
 from mua.pose.components import read_components
 from mua.pose.descriptor import describe_window
 from mua.pose.encoding import PoseEncoding
 from mua.pose.resample import resample
 from mua.pose.skeleton import Skeleton
-from mua.rendering import frame_bounds, visible
 from mua.rig.bounds import playback_bounds
 from mua.student.settings import preset
 

@@ -8,8 +8,8 @@ from projected import texels_of
 
 from mua import rotation
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
-from mua.decode import Splats, box_of
+from mua.avatar.camera import NEAR, Camera
+from mua.avatar.decode import Splats, box_of
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors, splat_draw

@@ -13,8 +13,8 @@ from packed_splats import colors_of, opacities_of, unpacked
 from splat_rounding import exact_keys
 
 from mua.arrays import Array
-from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
-from mua.decode import Splats, decode_clip_frame
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
+from mua.avatar.decode import Splats, decode_clip_frame
 from mua.gpu import Device, open_device
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LAST_KEY

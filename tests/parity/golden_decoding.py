@@ -1,17 +1,17 @@
 """Golden cases of the kernels from pose to channels, with inputs and bounds of the kernels' own tests."""
 
 import numpy as np
+from dwt_cases import taps, upsampling_bound
 from golden_case import UNTOUCHED, UNWRITTEN, Case, Expected, halves
-from splat_rounding import ULP
-from stored import STORAGES, groups, store
-from test_dq_skinning import (
+from layer_cases import layer, shader_bound
+from skinned_cases import (
     BLEND_BOUND,
     JOINTS,
     random_influences,
     random_joints,
 )
-from test_inverse_dwt import taps, upsampling_bound
-from test_mlp_matmul import layer, shader_bound
+from splat_rounding import ULP
+from stored import STORAGES, groups, store
 
 from mua.asset.tensors import Storage
 from mua.kernels.blend_subbands import blend_detail, blend_ll

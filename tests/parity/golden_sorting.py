@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 from golden_case import UNWRITTEN, Case, Expected, halves
 from projected import Scene, held
+from projected_cases import BOX, random_texels, stereo
 from projection_errors import color_bound
 from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, ULP, exact_keys, eye_bounds
 from stored import groups
-from test_splat_project import BOX, random_texels, stereo
 
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
-from mua.decode import Splats
+from mua.avatar.camera import NEAR, Camera
+from mua.avatar.decode import Splats
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import HIDDEN, eye_ellipses, pack_colors, pack_keys, splat_project

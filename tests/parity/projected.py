@@ -9,8 +9,8 @@ from packed_splats import unpacked
 
 from mua import rotation
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
-from mua.decode import Splats, box_of
+from mua.avatar.camera import NEAR, Camera
+from mua.avatar.decode import Splats, box_of
 from mua.gpu import Device
 from mua.kernels.dq_skinning import blend_texels, skin_splats
 from mua.kernels.inverse_dwt import pack_channels, unpack_channels

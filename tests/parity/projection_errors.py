@@ -6,7 +6,7 @@ from projected import Projected, Scene
 from splat_rounding import CENTRE_BOUND, OPACITY_BOUND, TEXEL_BOUND, ULP, Bounds, exact_keys, eye_bounds
 
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
+from mua.avatar.camera import NEAR, Camera
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import COLOR_SCALES, HIDDEN, eye_ellipses

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
-from mua.decode import Splats
+from mua.avatar.camera import NEAR, Camera
+from mua.avatar.decode import Splats
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_project import (
     AWAY,

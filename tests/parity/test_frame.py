@@ -5,6 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from frame_bounds import (
+    COLOR_BOUND,
+    FEWER_THAN,
+    FRAME_ORDER,
+    LEAST_PSNR,
+    OPACITY_BOUND,
+    POSITION_BOUND,
+    part,
+    psnr,
+)
 from frame_errors import PosedFrame
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_random_poses
 
@@ -12,9 +22,10 @@ from mua.arrays import Array
 from mua.asset import write
 from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.bench.random_avatar import random_avatar
-from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
-from mua.decode import decode_clip_frame
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.kernels.splat_project import AWAY, facing
@@ -25,29 +36,11 @@ from mua.player.offscreen import Offscreen
 from mua.player.picture import Reference
 from mua.player.splats import SplatFrame
 from mua.player.toggles import Toggles
-from mua.rendering import frame_bounds, render_premultiplied
 from mua.student.settings import preset
 
-# Metres. Offsets from the mesh, up to 125 mm here, are half floats, rounded either way along three axes; float32 leaves
-# a hundredth of it on a person two metres from the origin.
-POSITION_BOUND = 0.125 * 2**-10 * float(np.sqrt(3))
 MOST_KEYS = 4.0  # of 65535, by which splats so far from where they belong may be sorted wrongly
-COLOR_BOUND = 1 / 512  # half a step of 8 bits
-OPACITY_BOUND = 2**-10  # a half float below 1, and a logit in one, both of which a GPU may round towards zero
-LEAST_PSNR = 50.0  # dB of an image against the CPU rasteriser's
 FAR = 0.9  # outside of training
-FEWER_THAN = 31  # dispatches in a frame
 OPACITY = 10  # channel
-
-BRANCH_ORDER = [*["MlpMatmul"] * 3, "BlendLl", *["BlendDetail", "InverseDwt"] * 2, "UpsampleTexels"]
-PARTS_ORDER = [BRANCH_ORDER, [*["MlpMatmul"] * 3, "MlpMatmulTransposed", *BRANCH_ORDER]]  # of a decode
-FRAME_ORDER = [
-    *PARTS_ORDER[0],
-    *PARTS_ORDER[1],
-    "BlendVertices",
-    "SplatProject",
-    *["CountDigits", "ScanDigits", "ScatterDigits"] * 2,
-]
 
 
 class Listed:
@@ -70,27 +63,6 @@ def saved(avatar: Avatar, directory: Path, *, storage: Storage = "f32") -> Path:
 
 def opened(device: Device, avatar: Avatar, directory: Path, *, storage: Storage = "f32") -> SplatFrame[AvatarFrame]:
     return SplatFrame(device, [AvatarFrame(device, AvatarBuffers(device, saved(avatar, directory, storage=storage)))])
-
-
-def psnr(image: Array, exact: Array) -> float:
-    """Decibels below 1; two images that are both empty agree by 120."""
-    return float(-10 * np.log10(np.maximum(np.mean((image - exact) ** 2), 1e-12)))
-
-
-def part(avatar: Avatar, kept: slice) -> Avatar:
-    """The avatar with only some of its texels."""
-    texels = avatar.rig.texels
-    fewer = replace(
-        texels,
-        texels=texels.texels[kept],
-        triangles=texels.triangles[kept],
-        barycentrics=texels.barycentrics[kept],
-    )
-    branches = {
-        name: replace(branch, static=branch.static[:, kept])
-        for name, branch in (("geometry", avatar.geometry), ("appearance", avatar.appearance))
-    }
-    return replace(avatar, rig=replace(avatar.rig, texels=fewer), **branches)
 
 
 def faint(avatar: Avatar) -> Avatar:

@@ -1,25 +1,16 @@
 """The golden files hold every entry point, are what the reference makes, and are met by the shaders on a device."""
 
 import gen_golden
-import numpy as np
 import pytest
 from check_shaders import kernel_shaders
-from golden import DTYPES, Golden, read_golden, replay, values_of, words_of
+from golden import Golden, read_golden, replay, words_of
+from golden_bounds import assert_met
 
-from mua.arrays import Array
 from mua.gpu import Device
 
 ALL = read_golden()
 MOST_BYTES = 1 << 20  # all files together, so that a headset can hold them
 WRONG = 0x42F6E979  # 123.456 as a float, 3.48 and -2802 as halves
-
-
-def assert_met(golden: Golden, found: dict[str, Array]) -> None:
-    for described in golden.case["expected"]:
-        expected = golden.array(described, described["count"], DTYPES[described["kind"]]).astype(float)
-        values = values_of(described, found[described["buffer"]])
-        excess = np.abs(values - expected) - described["absolute"] - described["relative"] * np.abs(expected)
-        assert np.all(excess <= 0), f"{described['buffer']}: {excess.max():.3g} beyond the bound"
 
 
 @pytest.mark.parametrize("golden", ALL, ids=str)

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 import pywt
 from dispatch import run
+from dwt_cases import taps, upsampling_bound
 from packed_splats import assert_halves
 from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
-from mua.coarser import MOST_TAPS
+from mua.avatar.coarser import MOST_TAPS
 from mua.gpu import Device
 from mua.kernels.inverse_dwt import (
     BATCH,
@@ -32,11 +33,6 @@ PAPER_LEVELS = [(11, 48), (12, 96)]  # channels, side of the coarse level
 LONGEST = 40  # taps that a file may hold
 TILE = 16
 UNTOUCHED = np.float16(-7)
-
-
-def taps(name: str) -> tuple[Array, Array]:
-    wavelet = pywt.Wavelet(name)
-    return np.array(wavelet.rec_lo), np.array(wavelet.rec_hi)
 
 
 def rounding_bound(name: str, dtype: type, largest: float) -> float:
@@ -255,12 +251,6 @@ def test_shader_takes_any_even_number_of_taps(device: Device, length: int) -> No
 def test_shader_equals_the_reference_at_the_papers_sizes(device: Device, channels: int, side: int) -> None:
     bands = np.random.default_rng(side).normal(size=(4, channels, side, side)).astype(np.float32)
     check_level(device, bands, *taps("bior4.4"))
-
-
-def upsampling_bound(filtered: Array, largest: float, offset: float) -> float:
-    """What the shader may lose: taps rounded once, and a sum of `reach` products rounded along each of two axes."""
-    gain = np.abs(filtered).sum(axis=0).max() ** 2
-    return float(np.finfo(np.float32).eps * (2 * (len(filtered) + 2) * gain * largest + offset))
 
 
 def check_texels(

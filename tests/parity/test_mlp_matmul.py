@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from dispatch import run
+from layer_cases import layer, shader_bound
 from stored import STORAGES, Stored, groups, store
 
 from mua.arrays import Array
@@ -17,15 +18,6 @@ PAPER_LAYERS = [(384, 384), (4576, 384), (128, 384)]
 PAPER_MESH = (3 * 5514, 128)
 ROWS_PER_GROUP, COLUMNS_PER_GROUP = 8, 64
 BEYOND = 5  # elements after y that the shader must leave alone, and after x that it must not read
-
-
-def layer(outputs: int, inputs: int, dtype: type) -> tuple[Array, Array, Array]:
-    rng = np.random.default_rng(outputs + inputs)
-    return (
-        rng.normal(size=(outputs, inputs)).astype(dtype),
-        rng.normal(size=outputs).astype(dtype),
-        rng.normal(size=inputs).astype(dtype),
-    )
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -74,11 +66,6 @@ def shader_layer(
     )["y"]
     np.testing.assert_array_equal(y[outputs:], -7)
     return np.asarray(y[:outputs])
-
-
-def shader_bound(weight: Array, bias: Array, x: Array) -> Array:
-    """Two roundings for the element and its product, one for each term of the sum."""
-    return np.asarray((len(x) + 3) * np.finfo(np.float32).eps * (np.abs(weight) @ np.abs(x) + np.abs(bias)))
 
 
 @pytest.mark.parametrize("storage", STORAGES)

@@ -11,39 +11,22 @@ from functools import cache
 import numpy as np
 import pytest
 import wgpu
+from drawn_scenes import places_in_quad, random_scene
 from drawn_splats import draw_frame, random_frame, reference_frame, sort_frame, stereo
 from packed_splats import unpacked
-from scipy.linalg import sqrtm
 from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
-from mua.camera import NEAR, Camera, orbit
-from mua.decode import Splats, decode_clip_frame
+from mua.avatar.camera import NEAR, Camera, orbit
+from mua.avatar.decode import Splats, decode_clip_frame
+from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.gpu import Device
 from mua.kernels import splat_draw as kernel
 from mua.kernels.splat_draw import WEIGHT, pixel_share, splat_draw
 from mua.kernels.splat_project import COLOR_STEPS, OPACITY_STEPS, PIXEL_VARIANCE, REACH, pack_splats
 from mua.player.draw import IMAGE_FORMAT, SortedSplats, SplatRenderer, draw_image, read_image
-from mua.rendering import frame_bounds, render_premultiplied
 
 SCREENS = [(1, 1), (1, 7), (13, 5), (31, 29)]
-
-
-def random_scene(count: int, screen: tuple[int, int]) -> tuple[Array, Array, Array, Array]:
-    """Ellipses in and around the screen, colours, opacities and a back-to-front order."""
-    rng = np.random.default_rng(count)
-    angle = rng.uniform(-np.pi, np.pi, count)
-    deviations = -np.sort(-np.exp(rng.uniform(-2, 2, (count, 2))), axis=1)
-    middle = rng.uniform(-0.3, 1.3, (count, 2)) * screen
-    ellipses = np.concatenate([middle, np.cos(angle)[:, None], np.sin(angle)[:, None], deviations], axis=1)
-    return ellipses, rng.random((count, 3)), rng.uniform(0.01, 1, count), rng.permutation(count)
-
-
-def places_in_quad(ellipse: Array, offsets: Array) -> Array:
-    """(u, v) [..., 2] of offsets [..., 2] from the middle, by scipy's square root of the covariance."""
-    axes = np.array([[ellipse[2], -ellipse[3]], [ellipse[3], ellipse[2]]])
-    root = sqrtm(axes @ np.diag(ellipse[4:] ** 2 + PIXEL_VARIANCE) @ axes.T)
-    return np.asarray(offsets @ np.linalg.inv(REACH * root))
 
 
 def painted(ellipses: Array, colors: Array, opacities: Array, order: Array, screen: tuple[int, int]) -> Array:

@@ -9,14 +9,14 @@ from drawn_splats import draw_frame
 
 from mua import rotation
 from mua.arrays import Array
-from mua.camera import Camera, orbit
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.decode import Splats, box_of
+from mua.avatar.rendering import render_premultiplied
 from mua.channels import SH_C0
-from mua.decode import Splats, box_of
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import eye_ellipses
-from mua.rendering import render_premultiplied
 
 RADIUS, COUNT = 0.4, 3000
 # Of baked avatars: the deviation of a splat in distances of its neighbours, and the opacity.

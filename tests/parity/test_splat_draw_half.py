@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from test_splat_draw import places_in_quad, random_scene
+from drawn_scenes import places_in_quad, random_scene
 
 from mua.arrays import Array
 from mua.kernels.splat_draw import WEIGHT

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from packed_splats import LARGEST_HALF, colors_of
 from projected import FACES, GROUP, UNWRITTEN, Scene, Texels, held, on_steps, project_on, texels_of
+from projected_cases import BOX, SCREEN, random_texels, stereo
 from projection_errors import assert_as_the_reference, covariance_of
 from splat_rounding import CENTRE_BOUND, ULP
-from test_dq_skinning import random_joints
 
 from mua import rotation
 from mua.arrays import Array
-from mua.camera import NEAR, Camera, orbit
-from mua.decode import Splats
+from mua.avatar.camera import NEAR, Camera, orbit
+from mua.avatar.decode import Splats
 from mua.gpu import Device
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
@@ -29,8 +29,6 @@ from mua.kernels.splat_project import (
 
 GPU_COUNTS = [0, 1, GROUP - 1, GROUP, GROUP + 1, 4099, 300_007]
 
-SCREEN = (97, 61)
-BOX = np.array([[-1.0, -1, -1], [1, 1, 1]])
 COUNTS = [0, 1, 7, 503]
 
 
@@ -183,39 +181,6 @@ def test_the_box_holds_all_that_shows() -> None:
     extent = half_extents(ellipses[0])
     marginal = np.sqrt(np.diagonal(covariance_of(ellipses[0]), axis1=1, axis2=2))
     assert np.all(extent >= REACH * marginal)
-
-
-def random_texels(count: int, *, scales: tuple[float, float] = (-5.2, -3.2), logit: float = 7) -> Texels:
-    """On FACES, posed up to 1.9 m from the origin; some without a rotation, some on an edge, some too faint to see."""
-    rng = np.random.default_rng(count)
-    barycentrics = rng.dirichlet([1, 1, 1], count).reshape(count, 3)
-    barycentrics[::5, :2], barycentrics[::5, 2] = 0.5, 0
-    texture = rng.normal(size=(count, 23))
-    texture[:, 0:3] *= 0.05
-    texture[::8, 3:7] = 0
-    texture[:, 7:10] = rng.uniform(*scales, (count, 3))
-    texture[:, 10] = rng.uniform(-logit, logit, count)
-    return Texels(
-        (random_joints(rng, 6) * rng.choice([-1.0, 1.0], (6, 1))).astype(np.float32),
-        rng.uniform(-0.5, 0.5, (6, 3)).astype(np.float32),
-        FACES,
-        rng.integers(0, len(FACES), count),
-        on_steps(barycentrics),
-        held(texture),
-        rng.random(count) < 0.7,
-    )
-
-
-def stereo(apart: float = 0.2) -> tuple[Camera, Camera]:
-    """Two eyes beside each other, canted, whose projections are skewed."""
-    eyes = []
-    for side in (-1, 1):
-        middle = orbit(BOX, screen=SCREEN, azimuth=0.7 + 0.1 * side, elevation=0.4)
-        view, projection = middle.view.copy(), middle.projection.copy()
-        view[:3, 3] -= [side * apart / 2, 0, side * apart / 4]
-        projection[0, 2] = -0.3 * side
-        eyes.append(Camera(view, projection, SCREEN))
-    return eyes[0], eyes[1]
 
 
 @pytest.mark.parametrize("eyes", [1, 2])

@@ -1,31 +1,32 @@
 """Several avatars in one sort, each somewhere else, against the reference in float64 over all their splats together."""
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from frame_bounds import COLOR_BOUND, LEAST_PSNR, OPACITY_BOUND, POSITION_BOUND, part, psnr
 from frame_errors import exact_colors
+from joined_splats import joined, moved
 from packed_splats import colors_of, opacities_of, unpacked
 from splat_rounding import exact_keys
 from synthetic_avatar import synthetic_avatar
-from test_frame import COLOR_BOUND, LEAST_PSNR, OPACITY_BOUND, POSITION_BOUND, part, psnr
 
 from mua import rotation
 from mua.arrays import Array
 from mua.asset import write
 from mua.asset.avatar import Avatar
-from mua.camera import EYE_DISTANCE, Camera, orbit, stereo
-from mua.decode import Splats, box_of, decode_clip_frame
+from mua.avatar.camera import EYE_DISTANCE, Camera, orbit, stereo
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.gpu import Device
 from mua.kernels.splat_project import LAST_KEY
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import SplatRenderer, draw_image, image_format
 from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
-from mua.rendering import frame_bounds, render_premultiplied
 from mua.rig.bounds import union
 
 INDICES = (0, 3, 6)  # of the frame that each avatar shows
@@ -39,25 +40,6 @@ def turned(angle: float, place: Sequence[float]) -> Array:
 
 
 PLACES = (turned(0, (0, 0, 0)), turned(1.2, (0.35, 0.1, -0.2)), turned(-2.5, (-0.4, 0, 0.3)))  # they interpenetrate
-
-
-def moved(frame: Splats, place: Array) -> Splats:
-    """A posed avatar elsewhere."""
-    return replace(
-        frame,
-        mesh=rotation.dual_transform(place, frame.mesh),
-        centres=rotation.dual_transform(place, frame.centres),
-        rotations=rotation.multiply(place[:4], frame.rotations),
-        texel_dq=rotation.dual_multiply(place, frame.texel_dq),
-        bounds=box_of(rotation.dual_transform(place, np.stack(np.meshgrid(*frame.bounds.T), axis=-1).reshape(-1, 3))),
-    )
-
-
-def joined(frames: Sequence[Splats]) -> Splats:
-    """Frames as one, the box around all of theirs."""
-    names = [field.name for field in fields(Splats) if field.name not in ("normals", "outside")]  # none is one-sided
-    whole = Splats(**{name: np.concatenate([getattr(frame, name) for frame in frames]) for name in names})
-    return replace(whole, bounds=box_of(whole.bounds))
 
 
 def three() -> list[Avatar]:

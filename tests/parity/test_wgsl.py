@@ -6,15 +6,15 @@ from pathlib import Path
 import pytest
 import translated
 from check_shaders import entry_points
+from frame_bounds import psnr
 from golden import Golden, read_golden, replay
+from golden_bounds import assert_met
 from synthetic_avatar import synthetic_avatar, with_surface
-from test_frame import psnr
-from test_golden import assert_met
 from wgsl_compile import Shader
 
 from mua.arrays import Array
 from mua.asset import write
-from mua.camera import Camera, orbit
+from mua.avatar.camera import Camera, orbit
 from mua.gpu import Device
 from mua.gpu.compile import spirv
 from mua.gpu.reflect import Constant, reflect

@@ -9,7 +9,7 @@ from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset import write
-from mua.model import Layer
+from mua.avatar.model import Layer
 
 STAND_INS = Path(__file__).parent / "stand_ins"
 KERNELS = ROOT / "ComputeShaders"

@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
+from recorded_frames import MIRROR, STAND_INS
 from synthetic_avatar import synthetic_avatar, with_surface
-from test_recorded_frame import MIRROR, STAND_INS
 
 from mua.arrays import Array
 from mua.asset import write
-from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
-from mua.decode import decode_clip_frame
+from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.decode import decode_clip_frame
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import FRAME_ORDER
+from frame_bounds import FRAME_ORDER
 
 SPLAT, SURFACE = "Hidden/MUA/Splat", "Hidden/MUA/Surface"
 WINDOW = (640, 480)  # pixels of the stand-ins' cameras

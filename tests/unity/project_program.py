@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from csharp import PROGRAMS, CSharp
-from test_compiles import Compiler, assemblies
+from package_compiler import Compiler, assemblies
 
 Told = dict[str, list[str]]
 PACKAGES = ("Unity.RenderPipelines.", "Unity.XR.Management", "Unity.XR.OpenXR")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from csharp import CSharp
+from package_compiler import PACKAGE
 from project_program import ProjectProgram, Told
-from test_compiles import PACKAGE
 
 from mua.deploy.build import AGAIN, ERRORS
 

@@ -15,7 +15,7 @@ from mua.asset import write
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import FRAME_ORDER
+from frame_bounds import FRAME_ORDER
 
 
 def test_a_component_without_an_avatar_has_nothing_and_takes_nothing(story: Story) -> None:

@@ -16,7 +16,7 @@ from mua.pose.resample import resample
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import FEWER_THAN, FRAME_ORDER
+from frame_bounds import FEWER_THAN, FRAME_ORDER
 
 
 def test_a_clip_plays(story: Story) -> None:

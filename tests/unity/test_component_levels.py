@@ -14,7 +14,7 @@ from mua.asset import write
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import FRAME_ORDER
+from frame_bounds import FRAME_ORDER
 
 
 def test_the_level_follows_the_camera_or_what_is_asked_for(story: Story) -> None:

@@ -14,7 +14,7 @@ from mua.asset import write
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import FRAME_ORDER
+from frame_bounds import FRAME_ORDER
 
 
 def test_a_joint_that_is_destroyed_returns_to_its_bind_pose(story: Story) -> None:

@@ -15,15 +15,16 @@ import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from engine_shaders import Engine
+from packed_splats import colors_of, opacities_of, unpacked
+from recorded_frames import MIRROR, STAND_INS
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import synthetic_avatar
-from test_recorded_frame import MIRROR, STAND_INS, colors_of, opacities_of, unpacked
 
 from mua.arrays import Array
 from mua.asset import write
-from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
-from mua.decode import decode_clip_frame
+from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.gpu.reflect import Constant
 from mua.kernels.splat_project import pack_colors

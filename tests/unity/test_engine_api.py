@@ -8,7 +8,7 @@ import csharp_source
 import pytest
 from check_engine_api import Found, Used, look_up
 from csharp import CSharp
-from test_compiles import OLDEST, STAND_INS, engine_symbols
+from package_compiler import OLDEST, STAND_INS, engine_symbols
 
 ENGINE = STAND_INS / "UnityEngine"
 

@@ -19,7 +19,7 @@ from mua.asset.write import encode
 
 sys.path.append(str(Path(__file__).parent))
 
-from test_compiles import Compiler, assemblies
+from package_compiler import Compiler, assemblies
 
 Told = dict[str, list[list[str]]]
 Story = Callable[..., Told]

@@ -7,7 +7,7 @@ from csharp import PROGRAMS, CSharp
 
 sys.path.append(str(Path(__file__).parent))
 
-from test_compiles import Compiler, assemblies
+from package_compiler import Compiler, assemblies
 
 
 def test_every_field_with_a_tooltip_is_kept_in_the_scene(csharp: CSharp) -> None:

@@ -16,7 +16,7 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.tensors import Storage
 from mua.asset.write import write
-from mua.model import Layer, Mlp
+from mua.avatar.model import Layer, Mlp
 from mua.pose.clip import Clip
 from mua.pose.components import read_components
 from mua.pose.descriptor import describe

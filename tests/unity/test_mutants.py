@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 from csharp import CSharp
+from format_program import program, values  # noqa: F401 program is a fixture
 from mutants import mutant, packed_mutant
 from readers import SECONDS, Reader, within
 from synthetic_avatar import synthetic_avatar, with_surface
-from test_format import program, values  # noqa: F401 program is a fixture
 from web.test_modules import lacking
 
 from mua.asset.flatbuffer import FormatError, parse
@@ -24,7 +24,7 @@ from mua.asset.packing import TIMES, tensors
 from mua.asset.read import MAX_FRAMES, decode_tree, parse_checked
 from mua.asset.tensors import Storage
 from mua.asset.write import encode
-from mua.decode import decode_clip_frame
+from mua.avatar.decode import decode_clip_frame
 from mua.pose.resample import resample
 
 STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32", "packed")

@@ -7,8 +7,8 @@ from pathlib import Path
 import gen_golden
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp
+from package_compiler import PACKAGE, Compiler
 from replay import replay
-from test_compiles import PACKAGE, Compiler
 
 from mua.gpu import Device
 

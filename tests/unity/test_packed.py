@@ -5,11 +5,11 @@ import subprocess
 from pathlib import Path
 
 import pack_upm
+import package_compiler
 import pytest
 import shader_programs
-import test_compiles
 from csharp import CSharp
-from test_compiles import Compiler, assemblies
+from package_compiler import Compiler, assemblies
 
 STAGES = {"vert": "vertex", "frag": "fragment"}
 
@@ -24,7 +24,7 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("platform", ["editor", "quest"])
 def test_every_assembly_compiles(csharp: CSharp, root: Path, platform: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(test_compiles, "PACKAGE", root / "Packages" / pack_upm.NAME)
+    monkeypatch.setattr(package_compiler, "PACKAGE", root / "Packages" / pack_upm.NAME)
     compiler = Compiler(csharp, platform, packages=True)
     found = [assembly for assembly in assemblies().values() if compiler.has(assembly)]
     assert len(found) > 2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pipelines import DECODED, MODES, SORTED, SPLAT, SURFACE, Recorded, cameras, label
 
-from mua.camera import NEAR
+from mua.avatar.camera import NEAR
 
 
 def test_a_frame_decodes_sorts_and_draws_for_a_camera(recorded: Recorded) -> None:

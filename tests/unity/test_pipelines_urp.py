@@ -12,14 +12,14 @@ from pipelines import EYE, MODES, MOVED, Mode, Recorded, built, cameras, label, 
 from replay import Drawn, replay
 from synthetic_avatar import synthetic_avatar
 
-from mua.decode import decode_clip_frame
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import render_premultiplied
 from mua.gpu import Device
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-from mua.rendering import render_premultiplied
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import LEAST_PSNR, psnr
+from frame_bounds import LEAST_PSNR, psnr
 
 
 @pytest.mark.parametrize(

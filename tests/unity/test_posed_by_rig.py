@@ -1,7 +1,7 @@
 """The sample PosedByRig: an avatar takes the place of a rigged character."""
 
 from csharp import PROGRAMS, CSharp
-from test_compiles import Compiler, assemblies
+from package_compiler import Compiler, assemblies
 
 
 def test_an_avatar_takes_a_rigs_place_and_gives_it_back(csharp: CSharp) -> None:

@@ -4,8 +4,8 @@ import re
 
 import pytest
 from csharp import CSharp
+from package_compiler import assemblies
 from project_program import ProjectProgram
-from test_compiles import assemblies
 
 XR = "com.unity.xr.management com.unity.xr.openxr"
 URP = "com.unity.render-pipelines.universal"

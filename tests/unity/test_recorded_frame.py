@@ -16,21 +16,17 @@ from mua.arrays import Array
 from mua.asset import read, write
 from mua.asset.avatar import Avatar
 from mua.asset.tensors import Storage
-from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
-from mua.decode import Splats, decode_clip_frame
+from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.decode import Splats, decode_clip_frame
+from mua.avatar.rendering import render_premultiplied
 from mua.gpu import Device
 from mua.kernels.splat_project import HIDDEN, LAST_KEY
 from mua.player.draw import SortedSplats, SplatRenderer, draw_image, image_format
-from mua.rendering import render_premultiplied
 from mua.rig.bounds import root_positions
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from frame_errors import exact_colors, exact_depths
-from golden_sorting import BLOCK
-from packed_splats import colors_of, opacities_of, unpacked
-from splat_rounding import exact_keys
-from test_frame import (
+from frame_bounds import (
     COLOR_BOUND,
     FEWER_THAN,
     FRAME_ORDER,
@@ -40,12 +36,15 @@ from test_frame import (
     part,
     psnr,
 )
-from test_splats import joined, moved
+from frame_errors import exact_colors, exact_depths
+from golden_sorting import BLOCK
+from joined_splats import joined, moved
+from packed_splats import colors_of, opacities_of, unpacked
+from recorded_frames import MIRROR, STAND_INS, place_of
+from splat_rounding import exact_keys
 
-MIRROR = np.diag([-1.0, 1, 1, 1])  # Unity's left-handed world to the kernels'
 POSES = 12
 VISIBLE_WORD = 4  # of `arguments`
-STAND_INS = Path(__file__).parent / "stand_ins"
 PLACES = (  # Unity's position, then rotation (x, y, z, w), then size
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0),
     (0.35, 0.1, -0.2, 0.1, 0.5, -0.1, 0.85446, 1.7),
@@ -82,13 +81,6 @@ def program(csharp: CSharp) -> Path:
         [*package, PROGRAMS / "shared", PROGRAMS / "scenario", PROGRAMS / "FrameProgram.cs"],
         references=[engine, file, motion],
     )
-
-
-def place_of(numbers: tuple[float, ...]) -> Array:
-    """The rigid dual quaternion of a Unity position and rotation, in the kernels' world; the size comes before it."""
-    x, y, z, *turn, _ = np.asarray(numbers, np.float32).astype(float)
-    i, j, k, w = turn
-    return rotation.dual_from_rigid(rotation.normalize(np.array([w, i, -j, -k])), np.array([-x, y, z]))
 
 
 def standing(splats: Splats, numbers: tuple[float, ...]) -> Splats:

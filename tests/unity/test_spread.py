@@ -17,7 +17,7 @@ from mua.gpu import Device
 
 sys.path.append(str(ROOT / "tests" / "parity"))
 
-from test_frame import FRAME_ORDER, PARTS_ORDER
+from frame_bounds import FRAME_ORDER, PARTS_ORDER
 
 FRAMES = 24  # displayed
 POSED = len(FRAME_ORDER) - sum(map(len, PARTS_ORDER))  # dispatches of a frame that decodes nothing

@@ -15,17 +15,17 @@ import wgpu
 from csharp import PROGRAMS, ROOT, RUNTIME, CSharp
 from drawn import DEPTH_FORMAT, Target, UnityDraw, rows
 from rasterised import STROKES_BOUND, SURFACE_BOUND, Picture, Stroke, Wall, compare
+from recorded_frames import MIRROR, STAND_INS, place_of
 from replay import Drawn, replay, value
 from shader_programs import VARIANTS, programs
 from synthetic_avatar import sparse_avatar, synthetic_avatar, with_surface
-from test_recorded_frame import MIRROR, STAND_INS, place_of
 
 from mua import rotation
 from mua.arrays import Array
 from mua.asset import read, write
 from mua.asset.avatar import Avatar
-from mua.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
-from mua.decode import decode_clip_frame
+from mua.avatar.camera import EYE_DISTANCE, NEAR, Camera, orbit, stereo
+from mua.avatar.decode import decode_clip_frame
 from mua.gpu import Device
 from mua.player.draw import image_format
 from mua.player.overlays import (

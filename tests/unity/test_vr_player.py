@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from csharp import PROGRAMS, ROOT, CSharp
+from package_compiler import Compiler, assemblies
 from synthetic_avatar import synthetic_avatar, with_surface
-from test_compiles import Compiler, assemblies
 from training import outside_of_training
 
 from mua.asset import write

@@ -14,8 +14,8 @@ from web.test_modules import SECONDS, pytestmark
 
 from mua import rotation
 from mua.asset import write
-from mua.camera import Camera, orbit, perspective, stereo
-from mua.coarser import coarsest
+from mua.avatar.camera import Camera, orbit, perspective, stereo
+from mua.avatar.coarser import coarsest
 from mua.gpu import Buffer, Commands, Device, open_device
 from mua.gpu.kernel import Kernel
 from mua.player.buffers import AvatarBuffers

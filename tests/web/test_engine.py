@@ -15,7 +15,7 @@ from web.browser import Browser, Page, Serve
 from mua.arrays import Array
 from mua.asset.read import read
 from mua.asset.write import encode
-from mua.camera import EYE_DISTANCE, Camera, stereo
+from mua.avatar.camera import EYE_DISTANCE, Camera, stereo
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.levels import FULL, Levels

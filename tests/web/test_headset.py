@@ -13,7 +13,7 @@ from web.test_engine import FULL, LEAST_PSNR, SHOWN, Open, load, opened, psnr, s
 
 from mua.arrays import Array
 from mua.asset.read import read
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.levels import Levels

@@ -20,11 +20,11 @@ from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.write import encode
-from mua.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
-from mua.coarser import REACH, at_level, coarsest, texel_length
+from mua.avatar.camera import EYE_DISTANCE, orbit, perspective, sees, stereo
+from mua.avatar.coarser import REACH, at_level, coarsest, texel_length
+from mua.avatar.level_choice import texel_pixels
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps
 from mua.kernels.splat_project import pack_texels
-from mua.level_choice import texel_pixels
 from mua.player.draw import view_projection
 from mua.player.overlays import ground_height, shadow_area
 from mua.player.surface import surface_mesh

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from mua.asset.write import write
+from mua.avatar.camera import Camera
 from mua.bench.counts import DISTANCES, eye_before, fragments
 from mua.bench.random_avatar import random_avatar
 from mua.bench.work import by_kernel
-from mua.camera import Camera
 from mua.gpu import Buffer, Device, open_device
 from mua.gpu.kernel import Kernel
 from mua.motion.facing import front_of

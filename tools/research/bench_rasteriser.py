@@ -15,9 +15,9 @@ import numpy as np
 import torch
 
 from mua.asset.read import read
-from mua.camera import Camera, orbit
-from mua.decode import Splats, decode_clip_frame
-from mua.rendering import frame_bounds, render_premultiplied
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.decode import Splats, decode_clip_frame
+from mua.avatar.rendering import frame_bounds, render_premultiplied
 from mua.splatting.gsplat_views import gsplat_views
 from mua.splatting.projection import Eye, TorchSplats, half_extents, project
 from mua.splatting.rasterise import rasterise

@@ -27,17 +27,17 @@ from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
-from mua.checkpoint import Checkpoints, run_key
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.recording import Recording
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
 from mua.student.model import Student
-from mua.student.optimise import Progress
 from mua.student.paper_recipe import set_means
 from mua.student.settings import Settings, preset
+from mua.student.stages import BRANCHES, Samples, train
 from mua.student.targets import channel_weights
-from mua.student.train import BRANCHES, Samples, train
+from mua.training.checkpoint import Checkpoints, run_key
+from mua.training.optimise import Progress
 from mua.wavelets import Bands
 
 CPU = torch.device("cpu")

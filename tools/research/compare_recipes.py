@@ -24,18 +24,18 @@ import torch
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
 from mua.channels import APPEARANCE, GEOMETRY
-from mua.checkpoint import Checkpoints
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.recording import Recording
 from mua.student.distil import describe_frames, prepare
 from mua.student.finetune import subband_loss
 from mua.student.model import Branch
-from mua.student.optimise import Progress, Run
 from mua.student.paper_recipe import fit_branch_from_noise, set_means
 from mua.student.settings import RECIPES, Settings, preset, with_recipe
 from mua.student.source import Source, hold
+from mua.student.stages import BRANCHES, fit_branch
 from mua.student.targets import channel_weights
-from mua.student.train import BRANCHES, fit_branch
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
 PAPER_STEPS = 1_000_000

@@ -7,7 +7,7 @@ import typer
 from torch import Tensor
 
 from mua.recording import Recording
-from mua.student.train import Samples
+from mua.student.stages import Samples
 
 
 def left_out(

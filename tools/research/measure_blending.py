@@ -13,9 +13,9 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.read import read
-from mua.camera import orbit
-from mua.decode import decode_clip_frame
-from mua.rendering import frame_bounds, render_premultiplied, to_bytes
+from mua.avatar.camera import orbit
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import frame_bounds, render_premultiplied, to_bytes
 
 FRAMES = 2  # of each clip
 SCREEN = (480, 720)

@@ -20,8 +20,7 @@ import typer
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
-from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
-from mua.levels import COARSE_TEXELS, STATIC_LEVELS
+from mua.channels import APPEARANCE, CHANNELS, COARSE_TEXELS, GEOMETRY, STATIC_LEVELS
 from mua.recording import Recording
 from mua.student.bases import BestCoefficients, factorize_channel
 from mua.student.factorize import Factors, separable_blendshapes

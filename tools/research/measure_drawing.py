@@ -20,21 +20,21 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
 from mua.asset.write import write
+from mua.avatar.camera import Camera
+from mua.avatar.decode import Splats, box_of, decode_clip_frame
+from mua.avatar.rendering import to_bytes
+from mua.baking.one_sided import shares_behind
 from mua.bench.counts import DISTANCES, eye_before, fragments
-from mua.camera import Camera
-from mua.decode import Splats, box_of, decode_clip_frame
 from mua.gpu import Device, open_device
 from mua.kernels.dq_skinning import covariances
 from mua.kernels.splat_draw import splat_colors
 from mua.kernels.splat_project import LEAST_OPACITY, eye_ellipses
-from mua.one_sided import shares_behind
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import EXACT_FORMAT, SplatRenderer, draw_image
 from mua.player.frame import AvatarFrame
 from mua.player.splats import SplatFrame
 from mua.pose.clip import Clip
 from mua.pose.resample import resample
-from mua.rendering import to_bytes
 from mua.splatting.tiles import TILE, assign
 
 SIDES = 8

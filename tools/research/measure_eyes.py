@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array
+from mua.avatar.camera import Camera, orbit, stereo
 from mua.bench.counts import FOCAL
-from mua.camera import Camera, orbit, stereo
 from mua.gpu import Device, open_device
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers

@@ -18,13 +18,13 @@ from PIL import Image
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
+from mua.avatar.camera import Camera, perspective
+from mua.avatar.coarser import texel_length
+from mua.avatar.decode import Splats
+from mua.avatar.level_choice import LARGEST_TEXEL
+from mua.avatar.rendering import frame_bounds, render_over, to_bytes
 from mua.bench.counts import FOCAL, SCREEN
-from mua.camera import Camera, perspective
-from mua.coarser import texel_length
-from mua.decode import Splats
-from mua.level_choice import LARGEST_TEXEL
 from mua.player.levels import AUTO, Levels
-from mua.rendering import frame_bounds, render_over, to_bytes
 
 BACKGROUND = (0.5, 0.5, 0.5)
 AZIMUTH = 0.3  # radians

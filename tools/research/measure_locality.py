@@ -18,8 +18,7 @@ from left_out import left_out
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
-from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
-from mua.levels import COARSE_TEXELS
+from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, COARSE_TEXELS, GEOMETRY
 from mua.recording import Recording
 from mua.student.distil import prepare
 from mua.student.local import Parts

@@ -16,12 +16,12 @@ import typer
 from torch import Tensor
 
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
-from mua.checkpoint import Checkpoints
 from mua.recording import Recording
 from mua.student.bases import worth_of
 from mua.student.factorize import blendshapes, separable_blendshapes
-from mua.student.optimise import Run
 from mua.student.sensitivity import STAGE, measure_sensitivities
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Run
 from mua.wavelets import Bands
 
 PARTS = 10_000  # of the error of the mean texture

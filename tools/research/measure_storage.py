@@ -14,9 +14,9 @@ from mua.asset.avatar import Avatar
 from mua.asset.read import decode_tree, parse_checked, read
 from mua.asset.tensors import Storage
 from mua.asset.write import encode
+from mua.avatar.decode import decode_clip_frame
 from mua.baking.evaluate import UNITS
 from mua.channels import ATTRIBUTES
-from mua.decode import decode_clip_frame
 
 FRAMES = 3  # of each clip
 STORAGES: tuple[Storage, ...] = ("f32", "f16", "i8", "packed")

@@ -22,7 +22,7 @@ from torch import Tensor, nn
 import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.arrays import Array
 from mua.baking.sources import load_character, load_clips
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.pose.descriptor import choose_joints, choose_translated, describe
 from mua.pose.encoding import PoseEncoding
 from mua.rig.build import build_rig
@@ -30,13 +30,13 @@ from mua.rig.character import Character, Mesh
 from mua.rig.moving import moving_joints
 from mua.rig.rig import Rig
 from mua.student.model import build_mlp, linear_layers
-from mua.student.optimise import Progress
-from mua.teachers.surface import SimulatedSurface
-from mua.teaching.mesh_losses import Cloud, Samples
-from mua.teaching.motion_deformation import GraphSizes, MotionDeformation
-from mua.teaching.template import DrivableTemplate
-from mua.teaching.template_training import Observed, TemplateSettings, fit_template, template_of, training_run
-from mua.teaching.track_losses import Tracks
+from mua.teachers.simulated.surface import SimulatedSurface
+from mua.teachers.trained.drivable_template import DrivableTemplate
+from mua.teachers.trained.mesh_losses import Cloud, Samples
+from mua.teachers.trained.motion_deformation import GraphSizes, MotionDeformation
+from mua.teachers.trained.template_training import Observed, TemplateSettings, fit_template, template_of, training_run
+from mua.teachers.trained.track_losses import Tracks
+from mua.training.optimise import Progress
 
 POINTS = 20_000  # of a true surface, in training
 MEASURED = 60_000  # where distances are measured

@@ -15,11 +15,11 @@ import torch
 from mua.capture import open_capture
 from mua.channels import ATTRIBUTES
 from mua.pose.clip import Clip
-from mua.teaching.folder import load_teacher
-from mua.teaching.from_capture import Filmed, read_filmed
-from mua.teaching.model import TeacherModel
-from mua.teaching.template import Undeformed
-from mua.teaching.tracked import tracks_of_clip
+from mua.teachers.trained.drivable_template import Undeformed
+from mua.teachers.trained.folder import load_teacher
+from mua.teachers.trained.from_capture import Filmed, read_filmed
+from mua.teachers.trained.model import TeacherModel
+from mua.teachers.trained.tracked import tracks_of_clip
 
 
 @torch.no_grad()

@@ -27,17 +27,17 @@ from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
+from mua.avatar.decode import Splats, decode_clip_frame, pose_splats
+from mua.avatar.rendering import render_premultiplied, to_bytes
 from mua.baking.evaluate import MESH, UNITS, Errors, Picture
 from mua.baking.portrait import portrait
 from mua.channels import ATTRIBUTES, SH_C0
-from mua.decode import Splats, decode_clip_frame, pose_splats
 from mua.fidelity.background import background_for, over
 from mua.fidelity.strips import caption, sheet
-from mua.files import write_bytes
+from mua.files.write import write_bytes
 from mua.recording import Recording, WholeFrame
-from mua.rendering import render_premultiplied, to_bytes
+from mua.rig.bones import figure_scale
 from mua.rig.texel_map import TexelMap
-from mua.teachers.bones import figure_scale
 
 DISTANCE, SIZE, COLOUR, EXPLAINED = 0.1, 10.0, 40.0, 0.0  # the bars: metres, texels, /255, share
 BLOCK, LEAST = 16, 32  # texels along a block of the texture; valid ones that make a mean colour

@@ -4,13 +4,13 @@ import numpy as np
 import torch
 
 from mua.arrays import Array
-from mua.camera import orbit
+from mua.avatar.camera import orbit
 from mua.channels import SH_C0
 from mua.rig.character import Mesh
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
-from mua.teaching.mesh_losses import Samples
-from mua.teaching.silhouette import SPREAD, facing
+from mua.teachers.trained.mesh_losses import Samples
+from mua.teachers.trained.silhouette import SPREAD, facing
 
 SIZE = (420, 760)  # pixels
 DISCS = 60_000

@@ -17,14 +17,14 @@ from mua.asset.avatar import Avatar
 from mua.atlas.detail import read_detail
 from mua.baking.sources import load_character
 from mua.errors import InputError
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.motion.load import load_motions
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording.encode import align_rotations
+from mua.recording.teacher import TeacherFrame
 from mua.rig.character import Character
-from mua.teachers.simulated import SimulatedTeacher
-from mua.teachers.teacher import TeacherFrame
+from mua.teachers.simulated.teacher import SimulatedTeacher
 
 LONGEST = 4.0  # seconds of a motion
 RUN_UP = 0.5  # seconds that are simulated and not measured: a teacher's cloth is at rest when a clip begins

@@ -4,7 +4,7 @@ using Mua.Format;
 namespace Mua
 {
     /// <summary>
-    /// The texels of one level of detail: those of the file, or 2 x 2 of the finer level as one, as python/mua/coarser.py
+    /// The texels of one level of detail: those of the file, or 2 x 2 of the finer level as one, as python/mua/avatar/coarser.py
     /// makes them. It may be made on any thread.
     /// </summary>
     internal sealed class DetailLevel

@@ -20,7 +20,7 @@ namespace Mua
 
     /// <summary>
     /// At which level of detail avatars are shown, by the size of their texels on the screen and by what all may cost:
-    /// python/mua/level_choice.py, which tests/golden/level_choice.json holds together with this.
+    /// python/mua/avatar/level_choice.py, which tests/golden/level_choice.json holds together with this.
     /// </summary>
     internal static class LevelChoice
     {

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from mua.arguments import describe, finite_array, float_type, unit_quaternions, whole_number
-from mua.coarser import at_level, coarsest
-from mua.decode import Splats, decode, decode_clip_frame
+from mua.avatar.coarser import at_level, coarsest
+from mua.avatar.decode import Splats, decode, decode_clip_frame
+from mua.avatar.model import Model
 from mua.errors import InputError
-from mua.model import Model
 from mua.pose.clip import Clip
 from mua.pose.resample import frames_at
 from mua.pose.skeleton import Pose

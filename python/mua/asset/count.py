@@ -3,7 +3,7 @@
 import numpy as np
 
 from mua.asset.avatar import Avatar
-from mua.model import Branch, Mlp
+from mua.avatar.model import Branch, Mlp
 
 
 def parameters(avatar: Avatar) -> dict[str, int]:

@@ -11,8 +11,8 @@ from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.packing import unpack
 from mua.asset.tensors import indices, reals
+from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.errors import InputError
-from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE, Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton

@@ -10,8 +10,8 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.avatar.model import Branch, Coarse, DetailBand, Layer
 from mua.channels import APPEARANCE, ATTRIBUTES, CHANNELS, GEOMETRY
-from mua.model import Branch, Coarse, DetailBand, Layer
 
 # Steps of the static offset, measured in docs/research/storage.md; that of an offset is of the figure's height.
 STEPS = {"offset": 2.0**-16, "rotation": 2.0**-8, "scale": 2.0**-7, "opacity": 2.0**-6, "SH": 2.0**-8}

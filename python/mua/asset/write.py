@@ -15,9 +15,9 @@ from mua.asset.read import decode_tree, parse_checked
 from mua.asset.rounding import rounded
 from mua.asset.storable import require_storable
 from mua.asset.tensors import Element, Storage, pack, pack_indices
+from mua.avatar.model import Branch, Coarse, DetailBand, Mlp
 from mua.errors import InputError
-from mua.files import write_bytes
-from mua.model import Branch, Coarse, DetailBand, Mlp
+from mua.files.write import write_bytes
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, PoseEncoding
 from mua.pose.skeleton import Skeleton

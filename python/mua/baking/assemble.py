@@ -6,20 +6,20 @@ from dataclasses import replace
 
 from PIL import Image
 
-from mua import __version__
 from mua.asset.avatar import Avatar
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import render_premultiplied, to_bytes
 from mua.baking.playback import typical_frame
 from mua.baking.portrait import portrait
-from mua.decode import decode_clip_frame
 from mua.fidelity.background import background_for, over
 from mua.pose.clip import Clip
 from mua.pose.encoding import PoseEncoding
-from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.bounds import playback_bounds
 from mua.rig.rig import Rig
 from mua.rig.triangulate import triangulate
 from mua.student.export import export_branches, export_coarse, export_components, export_wavelet
 from mua.student.model import Student
+from mua.version import __version__
 
 THUMBNAIL = 256  # pixels
 

@@ -7,14 +7,14 @@ from PIL import Image
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.avatar.decode import decode_clip_frame, pose_splats
+from mua.avatar.rendering import render_premultiplied, to_bytes
 from mua.baking.portrait import portrait
-from mua.decode import decode_clip_frame, pose_splats
 from mua.fidelity.background import background_for, over
 from mua.fidelity.compare import Fidelity
 from mua.fidelity.sheet import worst_strips
 from mua.fidelity.strips import GAIN, caption, difference, sheet
 from mua.recording import WholeFrame
-from mua.rendering import render_premultiplied, to_bytes
 
 CELL = (288, 416)  # width, height, pixels
 COLUMNS = 2  # frames beside each other

@@ -18,18 +18,18 @@ from mua.baking.assemble import assemble
 from mua.baking.contact_sheet import contact_sheet
 from mua.baking.evaluate import Errors, evaluate
 from mua.baking.listener import Listener
+from mua.baking.one_sided import with_one_sided
 from mua.baking.order import ALL, DeviceName
 from mua.errors import InputError
 from mua.fidelity.compare import Fidelity
-from mua.files import remove_leftovers, replacing, require_writable, write_bytes
-from mua.memory import release_memory
-from mua.one_sided import with_one_sided
+from mua.files.write import remove_leftovers, replacing, require_writable, write_bytes
 from mua.pose.clip import Clip
-from mua.processes import ALONE, Processes
 from mua.recording import Recording
 from mua.student.distil import distil
 from mua.student.model import Student
 from mua.student.settings import Settings, StageName
+from mua.training.memory import release_memory
+from mua.training.processes import ALONE, Processes
 
 SHEET_FRAMES = 6
 

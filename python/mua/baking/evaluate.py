@@ -15,14 +15,14 @@ import torch
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
+from mua.avatar.decode import decode_clip_frame
 from mua.channels import APPEARANCE, ATTRIBUTES, GEOMETRY, SH_C0
-from mua.decode import decode_clip_frame
 from mua.recording import Recording, WholeFrame
 from mua.student.bases import BestCoefficients
 from mua.student.model import Student
 from mua.texture.fill import Fill
-from mua.threads import in_order
-from mua.torch_threads import thread_share
+from mua.training.threads import in_order
+from mua.training.torch_threads import thread_share
 from mua.wavelets import dynamic_subbands
 
 TRAINING = "training"

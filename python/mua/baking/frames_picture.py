@@ -6,12 +6,12 @@ import numpy as np
 from PIL import Image
 
 from mua.arrays import Array
+from mua.avatar.decode import pose_splats
+from mua.avatar.rendering import render_premultiplied, to_bytes
 from mua.baking.portrait import portrait
-from mua.decode import pose_splats
 from mua.fidelity.background import background_for, over
 from mua.fidelity.strips import caption
 from mua.recording import WholeFrame
-from mua.rendering import render_premultiplied, to_bytes
 from mua.rig.rig import Rig
 
 CELL = (360, 520)  # width, height, pixels

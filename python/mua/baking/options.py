@@ -10,16 +10,16 @@ from mua.arguments import PathLike, as_names, as_path, as_paths, finite_array, o
 from mua.asset.tensors import Storage
 from mua.atlas.detail import UvMode, read_detail
 from mua.baking.order import DeviceName, MotionRange, Order
+from mua.channels import COARSE_TEXELS
 from mua.characters.figure_size import FigureSize
 from mua.errors import InputError
-from mua.files import missing_directory
-from mua.inputs import is_capture, require_file, require_motion, require_teacher
-from mua.levels import COARSE_TEXELS
+from mua.files.inputs import is_capture, require_file, require_motion, require_teacher
+from mua.files.write import missing_directory
 from mua.motion.formats import require_format
 from mua.motion.mapping import read_mapping
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings, preset, with_recipe
-from mua.teaching.settings import teacher_preset
+from mua.teachers.trained.settings import teacher_preset
 
 SUFFIX = ".muaavatar"
 LESSONS = {"tiny": "tiny", "preview": "small", "paper": "paper"}  # the teacher's preset by the student's

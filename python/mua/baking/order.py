@@ -10,7 +10,7 @@ from mua.atlas.detail import Detail, UvMode
 from mua.characters.figure_size import AS_FOUND, FigureSize
 from mua.motion.planted_feet import Feet
 from mua.student.settings import Settings
-from mua.teaching.settings import TeacherSettings
+from mua.teachers.trained.settings import TeacherSettings
 
 ALL, NONE = "all", "none"  # of the clips
 DeviceName = Literal["auto", "cpu", "cuda"]

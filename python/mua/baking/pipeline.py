@@ -9,6 +9,7 @@ import torch
 from mua.atlas.texel_density import describe_texels
 from mua.baking.check import fidelity_of
 from mua.baking.distillation import Baked, Distillation, choose_device, finish, teach
+from mua.baking.filmed import bake_taught
 from mua.baking.listener import Listener
 from mua.baking.options import check_output
 from mua.baking.order import Order
@@ -18,18 +19,17 @@ from mua.baking.ranges import clips_of, planned_range, settings_for
 from mua.baking.recorded import recorded, recording_key
 from mua.baking.report import STAND_IN
 from mua.baking.sources import ordered_character
-from mua.baking.taught import bake_taught
 from mua.fidelity import report
 from mua.fidelity.compare import Fidelity
-from mua.files import require_writable
-from mua.locks import DirectoryLock
-from mua.memory import release_memory
+from mua.files.lock import DirectoryLock
+from mua.files.write import require_writable
 from mua.pose.clip import Clip
 from mua.recording import PlannedClip, Recording
 from mua.rig.character import Character
 from mua.rig.template import make_template
 from mua.rig.texel_binding import bind_texels
-from mua.teachers.simulated import SimulatedTeacher
+from mua.teachers.simulated.teacher import SimulatedTeacher
+from mua.training.memory import release_memory
 
 
 def bake(order: Order, listener: Listener) -> Baked:

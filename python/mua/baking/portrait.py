@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from mua.camera import Camera, orbit
-from mua.decode import Splats
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.decode import Splats
+from mua.avatar.rendering import frame_bounds
 from mua.motion.facing import front_of
 from mua.pose.skeleton import Pose, Skeleton
-from mua.rendering import frame_bounds
 
 THREE_QUARTER = np.radians(25)  # from the front
 ABOVE = np.radians(8)

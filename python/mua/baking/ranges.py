@@ -6,7 +6,7 @@ from dataclasses import replace
 from mua.baking.order import Order
 from mua.baking.plan import plan
 from mua.baking.sources import load_clips
-from mua.motion_range import motion_range
+from mua.motion.range import motion_range
 from mua.pose.clip import RANGE_OF_MOTION, Clip
 from mua.recording import PlannedClip
 from mua.rig.character import Character

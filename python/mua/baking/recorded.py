@@ -3,14 +3,14 @@
 import hashlib
 from collections.abc import Callable, Iterable
 
-from mua import __version__
 from mua.baking.listener import Listener
 from mua.baking.order import Order
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording import PlannedClip, Recording
+from mua.recording.teacher import Teacher
 from mua.recording.workers import record_by_workers
-from mua.teachers.teacher import Teacher
+from mua.version import __version__
 
 
 def recorded(

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.coarser import coarsest, texel_length
+from mua.avatar.level_choice import LARGEST_TEXEL
 from mua.bench.work import NOTHING, Work, by_kernel
-from mua.camera import Camera, orbit
-from mua.coarser import coarsest, texel_length
 from mua.errors import InputError
 from mua.gpu import Bound, Device
-from mua.level_choice import LARGEST_TEXEL
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import EXACT_FORMAT, SortedSplats, SplatRenderer, draw_image, image_format

@@ -9,8 +9,8 @@ import numpy as np
 import wgpu
 
 from mua.arrays import Array
+from mua.avatar.camera import Camera
 from mua.bench.work import Work, by_kernel
-from mua.camera import Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
 from mua.gpu.failure import naming

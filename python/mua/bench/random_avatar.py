@@ -15,8 +15,8 @@ import pywt
 from mua import rotation
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.levels import LEVELS
-from mua.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
+from mua.channels import LEVELS
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton

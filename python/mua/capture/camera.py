@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import NEAR, Camera
+from mua.avatar.camera import NEAR, Camera
 
 COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3")  # of OpenCV's distortion
 UNDISTORTED = (0.0,) * len(COEFFICIENTS)

@@ -15,7 +15,7 @@ from mua.capture.view import Files, View, read_view
 from mua.characters.figure_size import FigureSize
 from mua.characters.read import read_surfaces
 from mua.errors import InputError
-from mua.inputs import CAPTURE
+from mua.files.inputs import CAPTURE
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.rig.character import Character

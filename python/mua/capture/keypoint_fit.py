@@ -13,7 +13,7 @@ from mua import rotation
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
 from mua.capture.keypoint_targets import Target, find_targets, limb_scales, well_seen
-from mua.capture.keypoints import Keypoints
+from mua.capture.readers.keypoints import Keypoints
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 

@@ -5,10 +5,10 @@ from PIL import Image, ImageDraw
 
 from mua.arrays import Array
 from mua.atlas.surfaces import Surfaces
-from mua.camera import NEAR
+from mua.avatar.camera import NEAR
 from mua.capture.camera import CaptureCamera
 from mua.pose.clip import Clip
-from mua.teachers.skinning import Skinning
+from mua.rig.skinning import Skinning
 
 FINER = 3  # times as fine as pixels triangles are drawn, because drawing widens them by half a step
 COVERED = 0.5  # of a mask, from which on a pixel counts as covered

@@ -15,7 +15,7 @@ from mua.capture.camera import COEFFICIENTS, UNDISTORTED, CaptureCamera
 from mua.capture.capture import FORMAT, FRAME, VERSION, Capture, CaptureClip
 from mua.characters.figure_size import LEAST, MOST
 from mua.errors import InputError
-from mua.inputs import CAPTURE, require_capture, require_file
+from mua.files.inputs import CAPTURE, require_capture, require_file
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE
 
 LARGEST_SIDE = 1 << 15  # pixels

@@ -5,11 +5,11 @@ from PIL import Image, ImageDraw
 from PIL.Image import Resampling
 
 from mua.arrays import Array
+from mua.avatar.rendering import to_bytes
 from mua.capture.check import Checked
 from mua.capture.fit import Seen
 from mua.capture.outline import COVERED
 from mua.capture.view import person, smaller
-from mua.rendering import to_bytes
 
 CELL = 420  # pixels along the longer side of an image
 COLUMNS, ROWS = 4, 2

@@ -12,13 +12,13 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from mua.arrays import Array
+from mua.avatar.rendering import to_bytes
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.capture import Capture
 from mua.capture.pictures import as_mask, read_mask, read_picture, require_size
 from mua.capture.video import VIDEOS, MissingImage, video_frames
 from mua.capture.view import MARGIN, Box, Filmed, View, in_steps, look, nobody, smaller, view_of
-from mua.files import replacing
-from mua.rendering import to_bytes
+from mua.files.write import replacing
 
 LIMIT = 50_000_000_000  # bytes that a store may hold; beyond it, views are read anew each time
 QUICK = 1  # of PNG's levels of compression

@@ -10,7 +10,7 @@ from mua.capture.fit import chosen_frames
 from mua.capture.outline import COVERED, POINTS, rough_overlap
 from mua.capture.view import View
 from mua.errors import InputError
-from mua.teachers.skinning import Skinning
+from mua.rig.skinning import Skinning
 
 ROWS = 128  # of the images from which the usual overlap is found
 FULL, NONE = 0.8, 0.5  # of the usual overlap: from the first on a view counts in full, below the second not at all

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.lens import undistort
 from mua.capture.pictures import read_mask, read_picture
 from mua.capture.smaller import area_average
 from mua.errors import InputError
-from mua.inputs import require_file
+from mua.files.inputs import require_file
 
 MARGIN = 0.05  # of the longer side of the box around a mask, left free on each side of it
 COVERED = 0.5 / 255  # of a mask; what is less is nothing in 8 bits

@@ -7,7 +7,7 @@ from typing import Any
 
 from mua.capture.camera import UNDISTORTED, CaptureCamera
 from mua.capture.capture import FORMAT, VERSION, Capture, CaptureClip
-from mua.files import write_bytes
+from mua.files.write import write_bytes
 
 
 def write_capture(capture: Capture) -> Path:

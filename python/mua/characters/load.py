@@ -5,11 +5,11 @@ from typing import get_args
 
 from mua.arguments import PathLike, as_path, describe, whole_number
 from mua.atlas.uv import UvMode
+from mua.channels import COARSE_TEXELS
 from mua.characters.figure_size import LEAST, MOST, FigureSize
 from mua.characters.read import read_character
 from mua.errors import InputError
 from mua.extras import naming_extras
-from mua.levels import COARSE_TEXELS
 from mua.rig.build import build_rig
 from mua.rig.rig import Rig
 

@@ -12,8 +12,8 @@ from mua.characters.gltf.read import read_gltf, read_gltf_animation
 from mua.characters.resize import resized
 from mua.characters.skeletool.read import read_skeletool, read_skeletool_motion
 from mua.errors import InputError
+from mua.files.signature import refuse_foreign, require_kind
 from mua.rig.character import Character
-from mua.signature import refuse_foreign, require_kind
 
 GLTF = (".glb", ".gltf", ".vrm")
 GLTF_MOTION = (".vrma",)  # motion of a VRM avatar, without a mesh

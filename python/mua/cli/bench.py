@@ -11,16 +11,16 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from mua import files
 from mua.asset.write import write
+from mua.avatar.camera import EYE_DISTANCE
 from mua.bench.devices import DEVICES, model_device
-from mua.camera import EYE_DISTANCE
 from mua.cli.choice import choice
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.cli.option_values import parse_screen
 from mua.errors import InputError
-from mua.inputs import require_file
+from mua.files import write as files
+from mua.files.inputs import require_file
 from mua.student.settings import PRESETS, preset
 
 if TYPE_CHECKING:  # loads wgpu

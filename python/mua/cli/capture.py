@@ -12,8 +12,8 @@ from mua.cli.capture_poses import poses
 from mua.cli.console import printer, say
 from mua.cli.failure import run_commands
 from mua.errors import InputError
-from mua.files import replacing, require_writable
-from mua.inputs import CAPTURE, require_capture, require_file, require_folder
+from mua.files.inputs import CAPTURE, require_capture, require_file, require_folder
+from mua.files.write import replacing, require_writable
 
 if TYPE_CHECKING:  # takes long to load
     from mua.capture import Capture
@@ -142,8 +142,8 @@ class _Given(NamedTuple):
 
 def _described(source: Path, folder: Path, given: _Given) -> "Capture":
     """The capture that a folder of another layout is."""
-    from mua.capture.avatarrex import RATE, is_avatarrex, read_avatarrex
-    from mua.capture.streams import is_streams, read_streams
+    from mua.capture.readers.avatarrex import RATE, is_avatarrex, read_avatarrex
+    from mua.capture.readers.streams import is_streams, read_streams
 
     if is_avatarrex(source):
         if given.motion is not None:
@@ -176,8 +176,8 @@ def _described(source: Path, folder: Path, given: _Given) -> "Capture":
 
 def _calibrated(source: Path, folder: Path, calibration: Path, given: _Given, *, axes: str, scale: float) -> "Capture":
     """The capture of a folder whose cameras a public tool calibrated."""
-    from mua.capture.calibrated_folder import read_calibrated
     from mua.capture.conventions import read_axes
+    from mua.capture.readers.calibrated_folder import read_calibrated
 
     if given.template is None or given.motion is None:
         raise InputError(f"--calibration {calibration}: expected --template and --motion with it")

@@ -10,8 +10,8 @@ from rich.table import Table
 
 from mua.cli.console import printer, say
 from mua.errors import InputError
-from mua.files import require_writable
-from mua.inputs import require_file
+from mua.files.inputs import require_file
+from mua.files.write import require_writable
 
 if TYPE_CHECKING:  # takes long to load
     from mua.capture.keypoint_fit import Fitted
@@ -52,7 +52,7 @@ def poses(
 
     from mua.capture.conventions import read_axes
     from mua.capture.keypoint_fit import fit_keypoints
-    from mua.capture.keypoints import read_keypoints
+    from mua.capture.readers.keypoints import read_keypoints
     from mua.characters.figure_size import FigureSize
     from mua.characters.read import read_surfaces
     from mua.motion.poses_file import write_poses

@@ -10,7 +10,7 @@ from mua.baking.order import Order
 from mua.cli.console import printer, say
 from mua.cli.display import Display
 from mua.fidelity.compare import Fidelity
-from mua.files import require_writable
+from mua.files.write import require_writable
 from mua.motion.quality import MotionQuality
 
 FEW = 5  # joints that are named

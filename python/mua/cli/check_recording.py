@@ -9,7 +9,7 @@ from mua.baking.frames_picture import frames_picture
 from mua.baking.recording_check import RecordingCheck, check
 from mua.cli.console import printer, say
 from mua.errors import InputError
-from mua.files import replacing, require_writable
+from mua.files.write import replacing, require_writable
 from mua.recording import RecordedClip, Recording
 
 

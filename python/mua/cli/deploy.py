@@ -9,13 +9,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from mua import files
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.deploy.steady import RATES
 from mua.deploy.unity import find, project_version
 from mua.errors import InputError
-from mua.inputs import require_file
+from mua.files import write as files
+from mua.files.inputs import require_file
 
 if TYPE_CHECKING:  # load adbutils, an optional package
     from mua.deploy.avatars import Checked

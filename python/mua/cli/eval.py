@@ -10,7 +10,7 @@ from mua.cli.failure import run_command
 from mua.cli.options import lent_by
 from mua.compare.order import ALL, SYSTEM_NAMES, EvaluationOrder
 from mua.errors import InputError
-from mua.inputs import is_capture, require_file, require_recording, require_teacher
+from mua.files.inputs import is_capture, require_file, require_recording, require_teacher
 from mua.student.settings import PRESETS, preset
 
 # Of each field of an order what a terminal takes, and its help.

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import torch
 
-from mua.checkpoint import Checkpoints, run_key
 from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.compare import entries, plots, report, scores
@@ -16,13 +15,14 @@ from mua.compare.motion import training_frames
 from mua.compare.order import ALL, EvaluationOrder
 from mua.compare.system import Budget
 from mua.errors import InputError
-from mua.files import replacing, write_bytes
+from mua.files.lock import DirectoryLock
+from mua.files.write import replacing, write_bytes
 from mua.gpu import Device, open_device
-from mua.locks import DirectoryLock
 from mua.recording import Recording
 from mua.splatting.perceptual import Lpips
-from mua.student.optimise import Progress, Run
 from mua.student.settings import Settings, preset
+from mua.training.checkpoint import Checkpoints, run_key
+from mua.training.optimise import Progress, Run
 
 
 def compare(order: EvaluationOrder) -> None:

@@ -9,8 +9,8 @@ from mua.cli.choice import choice
 from mua.cli.failure import run_command
 from mua.errors import InputError
 from mua.export.kinds import ENDINGS, SPLATS, WHATS, is_directory, kind_of, listed
-from mua.files import require_writable
-from mua.inputs import require_file, require_motion
+from mua.files.inputs import require_file, require_motion
+from mua.files.write import require_writable
 
 AXES = ("y-up", "y-down")
 

@@ -16,7 +16,7 @@ from mua.export.formats import SPLAT_FORMATS, frame_content, held, write_clip
 from mua.export.frames import ExportFrames
 from mua.export.kinds import Kind, is_directory
 from mua.export.sequence import file_names, write_all
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.motion.mapping import read_mapping
 from mua.player.motion import named_clip, player_clips
 from mua.pose.clip import Clip

@@ -7,11 +7,10 @@ from pathlib import Path
 
 import torch
 
+from mua.baking.filmed_motion import filmed_clips, plan_headings, taught_settings
 from mua.baking.recorded import recording_key
-from mua.baking.taught_motion import filmed_clips, plan_headings, taught_settings
 from mua.capture import Capture, open_capture
 from mua.capture.store import ViewStore
-from mua.checkpoint import Checkpoints, run_key
 from mua.cli.console import printer
 from mua.cli.display import Display
 from mua.compare import filmed, filmed_report, standing
@@ -21,16 +20,17 @@ from mua.compare.motion import training_frames
 from mua.compare.order import ALL, SYSTEM_NAMES, EvaluationOrder
 from mua.compare.system import Budget
 from mua.errors import InputError
-from mua.files import replacing, write_bytes
-from mua.locks import DirectoryLock
+from mua.files.lock import DirectoryLock
+from mua.files.write import replacing, write_bytes
 from mua.pose.encoding import RATE
 from mua.recording import Recording
 from mua.recording.workers import record_by_workers
 from mua.splatting.perceptual import Lpips
-from mua.student.optimise import Progress, Run
 from mua.student.settings import preset
-from mua.teaching.folder import teacher_bytes
-from mua.teaching.trained import TrainedTeacher
+from mua.teachers.trained.folder import teacher_bytes
+from mua.teachers.trained.teacher import TrainedTeacher
+from mua.training.checkpoint import Checkpoints, run_key
+from mua.training.optimise import Progress, Run
 
 
 def compare(order: EvaluationOrder) -> None:

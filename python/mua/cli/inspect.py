@@ -13,7 +13,7 @@ from mua.asset.summary import summary
 from mua.cli.console import printer
 from mua.cli.failure import run_command
 from mua.errors import InputError
-from mua.inputs import require_file
+from mua.files.inputs import require_file
 
 
 def inspect(

@@ -12,13 +12,13 @@ from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
-import mua
+from mua.version import __version__
 
 
 def _print_version(wanted: bool) -> None:
     """Print name and version and stop, before anything else is asked for."""
     if wanted:
-        print(f"{command_name()} {mua.__version__}")
+        print(f"{command_name()} {__version__}")
         raise typer.Exit
 
 

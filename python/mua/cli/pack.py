@@ -12,8 +12,8 @@ from mua.asset.write import write
 from mua.cli.console import printer, say
 from mua.cli.failure import run_command
 from mua.errors import InputError
-from mua.files import require_writable
-from mua.inputs import require_file
+from mua.files.inputs import require_file
+from mua.files.write import require_writable
 
 
 def pack(

@@ -7,8 +7,8 @@ import typer
 
 from mua.cli.failure import run_command
 from mua.errors import InputError
-from mua.files import require_writable, write_bytes
-from mua.inputs import require_file
+from mua.files.inputs import require_file
+from mua.files.write import require_writable, write_bytes
 
 SUFFIX = ".html"
 

@@ -7,13 +7,13 @@ from typing import Annotated, Any, get_args
 import typer
 
 from mua.baking.order import DeviceName
-from mua.baking.teach import teach
+from mua.baking.train_teacher import teach
 from mua.cli.choice import choice
 from mua.cli.console import printer, say
 from mua.cli.display import Display
 from mua.cli.failure import run_command
 from mua.cli.options import lent_by
-from mua.teaching.settings import PRESETS, Rasteriser
+from mua.teachers.trained.settings import PRESETS, Rasteriser
 
 # Of each argument of mua.teach what a terminal takes, and its help.
 OPTIONS = {

@@ -6,13 +6,13 @@ from typing import Annotated, Any
 
 import typer
 
-from mua.baking.train import train
+from mua.baking.distil import train
 from mua.cli.console import printer
 from mua.cli.display import Display, show
 from mua.cli.failure import run_command
 from mua.cli.options import lent_by
 from mua.cli.training_options import BOTH
-from mua.inputs import require_recording
+from mua.files.inputs import require_recording
 from mua.student.settings import StageName
 
 # As for mua-bake, of each argument of mua.train.

@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from mua.camera import EYE_DISTANCE
+from mua.avatar.camera import EYE_DISTANCE
 from mua.cli.failure import run_command
 from mua.cli.view_options import CLOSE_UP, IN_FILES, IN_WINDOW, Asked, check_fitting, check_inputs, kind_of, look_of
 from mua.errors import InputError
-from mua.files import require_writable
+from mua.files.write import require_writable
 from mua.motion.mapping import read_mapping
 from mua.player.source import Source
 from mua.player.toggles import Toggles

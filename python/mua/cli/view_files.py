@@ -15,10 +15,10 @@ from rich.progress import track
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.cli.option_values import is_video, parse_frame, parse_frames
 from mua.cli.view_options import Kind
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.player.levels import FULL, Levels
 from mua.player.motion import named_clip, player_clips
 from mua.player.picture import Reference, over

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from mua.camera import EYE_DISTANCE
+from mua.avatar.camera import EYE_DISTANCE
 from mua.cli.option_values import (
     EVEN,
     VIDEOS,
@@ -20,7 +20,7 @@ from mua.cli.option_values import (
     require_format,
 )
 from mua.errors import InputError
-from mua.inputs import require_file, require_motion
+from mua.files.inputs import require_file, require_motion
 from mua.player.levels import AUTO, FULL
 from mua.player.shot import Look, Shot
 from mua.player.toggles import parse_toggles

@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from mua.errors import InputError
-from mua.inputs import require_file
+from mua.files.inputs import require_file
 from mua.player.toggles import parse_toggles
 from mua.share.poster import front, opening
 from mua.share.server import address, serving

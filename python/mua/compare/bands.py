@@ -14,18 +14,17 @@ import torch
 from torch import Tensor, nn
 
 from mua.asset.count import synthesis
-from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.channels import APPEARANCE, CHANNELS, COARSE_TEXELS, DYNAMIC_LEVELS, GEOMETRY, LEVELS
 from mua.compare.maps import CHANNELS as MAP_CHANNELS
 from mua.compare.maps import SurfaceMaps
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.optimise import Groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
-from mua.levels import COARSE_TEXELS, DYNAMIC_LEVELS, LEVELS
 from mua.student.finetune import subband_loss
 from mua.student.model import Branch, lowpass_texels
-from mua.student.optimise import Run
 from mua.student.settings import Ranks
-from mua.student.train import start_branch
+from mua.student.stages import start_branch
+from mua.training.optimise import Run
 from mua.wavelets import Bands, filters
 
 PARTS = {"geometry": GEOMETRY, "appearance": APPEARANCE}

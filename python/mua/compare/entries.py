@@ -10,7 +10,6 @@ import torch
 from mua.arrays import Array
 from mua.bench.measure import measure
 from mua.bench.report import total_milliseconds
-from mua.checkpoint import Checkpoints
 from mua.compare.cost import Cost, file_cost, learnt_cost
 from mua.compare.motion import motion_of
 from mua.compare.network import NetworkSystem
@@ -23,7 +22,8 @@ from mua.player.buffers import AvatarBuffers
 from mua.player.frame import AvatarFrame
 from mua.recording import Recording, WholeFrame
 from mua.rig.rig import Rig
-from mua.student.optimise import Report
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Report
 
 FPS_FRAMES = 5  # timed of each file
 MEAN = "mean texture"

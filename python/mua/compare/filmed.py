@@ -15,23 +15,23 @@ from torch import Tensor
 
 from mua.arrays import Array
 from mua.asset.read import read
-from mua.camera import Camera
+from mua.avatar.camera import Camera
+from mua.avatar.decode import Splats, decode, pose_splats
+from mua.avatar.rendering import to_bytes
 from mua.capture import Capture
 from mua.capture.view import View
 from mua.compare.cost import Cost, file_cost
 from mua.compare.metrics import LPIPS_UNIT
-from mua.decode import Splats, decode, pose_splats
 from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 from mua.pose.windows import window_of
-from mua.rendering import to_bytes
+from mua.recording.teacher import TeacherFrame
 from mua.splatting.likeness import structural_similarity
 from mua.splatting.perceptual import Lpips
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
-from mua.teachers.teacher import TeacherFrame
-from mua.teaching.trained import TrainedTeacher
+from mua.teachers.trained.teacher import TrainedTeacher
 
 EVERY = 10  # frames: the paper's protocol
 TRAINED, UNSEEN = "training poses", "clips held out"

@@ -13,12 +13,12 @@ from PIL import Image
 from rich.table import Table
 
 from mua.arrays import Array
+from mua.avatar.rendering import to_bytes
 from mua.compare.filmed import IMAGE, SPLITS, FilmedEntry, Judged, Likeness, Shot, mean
 from mua.compare.order import OURS
 from mua.compare.standing import Standing
 from mua.fidelity.strips import GAIN, caption, difference
-from mua.files import replacing
-from mua.rendering import to_bytes
+from mua.files.write import replacing
 
 DIGITS = {"psnr": 2, "ssim": 4, "flip": 4, "lpips": 2}
 HEADINGS = {"psnr": "PSNR", "ssim": "SSIM", "flip": "FLIP", "lpips": "LPIPS"}

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mua.checkpoint import Checkpoints
+from mua.avatar.decode import Splats, pose_splats
 from mua.compare.cost import Cost, learnt_cost
 from mua.compare.entries import sentence
 from mua.compare.filmed import FilmedEntry, Show
@@ -18,10 +18,10 @@ from mua.compare.network import NetworkSystem
 from mua.compare.order import OURS
 from mua.compare.system import Budget, Sizes, TrainingFrames
 from mua.compare.systems import SYSTEMS, train_or_restore
-from mua.decode import Splats, pose_splats
 from mua.pose.clip import Clip
 from mua.pose.windows import window_of
-from mua.student.optimise import Report
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Report
 
 STEPS_OF_TWO = 8  # sizes that are tried for equal cost from one scale to its double
 LARGEST, SMALLEST = 6, -8  # powers of two of the scales that are tried

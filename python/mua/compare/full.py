@@ -5,20 +5,19 @@ from dataclasses import replace
 import torch
 from torch import Tensor, nn
 
-from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.channels import APPEARANCE, CHANNELS, FINE_TEXELS, GEOMETRY, STATIC_LEVELS
 from mua.compare.network import Network, mlp_flops, parameter_groups
 from mua.compare.optimise import Groups
 from mua.compare.system import Motion, Sizes, TrainingFrames
-from mua.levels import FINE_TEXELS, STATIC_LEVELS
 from mua.student.conditioned import Conditioned
 from mua.student.factorize import separable_blendshapes
 from mua.student.local import Locality, sample_locality, texture_locality
 from mua.student.model import Branch, build_mlp
-from mua.student.optimise import Run
 from mua.student.paper_recipe import start_mlp
 from mua.student.regress import regress
 from mua.student.settings import Ranks
 from mua.student.targets import joint_targets
+from mua.training.optimise import Run
 from mua.wavelets import synthesise_lowpass, waverec2
 
 PARTS = (GEOMETRY, APPEARANCE)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera, orbit
+from mua.avatar.camera import Camera, orbit
 from mua.errors import InputError
 from mua.gpu import Device
 from mua.player.draw import SplatRenderer, draw_image, image_format

@@ -14,15 +14,15 @@ from mua.kernels.dq_skinning import blend_vertices
 from mua.pose.clip import Clip
 from mua.pose.descriptor import describe, heading_of
 from mua.recording import Recording
+from mua.rig.bones import figure_scale
 from mua.rig.rig import Rig
 from mua.student.coarse import fit_coarse
 from mua.student.distil import prepare
 from mua.student.model import Student
-from mua.student.optimise import Run
 from mua.student.settings import Settings
 from mua.student.source import hold
 from mua.student.targets import channel_weights
-from mua.teachers.bones import figure_scale
+from mua.training.optimise import Run
 from mua.wavelets import Bands
 
 

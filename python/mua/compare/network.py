@@ -14,15 +14,15 @@ import torch
 from torch import Tensor, nn
 
 from mua.channels import CHANNELS
-from mua.checkpoint import Checkpoints
 from mua.compare.optimise import Groups, optimise
 from mua.compare.system import Budget, Motion, Sizes, TrainingFrames, coarse_flops, coarse_parameters
+from mua.rig.bones import figure_scale
 from mua.student.conditioned import fold
 from mua.student.finetune import BASIS_RATE
 from mua.student.model import Coarse, linear_layers
-from mua.student.optimise import Report, Run
 from mua.student.settings import Generalisation
-from mua.teachers.bones import figure_scale
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Report, Run
 
 FRAMES_AT_ONCE = 16
 

@@ -8,8 +8,8 @@ from torch import Tensor
 
 from mua.compare.system import Budget
 from mua.errors import InputError
-from mua.student.optimise import Progress, Report
-from mua.student.settings import cosine_decay
+from mua.training.optimise import Progress, Report
+from mua.training.schedule import cosine_decay
 
 WARM_UP = 0.1  # share of the steps in which the learning rates rise
 

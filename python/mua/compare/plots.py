@@ -13,12 +13,12 @@ from PIL import Image, ImageDraw, ImageOps
 from scipy.ndimage import uniform_filter
 
 from mua.arrays import Array
+from mua.avatar.rendering import to_bytes
 from mua.compare.images import Studio
 from mua.compare.metrics import compare
 from mua.compare.scores import KINDS, Result
 from mua.fidelity.strips import caption
 from mua.recording import WholeFrame
-from mua.rendering import to_bytes
 
 DPI = 120
 LABEL_GAP = 0.055  # of an axis' height, between labels

@@ -5,12 +5,12 @@ from functools import partial
 
 import torch
 
-from mua.checkpoint import Checkpoints
 from mua.compare.bands import blendshapes_conv1d, conv_blendshapes, conv_conv, ours
 from mua.compare.full import LinearMap, SingleLevel, full_blendshapes, pca_only
 from mua.compare.network import Network, NetworkSystem
 from mua.compare.system import Budget, Sizes, TrainingFrames
-from mua.student.optimise import Report
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Report
 
 NETWORKS: dict[str, Callable[[Sizes], Network]] = {
     "pca-only": pca_only,

@@ -24,7 +24,7 @@ from pygltflib import Image as Picture
 
 from mua import rotation
 from mua.arrays import Array
-from mua.decode import Splats
+from mua.avatar.decode import Splats
 from mua.export.frames import ExportFrames
 from mua.export.glb import INDICES, UNLIT, VERTICES, Glb, to_linear, xyzw
 from mua.export.joints import matrices, steady, translated

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mua.decode import Splats
+from mua.avatar.decode import Splats
 from mua.export.compressed_ply import compressed_ply_bytes
 from mua.export.frames import ExportFrames
 from mua.export.kinds import GEOMETRY, MESH, PACKAGE, SPLATS, USD, Kind

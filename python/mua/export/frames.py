@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mua.asset.avatar import Avatar
-from mua.decode import Splats, decode_clip_frame
+from mua.avatar.decode import Splats, decode_clip_frame
 from mua.pose.clip import Clip
 
 

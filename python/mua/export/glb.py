@@ -4,8 +4,8 @@ import numpy as np
 import pygltflib
 from pygltflib import GLTF2, Accessor, Asset, Buffer, BufferView, Node, Scene
 
-import mua
 from mua.arrays import Array
+from mua.version import __version__
 
 COMPONENTS = {"|u1": 5121, "<u2": 5123, "<u4": 5125, "<f4": 5126}
 SHAPES = {(): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
@@ -18,7 +18,7 @@ class Glb:
 
     def __init__(self) -> None:
         self.document = GLTF2(
-            asset=Asset(generator=f"mua-export {mua.__version__}", version="2.0"),
+            asset=Asset(generator=f"mua-export {__version__}", version="2.0"),
             scene=0,
             scenes=[Scene(nodes=[])],
         )

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.files import refused
+from mua.files.write import refused
 
 
 def write_all(files: Iterable[tuple[Path, bytes]]) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 
 from mua import rotation
 from mua.arrays import Array
+from mua.avatar.decode import Splats
 from mua.channels import ATTRIBUTES, SH_C0
-from mua.decode import Splats
 from mua.kernels.dq_skinning import LARGEST_LOG_SCALE
 from mua.texture import sh
 

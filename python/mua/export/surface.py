@@ -9,7 +9,7 @@ from scipy.ndimage import distance_transform_edt
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.decode import Splats
+from mua.avatar.decode import Splats
 from mua.export.splats import mean_colors
 from mua.player.surface import surface_mesh
 from mua.rig.texel_map import TexelMap

@@ -11,7 +11,7 @@ import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, UsdVol, Vt
 
 from mua.arrays import Array
-from mua.decode import Splats
+from mua.avatar.decode import Splats
 from mua.errors import InputError
 from mua.export.frames import ExportFrames
 from mua.export.glb import to_linear

@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera, orbit
-from mua.decode import pose_splats
+from mua.avatar.camera import Camera, orbit
+from mua.avatar.decode import pose_splats
 from mua.fidelity.canvas import opened
 from mua.fidelity.measure import Agreement, agreement, together, worst_place
 from mua.fidelity.painter import Painter
@@ -18,7 +18,7 @@ from mua.fidelity.splats import SplatPainter
 from mua.pose.clip import Clip
 from mua.rig.character import Character
 from mua.scene import Source
-from mua.teachers.still import StillTeacher
+from mua.teachers.simulated.still import StillTeacher
 
 SCREEN = (384, 512)  # width, height, pixels
 NEAR_BY = 6.0  # pixels about a place within which the surface tells which joint it belongs to

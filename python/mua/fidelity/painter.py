@@ -10,7 +10,7 @@ from PIL import Image
 from mua.arrays import Array
 from mua.atlas.filtering import bled
 from mua.atlas.opacity import EDGE, cut_out
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.scene import Material, Part
 

@@ -4,10 +4,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from mua.arrays import Array
+from mua.avatar.rendering import to_bytes
 from mua.fidelity.background import background_for, over
 from mua.fidelity.compare import SCREEN, Fidelity, PoseFidelity, Shot
 from mua.fidelity.strips import GAIN, caption, difference, sheet
-from mua.rendering import to_bytes
 
 COLUMNS = 2  # views beside each other
 MARK = 14  # pixels from the middle of the worst place to the frame around it

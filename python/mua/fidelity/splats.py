@@ -6,12 +6,12 @@ import moderngl
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera
-from mua.decode import Splats
+from mua.avatar.camera import Camera
+from mua.avatar.decode import Splats
+from mua.avatar.rendering import projected
 from mua.fidelity.canvas import LAID_OVER, Canvas, draw, set_uniform
 from mua.kernels.splat_draw import WEIGHT
 from mua.kernels.splat_project import REACH, wide_deviations
-from mua.rendering import projected
 
 SAMPLES = 2  # along a side of a pixel; of many thin splats over a part of a pixel, each is taken to cover another part
 

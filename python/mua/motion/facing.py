@@ -18,7 +18,7 @@ def front_of(
     rotations: Array,  # [J, 4] local joint rotations
     translations: Array,  # [J, 3] local joint translations, metres
 ) -> float:
-    """Azimuth from which a pose is seen from the front, radians as of mua.camera.orbit.
+    """Azimuth from which a pose is seen from the front, radians as of mua.avatar.camera.orbit.
 
     It is the heading alone: a figure that bends down or lies on its back keeps the front that it had while it stood.
     """

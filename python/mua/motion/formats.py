@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.signature import refuse_foreign
+from mua.files.signature import refuse_foreign
 
 RIG_SUFFIXES = (".glb", ".gltf", ".vrm", ".vrma", ".usd", ".usda", ".usdc", ".usdz", ".motion")
 SUFFIXES = (".bvh", ".npz", *RIG_SUFFIXES)

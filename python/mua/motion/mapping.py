@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.files import write_bytes
+from mua.files.write import write_bytes
 from mua.motion.match import JointPair
 
 

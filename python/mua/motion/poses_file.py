@@ -14,7 +14,7 @@ import numpy as np
 from mua.arguments import finite_array, unit_quaternions
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.files import write_bytes
+from mua.files.write import write_bytes
 from mua.motion.source import SourceMotion
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE, Clip
 from mua.pose.skeleton import Skeleton

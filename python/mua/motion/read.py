@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from mua.errors import InputError
+from mua.files.signature import require_kind
 from mua.motion.amass import read_amass
 from mua.motion.bvh import read_bvh
 from mua.motion.formats import files_of, require_format
 from mua.motion.poses_file import holds_poses, read_poses
 from mua.motion.source import SourceMotion
-from mua.signature import require_kind
 
 
 def read_motion(path: Path) -> list[SourceMotion]:

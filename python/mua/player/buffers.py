@@ -12,13 +12,13 @@ from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.read import decode_tree, load
 from mua.asset.tensors import pack
-from mua.coarser import at_level
+from mua.avatar.coarser import at_level
+from mua.avatar.model import Model
 from mua.errors import InputError
 from mua.gpu import Buffer, Device
 from mua.gpu.stored import Layout, upload_words
 from mua.kernels.inverse_dwt import texel_tiles, upsampling_taps, whole_words
 from mua.kernels.splat_project import pack_texels
-from mua.model import Model
 from mua.rig.rig import Rig
 
 T = TypeVar("T")
@@ -102,7 +102,7 @@ class RigBuffers(RigPlaces):
 
 @dataclass(frozen=True)
 class LevelBuffers:
-    """The texels of one level of detail (mua.coarser)."""
+    """The texels of one level of detail (mua.avatar.coarser)."""
 
     number: int  # 0 is the finest
     size: int  # texels along a side
@@ -156,7 +156,7 @@ class AvatarBuffers:
         self._coarser: Model = self.avatar  # that the last of the levels was made of
 
     def level(self, number: int) -> LevelBuffers:
-        """A level of detail, at most mua.coarser.coarsest of the avatar; made when it is first asked for.
+        """A level of detail, at most mua.avatar.coarser.coarsest of the avatar; made when it is first asked for.
 
         Errors: InputError naming the file, where a tensor is more than the device can bind.
         """

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.camera import Camera
-from mua.coarser import coarsest, texel_length
-from mua.level_choice import Seen, choose_level, texel_pixels
+from mua.avatar.camera import Camera
+from mua.avatar.coarser import coarsest, texel_length
+from mua.avatar.level_choice import Seen, choose_level, texel_pixels
 
 AUTO, FULL = "auto", "full"  # by the distance; the finest
 Wanted = str | int  # or texels along a side

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from mua.arrays import Array
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.gpu import Device
 from mua.player.buffers import AvatarBuffers
 from mua.player.draw import image_format

@@ -10,7 +10,7 @@ import numpy as np
 import wgpu
 
 from mua.arrays import Array
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.gpu import Buffer, Device
 from mua.gpu.draw import Pipeline
 from mua.player.draw import view_projection

@@ -7,11 +7,11 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.camera import Camera
-from mua.decode import decode_clip_frame
+from mua.avatar.camera import Camera
+from mua.avatar.decode import decode_clip_frame
+from mua.avatar.rendering import render_premultiplied, to_bytes
 from mua.player.levels import Levels
 from mua.pose.clip import Clip
-from mua.rendering import render_premultiplied, to_bytes
 
 
 class Reference:

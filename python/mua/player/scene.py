@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import wgpu
 
 from mua.arrays import Array
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.gpu import Device
 from mua.gpu.failure import naming
 from mua.player.draw import IMAGE_FORMAT, SplatRenderer, read_image, set_eye

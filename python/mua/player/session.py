@@ -8,7 +8,7 @@ import numpy as np
 import wgpu
 
 from mua.arrays import Array
-from mua.camera import EYE_DISTANCE, Camera
+from mua.avatar.camera import EYE_DISTANCE, Camera
 from mua.errors import InputError
 from mua.gpu import Commands, Device
 from mua.motion.facing import front_of

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera, stereo
+from mua.avatar.camera import Camera, stereo
 from mua.errors import InputError
 from mua.motion.facing import front_of
 from mua.player.focus import find_focus

@@ -9,7 +9,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import Camera, sees
+from mua.avatar.camera import Camera, sees
 from mua.errors import InputError
 from mua.gpu import Buffer, Commands, Device
 from mua.kernels.splat_project import SPLAT_WORDS

@@ -11,7 +11,7 @@ import imageio_ffmpeg
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.files import replacing
+from mua.files.write import replacing
 
 BT709 = "bt709"  # what players take a video for that is larger than television's; the encoder is told the same
 MARKED = ("-colorspace", BT709, "-color_primaries", BT709, "-color_trc", BT709)

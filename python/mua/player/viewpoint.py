@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mua.arrays import Array
-from mua.camera import FOV, Camera, near_plane, orbit, perspective
+from mua.avatar.camera import FOV, Camera, near_plane, orbit, perspective
 
 STEEPEST = float(np.radians(89))  # of the elevation, so that up stays up
 NEAREST, FARTHEST = 0.01, 30.0  # times the distance from which all of the figure is seen
@@ -19,7 +19,7 @@ class Viewpoint:
 
     target: Array  # [3] world, metres
     distance: float  # metres
-    azimuth: float = 0.0  # radians, as mua.camera.orbit
+    azimuth: float = 0.0  # radians, as mua.avatar.camera.orbit
     elevation: float = 0.0
     framed: float = 3.5  # metres from which all of the figure is seen; those of a person
 
@@ -62,7 +62,7 @@ def framing(
     bounds: Array,  # [2, 3] metres
     screen: tuple[int, int],
     *,
-    azimuths: Array,  # [N] radians, as mua.camera.orbit: all from which the box is going to be seen
+    azimuths: Array,  # [N] radians, as mua.avatar.camera.orbit: all from which the box is going to be seen
     elevation: float = 0.0,
 ) -> Viewpoint:
     """At the first azimuth, at the distance from which all of a box is in the image from each of them."""

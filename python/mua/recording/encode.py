@@ -10,7 +10,7 @@ from mua import wavelets
 from mua.arrays import Array
 from mua.channels import ATTRIBUTES, CHANNELS
 from mua.errors import InputError
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.recording.layout import Header
 from mua.recording.npz import read_npz
 from mua.texture.fill import Fill

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from mua.arrays import Array
-from mua.channels import CHANNELS
+from mua.channels import CHANNELS, COARSE_TEXELS
 from mua.errors import InputError
-from mua.files import write_bytes
-from mua.levels import COARSE_TEXELS
+from mua.files.write import write_bytes
 from mua.recording.rig_file import rig_hash
 from mua.rig.rig import Rig
 

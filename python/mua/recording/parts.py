@@ -19,7 +19,6 @@ from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.channels import CHANNELS
 from mua.errors import InputError
-from mua.processes import Processes
 from mua.recording.layout import (
     HEADER,
     INDEX,
@@ -36,8 +35,9 @@ from mua.recording.layout import (
 )
 from mua.recording.record import PlannedClip, played, record
 from mua.recording.shard import sync
+from mua.recording.teacher import Teacher, TeacherFrame
 from mua.recording.writer import TeacherWriter
-from mua.teachers.teacher import Teacher, TeacherFrame
+from mua.training.processes import Processes
 
 MOST_PARTS = 64  # each has a copy of rig and reference until it is joined
 

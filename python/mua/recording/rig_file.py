@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from mua.arrays import Array
-from mua.files import replacing
+from mua.files.write import replacing
 from mua.pose.skeleton import Skeleton
 from mua.recording.npz import read_npz
 from mua.rig.character import Mesh

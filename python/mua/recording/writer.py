@@ -11,10 +11,9 @@ import numpy as np
 
 from mua.arguments import PathLike, as_path, describe, whole_number
 from mua.arrays import Array
-from mua.channels import CHANNELS
+from mua.channels import CHANNELS, COARSE_TEXELS
 from mua.errors import InputError
-from mua.levels import COARSE_TEXELS
-from mua.locks import DirectoryLock
+from mua.files.lock import DirectoryLock
 from mua.pose.clip import LARGEST_RATE, LEAST_RATE, is_averaged
 from mua.pose.skeleton import Pose
 from mua.recording.encode import (

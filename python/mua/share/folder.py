@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 from mua.errors import InputError
-from mua.files import missing_directory, refused
+from mua.files.write import missing_directory, refused
 from mua.share.site import PAGE, Content, Site
 
 MARK = b'<meta name="generator" content="mua">'  # of a page that may be replaced

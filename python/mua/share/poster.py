@@ -10,7 +10,7 @@ from PIL import Image
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.read import read
-from mua.camera import FILL, Camera, orbit
+from mua.avatar.camera import FILL, Camera, orbit
 from mua.motion.facing import front_of
 from mua.player.motion import named_clip, player_clips
 from mua.player.picture import Reference, over

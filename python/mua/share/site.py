@@ -8,9 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import TypeAlias
 from urllib.parse import quote
 
-import mua
-
-PLAYER = Path(mua.__file__).parent / "web"  # plain files, served as they are
+PLAYER = Path(__file__).parents[1] / "web"  # plain files, served as they are
 PAGE = "index.html"
 SERVED = (".js", ".css", ".wgsl", ".svg")  # of the player's files; the others are for builders
 POSTER = "poster.png"

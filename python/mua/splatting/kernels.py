@@ -20,7 +20,7 @@ from typing import Any
 import warp as wp
 
 from mua.splatting.tiles import TILE
-from mua.warp_start import start
+from mua.training.warp_start import start
 
 LEAST_TRANSMITTANCE = 1e-5  # what lies behind changes no 8-bit image
 

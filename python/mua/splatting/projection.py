@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import torch
 
-from mua.camera import Camera
+from mua.avatar.camera import Camera
 from mua.channels import SH_C0, SH_C1
 from mua.kernels.splat_draw import WEIGHT
 from mua.kernels.splat_project import AWAY, GUARD, LAST_KEY, LEAST_OPACITY, LEAST_VARIANCE, PIXEL_VARIANCE, REACH
@@ -15,7 +15,7 @@ from mua.kernels.splat_project import AWAY, GUARD, LAST_KEY, LEAST_OPACITY, LEAS
 
 @dataclass(frozen=True, eq=False)
 class TorchSplats:
-    """N posed splats as mua.decode.Splats holds them, in one dtype and on one device."""
+    """N posed splats as mua.avatar.decode.Splats holds them, in one dtype and on one device."""
 
     centres: torch.Tensor  # [N, 3] world, metres
     rotations: torch.Tensor  # [N, 4] world, wxyz, unit

@@ -8,9 +8,9 @@ from torch import Tensor
 
 from mua.student.factorize import blendshapes, frame_weights, separable_blendshapes
 from mua.student.model import Alphas, Branch, outer_products
-from mua.student.optimise import Progress, Run
 from mua.student.settings import Settings
 from mua.student.source import Source
+from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
 

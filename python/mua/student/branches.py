@@ -5,9 +5,9 @@ from dataclasses import replace
 from functools import partial
 from threading import Event
 
-from mua.student.optimise import Progress, Run
-from mua.threads import together
-from mua.torch_threads import thread_share
+from mua.training.optimise import Progress, Run
+from mua.training.threads import together
+from mua.training.torch_threads import thread_share
 
 
 class Stopped(Exception):

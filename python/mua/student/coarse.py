@@ -9,9 +9,9 @@ from mua.student.components import Components
 from mua.student.factorize import frame_weights, truncated_svd
 from mua.student.local import Parts, sample_locality
 from mua.student.model import Coarse
-from mua.student.optimise import Run
 from mua.student.regress import regress
 from mua.student.settings import Settings
+from mua.training.optimise import Run
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""From a recording to a trained student: descriptors of its training frames, then `mua.student.train`."""
+"""From a recording to a trained student: descriptors of its training frames, then `mua.student.stages`."""
 
 import math
 import time
@@ -13,22 +13,22 @@ import torch
 from torch import Tensor
 
 from mua.arrays import Array
-from mua.checkpoint import Checkpoints, run_key
 from mua.errors import InputError
 from mua.pose.clip import is_range
 from mua.pose.components import principal_components
 from mua.pose.descriptor import choose_joints, choose_translated, describe, groups_of, normalization, units_of
 from mua.pose.encoding import PoseEncoding
-from mua.processes import ALONE, Processes
 from mua.recording import Recording
+from mua.rig.bones import figure_scale
 from mua.rig.moving import moving_joints
 from mua.student.local import body_parts
 from mua.student.model import Student
-from mua.student.optimise import Progress
 from mua.student.sensitivity import measure_sensitivities
 from mua.student.settings import Settings, StageName
-from mua.student.train import Samples, stages, train
-from mua.teachers.bones import figure_scale
+from mua.student.stages import Samples, stages, train
+from mua.training.checkpoint import Checkpoints, run_key
+from mua.training.optimise import Progress
+from mua.training.processes import ALONE, Processes
 
 RANGE_WEIGHT = 0.01  # of a frame of the built-in range of motion: bases are first of all for the user's motion
 GPU_SECONDS = 1.0  # between two questions about the GPU

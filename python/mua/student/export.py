@@ -6,10 +6,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mua import model
 from mua.arrays import Array
-from mua.channels import APPEARANCE, GEOMETRY
-from mua.levels import LEVELS
+from mua.avatar import model
+from mua.channels import APPEARANCE, GEOMETRY, LEVELS
 from mua.pose.encoding import Components, Normalization
 from mua.student.model import Branch, Coarse, Detail, Student, linear_layers
 from mua.wavelets import filters

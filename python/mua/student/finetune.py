@@ -6,10 +6,11 @@ from contextlib import contextmanager
 import torch
 from torch import Tensor, nn
 
-from mua.processes import Share
 from mua.student.model import Branch
-from mua.student.optimise import Run, optimise
-from mua.student.settings import Generalisation, Schedule
+from mua.student.settings import Generalisation
+from mua.training.optimise import Run, optimise
+from mua.training.processes import Share
+from mua.training.schedule import Schedule
 from mua.wavelets import Bands
 
 LL_WEIGHT = 5.0  # lambda_LL of the paper; lambda_2 = lambda_3 = 1

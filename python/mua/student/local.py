@@ -13,9 +13,9 @@ from scipy.ndimage import distance_transform_edt
 from torch import Tensor
 
 from mua.arrays import Array
-from mua.levels import COARSE_TEXELS, FINE_TEXELS
+from mua.channels import COARSE_TEXELS, FINE_TEXELS
 from mua.pose.encoding import PoseEncoding
-from mua.pose.skeleton import Skeleton
+from mua.pose.joint_steps import joint_steps, nearest_encoded
 from mua.rig.rig import Rig
 from mua.student.model import Branch
 from mua.student.targets import Targets
@@ -82,31 +82,6 @@ def body_parts(rig: Rig, encoding: PoseEncoding) -> Parts:
         fine=torch.from_numpy(sample_owners(image, FINE_TEXELS)),
         vertices=torch.from_numpy(weights.argmax(1)),
     )
-
-
-def joint_steps(skeleton: Skeleton, seen: list[int]) -> Array:
-    """Joints from one of `seen` to another along the skeleton, [n, n] int64; those not in `seen` are passed over.
-
-    What has none of `seen` above it hangs on the first of them.
-    """
-    steps = np.full((len(seen), len(seen)), len(seen))  # more than any way along the tree
-    np.fill_diagonal(steps, 0)
-    carrier = nearest_encoded(skeleton, seen)
-    for column, joint in enumerate(seen[1:], start=1):
-        parent = int(skeleton.parents[joint])
-        above = carrier[parent] if parent >= 0 else 0
-        steps[column, above] = steps[above, column] = 1
-    for via in range(len(seen)):  # Floyd and Warshall
-        steps = np.minimum(steps, steps[:, via, None] + steps[via])
-    return steps
-
-
-def nearest_encoded(skeleton: Skeleton, seen: list[int]) -> Array:
-    """For each joint [J] the column of the nearest of `seen` at or above it; the first where there is none."""
-    columns = np.zeros(len(skeleton.parents), dtype=np.int64)
-    for joint, parent in enumerate(skeleton.parents):  # parents come before children
-        columns[joint] = seen.index(joint) if joint in seen else columns[parent] if parent >= 0 else 0
-    return columns
 
 
 def sample_owners(

@@ -6,8 +6,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
-from mua.levels import COARSE_TEXELS, STATIC_LEVELS
+from mua.channels import APPEARANCE, CHANNELS, COARSE_TEXELS, GEOMETRY, STATIC_LEVELS
 from mua.pose.encoding import Components as StoredComponents
 from mua.pose.encoding import PoseEncoding
 from mua.student.components import Components

@@ -7,7 +7,7 @@ MLP's weights grow without bound as its texels shrink.
 import torch
 from torch import Tensor
 
-from mua.levels import COARSE_TEXELS, FINE_TEXELS
+from mua.channels import COARSE_TEXELS, FINE_TEXELS
 from mua.student.model import Branch
 
 LEVEL_GAINS = (COARSE_TEXELS, COARSE_TEXELS, FINE_TEXELS)  # of LL, D3, D2 over texels: a level doubles a constant

@@ -10,15 +10,15 @@ import math
 import torch
 from torch import Tensor, nn
 
-from mua.levels import COARSE_TEXELS
-from mua.processes import ALONE, Processes, Share
+from mua.channels import COARSE_TEXELS
 from mua.student.coarse import set_pca
 from mua.student.finetune import draw_frames, finetune, weighted
 from mua.student.model import Branch, Coarse, linear_layers
-from mua.student.optimise import Run, optimise
 from mua.student.settings import Settings
 from mua.student.source import Source
 from mua.student.targets import channel_weights, still_channels
+from mua.training.optimise import Run, optimise
+from mua.training.processes import ALONE, Processes, Share
 
 BASIS_START = 0.1  # of a channel's spread
 

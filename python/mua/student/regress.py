@@ -9,15 +9,16 @@ import torch
 from torch import Tensor, nn
 
 from mua.pose.components import INPUT_FLOOR
-from mua.processes import Share
 from mua.student.components import Components
 from mua.student.conditioned import Conditioned
 from mua.student.local import Locality
 from mua.student.model import build_mlp, linear_layers
-from mua.student.optimise import Run, optimise
 from mua.student.points import draw_points
-from mua.student.settings import Generalisation, Schedule
+from mua.student.settings import Generalisation
 from mua.student.smoother import Smooth, Sum, fit_beyond, fit_smoother
+from mua.training.optimise import Run, optimise
+from mua.training.processes import Share
+from mua.training.schedule import Schedule
 
 # Chosen on held-out walks and turns.
 FIRST_LAYER = 0.3  # scale of the first layer's weights at the start: small ones make smooth functions

@@ -10,15 +10,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mua.camera import orbit
+from mua.avatar.camera import orbit
+from mua.avatar.decode import box_of
 from mua.channels import ATTRIBUTES
-from mua.decode import box_of
 from mua.recording import RecordedClip, Recording
 from mua.splatting.posing import TorchRig, pose_splats
 from mua.splatting.projection import Eye
 from mua.splatting.rasterise import rasterise
 from mua.student.model import lowpass_texels
-from mua.student.optimise import Progress, Run
+from mua.training.optimise import Progress, Run
 from mua.wavelets import Bands
 
 STAGE = "picture sensitivities"

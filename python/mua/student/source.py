@@ -5,8 +5,8 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
-from mua.levels import LOWPASS_TEXELS
-from mua.processes import ALONE, Processes
+from mua.channels import LOWPASS_TEXELS
+from mua.training.processes import ALONE, Processes
 from mua.wavelets import Bands
 
 HELD_BYTES = 1 << 30  # subbands up to this size are kept in memory, larger ones are read batch by batch

@@ -1,5 +1,5 @@
 // A camera that turns about its target, the two eyes beside it, and those of a headset. Matrices are row-major and act on
-// columns; eye space is right-handed, Y up, looking along -Z. References: python/mua/camera.py, python/mua/player/viewpoint.py.
+// columns; eye space is right-handed, Y up, looking along -Z. References: python/mua/avatar/camera.py, python/mua/player/viewpoint.py.
 
 /** @typedef {import("./player.js").CameraState} CameraState */
 /**

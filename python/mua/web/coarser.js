@@ -1,4 +1,4 @@
-// Coarser levels of an avatar's texture: every 2 x 2 texels become one, again and again. References: python/mua/coarser.py,
+// Coarser levels of an avatar's texture: every 2 x 2 texels become one, again and again. References: python/mua/avatar/coarser.py,
 // section 9 of schemas/README.md.
 
 import { expanded } from "./format/tensors.js";

@@ -1,5 +1,5 @@
 // At which level of detail avatars are shown: by the size of their texels on the screen, and by what all may cost. Reference:
-// python/mua/level_choice.py; tests/golden/level_choice.json holds both to it.
+// python/mua/avatar/level_choice.py; tests/golden/level_choice.json holds both to it.
 
 /**
  * @typedef {object} Seen an avatar before the eyes

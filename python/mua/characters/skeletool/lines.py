@@ -8,7 +8,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.errors import InputError
-from mua.signature import require_kind
+from mua.files.signature import require_kind
 
 SHOWN = 40  # letters of a value that a sentence shows
 SKELETON = "Skeletool Skeleton Definition V1.0"

@@ -1,0 +1,73 @@
+"""At which level of detail avatars are shown: by the size of their texels on the screen, and by what all may cost.
+
+unity-package/Runtime/LevelChoice.cs and web/level_choice.js choose alike; tests/golden/level_choice.json holds all to
+it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.avatar.camera import Camera
+
+LARGEST_TEXEL = 0.65  # pixels along a side, up to which a texel is hardly told from a smaller one
+HYSTERESIS = 1.15  # times: texels must look so much larger before a finer level comes back
+
+
+@dataclass(frozen=True)
+class Seen:
+    """An avatar before the eyes."""
+
+    distance: float  # metres
+    texel: float  # pixels along a side of a texel of its finest level
+    counts: tuple[int, ...]  # splats by level, the finest first
+    shown: int = 0  # level at present
+
+
+def texel_pixels(
+    length: float,  # of a texel, metres
+    box: Array,  # [2, 3] of the avatar in the world, metres
+    cameras: Sequence[Camera],  # of one eye or two
+) -> tuple[float, float]:
+    """Metres of the box from the middle of the eyes, and pixels along a side of a texel at its nearest point."""
+    camera = cameras[0]
+    eye = np.mean([camera.position for camera in cameras], axis=0)
+    away = float(np.linalg.norm(np.maximum(np.maximum(box[0] - eye, eye - box[1]), 0)))
+    focal = float(camera.projection[1, 1]) * camera.screen[1] / 2
+    return away, length * focal / max(away, camera.near)
+
+
+def choose_level(seen: Seen) -> int:
+    """The coarsest level with texels up to LARGEST_TEXEL; one that is shown stays until they are a little larger."""
+    level = 0
+    for coarser in range(1, len(seen.counts)):
+        largest = LARGEST_TEXEL * (HYSTERESIS if coarser <= seen.shown else 1)
+        if seen.texel * 2**coarser <= largest:
+            level = coarser
+    return level
+
+
+def choose_levels(
+    avatars: Sequence[Seen],
+    budget: int | None,  # splats of all together; None: as many as there are
+) -> list[int]:
+    """A level for each, no finer than it is worth: the nearest first has what it is worth, as far as the budget goes.
+
+    Every other one is kept the splats of its coarsest level; where not even these fit, all are at their coarsest. Of
+    two that are about as near, the one that is shown finer now counts as nearer, so that they do not swap to and fro.
+    """
+    worth = [choose_level(seen) for seen in avatars]
+    if budget is None:
+        return worth
+    spare = budget - sum(seen.counts[-1] for seen in avatars)
+    levels = [len(seen.counts) - 1 for seen in avatars]
+    for i in sorted(range(len(avatars)), key=lambda i: avatars[i].distance * HYSTERESIS ** avatars[i].shown):
+        counts = avatars[i].counts
+        for level in range(worth[i], len(counts)):
+            if counts[level] - counts[-1] <= spare:
+                levels[i] = level
+                spare -= counts[level] - counts[-1]
+                break
+    return levels

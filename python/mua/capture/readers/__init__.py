@@ -1,0 +1,1 @@
+"""Captures in the layouts of other programs: their cameras, poses and keypoints."""

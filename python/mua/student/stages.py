@@ -1,0 +1,297 @@
+"""Distillation of training frames into a student: closed-form start, regression, fine-tuning."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import torch
+from torch import Tensor
+
+from mua.channels import APPEARANCE, CHANNELS, GEOMETRY
+from mua.errors import InputError
+from mua.rig.bones import figure_scale
+from mua.student.bases import factorize_branch
+from mua.student.branches import each_branch, side_by_side
+from mua.student.coarse import fit_coarse
+from mua.student.components import Components
+from mua.student.conditioned import fold
+from mua.student.finetune import BASIS_RATE, finetune, picture_loss, relative, subband_loss
+from mua.student.local import Parts, texture_locality
+from mua.student.model import Branch, Student, lowpass_texels
+from mua.student.negligible import drop_negligible, freeze_channels
+from mua.student.paper_recipe import fit_branch_from_noise, fit_coarse_from_noise
+from mua.student.regress import CLOTH, LIGHT, regress
+from mua.student.sensitivity import STAGE as SENSITIVITIES
+from mua.student.settings import Settings, StageName
+from mua.student.source import Source, hold
+from mua.student.targets import Targets, channel_weights, joint_targets, least_spread, still_channels
+from mua.training.checkpoint import Checkpoints
+from mua.training.memory import release_memory
+from mua.training.optimise import Progress, Report, Run
+from mua.training.processes import ALONE, Processes
+from mua.wavelets import Bands
+
+BRANCHES = ("geometry", "appearance")
+# What bases learn from images holds for unseen motion too, while faster MLPs learn the frames by heart.
+SEEN_BASIS_RATE = 12.0  # learning rate of the bases relative to that of the MLP
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """F training frames as the student sees them."""
+
+    descriptors: Tensor  # [F, D] as `mua.pose.descriptor` makes them
+    meshes: Tensor  # [F, V, 3] canonical vertices, metres
+    subbands: Source
+    mean_texture: Tensor  # [N, 23] mean over the training frames at the valid texels
+    parts: Parts | None = None  # of the character; without them, or with a fade of 1, nothing is local
+    weights: Tensor | None = None  # [F] how much each frame counts; the mean texture is over those of 1; None: all
+    sensitivities: Callable[[Run], Bands] | None = None  # of images to samples; without them, the paper's loss counts
+
+    def __len__(self) -> int:
+        return len(self.descriptors)
+
+
+def train(
+    student: Student,
+    samples: Samples,
+    *,
+    settings: Settings,
+    checkpoints: Checkpoints,
+    device: torch.device,
+    report: Report,
+    only: StageName | None = None,
+    processes: Processes = ALONE,
+) -> None:
+    """Train `student` (its components set) in place on `samples`; resumes from `checkpoints`.
+
+    Several `processes` share the work and end with the same student; the first of them reports and keeps checkpoints.
+    With `only` one stage is run up to its checkpoints, which any later run takes up; the student is then unfinished.
+    Raises InputError where the recipe has no such stage, or what it starts from is not there.
+    """
+    checkpoints = replace(checkpoints, processes=processes)
+    if only is not None:
+        require_earlier(only, settings, checkpoints)
+    if not processes.first:
+        report = _silent
+    size = figure_scale(samples.meshes[0].numpy())
+    run = Run(torch.Generator().manual_seed(settings.seed), checkpoints, report, device, processes, size)
+    student.to(device)
+    student.load_state_dict(run.once("components", student.read_buffers), strict=False)
+    descriptors, components = samples.descriptors.to(device), student.components
+    random = settings.start == "random"
+    counts = None if samples.weights is None else samples.weights.to(device)
+    inputs = student.read(descriptors) if random else student.normalize(descriptors)
+    start = (
+        fit_coarse_from_noise
+        if random
+        else partial(fit_coarse, components=components, parts=samples.parts, weights=counts)
+    )
+    if only in (None, "coarse"):
+        start(student.coarse, inputs, samples.meshes.to(device), settings=settings, run=run.alone("coarse mesh"))
+    release_memory()
+    if only == "coarse":
+        return
+    seen = None if random else _sensitivities(samples, run.alone(SENSITIVITIES))
+    learn = partial(
+        fit_branch, components=components, parts=samples.parts, until=only, sensitivities=seen, frames=counts
+    )
+    fit = fit_branch_from_noise if random else learn
+
+    def teach(name: str, branch: Branch, channels: slice, run: Run) -> None:
+        source = hold(
+            samples.subbands,
+            channels,
+            frames=len(samples),
+            size=student.size,
+            device=device,
+            processes=processes,
+            together=len(BRANCHES) if side_by_side(run) else 1,
+        )
+        fit(branch, inputs, source, channels=channels, settings=settings, name=name, run=run.alone(name))
+
+    branches = zip(BRANCHES, student.branches, (GEOMETRY, APPEARANCE), strict=True)
+    each_branch([partial(teach, *branch) for branch in branches], run)
+    if only is not None:
+        return
+    low = student.mean_lowpass() if counts is None else mean_lowpass(student, samples)
+    student.static.copy_(samples.mean_texture.to(device).T - low)
+    student.requires_grad_(False).eval()
+
+
+def mean_lowpass(student: Student, samples: Samples) -> Tensor:
+    """What the mean subbands of the frames that the mean texture is over put into the valid texels [23, N]."""
+    assert samples.weights is not None
+    rows = torch.nonzero(samples.weights == 1)[:, 0]
+    means = [
+        Bands(*(band.mean(0, keepdim=True) for band in samples.subbands(slice(channel, channel + 1), rows)))
+        for channel in range(CHANNELS)
+    ]
+    ll, d3, d2 = zip(*means, strict=True)
+    mean = Bands(torch.cat(ll, dim=1), torch.cat(d3, dim=2), torch.cat(d2, dim=2))
+    device = student.static.device
+    return lowpass_texels(Bands(*(band.to(device) for band in mean)), student.wavelet, student.texels)[0]
+
+
+def _sensitivities(samples: Samples, run: Run) -> Bands | None:
+    """What the samples measure, kept for a run that goes on; None where they measure nothing."""
+    measure = samples.sensitivities
+    if measure is None:
+        return None
+    return Bands(**run.once(SENSITIVITIES, lambda: measure(run)._asdict()))
+
+
+def _silent(_: Progress) -> None:
+    pass
+
+
+def stages(settings: Settings) -> dict[StageName, tuple[str, ...]]:
+    """The stages of a recipe in order, and the names of the checkpoints that each leaves."""
+    if settings.start == "random":
+        coarse = ("components", "coarse components", "coarse mesh")
+        return {"coarse": coarse, "fine-tuning": tuple(f"{name} descent" for name in BRANCHES)}
+    endings: dict[StageName, tuple[str, ...]] = {
+        "bases": ("bases",),
+        "regression": ("targets", "coefficients"),
+        "fine-tuning": ("fine-tuning",),
+    }
+    kept = {stage: tuple(f"{name} {end}" for end in ends for name in BRANCHES) for stage, ends in endings.items()}
+    kept["bases"] = (SENSITIVITIES, *kept["bases"])
+    return {"coarse": ("components", "coarse components", "coarse mesh"), **kept}
+
+
+def require_earlier(only: StageName, settings: Settings, checkpoints: Checkpoints) -> None:
+    """Raises InputError where the recipe has no stage `only`, or a checkpoint that it starts from is not finished."""
+    needed = stages(settings)
+    if only not in needed:
+        raise InputError(f"--stage {only}: this recipe has no such stage; expected {' or '.join(needed)}")
+    for stage, names in needed.items():
+        if stage == only:
+            return
+        for name in names:
+            # nothing that follows starts from the coarse mesh; sensitivities are measured again where they are missing
+            if stage != "coarse" and name != SENSITIVITIES and not checkpoints.finished(name):
+                raise InputError(
+                    f"--stage {only}: {checkpoints.directory} holds no finished {name!r}; run --stage {stage} first"
+                )
+
+
+def fit_branch(
+    branch: Branch,
+    inputs: Tensor,  # [F, D] normalised descriptors
+    source: Source,  # of the branch's channels, counted from 0
+    *,
+    channels: slice,
+    components: Components,
+    settings: Settings,
+    name: str,
+    run: Run,
+    parts: Parts | None = None,
+    until: StageName | None = None,
+    sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
+    frames: Tensor | None = None,  # [F] how much each frame counts
+) -> None:
+    """Train one branch: closed-form bases, regression of the MLP on their coefficients, joint fine-tuning.
+
+    Stops after the stage `until`.
+    """
+    weights = start_branch(
+        branch,
+        inputs,
+        source,
+        channels=channels,
+        components=components,
+        settings=settings,
+        name=name,
+        run=run,
+        parts=parts,
+        until=until,
+        sensitivities=sensitivities,
+        frames=frames,
+    )
+    if until in ("bases", "regression"):
+        return
+    release_memory()
+    error, basis_rate = subband_loss, BASIS_RATE
+    if sensitivities is not None:
+        error = partial(picture_loss, sensitivities=relative(sensitivities.of(channels), weights))
+        basis_rate = SEEN_BASIS_RATE
+    stage = f"{name} fine-tuning"
+    finetune(
+        branch,
+        components.hold(components(inputs)),
+        lambda rows: source(slice(0, branch.channels), rows),
+        weights=weights,
+        schedule=settings.finetune,
+        stage=stage,
+        run=run.alone(stage),
+        weight_decay=settings.generalisation.weight_decay,
+        basis_rate=basis_rate,
+        error=error,
+        frames=frames,
+    )
+    fold(branch)
+
+
+def start_branch(
+    branch: Branch,
+    inputs: Tensor,  # [F, D] normalised descriptors
+    source: Source,  # of the branch's channels, counted from 0
+    *,
+    channels: slice,
+    components: Components,
+    settings: Settings,
+    name: str,
+    run: Run,
+    parts: Parts | None = None,
+    until: StageName | None = None,
+    sensitivities: Bands | None = None,  # of images to the samples of all 23 channels, of one frame
+    frames: Tensor | None = None,  # [F] how much each frame counts
+) -> Tensor:
+    """Closed-form bases, and an MLP taught their coefficients, conditioned for what follows; not if `until` "bases".
+
+    Returns the weight [C] of each channel's error.
+    """
+    stage = f"{name} bases"
+    flat, variance = factorize_branch(
+        branch,
+        source,
+        frames=len(inputs),
+        settings=settings,
+        stage=stage,
+        run=run.alone(stage),
+        sensitivities=None if sensitivities is None else sensitivities.of(channels),
+        counts=frames,
+    )
+    release_memory()
+    weights = channel_weights(variance, channels, size=run.size)
+    if until == "bases":
+        return weights
+    freeze_channels(branch, flat, still_channels(variance, channels, size=run.size))
+    drop_negligible(branch, flat, least_spread(channels, size=run.size).to(flat))
+    rank = min(settings.hidden, len(inputs))  # the last layer's rank is that of the hidden layer before it
+    stage = f"{name} coefficients"
+    own = run.alone(stage)
+    targets = Targets(
+        **own.once(
+            f"{name} targets",
+            lambda: vars(joint_targets(branch, flat, weights, rank=rank, generator=own.generator, frames=frames)),
+        )
+    )
+    light, fade = channels == APPEARANCE, settings.generalisation.fade
+    local = None if parts is None else texture_locality(parts, branch, targets, weights, fade=fade, light=light)
+    branch.mlp = regress(
+        inputs,
+        targets.coordinates,
+        components=components,
+        expand=targets.expand,
+        locality=local,
+        own=None if frames is None else frames == 1,
+        beyond=LIGHT if light else CLOTH,
+        hidden=settings.hidden,
+        schedule=settings.regression,
+        stage=stage,
+        run=own,
+        generalisation=settings.generalisation,
+    )
+    return weights

@@ -1,0 +1,1 @@
+"""A rigged character that moves like cloth and soft tissue, as a teacher."""

@@ -1,0 +1,65 @@
+"""The simulated character without simulation and light: what its splats show of the character's own surface."""
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.pose.clip import Stretches
+from mua.pose.skeleton import Pose
+from mua.recording.teacher import Light, TeacherFrame
+from mua.rig.bones import figure_scale
+from mua.rig.build import build_rig
+from mua.rig.character import Character
+from mua.rig.skinning import transform
+from mua.teachers.simulated.chords import straighten
+from mua.teachers.simulated.smoothing import TURN_WAVELENGTH, low_pass
+from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface
+from mua.teachers.simulated.texels import SurfaceTexels
+from mua.texture.surfels import SurfaceFrames
+
+
+class StillTeacher:
+    """Splats of a character that skinning alone moves, in the colours of its textures; `rig` is what they stand on."""
+
+    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000) -> None:
+        """Prepare a texture of `texels` x `texels`."""
+        mesh = character.mesh
+        self.rig, self._template = build_rig(character, texels=texels, template_vertices=template_vertices)
+        self._character = character
+        self._skinned = SkinnedSurface(character)
+        self._surface = SurfaceFrames(mesh.vertices, mesh.faces)
+        self._smooth_turn = low_pass(mesh.vertices, mesh.faces, TURN_WAVELENGTH * figure_scale(mesh.vertices))
+        self._texels = SurfaceTexels(character, self.rig)
+
+    def frame(
+        self,
+        pose: Pose,
+        stretches: Stretches | None = None,  # of this frame alone
+    ) -> TeacherFrame:
+        """One pose; its splats turn and stretch with the surface as the simulated ones do."""
+        joints = self._character.skeleton.skinning(pose.rotations, pose.translations)
+        return self._whole(pose, self._skinned.posed(joints, stretches))
+
+    def _whole(self, pose: Pose, surface: MovedSurface) -> TeacherFrame:
+        """The frame whose dense surface lies there."""
+        joints, dual, moved = surface.joints, surface.dual, surface.places
+        bind = self._character.mesh.vertices
+        canonical = transform(rotation.dual_inverse(dual), moved)
+        coarse = self._coarse(canonical - bind)
+        turn, strain = self._surface(moved)
+        turn = rotation.multiply(rotation.conjugate(dual[:, :4]), turn)
+        turn = rotation.normalize(self._smooth_turn(np.where(turn[:, :1] < 0, -turn, turn)))
+        light = self._light(joints, dual, moved, turn)
+        texture = self._texels.texture(canonical - bind, coarse, turn=turn, moved=moved, strain=strain, light=light)
+        mesh = (self.rig.mesh.vertices + coarse).astype(np.float32)
+        places = self._texels.places
+        straighten(texture, self.rig, joints=joints, mesh=mesh, moved=moved, canonical=canonical, places=places)
+        return TeacherFrame(pose=pose, mesh=mesh, texture=texture)
+
+    def _coarse(self, displacement: Array) -> Array:
+        """What of a displacement [V, 3] the canonical mesh takes on, [T, 3]; the texels' offsets take the rest."""
+        return np.zeros_like(displacement[self._template])
+
+    def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:
+        """Light on the surface at `moved` [V, 3], in canonical space."""
+        return Light(gain=np.ones_like(moved), sheen=np.zeros_like(moved))

@@ -1,0 +1,60 @@
+"""The simulated character: a teacher made of a rigged, textured character, motion and position-based dynamics.
+
+It stands in for a captured teacher. Its surface follows the linear blend of joints that the character's file means, and
+is defined in canonical space: the simulated vertices are brought back to the bind pose by the dual quaternions that
+carry the avatar's texels, and a texel lies at a fixed point of that surface. What of the deformation is longer than
+about 20 cm goes into the canonical mesh, the rest into the texels' offsets; posed by T_tex, both together are the
+teacher's surface. Scales that a clip animates, which rigid joints do not carry, are put on in canonical space, after
+the dynamics.
+"""
+
+from collections.abc import Container, Iterator
+
+import numpy as np
+
+from mua import rotation
+from mua.arrays import Array
+from mua.pose.clip import Clip
+from mua.pose.descriptor import heading_of
+from mua.pose.skeleton import Pose
+from mua.recording.teacher import Light, TeacherFrame
+from mua.rig.bones import figure_scale
+from mua.rig.character import Character
+from mua.teachers.simulated.shading import shade, visibility
+from mua.teachers.simulated.simulated_surface import SimulatedSurface
+from mua.teachers.simulated.smoothing import low_pass
+from mua.teachers.simulated.still import StillTeacher
+from mua.texture.surfels import vertex_normals
+
+COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the canonical mesh, shorter the offsets
+
+
+class SimulatedTeacher(StillTeacher):
+    """Teacher frames of a character (mua.recording.teacher) that hangs loose and stands in a light."""
+
+    def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000, seed: int = 0) -> None:
+        """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""
+        super().__init__(character, texels=texels, template_vertices=template_vertices)
+        mesh = character.mesh
+        self._moving = SimulatedSurface(character, seed=seed)
+        self._normals = vertex_normals(mesh.vertices, mesh.faces)
+        self._longer = low_pass(mesh.vertices, mesh.faces, COARSE_WAVELENGTH * figure_scale(mesh.vertices))
+
+    def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
+        """Simulate `clip` from rest in its first pose; yield whole frames where wanted, else poses."""
+        for frame, moved in enumerate(self._moving.frames(clip)):
+            pose = Pose(clip.rotations[frame], clip.translations[frame])
+            yield self._whole(pose, moved) if frame in wanted else pose
+
+    def _coarse(self, displacement: Array) -> Array:
+        """What of a displacement [V, 3] is long enough for the canonical mesh, [T, 3]."""
+        return np.asarray(self._longer(displacement)[self._template])
+
+    def _light(self, joints: Array, dual: Array, moved: Array, turn: Array) -> Light:
+        """Light on the surface at `moved` [V, 3], brought to canonical space."""
+        bones = self._moving.bones
+        normals = rotation.rotate(rotation.multiply(dual[:, :4], turn), self._normals)
+        visible = visibility(moved, normals, bones.posed(joints), bones.radii)
+        heading = heading_of(joints[self._character.skeleton.root, :4])
+        light = shade(normals, visible, heading=heading)
+        return Light(gain=light.gain, sheen=rotation.rotate(rotation.conjugate(dual[:, :4]), light.sheen))

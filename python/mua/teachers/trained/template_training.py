@@ -1,0 +1,202 @@
+"""The training of the drivable template: first the nodes' motion, then the vertices' offsets beside it.
+
+What was seen of each frame decides: a surface, outlines, tracked points, or several of these. A killed run goes on
+from its last checkpoint and ends in the same bytes.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Protocol
+
+import torch
+from torch import Tensor, nn
+
+from mua.pose.encoding import PoseEncoding
+from mua.rig.bones import figure_scale
+from mua.rig.rig import Rig
+from mua.teachers.trained.drivable_template import DrivableTemplate
+from mua.teachers.trained.mesh_losses import Cloud, Samples, chamfer, edges_of, roughness
+from mua.teachers.trained.motion_deformation import Deformed, GraphSizes, MotionDeformation
+from mua.teachers.trained.parameters import learning, same_bytes
+from mua.teachers.trained.silhouette import Outline, silhouette_error
+from mua.teachers.trained.track_losses import Tracks, track_error
+from mua.training.checkpoint import Checkpoints, run_key
+from mua.training.optimise import Report, Run, optimise
+from mua.training.processes import ALONE, Processes
+from mua.training.schedule import Schedule
+
+STAGES = ("template nodes", "template offsets")
+SEEDS = 1 << 62
+UNIT = 0.01  # metres on a person: an error of 1 in every term that is a length
+
+
+@dataclass(frozen=True)
+class TemplateWeights:
+    """What each term counts; lengths are in squares of UNIT."""
+
+    surface: float = 1.0
+    tracks: float = 1.0
+    silhouette: float = 100.0  # of the square of the difference in coverage, over what the mask covers
+    rigid: float = 0.1  # of nodes from where neighbours would carry them
+    smooth: float = 1.0  # of the offsets at both ends of an edge
+    offset: float = 0.05  # of the offsets themselves
+
+
+@dataclass(frozen=True)
+class TemplateSettings:
+    """Sizes and schedules of the template; the batch of a schedule is a number of frames."""
+
+    sizes: GraphSizes = field(default_factory=GraphSizes)
+    nodes: Schedule = field(default_factory=lambda: Schedule(steps=600, batch=4, lr=1e-2, warm_up=0.05))
+    offsets: Schedule = field(default_factory=lambda: Schedule(steps=900, batch=4, lr=1e-2, warm_up=0.05))
+    samples: int = 4000  # points of the template that are compared with a surface
+    weights: TemplateWeights = field(default_factory=TemplateWeights)
+    weight_decay: float = 1e-2
+    seed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """What was seen of one frame."""
+
+    cloud: Cloud | None = None
+    outlines: Sequence[Outline] = ()
+    tracks: Tracks | None = None
+
+
+class Observations(Protocol):
+    """F frames of a person."""
+
+    @property
+    def descriptors(self) -> Tensor:
+        """[F, D] of mua.pose.descriptor."""
+        ...
+
+    @property
+    def joints(self) -> Tensor:
+        """[F, J, 8] bind pose to world."""
+        ...
+
+    def observe(self, frame: int, generator: torch.Generator) -> Observed:
+        """What was seen of a frame; where that is a choice, as of cameras, the generator makes it."""
+        ...
+
+
+def template_of(rig: Rig, encoding: PoseEncoding, settings: TemplateSettings) -> DrivableTemplate:
+    """A template that is not trained yet: skinning alone moves it."""
+    return DrivableTemplate(rig, MotionDeformation(rig, encoding, settings.sizes))
+
+
+def training_run(
+    observations: Observations,
+    rig: Rig,
+    encoding: PoseEncoding,
+    settings: TemplateSettings,
+    *,
+    directory: Path,
+    report: Report,
+    device: torch.device | None = None,
+    processes: Processes = ALONE,
+) -> Run:
+    """What the stages of this training share; its key tells it from others in the same directory."""
+    key = run_key((settings, encoding), [observations.descriptors, observations.joints])
+    return Run(
+        torch.Generator().manual_seed(settings.seed),
+        Checkpoints(directory, key, processes),
+        report,
+        device or torch.device("cpu"),
+        processes,
+        figure_scale(rig.mesh.vertices),
+    )
+
+
+def fit_template(
+    template: DrivableTemplate, observations: Observations, rig: Rig, settings: TemplateSettings, *, run: Run
+) -> DrivableTemplate:
+    """Train a template of `template_of` in place, as one of the stages of a run; returns it."""
+    deformation = template.deformation
+    assert isinstance(deformation, MotionDeformation)
+    deformation.prepare(observations.descriptors.cpu(), run.alone("template").generator)
+    template.to(run.device)
+    lesson = _Lesson(template, observations, rig, settings, size=run.size)
+    schedules = (settings.nodes, settings.offsets)
+    nodes = [*deformation.node_features.parameters(), *deformation.node_motion.parameters()]
+    offsets = [*deformation.vertex_features.parameters(), *deformation.vertex_offsets.parameters()]
+    with same_bytes():
+        for stage, schedule, learnt in zip(STAGES, schedules, (nodes, [*nodes, *offsets]), strict=True):
+            own = run.alone(stage)
+            with learning(template, learnt):
+                groups: list[dict[str, object]] = [{"params": learnt, "weight_decay": settings.weight_decay}]
+                loss = partial(_mean_loss, frames=len(observations.descriptors), schedule=schedule, run=own)
+                lesson.offsets = stage == STAGES[-1]
+                optimise(lesson, loss, schedule=schedule, parameters=groups, stage=stage, run=own)
+    return template.requires_grad_(False).eval()
+
+
+class _Lesson(nn.Module):
+    """The template's loss over frames."""
+
+    def __init__(
+        self,
+        template: DrivableTemplate,
+        observations: Observations,
+        rig: Rig,
+        settings: TemplateSettings,
+        *,
+        size: float,
+    ) -> None:
+        super().__init__()
+        self.template = template
+        self.offsets = False
+        self._observations, self._weights = observations, settings.weights
+        self._samples = Samples.of(rig.mesh, settings.samples)
+        self._edges = edges_of(rig.mesh)
+        self._unit, self._size = (UNIT * size) ** 2, size
+
+    def forward(self, frames: Tensor, seeds: Tensor) -> Tensor:
+        """The mean loss over frames [B]; a seed [B] for what each frame's observation draws."""
+        deformation = self.template.deformation
+        assert isinstance(deformation, MotionDeformation)
+        device = deformation.mean.device
+        descriptors, joints = (
+            values[frames].to(device) for values in (self._observations.descriptors, self._observations.joints)
+        )
+        deformed = deformation.deform(descriptors, offsets=self.offsets)
+        posed = self.template.pose(deformed.vertices, joints).posed
+        seen = [
+            self._away(own, self._observations.observe(frame, torch.Generator().manual_seed(seed)))
+            for frame, seed, own in zip(frames.tolist(), seeds.tolist(), posed, strict=True)
+        ]
+        return torch.stack(seen).mean() + self._restraint(deformation, deformed)
+
+    def _away(self, posed: Tensor, observed: Observed) -> Tensor:
+        """How far a posed template [V, 3] is from what was seen."""
+        weights, loss = self._weights, posed.new_zeros(())
+        if observed.cloud is not None:
+            loss = loss + weights.surface / self._unit * chamfer(posed, self._samples, observed.cloud)
+        if observed.tracks is not None:
+            loss = loss + weights.tracks / self._unit * track_error(posed, observed.tracks, size=self._size)
+        if observed.outlines:
+            loss = loss + weights.silhouette * silhouette_error(posed, self._samples, observed.outlines)
+        return loss
+
+    def _restraint(self, deformation: MotionDeformation, deformed: Deformed) -> Tensor:
+        """Keeps the deformation smooth: what lies side by side moves alike."""
+        weights = self._weights
+        rigid = deformation.graph.unlike(deformed.turns, deformed.moves)
+        smooth = roughness(deformed.offsets, self._edges)
+        offset = deformed.offsets.square().sum(-1).mean()
+        return (weights.rigid * rigid + weights.smooth * smooth + weights.offset * offset) / self._unit
+
+
+def _mean_loss(model: Callable[..., Tensor], *, frames: int, schedule: Schedule, run: Run) -> Tensor:
+    """This process's part of the mean loss over a batch that all processes draw alike."""
+    drawn = torch.randint(frames, (schedule.batch,), generator=run.generator)
+    seeds = torch.randint(SEEDS, (schedule.batch,), generator=run.generator)
+    own = slice(run.processes.rank, None, run.processes.count)
+    count = len(drawn[own])
+    if not count:  # fewer frames than processes: one that counts nothing
+        return 0 * model(drawn[:1], seeds[:1])
+    return model(drawn[own], seeds[own]) * (count * run.processes.count / len(drawn))

@@ -1,0 +1,329 @@
+"""The main job on a very small order, and every way in which bad input ends it."""
+
+import dataclasses
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import process
+from PIL import Image
+from recordings import content
+from silent import Silent
+from small_bakes import SMALL
+from synthetic_avatar import synthetic_avatar
+
+from mua.asset import read
+from mua.baking.distillation import Baked
+from mua.baking.order import Order
+from mua.baking.pipeline import bake, parts
+from mua.baking.plan import HeldOut, plan, split
+from mua.baking.recorded import recording_key
+from mua.baking.sources import load_character
+from mua.channels import ATTRIBUTES
+from mua.errors import InputError
+from mua.files.lock import DirectoryLock
+from mua.pose.clip import Clip, Stretches, is_range
+from mua.pose.encoding import RATE
+from mua.pose.resample import resample
+from mua.recording import PlannedClip, Recording
+from mua.rig.bounds import playback_bounds
+
+
+@pytest.fixture(scope="module")
+def baked(tmp_path_factory: pytest.TempPathFactory) -> Baked:
+    directory = tmp_path_factory.mktemp("bake")
+    order = Order(directory / "a.muaavatar", directory / "work", SMALL, "cpu")
+    return bake(order, Silent())
+
+
+def test_leaves_an_avatar_that_reads_back(baked: Baked) -> None:
+    avatar = read(baked.output)
+    assert avatar.rig.texels.size == 64
+    assert avatar.thumbnail
+
+
+def test_the_file_holds_the_clips_of_the_character_whole_and_by_name(baked: Baked) -> None:
+    """Not what was recorded of them: without --hold-out the ends are recorded apart."""
+    stored, given = read(baked.output).clips, load_character(None, uv="auto", seed=0).clips
+    assert [(clip.name, len(clip)) for clip in stored] == [(c.name, len(resample(c, RATE))) for c in given]
+    assert baked.stored.clips == len(given)
+    assert 0 < baked.stored.clip_bytes < baked.stored.file_bytes == baked.output.stat().st_size
+
+
+def test_the_file_holds_triangles_over_its_texels(baked: Baked) -> None:
+    avatar = read(baked.output)
+    assert avatar.surface
+    texels = avatar.rig.texels
+    assert len(np.unique(avatar.surface.triangles(texels))) > 0.9 * len(texels.texels)
+
+
+def recording_of(directory: Path) -> Recording:
+    (found,) = (path for path in (directory / "work").glob("recording-*") if path.is_dir())
+    return Recording(found)
+
+
+def test_the_range_of_motion_is_trained_on_and_nothing_else(baked: Baked) -> None:
+    """Neither measured, pictured nor played; but the bounds hold it."""
+    recording, avatar = recording_of(baked.output.parent), read(baked.output)
+    ranged = [clip for clip in recording.clips if is_range(clip.name)]
+    assert sum(len(clip.recorded) for clip in ranged) == recording.count() - SMALL.frames == SMALL.frames // 4
+    assert not any(clip.held_out for clip in ranged)
+    assert not any(is_range(frame.clip.name) for frame in recording.whole_frames())
+    assert not any(is_range(clip.name) for clip in avatar.clips)
+    measured = {clip.name for clip in recording.clips if clip.held_out and len(clip.recorded)}
+    assert set(baked.errors) == {"training", *measured}
+    assert baked.errors["training"].frames == SMALL.frames
+    box, own = playback_bounds(recording.rig, ranged), playback_bounds(recording.rig, avatar.clips)
+    assert (avatar.bounds[0] <= box[0]).all()
+    assert (avatar.bounds[1] >= box[1]).all()
+    assert (own[0] > box[0]).any()
+    assert (own[1] < box[1]).any()
+
+
+def test_without_the_range_the_same_is_recorded_of_the_users_motion(
+    baked: Baked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Enough(Exception):
+        pass
+
+    def stop(*_: object) -> None:
+        raise Enough
+
+    monkeypatch.setattr("mua.baking.pipeline.teach", stop)
+    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", motion_range="none")
+    with pytest.raises(Enough):
+        bake(order, Silent())
+    one, other = recording_of(tmp_path), recording_of(baked.output.parent)
+    character = load_character(None, uv="auto", seed=0)
+    training, held = split([resample(clip, RATE) for clip in character.clips], ())
+    planned = plan(training, held, frames=SMALL.frames)
+    assert one.directory.name == f"recording-{recording_key(parts(order, character), planned)}"
+    assert one.count() == SMALL.frames
+    for kind in (False, True):
+        rows = range(one.count(kind))
+        np.testing.assert_array_equal(one.meshes(rows, held_out=kind), other.meshes(rows, held_out=kind))
+        for a, b in zip(*(which.subbands(slice(None), rows, held_out=kind) for which in (one, other)), strict=True):
+            np.testing.assert_array_equal(a, b)
+    for a, b in zip(one.clips, other.clips, strict=False):
+        assert a.name == b.name
+        np.testing.assert_array_equal(a.recorded, b.recorded)
+        np.testing.assert_array_equal(a.rotations, b.rotations)
+
+
+def test_the_file_says_what_was_held_out(baked: Baked) -> None:
+    walk = read(baked.output).clips[0]
+    assert f"held out of training: walk from frame {len(walk) - len(walk) // 5}, turn" in read(baked.output).notes
+    told = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert told["held_out_from"]["walk"] == len(walk) - len(walk) // 5
+
+
+def test_leaves_a_contact_sheet_and_figures(baked: Baked) -> None:
+    with Image.open(baked.sheet) as sheet:
+        assert np.asarray(sheet).std() > 0
+    told = json.loads(baked.output.with_name("a_errors.json").read_text())
+    assert set(told["groups"]["training"]["rms"]) == set(ATTRIBUTES)
+    assert "explained" in baked.figures.read_text()
+
+
+def test_baselines_stand_in_the_only_possible_order(baked: Baked) -> None:
+    """Best coefficients beat the mean, and full bands beat best coefficients, on frames trained on."""
+    errors = baked.errors["training"]
+    for attribute in ("offset", "rotation", "SH"):
+        assert errors.rms(attribute, "bands") < errors.rms(attribute, "best") < errors.rms(attribute, "mean")
+
+
+def test_one_worker_and_several_leave_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
+    bake(Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", jobs=2), Silent())
+    (mine,), (theirs,) = (list(path.glob("recording-*")) for path in (tmp_path / "work", baked.output.parent / "work"))
+    assert content(mine) == content(theirs)
+    assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
+
+
+MESH = ("vertices", "faces", "uv", "uv_faces")
+SKELETON = ("names", "parents", "bind_rotations", "bind_translations", "root")
+CHARACTER = ("base_color", "skin_indices", "skin_weights", "looseness")
+
+
+def _other(owner: object, name: str) -> object:
+    """Another value of a field."""
+    value = getattr(owner, name)
+    if isinstance(value, np.ndarray):
+        other = value.copy()
+        other.flat[-1] = not other.flat[-1]
+        return other
+    return tuple(f"{each}_" for each in value) if isinstance(value, tuple) else value + 1
+
+
+def test_a_recording_of_another_surface_is_not_taken_for_this_one(tmp_path: Path) -> None:
+    order = Order(tmp_path / "a.muaavatar", tmp_path, SMALL, "cpu")
+    character = load_character(None, uv="auto", seed=0)
+    mesh, skeleton = character.mesh, character.skeleton
+    others = [
+        *(
+            dataclasses.replace(character, mesh=dataclasses.replace(mesh, **{name: _other(mesh, name)}))
+            for name in MESH
+        ),
+        *(
+            dataclasses.replace(character, skeleton=dataclasses.replace(skeleton, **{name: _other(skeleton, name)}))
+            for name in SKELETON
+        ),
+        *(dataclasses.replace(character, **{name: _other(character, name)}) for name in CHARACTER),
+        dataclasses.replace(character, looseness=None),
+    ]
+    orders = [
+        dataclasses.replace(order, settings=dataclasses.replace(SMALL, **{name: getattr(SMALL, name) + 32}))
+        for name in ("texels", "seed")
+    ]
+    keys = [recording_key(parts(order, one), []) for one in (character, character, *others)]
+    keys += [recording_key(parts(one, character), []) for one in orders]
+    assert keys[0] == keys[1]
+    assert len(set(keys)) == 1 + len(others) + len(orders)
+
+
+def test_a_recording_of_other_motion_is_not_taken_for_this_one() -> None:
+    clip = synthetic_avatar().clips[0]
+    first = PlannedClip(clip, held_out=False, wanted=frozenset({0}))
+    twist = Stretches(np.array([1]), np.tile(np.diag([1.0, 2, 1]), (len(clip), 1, 1, 1)))
+    others = [
+        dataclasses.replace(first, held_out=True),
+        dataclasses.replace(first, wanted=frozenset({0, 1})),
+        dataclasses.replace(first, whole=frozenset({0})),
+        dataclasses.replace(first, run_up=clip),
+        dataclasses.replace(first, run_up=dataclasses.replace(clip, translations=clip.translations + 1)),
+        *(
+            dataclasses.replace(first, clip=dataclasses.replace(clip, **changed))
+            for changed in (
+                {"name": "another"},
+                {"rotations": clip.rotations[::-1]},
+                {"translations": clip.translations + 1},
+                {"stretches": twist},
+                {"stretches": dataclasses.replace(twist, joints=np.array([2]))},
+                {"stretches": dataclasses.replace(twist, matrices=2 * twist.matrices)},
+            )
+        ),
+    ]
+    assert len({recording_key([b"teacher"], [one]) for one in (first, *others)}) == 1 + len(others)
+    assert recording_key([b"teacher"], [first]) == recording_key([b"teacher"], [first])
+    assert recording_key([b"another"], [first]) != recording_key([b"teacher"], [first])
+
+
+def clip(name: str, frames: int) -> Clip:
+    return Clip(name, 30.0, np.tile([1.0, 0, 0, 0], (frames, 1, 1)), np.zeros((frames, 1, 3)))
+
+
+def test_plan_spreads_frames_over_all_training_clips() -> None:
+    planned = plan([clip("a", 30), clip("b", 10)], [HeldOut(clip("c", 100))], frames=8)
+    assert [len(p.wanted) for p in planned] == [6, 2, 2]
+    assert [p.held_out for p in planned] == [False, False, True]
+
+
+@pytest.mark.parametrize(("frames", "recorded"), [(1, [0, 0, 1]), (8, [0, 1, 1]), (40, [3, 3, 4]), (4000, [40, 40, 7])])
+def test_held_out_frames_are_at_most_a_quarter_of_the_training_frames(frames: int, recorded: list[int]) -> None:
+    held = [HeldOut(clip("b", 100)), HeldOut(clip("c", 200)), HeldOut(clip("d", 7))]
+    planned = plan([clip("a", 5000)], held, frames=frames)
+    assert [len(p.wanted) for p in planned if p.held_out] == recorded
+
+
+def test_plan_takes_every_frame_where_more_are_asked_for() -> None:
+    (planned,) = plan([clip("a", 7)], [], frames=1000)
+    assert planned.wanted == frozenset(range(7))
+
+
+def test_without_names_the_end_of_every_clip_is_held_out() -> None:
+    training, held = split([clip("a", 50), clip("b", 3)], [])
+    assert [(c.name, len(c)) for c in training] == [("a", 40), ("b", 3)]
+    assert [(own.clip.name, len(own.clip)) for own in held] == [("a (end)", 10)]
+
+
+def test_an_end_takes_no_name_that_a_clip_has() -> None:
+    training, held = split([clip("a", 50), clip("a (end)", 50)], [])
+    assert [c.name for c in training] == ["a", "a (end)"]
+    assert [own.clip.name for own in held] == ["a (end) (end)"]
+
+
+def test_what_comes_before_a_held_out_end_is_played_first() -> None:
+    places = np.arange(200.0)[:, None, None] * np.ones(3)
+    long = dataclasses.replace(clip("a", 200), translations=places)
+    _, held = split([long, long.cut(slice(50))], [])
+    planned = plan([], held, frames=100)
+    assert [own.run_up.translations[[0, -1], 0, 0].tolist() for own in planned if own.run_up] == [[100, 159], [0, 39]]
+    _, (whole,) = split([long, dataclasses.replace(long, name="b")], ["b"])
+    assert whole.run_up is None
+
+
+def test_unknown_held_out_clip_is_named() -> None:
+    with pytest.raises(InputError, match="--hold-out z: there is no such clip; expected a"):
+        split([clip("a", 50)], ["z"])
+
+
+def test_holding_out_everything_is_refused() -> None:
+    with pytest.raises(InputError, match="no clip to train on"):
+        split([clip("a", 50)], ["a"])
+
+
+def refused(directory: Path, *arguments: object) -> str:
+    """The sentence that mua-bake ends with; an earlier result must survive and nothing new be left."""
+    output = directory / "out.muaavatar"
+    output.write_bytes(b"an earlier result")
+    before = sorted(directory.iterdir())
+    ended = process("bake", *arguments, "-o", output)
+    assert output.read_bytes() == b"an earlier result"
+    assert sorted(directory.iterdir()) == before
+    return ended.sentence
+
+
+def test_truncated_character_is_named(tmp_path: Path) -> None:
+    (tmp_path / "half.glb").write_bytes(b"glTF\x02\0\0\0\xff\0\0\0")
+    assert "half.glb" in refused(tmp_path, tmp_path / "half.glb")
+
+
+def test_empty_motion_is_named(tmp_path: Path) -> None:
+    (tmp_path / "empty.bvh").write_text(
+        "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
+        "Zposition\n}\nMOTION\nFrames: 0\nFrame Time: 0.03\n"
+    )
+    assert "empty.bvh" in refused(tmp_path, "--motion", tmp_path / "empty.bvh")
+
+
+def test_motion_whose_joints_match_nothing_is_named(tmp_path: Path) -> None:
+    (tmp_path / "alien.bvh").write_text(
+        "HIERARCHY\nROOT qqq\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT zzz\n{\nOFFSET 0 1 0\n"
+        "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
+        "MOTION\nFrames: 2\nFrame Time: 0.03\n0 0 0 0 0 0\n0 0 0 1 0 0\n"
+    )
+    sentence = refused(tmp_path, "--motion", tmp_path / "alien.bvh")
+    assert "alien.bvh" in sentence
+    assert "no joint name" in sentence
+
+
+def test_unknown_clip_to_store_is_named_before_anything_is_recorded(tmp_path: Path) -> None:
+    assert "--clips jump: there is no such clip; expected walk, turn" in refused(tmp_path, "--clips", "jump")
+
+
+@pytest.mark.long
+def test_killed_bake_ends_in_the_same_bytes(baked: Baked, tmp_path: Path) -> None:
+    """kill -9 while it records, then while it trains; the third run ends as an undisturbed one."""
+    code = (
+        "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1]); from test_bake import *;"
+        "d = Path(sys.argv[2]); bake(Order(d / 'a.muaavatar', d / 'work', SMALL, 'cpu'), Silent())"
+    )
+    run = [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)]
+    for sign in ("recording-*/reference.npz", "student/*"):
+        process = subprocess.Popen(run)
+        while process.poll() is None and not list((tmp_path / "work").glob(sign)):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    subprocess.run(run, check=True)
+    assert (tmp_path / "a.muaavatar").read_bytes() == baked.output.read_bytes()
+
+
+def test_a_command_is_refused_where_another_is_at_work(baked: Baked, tmp_path: Path) -> None:
+    with DirectoryLock(tmp_path / "out.work", name="the other"):
+        assert f"--work {tmp_path / 'out.work'}: process {os.getpid()} is using it" in refused(tmp_path)

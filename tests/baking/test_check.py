@@ -1,0 +1,152 @@
+"""mua-bake --check: what it writes, prints and refuses, without baking anything."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from bvh_files import BVH
+from column_files import column_file
+from PIL import Image
+from rich.console import Console
+from silent import Silent
+from small_bakes import SMALL
+from typer.testing import CliRunner
+
+from mua.baking.check import Check
+from mua.baking.contact_sheet import CELL
+from mua.baking.order import Order
+from mua.baking.pipeline import bake
+from mua.characters.read import read_surfaces
+from mua.cli.bake import main
+from mua.cli.check import show
+from mua.errors import InputError
+from mua.fidelity.strips import CAPTION
+from mua.motion.load import load_motions
+from mua.motion.mapping import read_mapping
+from mua.motion.match import JointPair
+from mua.motion.quality import MotionQuality
+from mua.motion.reach import Reach
+
+app = typer.Typer()
+app.command()(main)
+
+
+def run(*arguments: object) -> str:
+    """What the command prints; its errors are raised."""
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments], catch_exceptions=False)
+    assert result.exit_code == 0
+    return result.output
+
+
+def test_leaves_a_picture_a_mapping_and_figures_and_no_avatar(tmp_path: Path) -> None:
+    character, output, figures = column_file(tmp_path), tmp_path / "x" / "a.muaavatar", tmp_path / "a.json"
+    text = run(character, "--motion", character, "--check", "--texels", 96, "-o", output, "--json", figures)
+    assert sorted(path.name for path in output.parent.iterdir()) == ["a_check.png", "a_mapping.json"]
+    with Image.open(output.parent / "a_check.png") as picture:
+        assert np.asarray(picture).std() > 0
+    assert read_mapping(output.parent / "a_mapping.json") == {name: name for name in ("hips", "spine", "head")}
+    told = json.loads(figures.read_text())
+    assert 0.9 < told["fidelity"]["iou"] < 1
+    assert told["fidelity"]["psnr"] > 30
+    assert [motion["name"] for motion in told["motion"]] == ["bend"]
+    assert told["motion"][0]["limb_degrees"] == pytest.approx(0, abs=1e-3)
+    assert {"facing_degrees", "feet_height", "slide"} <= told["motion"][0].keys()
+    assert [pair["target"] for pair in told["matched"]] == ["hips", "spine", "head"]
+    assert told["unmatched"] == []
+    assert told["warnings"] == [sentence for sentence in told["warnings"] if sentence in text]
+    assert "bend, frame 15" in text
+    assert text.splitlines()[-1] == str(figures)
+
+
+def test_motion_that_a_bake_refuses_is_checked_and_leaves_a_mapping_to_fill(tmp_path: Path) -> None:
+    character, output = column_file(tmp_path), tmp_path / "a.muaavatar"
+    motion = tmp_path / "wave.bvh"
+    motion.write_text(BVH)
+    with pytest.raises(InputError, match=r"wave\.bvh.*left arm.*--mapping"):
+        load_motions(motion, read_surfaces(character).skeleton, mapping=None, rate=30.0)
+    text = run(character, "--motion", motion, "--check", "--texels", 64, "-o", output, "--json", tmp_path / "a.json")
+    (refused,) = (w for w in json.loads((tmp_path / "a.json").read_text())["warnings"] if "--mapping" in w)
+    assert refused in text
+    assert json.loads((tmp_path / "a_mapping.json").read_text()) == {"hips": "hips", "spine": "spine", "head": ""}
+    again = motion.with_stem("again")
+    for path in (motion, again):
+        path.write_text(BVH.replace("Frames: 3", "Frames: 2"))
+    mapping = tmp_path / "a_mapping.json"
+    text = run(
+        *(character, "--motion", motion, "--motion", again, "--mapping", mapping),
+        *("--check", "--texels", 64, "-o", output),
+    )
+    assert "Clips of the motion (it moves no arm or leg, so nothing is measured): wave, again" in text
+    assert "own clips" not in text
+    assert "2 clips: holds 3 frames, though it says 2; all are read." in text
+
+
+def test_a_character_with_neither_motion_nor_clips_is_checked_as_it_stands(tmp_path: Path) -> None:
+    run(column_file(tmp_path, clip=False), "--check", "--texels", 96, "-o", tmp_path / "a.muaavatar")
+    assert not (tmp_path / "a_mapping.json").exists()
+    assert (tmp_path / "a_check.png").exists()
+
+
+def test_the_procedural_character_is_checked_without_a_picture(tmp_path: Path) -> None:
+    text = run("--check", "--texels", 64, "-o", tmp_path / "a.muaavatar")
+    assert "nothing to compare" in text
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_bake_tells_the_fidelity_and_its_contact_sheet_begins_with_it(tmp_path: Path) -> None:
+    told: list[str] = []
+
+    class Hearing(Silent):
+        def note(self, sentence: str) -> None:
+            told.append(sentence)
+
+    order = Order(tmp_path / "a.muaavatar", tmp_path / "work", SMALL, "cpu", character=column_file(tmp_path))
+    baked = bake(order, Hearing())
+    assert any(sentence.startswith("Splats compared with the source: silhouettes overlap by") for sentence in told)
+    with Image.open(baked.sheet) as sheet:
+        strip = CELL[1] + CAPTION
+        assert sheet.height % strip == 0
+        pictures = np.asarray(sheet)[CAPTION : 2 * strip, :, :].astype(int)
+    source, splats = pictures[: CELL[1], : CELL[0]], pictures[: CELL[1], CELL[0] : 2 * CELL[0]]
+    assert np.count_nonzero((source == 255).all(axis=-1) != (splats == 255).all(axis=-1)) < 0.1 * source[..., 0].size
+
+
+def test_figures_without_a_check_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--json: only --check writes it"):
+        run("--json", tmp_path / "a.json", "-o", tmp_path / "a.muaavatar")
+
+
+def test_a_motion_format_that_is_not_read_is_refused_before_the_character_is_read(tmp_path: Path) -> None:
+    character, motion = tmp_path / "hero.glb", tmp_path / "walk.fbx"
+    character.touch()  # which itself would be refused
+    motion.write_bytes(b"Kaydara FBX Binary")
+    with pytest.raises(InputError, match=r"walk\.fbx"):
+        CliRunner().invoke(app, [str(character), "--motion", str(motion), "--check"], catch_exceptions=False)
+
+
+def test_what_is_wrong_comes_first_and_few_joints_are_named(capsys: pytest.CaptureFixture[str]) -> None:
+    joints = tuple(f"joint {number}" for number in range(12))
+    pairs = tuple(JointPair(name, name, "") for name in joints[:3])
+    show(Console(width=120), Check(None, (), pairs, joints[3:], ("a note",), ("the left hand is off",), ()))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "Look at this: the left hand is off"
+    assert lines[-2] == "a note"
+    few = "joint 3, joint 4, joint 5, joint 6, joint 7 and 4 others"
+    assert lines[-1] == f"The motion moves 3 joints, and not {few}; the mapping file names all."
+    show(Console(width=120), Check(None, (), pairs, (), (), (), ()))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == ["Nothing looks wrong.", "The motion moves 3 joints, all that have skin."]
+
+
+def test_what_is_measured_of_a_motion_is_shown_with_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
+    hand, foot = (
+        Reach(f"left {part}", 0.1, share, ("a", "b"), ("c", "d")) for part, share in (("hand", 0.041), ("foot", 0.02))
+    )
+    walk = MotionQuality("walk", 1.24, 12.4, -0.0126, 0.333, {"left thigh": 1.25}, (hand, foot), ())
+    wave = MotionQuality("wave", 0.0, None, None, None, {"left thigh": 0.0}, (), ())
+    show(Console(width=120), Check(None, (walk, wave), (), (), (), (), ()))
+    rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
+    assert ["walk", "1.2°", "4%", "12°", "-0.013", "m", "0.33", "m/s"] in rows
+    assert ["wave", "0.0°"] in rows

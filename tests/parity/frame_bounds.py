@@ -1,0 +1,53 @@
+"""The order of a frame's dispatches, and how far a frame on the GPU may be from the reference."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from mua.arrays import Array
+from mua.asset.avatar import Avatar
+
+# Metres. Offsets from the mesh, up to 125 mm here, are half floats, rounded either way along three axes; float32 leaves
+# a hundredth of it on a person two metres from the origin.
+POSITION_BOUND = 0.125 * 2**-10 * float(np.sqrt(3))
+
+COLOR_BOUND = 1 / 512  # half a step of 8 bits
+
+OPACITY_BOUND = 2**-10  # a half float below 1, and a logit in one, both of which a GPU may round towards zero
+
+LEAST_PSNR = 50.0  # dB of an image against the CPU rasteriser's
+
+FEWER_THAN = 31  # dispatches in a frame
+
+BRANCH_ORDER = [*["MlpMatmul"] * 3, "BlendLl", *["BlendDetail", "InverseDwt"] * 2, "UpsampleTexels"]
+
+PARTS_ORDER = [BRANCH_ORDER, [*["MlpMatmul"] * 3, "MlpMatmulTransposed", *BRANCH_ORDER]]  # of a decode
+
+FRAME_ORDER = [
+    *PARTS_ORDER[0],
+    *PARTS_ORDER[1],
+    "BlendVertices",
+    "SplatProject",
+    *["CountDigits", "ScanDigits", "ScatterDigits"] * 2,
+]
+
+
+def psnr(image: Array, exact: Array) -> float:
+    """Decibels below 1; two images that are both empty agree by 120."""
+    return float(-10 * np.log10(np.maximum(np.mean((image - exact) ** 2), 1e-12)))
+
+
+def part(avatar: Avatar, kept: slice) -> Avatar:
+    """The avatar with only some of its texels."""
+    texels = avatar.rig.texels
+    fewer = replace(
+        texels,
+        texels=texels.texels[kept],
+        triangles=texels.triangles[kept],
+        barycentrics=texels.barycentrics[kept],
+    )
+    branches = {
+        name: replace(branch, static=branch.static[:, kept])
+        for name, branch in (("geometry", avatar.geometry), ("appearance", avatar.appearance))
+    }
+    return replace(avatar, rig=replace(avatar.rig, texels=fewer), **branches)

@@ -1,0 +1,212 @@
+"""Worker processes record what one would, survive kills, and end with the one that started them."""
+
+import errno
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Container, Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+from recordings import RATE, FormulaTeacher, content, plan
+from synthetic_avatar import synthetic_rig
+
+from mua.errors import InputError
+from mua.pose.clip import Clip
+from mua.pose.skeleton import Pose
+from mua.recording import workers
+from mua.recording.parts import is_joined, join_parts, record_share
+from mua.recording.teacher import TeacherFrame
+from mua.recording.workers import record_by_workers
+from mua.rig.rig import Rig
+
+TESTS = Path(__file__).parent
+
+
+class Disturbed(FormulaTeacher):
+    """Calls `disturb` with a flag's path at the last frame of "walk", which two shards come before."""
+
+    def __init__(self, rig: Rig, flag: Path) -> None:
+        super().__init__(rig)
+        self.flag = flag
+
+    def frames(self, clip: Clip, wanted: Container[int]) -> Iterator[TeacherFrame | Pose]:
+        for index, frame in enumerate(super().frames(clip, wanted)):
+            if clip.name == "walk" and index == 22:
+                self.disturb()
+            yield frame
+
+    def disturb(self) -> None: ...
+
+
+class Dying(Disturbed):
+    """Is killed the first time."""
+
+    def disturb(self) -> None:
+        if not self.flag.exists():
+            self.flag.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+
+
+class Refusing(Disturbed):
+    def disturb(self) -> None:
+        raise InputError("clip 'walk': a texel is not finite")
+
+
+class Waiting(Disturbed):
+    """Says who it is and waits, the first time."""
+
+    def disturb(self) -> None:
+        if not self.flag.exists():
+            self.flag.write_text(str(os.getpid()))
+            time.sleep(600)
+
+
+@pytest.fixture(autouse=True)
+def _importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Workers find the teachers of this file."""
+    monkeypatch.setenv(
+        "PYTHONPATH", os.pathsep.join([str(TESTS), str(TESTS.parent / "fixtures"), os.environ.get("PYTHONPATH", "")])
+    )
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The parts of a single process, joined."""
+    directory, teacher = tmp_path_factory.mktemp("alone") / "recording", FormulaTeacher(synthetic_rig())
+    record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
+    join_parts(directory, plan(teacher.rig))
+    return directory
+
+
+def run(directory: Path, teacher: type[FormulaTeacher], *arguments: object, **more: object) -> None:
+    make, planned = partial(teacher, synthetic_rig(), *arguments), plan(synthetic_rig())
+    record_by_workers(make, planned, directory, **({"jobs": 2, "rate": RATE} | more))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_any_number_of_workers_leaves_the_same_files(alone: Path, tmp_path: Path, jobs: int) -> None:
+    heard: list[tuple[int, int]] = []
+    run(tmp_path / "r", FormulaTeacher, jobs=jobs, progress=lambda done, working: heard.append((done, working)))
+    assert content(tmp_path / "r") == content(alone)
+    assert list(tmp_path.iterdir()) == [tmp_path / "r"]
+    wanted = sum(len(clip.wanted) for clip in plan(synthetic_rig()))
+    assert heard[0] == (0, jobs)
+    assert heard[-1] == (wanted, jobs)
+    assert sorted(heard) == heard
+
+
+def test_a_killed_worker_is_a_sentence_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"a process that records was ended by signal 9, perhaps for want of memory"):
+        run(tmp_path / "r", Dying, tmp_path / "flag")
+    assert not is_joined(tmp_path / "r")
+    assert not list(tmp_path.rglob(".*.part"))  # which may be what a full disk is full of
+    run(tmp_path / "r", Dying, tmp_path / "flag")
+    assert content(tmp_path / "r") == content(alone)
+
+
+def test_what_a_worker_refuses_is_its_sentence(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"^clip 'walk': a texel is not finite$"):
+        run(tmp_path / "r", Refusing, tmp_path / "flag")
+
+
+def ended(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().split(")")[1].split()[0] == "Z"
+    except FileNotFoundError:
+        return True
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks for the worker in /proc, which Linux has")
+def test_workers_end_with_a_killed_parent_and_the_next_run_ends_in_the_same_files(alone: Path, tmp_path: Path) -> None:
+    flag = tmp_path / "flag"
+    code = (
+        "import sys; from pathlib import Path; from test_recording_workers import Waiting, run;"
+        "run(Path(sys.argv[1]), Waiting, Path(sys.argv[2]))"
+    )
+    parent = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "r"), str(flag)])
+    while not (flag.exists() and flag.read_text()):
+        assert parent.poll() is None
+        time.sleep(0.01)
+    parent.send_signal(signal.SIGKILL)
+    parent.wait()
+    while not ended(int(flag.read_text())):
+        time.sleep(0.01)
+    run(tmp_path / "r", Waiting, flag)
+    assert content(tmp_path / "r") == content(alone)
+
+
+def test_an_interrupt_ends_all_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[subprocess.Popen[bytes]] = []
+
+    class Popen(subprocess.Popen):  # type: ignore[type-arg]
+        def __init__(self, *arguments, **more) -> None:  # type: ignore[no-untyped-def]
+            super().__init__(*arguments, **more)
+            started.append(self)
+
+    def interrupt(done: int, working: int) -> None:
+        if done:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(workers.subprocess, "Popen", Popen)
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path / "r", Waiting, tmp_path / "flag", progress=interrupt)
+    assert len(started) == 2
+    assert all(process.poll() is not None for process in started)
+
+
+@pytest.mark.parametrize("joined", [True, False])
+def test_what_was_damaged_is_told_and_recorded_anew(alone: Path, tmp_path: Path, joined: bool) -> None:
+    directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
+    damaged = directory if joined else directory.with_name("r.part-1-of-3")
+    if joined:
+        shutil.copytree(alone, directory)
+    else:
+        record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
+    (damaged / "shards/00000/whole_00000.npy").unlink()
+    told: list[str] = []
+    run(directory, FormulaTeacher, note=told.append)
+    (sentence,) = told
+    assert sentence.startswith(f"{damaged / 'shards/00000/whole_00000.npy'} is missing")
+    assert sentence.endswith(". It is recorded again.")
+    assert content(directory) == content(alone)
+
+
+def test_what_an_undisturbed_run_left_is_not_recorded_anew(alone: Path, tmp_path: Path) -> None:
+    directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
+    record_share(teacher, plan(teacher.rig), directory, rank=0, count=2, rate=RATE)  # the parts of one of two
+    told: list[str] = []
+    run(directory, FormulaTeacher, note=told.append)
+    run(directory, FormulaTeacher, note=told.append)
+    assert told == []
+    assert content(directory) == content(alone)
+
+
+def test_parts_that_find_no_room_to_be_joined_are_kept(
+    alone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    directory, teacher = tmp_path / "r", FormulaTeacher(synthetic_rig())
+    record_share(teacher, plan(teacher.rig), directory, rank=0, count=1, rate=RATE)
+    parts = sorted(tmp_path.iterdir())
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as small:
+        small.setattr("numpy.save", full)
+        with pytest.raises(InputError, match=r"r: cannot be written \(No space left on device\); all frames are kept"):
+            join_parts(directory, plan(teacher.rig))
+    assert sorted(tmp_path.iterdir()) == parts
+    join_parts(directory, plan(teacher.rig))
+    assert content(directory) == content(alone)
+
+
+def test_a_finished_recording_starts_no_worker(alone: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = content(alone)
+    monkeypatch.delattr(workers.subprocess, "Popen")
+    run(alone, FormulaTeacher)
+    assert content(alone) == before

@@ -1,0 +1,116 @@
+"""Where the MLPs are taught: around frames, and where a part is as in another frame."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from limbs import limb_steps, limbs_apart, two_limbs
+
+from mua.student.components import Components
+from mua.student.points import BLEND, RADII, draw_points, exchange, scatter
+from mua.student.regress import regress
+from mua.student.settings import Generalisation
+from mua.training.checkpoint import Checkpoints
+from mua.training.optimise import Run
+from mua.training.schedule import Schedule
+
+PLAIN = Components(torch.eye(6), 1e6 * torch.tensor([[-1.0], [1.0]]).expand(2, 6), torch.ones(6))
+
+
+def seeded(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+def test_an_exchanged_part_is_whole_and_the_rest_is_that_of_one_frame() -> None:
+    frames = torch.arange(50.0)[:, None].expand(-1, 6)
+    mixed = exchange(frames, limb_steps(), 2000, generator=seeded())
+    assert (mixed[:, :3] == mixed[:, :1]).all()
+    assert (mixed[:, 3:] == mixed[:, 3:4]).all()
+    apart = mixed[:, 0] != mixed[:, 3]
+    assert 0.2 < apart.float().mean() < 0.3  # a radius of 0; any larger one takes both limbs from one frame
+    assert mixed.unique().tolist() == list(range(50))
+
+
+def test_an_exchanged_joint_brings_those_within_a_radius_along() -> None:
+    """Of a chain of ten, one joint at the end and up to so many more: never none, never all."""
+    chain = torch.arange(10)[None]
+    frames = torch.arange(500.0)[:, None].expand(-1, 10)
+    mixed = exchange(frames, chain, 3000, generator=seeded())
+    brought = (mixed == mixed[:, :1]).sum(1)
+    two = mixed[:, 0] != mixed[:, -1]  # but for points whose two frames are one
+    assert two.float().mean() > 0.99
+    assert sorted(brought[two].unique().tolist()) == list(range(1, RADII + 1))
+    assert torch.allclose((brought[two] == 1).float().mean(), torch.tensor(1 / RADII), atol=0.05)
+
+
+def test_scattered_points_lie_on_the_way_to_a_frame_but_for_noise() -> None:
+    z = torch.randn(30, 4, generator=seeded(1))
+    start = torch.zeros(500, 4)
+    still = scatter(start, z, 0.0, generator=seeded(2))
+    nearest = torch.nn.functional.normalize(still, dim=1) @ torch.nn.functional.normalize(z, dim=1).T
+    assert (nearest.max(1).values > 1 - 1e-5).all()
+    assert (still.norm(dim=1) <= BLEND * z.norm(dim=1).max()).all()
+    moved = scatter(start, z, 0.5, generator=seeded(2)) - still
+    assert torch.allclose(moved.std(0) / z.std(0), torch.full((4,), 0.5 / 3**0.5), atol=0.04)  # strengths are uniform
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.0, 0), (0.75, 750), (1.0, 1000)])
+def test_a_share_of_the_points_exchanges_parts(share: float, expected: int) -> None:
+    frames = torch.arange(40.0)[:, None].expand(-1, 6)
+    own = Generalisation(noise=0.0, exchanged=share, exchanged_noise=0.0, outside=0.0)
+    points = draw_points(frames, PLAIN, 1000, steps=limb_steps(), generalisation=own, generator=seeded(3))
+    assert len(points) == 1000
+    together = (points[:, 0] - points[:, 3]).abs() < 1e-4
+    assert together[: 1000 - expected].all()
+    assert bool(together[1000 - expected :].all()) == (expected == 0)
+    alone = draw_points(frames, PLAIN, 1000, steps=None, generalisation=own, generator=seeded(3))
+    assert ((alone[:, 0] - alone[:, 3]).abs() < 1e-4).all()
+
+
+def test_an_mlp_follows_the_users_frames_and_the_others_roughly(tmp_path: Path) -> None:
+    inputs, shown = two_limbs(200, seed=3, together=True)
+    half = inputs[:, 0] > inputs[:, 0].median()
+    errors = {}
+    for name, own, known in (("all", None, True), ("half", half, True), ("none", None, False)):
+        run = Run(seeded(), Checkpoints(tmp_path / name, "k"), lambda _: None, torch.device("cpu"))
+        mlp = regress(
+            inputs,
+            torch.where(half[:, None], shown, -shown),  # a jump, which no smooth function follows
+            components=PLAIN,
+            hidden=64,
+            schedule=Schedule(steps=600, batch=64, lr=3e-3),
+            stage="x",
+            run=run,
+            own=own,
+            generalisation=Generalisation(own=known),
+        )
+        with torch.no_grad():
+            errors[name] = (mlp(inputs) - torch.where(half[:, None], shown, -shown)).square().sum(1)
+    size = shown.square().sum(1)
+    assert errors["half"][half].mean() < 0.5 * size[half].mean()
+    assert errors["half"][~half].mean() > 0.7 * size[~half].mean()
+    assert errors["none"].mean() > 1.5 * errors["all"].mean()
+
+
+def test_an_mlp_taught_exchanged_parts_carries_over_to_limbs_that_move_apart(tmp_path: Path) -> None:
+    inputs, shown = two_limbs(300, seed=3, together=True)
+    unseen, truth = two_limbs(200, seed=4, together=False)
+    schedule = Schedule(steps=600, batch=64, lr=3e-3)
+    errors = []
+    for share in (0.0, 0.75):
+        run = Run(seeded(), Checkpoints(tmp_path / f"{share}", "k"), lambda _: None, torch.device("cpu"))
+        mlp = regress(
+            inputs,
+            shown,
+            components=PLAIN,
+            hidden=64,
+            schedule=schedule,
+            stage="x",
+            run=run,
+            locality=limbs_apart(0.0),
+            generalisation=replace(Generalisation(), exchanged=share),
+        )
+        with torch.no_grad():
+            errors.append(float((mlp(unseen) - truth).square().mean()))
+    assert errors[1] < 0.8 * errors[0]

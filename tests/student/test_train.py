@@ -1,0 +1,285 @@
+"""Training explains its frames, resumes to the same bytes after a kill and gives the same bytes for a seed."""
+
+import math
+import threading
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import synthetic_student
+import torch
+from synthetic_student import (
+    FRAMES,
+    INPUTS,
+    SETTINGS,
+    Killed,
+    bands_of_frames,
+    kill_at,
+    quick,
+    random_student,
+    same,
+    samples,
+    train_in,
+)
+from trainings import one_by_one
+
+from mua.channels import APPEARANCE, GEOMETRY
+from mua.pose.components import INPUT_FLOOR, principal_components
+from mua.pose.encoding import Components
+from mua.student import coarse, targets
+from mua.student import source as sources
+from mua.student.bases import BestCoefficients
+from mua.student.conditioned import Conditioned, fold
+from mua.student.factorize import truncated_svd
+from mua.student.model import Branch, build_mlp
+from mua.student.regress import leading, whitening
+from mua.student.settings import Settings
+from mua.student.source import hold
+from mua.student.targets import joint_targets
+from mua.training.optimise import Progress
+from mua.training.schedule import Schedule
+from mua.wavelets import Bands
+
+
+def explained(predicted: torch.Tensor, truth: torch.Tensor) -> float:
+    return float(1 - (predicted - truth).square().sum() / (truth - truth.mean(0)).square().sum())
+
+
+def test_each_stage_improves_on_the_one_before(tmp_path: Path) -> None:
+    """Bases alone, their sweeps, the regression of their coefficients, the fine-tuning of all."""
+    descriptors, truth = bands_of_frames()
+
+    def gains(name: str, settings: Settings) -> torch.Tensor:
+        predicted = train_in(tmp_path / name, settings).predict(descriptors)
+        return torch.tensor([explained(found, band) for found, band in zip(predicted, truth, strict=True)])
+
+    nothing = Schedule(steps=1, batch=1, lr=1e-12)
+    bases = gains("bases", replace(SETTINGS, regression=nothing, finetune=nothing))
+    regressed = gains("regressed", replace(SETTINGS, finetune=nothing))
+    tuned = gains("tuned", SETTINGS)
+    unswept = gains("unswept", replace(SETTINGS, sweeps=0))
+    assert (bases < 0.05).all()
+    assert (regressed > torch.tensor([0.95, 0.90, 0.85])).all()
+    assert (tuned > regressed).all()
+    assert (tuned[1:] > unswept[1:] + 0.005).all()  # of the details, whose factors alternate
+
+
+def test_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path: Path) -> None:
+    settings = quick()
+    first, second = train_in(tmp_path / "a", settings), train_in(tmp_path / "b", settings)
+    assert same(first, second)
+    assert not same(first, train_in(tmp_path / "c", replace(settings, seed=1)))
+
+
+STAGES = ("coarse mesh", "geometry bases", "geometry coefficients", "geometry fine-tuning", "appearance bases")
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_resumes_to_the_same_bytes_after_a_kill(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stage: str) -> None:
+    monkeypatch.setattr("mua.training.optimise.CHECKPOINT_STEPS", 2)
+    with pytest.raises(Killed):
+        train_in(tmp_path / "killed", quick(), kill_at(stage, 3))
+    assert same(train_in(tmp_path / "killed", quick()), train_in(tmp_path / "whole", quick()))
+
+
+def turned_components(*given: Any) -> Components:
+    """Half of the directions the other way."""
+    found = principal_components(*given)
+    signs = np.where(np.arange(len(found.margins)) % 2, 1, -1).astype(np.float32)
+    ranges = np.sort(found.ranges * signs, axis=0)
+    return replace(found, directions=found.directions * signs[:, None], ranges=ranges)
+
+
+@pytest.mark.parametrize(
+    ("stage", "part"), [("coarse mesh", "coarse."), ("geometry coefficients", "geometry."), ("appearance bases", "geo")]
+)
+def test_goes_on_where_directions_come_out_the_other_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stage: str, part: str
+) -> None:
+    """As on another machine or with another number of threads: nothing settles the sign of a singular vector."""
+    monkeypatch.setattr("mua.training.optimise.CHECKPOINT_STEPS", 2)
+    monkeypatch.setattr("mua.student.branches.together", one_by_one)  # so that what the kill finds is known
+    whole = train_in(tmp_path / "whole", quick()).state_dict()
+    with pytest.raises(Killed):
+        train_in(tmp_path / "killed", quick(), kill_at(stage, 3))
+    monkeypatch.setattr(coarse, "truncated_svd", turned)
+    monkeypatch.setattr(targets, "truncated_svd", turned)
+    monkeypatch.setattr(synthetic_student, "principal_components", turned_components)
+    found = train_in(tmp_path / "killed", quick()).state_dict()
+    assert all(torch.equal(found[name], whole[name]) for name in whole if name.startswith(part))
+    assert torch.equal(found["directions"], whole["directions"])
+    anew = train_in(tmp_path / "anew", quick()).state_dict()
+    assert not torch.equal(anew["appearance.mlp.0.weight"], whole["appearance.mlp.0.weight"])
+
+
+def test_branches_side_by_side_end_in_the_bytes_of_one_after_the_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at_once = train_in(tmp_path / "a", quick())
+    monkeypatch.setattr("mua.student.branches.together", one_by_one)
+    assert same(at_once, train_in(tmp_path / "b", quick()))
+
+
+def test_where_one_branch_fails_the_other_ends_too(tmp_path: Path) -> None:
+    stages: list[str] = []
+    failed = threading.Event()
+
+    def fail(progress: Progress) -> None:
+        stages.append(progress.stage)
+        if progress.stage.startswith("geometry"):
+            failed.set()
+            raise Killed
+        if progress.stage.startswith("appearance"):
+            assert failed.wait(60)
+
+    with pytest.raises(Killed):
+        train_in(tmp_path, quick(), fail)
+    assert "appearance fine-tuning" not in stages
+
+
+def turned(x: torch.Tensor, rank: int, *, generator: torch.Generator) -> tuple[torch.Tensor, ...]:
+    u, s, v = truncated_svd(x, rank, generator=generator)
+    return -u, s, -v
+
+
+def test_reports_every_step_of_every_stage(tmp_path: Path) -> None:
+    reports: list[Progress] = []
+    settings = quick()
+    train_in(tmp_path, settings, reports.append)
+    fine = [r.step for r in reports if r.stage == "appearance fine-tuning"]
+    assert fine == list(range(1, settings.finetune.steps + 1))
+    assert {r.stage for r in reports} >= set(STAGES)
+
+
+def test_best_coefficients_give_back_what_the_bases_span() -> None:
+    branch = random_student().appearance
+    alphas = branch.split(torch.randn(3, branch.channels * branch.ranks.total, generator=torch.Generator()))
+    bands = branch.synthesize(alphas)
+    again = branch.synthesize(BestCoefficients(branch)(bands))
+    assert [len(band) for band in bands] == [3, 3, 3]
+    for found, band in zip(again, bands, strict=True):
+        assert torch.allclose(found, band, atol=1e-3 * float(band.abs().max()))
+
+
+def test_best_coefficients_are_no_worse_than_any_others() -> None:
+    branch = random_student().geometry
+    bands = bands_of_frames(4)[1].of(GEOMETRY)
+    best = branch.synthesize(BestCoefficients(branch)(bands))
+    predicted = branch(torch.zeros(4, INPUTS))
+    assert [len(band) for band in bands] == [4, 4, 4]
+    for found, other, band in zip(best, predicted, bands, strict=True):
+        assert (found - band).square().sum() <= (other - band).square().sum()
+
+
+def test_joint_targets_measure_the_weighted_texture() -> None:
+    branch = random_student().geometry
+    flat = torch.randn(9, branch.channels * branch.ranks.total, generator=torch.Generator().manual_seed(1))
+    weights = torch.linspace(0.5, 3, branch.channels)
+    targets = joint_targets(branch, flat, weights, rank=9, generator=torch.Generator().manual_seed(0))
+    zero = branch.synthesize(branch.split(torch.zeros(1, flat.shape[1])))
+    bands = branch.synthesize(branch.split(flat))
+    energy = sum(
+        ((band - still) * weights[:, None, None]).double().square().flatten(1).sum(1)
+        for band, still in zip(bands, zero, strict=True)
+    )
+    # The ridge of the Gram matrices adds its share of energy, GRAM_RIDGE of the mean one.
+    assert torch.allclose(targets.coordinates.double().square().sum(1), energy, rtol=1e-3)
+    assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-2)
+
+
+def test_directions_below_the_rounding_of_a_recording_are_not_taught() -> None:
+    branch = random_student().geometry
+    generator = torch.Generator().manual_seed(1)
+    modes = torch.randn(3, branch.channels * branch.ranks.total, generator=generator)
+    flat = torch.randn(9, 3, generator=generator) * torch.tensor([1.0, 0.01, 1e-5]) @ modes
+    targets = joint_targets(branch, flat, torch.ones(branch.channels), rank=9, generator=generator)
+    assert targets.coordinates.shape == (9, 2)
+    assert torch.allclose(targets.coordinates @ targets.expand, flat, atol=1e-3)
+
+
+def test_a_channel_that_only_rounds_stays_at_its_mean(tmp_path: Path) -> None:
+    descriptors, bands = bands_of_frames()
+    opacity = 10
+    for band in (bands.ll[:, opacity], bands.d3[:, :, opacity], bands.d2[:, :, opacity]):
+        band.mul_(1e-6).add_(2)
+    data = replace(samples(), subbands=lambda part, rows: Bands(*(b[rows] for b in bands.of(part))))
+    student = train_in(tmp_path, quick(), data=data)
+    assert torch.equal(
+        student.predict(descriptors).ll[:, opacity], student.geometry.ll_mean[opacity].expand(FRAMES, -1, -1)
+    )
+    assert not student.geometry.d2.h[:, opacity].any()
+
+
+def test_whitened_directions_vary_alike_down_to_the_floor() -> None:
+    inputs = torch.randn(500, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([3.0, 1.0, 1e-4])
+    spread = (inputs @ whitening(inputs)).std(0).sort().values
+    variance = torch.linalg.eigvalsh(torch.cov(inputs.T))
+    assert torch.allclose(spread, (variance / (variance + INPUT_FLOOR)).sqrt(), atol=0.01)
+
+
+def test_a_rate_rises_then_falls_to_zero() -> None:
+    schedule = Schedule(steps=100, batch=1, lr=2.0, warm_up=0.1)
+    rates = [schedule.lr_at(step) for step in range(100)]
+    assert rates[:10] == sorted(rates[:10])
+    assert rates[0] == pytest.approx(0.2)
+    assert max(rates) == pytest.approx(2.0, rel=0.05)
+    assert rates[10:] == sorted(rates[10:], reverse=True)
+    assert rates[-1] < 0.001
+    assert {replace(schedule, warm_up=0.0, cosine=False).lr_at(step) for step in (0, 50, 99)} == {2.0}
+
+
+def test_few_frames_get_fewer_steps() -> None:
+    schedule = Schedule(steps=100, batch=8, lr=1.0, epochs=20)
+    assert [schedule.over(frames).steps for frames in (0, 1, 20, 40, 1000)] == [1, 3, 50, 100, 100]
+    assert replace(schedule, epochs=math.inf).over(1).steps == 100
+
+
+def test_what_tells_frames_apart_is_kept() -> None:
+    z = torch.randn(400, 4, generator=torch.Generator().manual_seed(0)) * torch.tensor([1.0, 1e-4, 0.1, 0.0])
+    assert leading(z).tolist() == [True, False, True, False]
+    assert leading(torch.zeros(5, 3)).sum() < 3
+
+
+def conditioned() -> Conditioned:
+    """One of three components and two coordinates to seven outputs, every part of it away from its start."""
+    torch.manual_seed(0)
+    module = Conditioned(build_mlp(3, 5, 2), torch.randn(2, 7))
+    torch.nn.init.normal_(module.expand.bias)
+    return module
+
+
+def test_a_folded_mlp_is_the_same_function() -> None:
+    module, x = conditioned(), torch.randn(4, 3, generator=torch.Generator().manual_seed(1))
+    assert [tuple(p.shape) for p in module.folded().parameters()] == [(5, 3), (5,), (5, 5), (5,), (7, 5), (7,)]
+    assert torch.allclose(module.folded()(x), module(x), atol=1e-5)
+
+
+def test_a_network_is_folded_wherever_it_holds_a_conditioned_mlp() -> None:
+    network = torch.nn.ModuleDict({"one": torch.nn.Sequential(conditioned()), "other": torch.nn.Linear(2, 2)})
+    fold(network)
+    assert not any(isinstance(module, Conditioned) for module in network.modules())
+    assert isinstance(network["other"], torch.nn.Linear)
+
+
+def test_large_sources_are_read_batch_by_batch(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, bands = bands_of_frames()
+    asked: list[tuple[slice, int]] = []
+
+    def source(channels: slice, rows: torch.Tensor) -> Bands:
+        asked.append((channels, len(rows)))
+        return Bands(*(band[rows] for band in bands.of(channels)))
+
+    rows = torch.tensor([4, 2])
+    held = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
+    monkeypatch.setattr(sources, "HELD_BYTES", 0)
+    streamed = hold(source, APPEARANCE, frames=FRAMES, size=48)(slice(1, 3), rows)
+    assert all(torch.equal(a, b) for a, b in zip(held, streamed, strict=True))
+    assert asked == [(APPEARANCE, FRAMES), (slice(12, 14), 2)]
+
+
+def test_fewer_frames_than_blendshapes_train(tmp_path: Path) -> None:
+    student = train_in(tmp_path, quick(), data=samples(2))
+    assert all(torch.isfinite(tensor).all() for tensor in student.state_dict().values())
+    assert isinstance(student.geometry, Branch)

@@ -1,0 +1,60 @@
+"""Guessing how loosely parts of a character hang."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tube import tube
+
+from mua.rig.character import Mesh
+from mua.teachers.simulated.looseness import FIRM_LOOSENESS, SOFT_LOOSENESS, UNKNOWN_LOOSENESS, estimate_looseness
+
+ROUNDING = 1e3 * float(np.finfo(np.float32).eps)  # skin weights are float32; a dozen passes of averages
+
+
+def test_unknown_joints_give_one_looseness() -> None:
+    character = tube()
+    named = replace(character, skeleton=replace(character.skeleton, names=("b0", "b1", "b2")))
+    np.testing.assert_allclose(estimate_looseness(named), UNKNOWN_LOOSENESS, atol=ROUNDING)
+
+
+def test_head_and_hands_are_firmer_than_the_trunk() -> None:
+    character = tube(rings=101)
+    skeleton = replace(
+        character.skeleton,
+        names=("Hips", "Spine", "Head", "LeftArm", "RightUpLeg"),
+        parents=np.array([-1, 0, 1, 1, 0], np.int32),
+        bind_rotations=np.tile([1.0, 0, 0, 0], (5, 1)),
+        bind_translations=np.zeros((5, 3)),
+    )
+    looseness = estimate_looseness(replace(character, skeleton=skeleton))
+    height = character.mesh.vertices[:, 1]
+    np.testing.assert_allclose(looseness[height < 0.2], SOFT_LOOSENESS, atol=0.01)
+    np.testing.assert_allclose(looseness[height > 1.7], FIRM_LOOSENESS, atol=0.01)
+    assert np.all(np.diff(looseness.reshape(101, -1)[:, 0]) < 1e-3)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("size", [1.0, 0.05, 20.0])
+def test_small_separate_pieces_are_rigid(side: int, size: float) -> None:
+    """On either side, and small beside the figure."""
+    character = tube()
+    mesh = character.mesh
+    count = len(mesh.vertices)
+    button = 0.01 * np.eye(3) + [0.3 * side, 1, 0.13 * side]
+    joined = Mesh(
+        size * np.concatenate([mesh.vertices, button]),
+        np.concatenate([mesh.faces, [[count, count + 1, count + 2]]]),
+        mesh.uv,
+        np.concatenate([mesh.uv_faces, [[0, 1, 2]]]),
+    )
+    rows = [*range(count), 0, 0, 0]
+    both = replace(
+        character,
+        mesh=joined,
+        skin_indices=character.skin_indices[rows],
+        skin_weights=character.skin_weights[rows],
+    )
+    looseness = estimate_looseness(both)
+    assert np.all(looseness[-3:] == 0)
+    assert np.all(looseness[:-3] > 0)
