@@ -25,7 +25,7 @@ from mua.capture.outline import posed_template
 from mua.capture.write import write_capture
 from mua.channels import CHANNELS
 from mua.errors import InputError
-from mua.recording.teacher import TeacherFrame
+from mua.teacher import TeacherFrame
 from mua.teachers.trained import settings
 from mua.teachers.trained.folder import load_teacher, save_teacher
 from mua.teachers.trained.teacher import TrainedTeacher

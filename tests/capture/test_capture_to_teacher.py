@@ -16,7 +16,7 @@ from mua.arrays import Array
 from mua.baking import teacher_stages as lessons
 from mua.capture import Capture, open_capture
 from mua.capture.outline import posed_template
-from mua.recording.teacher import TeacherFrame
+from mua.teacher import TeacherFrame
 from mua.teachers.trained import settings
 from mua.teachers.trained.teacher import TrainedTeacher
 from mua.teachers.trained.template_training import TemplateSettings

@@ -30,8 +30,8 @@ from mua.player.offscreen import Offscreen
 from mua.player.toggles import Toggles
 from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip, Recording, TeacherWriter, WholeFrame, record
-from mua.recording.teacher import TeacherFrame
 from mua.student import settings as presets
+from mua.teacher import TeacherFrame
 from mua.training.optimise import Report
 from mua.training.schedule import Schedule
 

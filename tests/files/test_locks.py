@@ -20,7 +20,7 @@ HOLD = (
 TAKE_TURNS = """
 import sys, time
 from pathlib import Path
-from mua import locks
+from mua.files import lock as locks
 from mua.files.lock import DirectoryLock
 locks.TIMEOUT = 600
 directory = Path(sys.argv[1])

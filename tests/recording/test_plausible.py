@@ -20,9 +20,9 @@ from mua.pose.skeleton import Pose
 from mua.recording import LikelyMistake, Recording, TeacherWriter
 from mua.recording.plausible import Plausible, rig_findings
 from mua.recording.plausible.fit import explain, unit_of
-from mua.recording.teacher import TeacherFrame
 from mua.rig.character import Character
 from mua.rig.rig import Rig
+from mua.teacher import TeacherFrame
 from mua.teachers.procedural import procedural_character
 from mua.teachers.simulated.teacher import SimulatedTeacher
 

@@ -20,9 +20,9 @@ from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
 from mua.recording import workers
 from mua.recording.parts import is_joined, join_parts, record_share
-from mua.recording.teacher import TeacherFrame
 from mua.recording.workers import record_by_workers
 from mua.rig.rig import Rig
+from mua.teacher import TeacherFrame
 
 TESTS = Path(__file__).parent
 

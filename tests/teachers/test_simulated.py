@@ -14,10 +14,10 @@ from mua.pose.clip import Clip, Stretches
 from mua.pose.skeleton import Pose
 from mua.recording import PlannedClip
 from mua.recording.record import played
-from mua.recording.teacher import TeacherFrame
 from mua.rig.bones import fit_bones
 from mua.rig.character import Character
 from mua.rig.rig import Rig
+from mua.teacher import TeacherFrame
 from mua.teachers.simulated import texels
 from mua.teachers.simulated.chords import SEEN
 from mua.teachers.simulated.folds import Folds

@@ -22,9 +22,9 @@ from mua.channels import ATTRIBUTES, SH_C0
 from mua.motion.poses_file import write_poses
 from mua.pose.clip import Clip
 from mua.recording.encode import align_rotations
-from mua.recording.teacher import TeacherFrame
 from mua.rig.bones import figure_scale
 from mua.rig.rig import Rig
+from mua.teacher import TeacherFrame
 from mua.teachers.procedural import procedural_character
 from mua.teachers.simulated.teacher import SimulatedTeacher
 

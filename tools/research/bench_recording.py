@@ -13,7 +13,7 @@ import mua.cli  # noqa: F401 first of all: it sets how torch's threads wait
 from mua.baking.sources import load_character
 from mua.pose.encoding import RATE
 from mua.recording import TeacherWriter
-from mua.recording.teacher import TeacherFrame
+from mua.teacher import TeacherFrame
 from mua.teachers.simulated.teacher import SimulatedTeacher
 
 

@@ -22,8 +22,8 @@ from mua.motion.load import load_motions
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording.encode import align_rotations
-from mua.recording.teacher import TeacherFrame
 from mua.rig.character import Character
+from mua.teacher import TeacherFrame
 from mua.teachers.simulated.teacher import SimulatedTeacher
 
 LONGEST = 4.0  # seconds of a motion

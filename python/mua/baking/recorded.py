@@ -8,8 +8,8 @@ from mua.baking.order import Order
 from mua.pose.clip import Clip
 from mua.pose.encoding import RATE
 from mua.recording import PlannedClip, Recording
-from mua.recording.teacher import Teacher
 from mua.recording.workers import record_by_workers
+from mua.teacher import Teacher
 from mua.version import __version__
 
 

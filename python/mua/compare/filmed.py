@@ -26,11 +26,11 @@ from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 from mua.pose.windows import window_of
-from mua.recording.teacher import TeacherFrame
 from mua.splatting.likeness import structural_similarity
 from mua.splatting.perceptual import Lpips
 from mua.splatting.projection import Eye, TorchSplats
 from mua.splatting.rasterise import rasterise
+from mua.teacher import TeacherFrame
 from mua.teachers.trained.teacher import TrainedTeacher
 
 EVERY = 10  # frames: the paper's protocol

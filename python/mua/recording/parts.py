@@ -35,8 +35,8 @@ from mua.recording.layout import (
 )
 from mua.recording.record import PlannedClip, played, record
 from mua.recording.shard import sync
-from mua.recording.teacher import Teacher, TeacherFrame
 from mua.recording.writer import TeacherWriter
+from mua.teacher import Teacher, TeacherFrame
 from mua.training.processes import Processes
 
 MOST_PARTS = 64  # each has a copy of rig and reference until it is joined

@@ -7,8 +7,8 @@ from itertools import islice
 from mua.errors import InputError
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
-from mua.recording.teacher import Teacher, TeacherFrame
 from mua.recording.writer import TeacherWriter
+from mua.teacher import Teacher, TeacherFrame
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from mua.recording import damage
 from mua.recording.layout import HEADER, SHARDS
 from mua.recording.parts import divide, is_joined, join_parts, longest_first, part_directory, recorded, remove_leftovers
 from mua.recording.record import PlannedClip
-from mua.recording.teacher import Teacher
+from mua.teacher import Teacher
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 ENDED, FAILED, RECORDED = "ended", "failed", "recorded"  # what a worker tells

@@ -13,7 +13,7 @@ import warp as wp
 
 from mua import rotation
 from mua.arrays import Array
-from mua.recording.teacher import Light
+from mua.teacher import Light
 from mua.training.warp_start import start
 
 DEVICE = "cpu"

@@ -6,11 +6,11 @@ from mua import rotation
 from mua.arrays import Array
 from mua.pose.clip import Stretches
 from mua.pose.skeleton import Pose
-from mua.recording.teacher import Light, TeacherFrame
 from mua.rig.bones import figure_scale
 from mua.rig.build import build_rig
 from mua.rig.character import Character
 from mua.rig.skinning import transform
+from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.chords import straighten
 from mua.teachers.simulated.smoothing import TURN_WAVELENGTH, low_pass
 from mua.teachers.simulated.surface import MovedSurface, SkinnedSurface

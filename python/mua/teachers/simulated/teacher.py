@@ -17,9 +17,9 @@ from mua.arrays import Array
 from mua.pose.clip import Clip
 from mua.pose.descriptor import heading_of
 from mua.pose.skeleton import Pose
-from mua.recording.teacher import Light, TeacherFrame
 from mua.rig.bones import figure_scale
 from mua.rig.character import Character
+from mua.teacher import Light, TeacherFrame
 from mua.teachers.simulated.shading import shade, visibility
 from mua.teachers.simulated.simulated_surface import SimulatedSurface
 from mua.teachers.simulated.smoothing import low_pass
@@ -30,7 +30,7 @@ COARSE_WAVELENGTH = 0.2  # metres on a person: longer deformation moves the cano
 
 
 class SimulatedTeacher(StillTeacher):
-    """Teacher frames of a character (mua.recording.teacher) that hangs loose and stands in a light."""
+    """Teacher frames of a character (mua.teacher) that hangs loose and stands in a light."""
 
     def __init__(self, character: Character, *, texels: int, template_vertices: int = 5000, seed: int = 0) -> None:
         """Prepare a texture of `texels` x `texels`; the seed chooses where the character's cloth folds."""

@@ -5,10 +5,10 @@ from scipy import sparse
 
 from mua.arrays import Array
 from mua.channels import CHANNELS, SH_C0, SH_C1
-from mua.recording.teacher import Light
 from mua.rig.character import Character
 from mua.rig.rig import Rig
 from mua.rig.texel_map import TexelMap, build_texel_map
+from mua.teacher import Light
 from mua.texture.albedo import FINER, finer_picture, sample_albedo
 from mua.texture.deconvolution import deconvolved
 from mua.texture.sh import LINEAR

@@ -1,4 +1,4 @@
-"""A taught teacher as what is recorded and distilled (mua.recording.teacher)."""
+"""A taught teacher as what is recorded and distilled (mua.teacher)."""
 
 from collections.abc import Container, Iterator
 
@@ -7,7 +7,7 @@ import torch
 from mua.arguments import PathLike, as_path
 from mua.pose.clip import Clip
 from mua.pose.skeleton import Pose
-from mua.recording.teacher import TeacherFrame
+from mua.teacher import TeacherFrame
 from mua.teachers.trained.drivable_template import Undeformed
 from mua.teachers.trained.folder import load_teacher
 from mua.teachers.trained.windows import windows
