@@ -1,4 +1,4 @@
-"""Generate the layouts of all readers from schemas/muaavatar.fbs; --check says whether they are up to date.
+"""Generate what all readers share: layouts from schemas/muaavatar.fbs, numbers from limits.py; --check compares them.
 
 They are data: which fields each table has, in slot order. python/mua/asset/flatbuffer.py reads and writes by layout.py,
 unity-package's Parser.cs reads by Layouts.cs, the browser player's parser.js by layout.js. Only the grammar that the
@@ -8,6 +8,7 @@ schema uses is understood; anything else stops with its line.
 import argparse
 import json
 import re
+import runpy
 import sys
 from pathlib import Path
 
@@ -16,6 +17,9 @@ SCHEMA = ROOT / "schemas" / "muaavatar.fbs"
 LAYOUT = ROOT / "python" / "mua" / "asset" / "layout.py"
 LAYOUTS = ROOT / "unity-package" / "Runtime" / "Format" / "Layouts.cs"
 LAYOUT_JS = ROOT / "python" / "mua" / "web" / "format" / "layout.js"
+LIMITS = ROOT / "python" / "mua" / "limits.py"
+LIMITS_CS = LAYOUTS.with_name("Limits.cs")
+LIMITS_JS = LAYOUT_JS.with_name("limits.js")
 KINDS = {
     "bool": "Flag",
     "ubyte": "U8",
@@ -92,7 +96,9 @@ def generate() -> str:
         lines += [f'    "{name}": ("{values[0]}",),' if len(values) == 1 else f'    "{name}": ("{quoted(values)}"),']
     lines += ["}", "", "TABLES = {"]
     for name, fields in tables.items():
-        lines += [f'    "{name}": (', *(f"        {field}," for field in fields), "    ),"]
+        one = [f'    "{name}": ({fields[0]},),']
+        several = [f'    "{name}": (', *(f"        {field}," for field in fields), "    ),"]
+        lines += one if len(fields) == 1 else several
     return HEADER + "\n".join([*lines, "}", ""])
 
 
@@ -165,11 +171,33 @@ def fields_javascript(sources: list[str]) -> str:
     return "".join(lines)
 
 
+def limits() -> dict[str, int | float]:
+    """The numbers of limits.py."""
+    return {name: value for name, value in runpy.run_path(str(LIMITS)).items() if name.isupper()}
+
+
+def limits_csharp() -> str:
+    lines = [
+        f"public const {type(value).__name__.replace('float', 'double')} "
+        f"{''.join(part.capitalize() for part in name.split('_'))} = {value!r};"
+        for name, value in limits().items()
+    ]
+    body = "".join(f"        {line}\n" for line in lines)
+    head = "// Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.\n\nnamespace Mua.Format\n{\n"
+    return f"{head}    internal static class Limits\n    {{\n{body}    }}\n}}\n"
+
+
+def limits_javascript() -> str:
+    lines = [f"export const {name} = {value!r};\n" for name, value in limits().items()]
+    return "// Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.\n\n" + "".join(lines)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="exit 1 where a committed file differs")
     check = parser.parse_args().check
     written = ((LAYOUT, generate()), (LAYOUTS, generate_csharp()), (LAYOUT_JS, generate_javascript()))
+    written += ((LIMITS_CS, limits_csharp()), (LIMITS_JS, limits_javascript()))
     for path, text in written:
         if not check:
             path.write_text(text)

@@ -5,6 +5,8 @@ opacity is a logit; SH is degree 1, coefficient-major (coefficient, rgb), in can
 colour = 0.5 + C0 c0 + C1 (-y c1 + z c2 - x c3) for the unit direction (x, y, z) from camera to splat.
 """
 
+from mua.limits import MAX_DETAIL_LEVELS, MOST_TAPS
+
 GEOMETRY = slice(0, 11)
 APPEARANCE = slice(11, 23)
 CHANNELS = 23
@@ -28,3 +30,11 @@ LEVELS = DYNAMIC_LEVELS + STATIC_LEVELS
 COARSE_TEXELS = 1 << LEVELS
 FINE_TEXELS = 1 << (LEVELS - 1)
 LOWPASS_TEXELS = 1 << STATIC_LEVELS
+
+
+def most_levels(levels: int, details: int, *, taps: int) -> int:
+    """How many levels of detail a texture may have beyond its texels.
+
+    Details that vary with the frame would have to be computed to be averaged: their levels are never left out.
+    """
+    return min(MAX_DETAIL_LEVELS, levels - details) if taps <= MOST_TAPS else 0

@@ -12,10 +12,11 @@ from synthetic_avatar import synthetic_avatar
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import FormatError, parse
-from mua.asset.packing import ROOM, TIMES, packed, tensors, unpack
+from mua.asset.packing import packed, tensors, unpack
 from mua.asset.read import parse_checked, read
 from mua.asset.tensors import Element, pack, pack_indices, stored
 from mua.asset.write import encode, write
+from mua.limits import UNPACKED_ROOM, UNPACKED_TIMES
 
 WORDS = 1 << 17  # bytes of Python's own that reading a small file takes
 
@@ -93,7 +94,7 @@ def test_a_stream_longer_than_its_shape_is_not_unpacked_to_its_end(network: byte
 def test_the_claims_of_all_tensors_count_together(network: bytes) -> None:
     """Each alone is within what a file of this size may claim."""
     held = [path for path, tensor in tensors(parse(network)) if tensor["packing"] == "Deflate"]
-    size = ROOM // 2
+    size = UNPACKED_ROOM // 2
     bomb = {"shape": np.array([1, size], np.uint32), "type": "I8", "data": stream(bytes(size)), "packing": "Deflate"}
 
     def several(tree: dict[str, object]) -> None:
@@ -101,7 +102,7 @@ def test_the_claims_of_all_tensors_count_together(network: bytes) -> None:
 
     content = malformed(network, several)
     assert held
-    assert size < TIMES * len(content) + ROOM < 40 * size
+    assert size < UNPACKED_TIMES * len(content) + UNPACKED_ROOM < 40 * size
     with pytest.raises(FormatError) as caught:
         parse_checked(content)
     assert caught.value.code == "value"

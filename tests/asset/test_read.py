@@ -1,16 +1,19 @@
 """The reader trusts nothing: every way to be wrong ends in one FormatError with its code and field."""
 
+import tracemalloc
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
 import pytest
-from malformed import DAMAGED, MALFORMED, UNPACKABLE, malformed, seal_unread, times
+from malformed import DAMAGED, MALFORMED, UNPACKABLE, flipped, malformed, seal_unread, times
 from synthetic_avatar import synthetic_avatar, with_surface
 
 from mua.asset.flatbuffer import FormatError, Tree, parse
 from mua.asset.read import decode_tree, parse_checked, read
-from mua.asset.tensors import pack
+from mua.asset.sizes import require_sizes
+from mua.asset.tensors import pack, pack_indices
 from mua.asset.write import encode
 from mua.errors import InputError
 
@@ -121,3 +124,38 @@ def test_sentence_names_the_file(tmp_path: Path) -> None:
         read(path)
     with pytest.raises(InputError, match=r"absent\.muaavatar"):
         read(tmp_path / "absent.muaavatar")
+
+
+def test_the_inverse_of_the_bind_pose_may_have_the_opposite_sign(content: bytes) -> None:
+    decode(malformed(content, flipped(0)))
+
+
+@pytest.mark.parametrize(
+    ("side", "count", "sound"), [(256, 0, True), (272, 0, False), (512, 12288, True), (512, 12287, False)]
+)
+def test_a_texture_is_as_large_as_its_valid_texels_justify(content: bytes, side: int, count: int, sound: bool) -> None:
+    tree = parse(content)
+    tree["texels"] |= {"size": side, "texels": {**tree["texels"]["texels"], "shape": np.array([count])}}
+    with nullcontext() if sound else pytest.raises(FormatError, match=f"too large for {count} valid texels"):
+        require_sizes(tree)
+
+
+def test_the_largest_texture_without_texels_decodes_in_little_memory(content: bytes) -> None:
+    """256 texels along a side: 23 channels of f32 are 6 MB."""
+
+    def wide(tree: Tree) -> None:
+        sides, channels = {"size": 256, "texels": pack_indices(np.zeros(0)), "levels": []}, (11, 12)
+        nothing = {"triangles": pack_indices(np.zeros(0)), "barycentrics": pack(np.zeros((0, 2)))}
+        tree["texels"] = {**sides, **nothing, "length": 0.0}
+        tree["wavelet"]["levels"] = 7
+        for name, count in zip(("geometry", "appearance"), channels, strict=True):
+            tree[name]["static_offset"] = pack(np.zeros((count, 0)))
+        del tree["surface"]
+
+    avatar = decode_tree(parse_checked(malformed(content, wide)))
+    tracemalloc.start()
+    splats = avatar.decode(avatar.clips[0], 1)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(splats.centres) == 0
+    assert most < 8 * 23 * 4 * 256**2

@@ -9,8 +9,9 @@ from synthetic_avatar import empty_avatar, sparse_avatar, synthetic_avatar, with
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.write import encode
-from mua.avatar.coarser import GROWTH, REACH, at_level, coarsest, texel_length
+from mua.avatar.coarser import REACH, at_level, coarsest, texel_length
 from mua.errors import InputError
+from mua.limits import GROWTH
 from mua.rig.texel_map import TexelMap
 
 SCALES = slice(7, 10)

@@ -10,7 +10,6 @@ from stored import STORAGES, groups, store
 
 from mua.arrays import Array
 from mua.asset.tensors import Storage
-from mua.avatar.coarser import MOST_TAPS
 from mua.gpu import Device
 from mua.kernels.inverse_dwt import (
     BATCH,
@@ -26,6 +25,7 @@ from mua.kernels.inverse_dwt import (
     upsampling_taps,
     whole_words,
 )
+from mua.limits import MOST_TAPS
 
 WAVELETS = pywt.wavelist("bior")
 SIDES = [1, 2, 3, 5, 8, 13]

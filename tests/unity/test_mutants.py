@@ -19,12 +19,12 @@ from synthetic_avatar import synthetic_avatar, with_surface
 from web.test_modules import lacking
 
 from mua.asset.flatbuffer import FormatError, parse
-from mua.asset.packing import ROOM as UNPACKED
-from mua.asset.packing import TIMES, tensors
-from mua.asset.read import MAX_FRAMES, decode_tree, parse_checked
+from mua.asset.packing import tensors
+from mua.asset.read import decode_tree, parse_checked
 from mua.asset.tensors import Storage
 from mua.asset.write import encode
 from mua.avatar.decode import decode_clip_frame
+from mua.limits import MAX_FRAMES, UNPACKED_ROOM, UNPACKED_TIMES
 from mua.pose.resample import resample
 
 STORAGES: tuple[Storage, ...] = ("i8", "f16", "f32", "packed")
@@ -109,7 +109,7 @@ def claimed(content: bytes) -> int:
         packed = [tensor for _, tensor in tensors(parse(content)) if tensor["packing"] == "Deflate"]
     except FormatError:
         return 0
-    return TIMES * len(content) + UNPACKED if packed else 0
+    return UNPACKED_TIMES * len(content) + UNPACKED_ROOM if packed else 0
 
 
 def answer(content: bytes) -> tuple[str, str]:

@@ -11,12 +11,14 @@
 //   order KEYS     of splats
 //   numbers        half floats, and numbers as sentences have them
 
+import "./strict_inflate.mjs";
 import { readFileSync, readSync } from "node:fs";
 import { ProgressiveLoad } from "../../python/mua/web/progressive.js";
 import { frameBox } from "../../python/mua/web/bounds.js";
 import { cameraOf, camerasOf, framing, sees } from "../../python/mua/web/camera.js";
 import { framesAt, sample, window } from "../../python/mua/web/clip.js";
-import { coarserTexture, coarsest, levelCounts, texelLength, textureOf } from "../../python/mua/web/coarser.js";
+import { Levels } from "../../python/mua/web/levels.js";
+import { coarserTexture, textureOf } from "../../python/mua/web/coarser.js";
 import { Download } from "../../python/mua/web/download.js";
 import { readComponents } from "../../python/mua/web/components.js";
 import { describe } from "../../python/mua/web/descriptor.js";
@@ -91,9 +93,8 @@ function values(avatar, frames) {
     rows: list(texelTiles(texels).rows),
     upsampling: [0, 1, 2, 3].map((levels) => upsamplingTaps(wavelet.recLo, levels)),
     halved: [1, 2].map((coarser) => upsamplingTaps(wavelet.recLo, 2, coarser)),
-    coarsest: coarsest(avatar),
-    counts: levelCounts(avatar),
-    length: texelLength(avatar, texels.texels.length),
+    counts: new Levels(avatar).counts,
+    length: texels.length,
     staticOffset: list(expanded(geometry.staticOffset)),
     surface: surface && Object.values(surfaceMesh(texels, surface)).map(list),
   };
@@ -117,7 +118,7 @@ function played(avatar, changes) {
 /** The coarser levels, one after the other. */
 function levels(avatar) {
   let texture = textureOf(avatar);
-  return Array.from({ length: coarsest(avatar) }, () => {
+  return Array.from({ length: avatar.texels.levels.length }, () => {
     texture = coarserTexture(avatar, texture);
     const { size, texels, triangles, barycentrics, statics } = texture;
     const lists = { texels, triangles, barycentrics, words: texelWords(texture), ...statics };

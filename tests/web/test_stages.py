@@ -1,5 +1,6 @@
 """A packed file that is shown while it arrives: its stages, and what is wrong with them."""
 
+import base64
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from malformed import malformed, trailing
 from synthetic_avatar import synthetic_avatar, with_surface
 from web.browser import Page
 from web.pages import ELEMENT, SENTENCE
@@ -44,6 +46,17 @@ def claiming(content: bytes, lie: Callable[[Any], Any]) -> bytes:
     there = np.uint32(len(ends)).tobytes() + ends.tobytes()
     other_bytes = np.uint32(len(other)).tobytes() + other.tobytes()
     return content.replace(there, other_bytes.ljust(len(there), b"\0"))
+
+
+def test_a_browser_refuses_bytes_after_a_stream(page: Page, packed: bytes) -> None:
+    """Node needs a stand-in for that: strict_inflate.mjs."""
+    longer = malformed(packed, trailing)
+    bytes_of = [base64.b64encode(content).decode() for content in (packed, longer)]
+    bytes_in = "Uint8Array.from(atob(text), (byte) => byte.charCodeAt(0)).buffer"
+    asked = f"(text) => read({bytes_in}).then(() => 'ok', (error) => error.code)"
+    given = f"{json.dumps(bytes_of)}.map({asked})"
+    found = page.evaluate(f"import('./format/read.js').then(({{ read }}) => Promise.all({given}))")
+    assert found == ["ok", "packed"]
 
 
 def test_each_stage_shows_more_as_soon_as_it_is_there(tmp_path: Path, packed: bytes) -> None:

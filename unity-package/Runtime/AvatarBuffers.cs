@@ -29,7 +29,7 @@ namespace Mua
             skinIndices = Add(Stored(avatar.Template.SkinIndices, "template.skin_indices"));
             skinWeights = Add(new Upload("template.skin_weights", avatar.Template.SkinWeights.ToFloats(), sizeof(float)));
             faces = Add(Stored(avatar.Template.Faces, "template.faces"));
-            TexelLength = DetailLevel.TexelLength(avatar);
+            TexelLength = avatar.Texels.Length;
             Levels = Array.ConvertAll(DetailLevel.All(avatar), LevelOf);
             SplatCounts = Array.ConvertAll(Levels, level => level.SplatCount);
             foreach (Upload upload in uploads)

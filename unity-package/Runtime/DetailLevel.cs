@@ -4,17 +4,11 @@ using Mua.Format;
 namespace Mua
 {
     /// <summary>
-    /// The texels of one level of detail: those of the file, or 2 x 2 of the finer level as one, as python/mua/avatar/coarser.py
-    /// makes them. It may be made on any thread.
+    /// The texels of one level of detail: those of the file, or 2 x 2 of the finer level as one, as the file says which.
+    /// It may be made on any thread. Reference: python/mua/avatar/coarser.py.
     /// </summary>
     internal sealed class DetailLevel
     {
-        private const int Most = 2; // levels beyond the finest
-        private const int MostTaps = 32; // of a wavelet that has coarser levels
-        private const double Reach = 6; // texels: what lies farther apart belongs to other surfaces
-        private const double Growth = 1.85; // of the standard deviations where one splat stands for four
-        private const double Turn = 1; // between quaternions that have a part in a mean rotation
-        private const int BlockTexels = 4;
         private const int Rotation = 3, Scale = 7, Opacity = 10; // first channels
 
         private readonly AvatarFile avatar;
@@ -59,42 +53,16 @@ namespace Mua
         /// <summary>[C, N] static offset of appearance.</summary>
         public float[] Appearance { get; private set; }
 
-        /// <summary>The coarsest level of an avatar, 0 where it has but one.</summary>
-        public static int Coarsest(AvatarFile avatar)
-        {
-            int details = Math.Max(avatar.Geometry.Details.Length, avatar.Appearance.Details.Length);
-            return avatar.Wavelet.RecLo.Length > MostTaps ? 0 : Math.Min(Most, avatar.Wavelet.Levels - details);
-        }
-
         /// <summary>All levels of an avatar, the finest first.</summary>
         public static DetailLevel[] All(AvatarFile avatar)
         {
-            var levels = new DetailLevel[Coarsest(avatar) + 1];
+            var levels = new DetailLevel[avatar.Texels.Levels.Length + 1];
             levels[0] = Finest(avatar);
             for (int i = 1; i < levels.Length; i++)
             {
-                levels[i] = levels[i - 1].Coarser();
+                levels[i] = levels[i - 1].Coarser(avatar.Texels.Levels[i - 1]);
             }
             return levels;
-        }
-
-        /// <summary>The side of a texel of the finest level on the surface, metres: of all of the mean mesh in equal parts.</summary>
-        public static double TexelLength(AvatarFile avatar)
-        {
-            return TexelLength(avatar, avatar.Texels.Count);
-        }
-
-        private static double TexelLength(AvatarFile avatar, int count)
-        {
-            double area = 0;
-            ReadOnlySpan<int> corners = avatar.Template.Faces.Integers;
-            for (int i = 0; i < corners.Length; i += 3)
-            {
-                Vector3D a = Vertex(avatar, corners[i]);
-                Vector3D across = Vector3D.Cross(Vertex(avatar, corners[i + 1]) - a, Vertex(avatar, corners[i + 2]) - a);
-                area += Math.Sqrt(SquaredLength(across)) / 2;
-            }
-            return count == 0 ? 0 : Math.Sqrt(area / count);
         }
 
         private static DetailLevel Finest(AvatarFile avatar)
@@ -116,153 +84,83 @@ namespace Mua
             return level;
         }
 
-        private DetailLevel Coarser()
+        private DetailLevel Coarser(BlockLevel blocks)
         {
-            int[] blocks = Blocks(out int[] numbers);
-            double reach = Reach * TexelLength(avatar, Count);
-            var level = new DetailLevel(avatar, Number + 1, Size / 2, numbers.Length)
+            var level = new DetailLevel(avatar, Number + 1, Size / 2, blocks.Count)
             {
-                Geometry = new float[avatar.Geometry.Channels * numbers.Length],
-                Appearance = new float[avatar.Appearance.Channels * numbers.Length],
+                Geometry = new float[avatar.Geometry.Channels * blocks.Count],
+                Appearance = new float[avatar.Appearance.Channels * blocks.Count],
             };
-            numbers.CopyTo(level.Texels, 0);
-            for (int block = 0; block < numbers.Length; block++)
+            blocks.Texels.CopyTo(level.Texels, 0);
+            var members = new int[BlockLevel.Four];
+            var turned = new int[BlockLevel.Four];
+            for (int block = 0; block < blocks.Count; block++)
             {
-                var members = new Span<int>(blocks, BlockTexels * block, BlockTexels);
-                int chief = Chief(members, reach);
-                KeepNear(members, chief, reach);
+                int count = Gather(blocks, block, BlockLevel.Member, members), chief = -1;
+                int alike = Gather(blocks, block, BlockLevel.Turned, turned);
+                for (int corner = 0; corner < BlockLevel.Four; corner++)
+                {
+                    chief = blocks.Kind(block, corner) == BlockLevel.Chief ? blocks.Finer(block, corner) : chief;
+                }
                 level.Triangles[block] = Triangles[chief];
                 level.Barycentrics[2 * block] = Barycentrics[2 * chief];
                 level.Barycentrics[2 * block + 1] = Barycentrics[2 * chief + 1];
                 level.points[block] = points[chief];
-                level.Merge(this, block, members, chief);
+                level.Merge(this, block, new Span<int>(members, 0, count), new Span<int>(turned, 0, alike));
             }
             return level;
         }
 
-        /// <summary>
-        /// The texels [B, 4] of each block that holds any, -1 for one that is not valid, and the blocks as texels of half the
-        /// size, ascending.
-        /// </summary>
-        private int[] Blocks(out int[] numbers)
+        /// <summary>How many texels of a block are at least of this kind; `found` begins with them.</summary>
+        private static int Gather(BlockLevel blocks, int block, int kind, int[] found)
         {
-            int side = Size / 2, count = 0;
-            var places = new int[side * side]; // one more than where a block stands
-            foreach (int texel in Texels)
+            int count = 0;
+            for (int corner = 0; corner < BlockLevel.Four; corner++)
             {
-                places[texel / Size / 2 * side + texel % Size / 2] = 1;
-            }
-            for (int i = 0; i < places.Length; i++)
-            {
-                count += places[i];
-                places[i] *= count;
-            }
-            var blocks = new int[BlockTexels * count];
-            numbers = new int[count];
-            Array.Fill(blocks, -1);
-            for (int i = 0; i < Count; i++)
-            {
-                int row = Texels[i] / Size, column = Texels[i] % Size, number = row / 2 * side + column / 2;
-                blocks[BlockTexels * (places[number] - 1) + row % 2 * 2 + column % 2] = i;
-                numbers[places[number] - 1] = number;
-            }
-            return blocks;
-        }
-
-        /// <summary>The texel that has most of a block within reach, the first of equals.</summary>
-        private int Chief(ReadOnlySpan<int> members, double reach)
-        {
-            int chief = -1, most = 0;
-            foreach (int member in members)
-            {
-                int near = 0;
-                foreach (int other in members)
+                if (blocks.Kind(block, corner) >= kind)
                 {
-                    near += member >= 0 && other >= 0 && IsNear(member, other, reach) ? 1 : 0;
-                }
-                if (near > most)
-                {
-                    chief = member;
-                    most = near;
+                    found[count++] = blocks.Finer(block, corner);
                 }
             }
-            return chief;
-        }
-
-        private void KeepNear(Span<int> members, int chief, double reach)
-        {
-            for (int i = 0; i < members.Length; i++)
-            {
-                if (members[i] >= 0 && !IsNear(members[i], chief, reach))
-                {
-                    members[i] = -1;
-                }
-            }
-        }
-
-        private bool IsNear(int one, int other, double reach)
-        {
-            return Math.Sqrt(SquaredLength(Place(one) - Place(other))) <= reach;
+            return count;
         }
 
         /// <summary>Sets a texel of this level, its place but for, to what members of the finer one have.</summary>
-        private void Merge(DetailLevel finer, int texel, ReadOnlySpan<int> members, int chief)
+        private void Merge(DetailLevel finer, int texel, ReadOnlySpan<int> members, ReadOnlySpan<int> turned)
         {
             var aside = new Vector3D();
-            int count = 0;
             OneSided[texel] = true;
             foreach (int member in members)
             {
-                if (member >= 0)
-                {
-                    count++;
-                    OneSided[texel] &= finer.OneSided[member];
-                    aside += finer.Place(member) - finer.points[chief];
-                }
+                OneSided[texel] &= finer.OneSided[member];
+                aside += finer.Place(member) - points[texel];
             }
             Span<double> offset = stackalloc double[Rotation];
             aside.Store(offset, 0);
-            double growth = Math.Log(Growth) * Math.Log(count) / Math.Log(2) / 2;
+            double growth = Math.Log(BlockLevel.Growth) * Math.Log(members.Length) / Math.Log(2) / 2;
             for (int channel = 0; channel < avatar.Geometry.Channels; channel++)
             {
                 bool turns = channel >= Rotation && channel < Scale;
                 double value = channel < Rotation
-                    ? offset[channel] / count
-                    : finer.Mean(finer.Geometry, channel, members, turns ? chief : -1);
+                    ? offset[channel] / members.Length
+                    : finer.Mean(finer.Geometry, channel, turns ? turned : members);
                 value += channel >= Scale && channel < Opacity ? growth : 0;
                 Geometry[channel * Count + texel] = (float)value;
             }
             for (int channel = 0; channel < avatar.Appearance.Channels; channel++)
             {
-                Appearance[channel * Count + texel] = (float)finer.Mean(finer.Appearance, channel, members, -1);
+                Appearance[channel * Count + texel] = (float)finer.Mean(finer.Appearance, channel, members);
             }
         }
 
-        /// <summary>The mean of a channel over members, or over those that are turned nearly as `chief` where there is one.</summary>
-        private double Mean(float[] offsets, int channel, ReadOnlySpan<int> members, int chief)
+        private double Mean(float[] offsets, int channel, ReadOnlySpan<int> members)
         {
             double sum = 0;
-            int count = 0;
             foreach (int member in members)
             {
-                if (member >= 0 && (chief < 0 || IsTurnedAlike(member, chief)))
-                {
-                    sum += offsets[channel * Count + member];
-                    count++;
-                }
+                sum += offsets[channel * Count + member];
             }
-            return sum / count;
-        }
-
-        private bool IsTurnedAlike(int one, int other)
-        {
-            double squares = 0;
-            for (int channel = Rotation; channel < Scale; channel++)
-            {
-                double apart = (double)Geometry[channel * Count + one] - Geometry[channel * Count + other];
-                squares += apart * apart;
-            }
-            return Math.Sqrt(squares) <= Turn;
+            return sum / members.Length;
         }
 
         /// <summary>Where a texel lies on the mean mesh, moved by its static offset, metres.</summary>
@@ -273,22 +171,18 @@ namespace Mua
 
         private Vector3D Point(int texel)
         {
-            double first = Barycentrics[2 * texel], second = Barycentrics[2 * texel + 1];
+            float first = Barycentrics[2 * texel], second = Barycentrics[2 * texel + 1];
+            float third = (float)(1 - (float)(first + second)); // rounded as Python has it
             int corner = 3 * Triangles[texel];
             ReadOnlySpan<int> faces = avatar.Template.Faces.Integers;
             return first * Vertex(avatar, faces[corner]) + second * Vertex(avatar, faces[corner + 1]) +
-                   Math.Max(1 - first - second, 0) * Vertex(avatar, faces[corner + 2]);
+                   Math.Max(third, 0) * Vertex(avatar, faces[corner + 2]);
         }
 
         private static Vector3D Vertex(AvatarFile avatar, int vertex)
         {
             Tensor mean = avatar.Coarse.Mean;
             return new Vector3D(mean.Read(3 * vertex), mean.Read(3 * vertex + 1), mean.Read(3 * vertex + 2));
-        }
-
-        private static double SquaredLength(in Vector3D v)
-        {
-            return v.X * v.X + v.Y * v.Y + v.Z * v.Z;
         }
     }
 }

@@ -4,6 +4,7 @@ A table is a dict, a string a str, a vector of scalars a numpy array that shares
 https://flatbuffers.dev/internals/ describes the bytes.
 """
 
+import re
 import struct
 from collections.abc import Sequence
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 from mua.arrays import Array
 from mua.asset.layout import ENUMS, IDENTIFIER, ROOT, TABLES, Field
 from mua.errors import InputError
+from mua.limits import MAJOR, MINOR
 
 Tree = dict[str, Any]
 
@@ -26,7 +28,9 @@ SCALARS = {
     "double": np.dtype("<f8"),
     **{name: np.dtype("u1") for name in ENUMS},
 }
-VERSION = (5, 0)  # major, minor of the format
+VERSION = (MAJOR, MINOR)
+CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")  # what a terminal would obey
+CONTROL_IN_NOTES = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")  # but tabs and line feeds
 DATA_ALIGN = 16  # bytes, of a tensor's data
 MAX_BYTES = 2**31 - 1  # FlatBuffers' offsets are 32 bits, and its builders stop at half of them
 
@@ -137,14 +141,9 @@ def parse(content: bytes) -> Tree:
     if content[4:8] != IDENTIFIER:
         raise FormatError("identifier", "", f"the file identifier is {content[4:8]!r}, expected {IDENTIFIER!r}")
     version = _Parser(content).scalar(ROOT, "version_major")
-    if version > VERSION[0]:
-        raise FormatError(
-            "version", "version_major", f"format version {version} is newer than {VERSION[0]}, update mua"
-        )
-    if version < VERSION[0]:
-        raise FormatError(
-            "version", "version_major", f"format version {version} is older than {VERSION[0]}, bake the avatar again"
-        )
+    if version != VERSION[0]:
+        sentence = f"format version {version}, expected {VERSION[0]}: update mua where the file is newer"
+        raise FormatError("version", "version_major", sentence)
     return _Parser(content).table(ROOT, 0, "")
 
 
@@ -224,9 +223,13 @@ class _Parser:
             return self.table(kind, at, path)
         start, count = self._vector(at, path, 1)
         try:
-            return self.content[start : start + count].decode()
+            text = self.content[start : start + count].decode()
         except UnicodeDecodeError as error:
             raise FormatError("text", path, "the text is not UTF-8") from error
+        control = (CONTROL_IN_NOTES if path == "notes" else CONTROL).search(text)
+        if control:
+            raise FormatError("text", path, f"the text holds the control character U+{ord(control[0]):04X}")
+        return text
 
     def _vector(self, at: int, path: str, width: int) -> tuple[int, int]:
         start = self._follow(at, path)

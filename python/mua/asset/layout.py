@@ -62,6 +62,7 @@ TABLES = {
         Field("skin_indices", "Tensor", required=True),
         Field("skin_weights", "Tensor", required=True),
     ),
+    "Level": (Field("blocks", "ubyte", vector=True, required=True),),
     "Texels": (
         Field("size", "uint"),
         Field("texels", "Tensor", required=True),
@@ -69,6 +70,8 @@ TABLES = {
         Field("barycentrics", "Tensor", required=True),
         Field("listed", "Tensor"),
         Field("one_sided", "ubyte", vector=True),
+        Field("length", "float"),
+        Field("levels", "Level", vector=True, required=True),
     ),
     "Wavelet": (
         Field("name", "string", required=True),

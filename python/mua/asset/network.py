@@ -55,6 +55,7 @@ def _stages(tree: Tree) -> Sequence[Sequence[Array]]:
         late = next((number for number, holds in enumerate(STAGES) if holds(path)), len(STAGES))
         stages[len(STAGES) - late].append(tensor["data"])
     stages[0].insert(0, tree["thumbnail"])
+    stages[1] += [level["blocks"] for level in tree["texels"]["levels"]]
     if "one_sided" in tree["texels"]:
         stages[1].append(tree["texels"]["one_sided"])
     if "surface" in tree:

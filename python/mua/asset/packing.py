@@ -12,9 +12,9 @@ import numpy as np
 from mua.asset.flatbuffer import FormatError, Tree
 from mua.asset.layout import ROOT, TABLES
 from mua.asset.tensors import DTYPES, sides
+from mua.limits import UNPACKED_ROOM, UNPACKED_TIMES
 
 RAW = -15  # zlib's word for a deflate stream of the largest window without a header
-TIMES, ROOM = 16, 1 << 20  # what all packed tensors give: bytes for each of the file, and bytes beside
 GAIN = 0.95  # of its bytes, above which a tensor is not worth unpacking
 
 
@@ -35,7 +35,7 @@ def unpack(tree: Tree, size: int) -> None:
     FormatError with code `shape`, `value` or `packed`.
     """
     held = [(path, tensor) for path, tensor in tensors(tree) if tensor["packing"] == "Deflate"]
-    claimed, most = 0, TIMES * size + ROOM
+    claimed, most = 0, UNPACKED_TIMES * size + UNPACKED_ROOM
     for path, tensor in held:
         claimed += _claimed(tensor, path)
         if claimed > most:
@@ -71,11 +71,14 @@ def _inflate(stream: bytes, count: int, path: str) -> np.ndarray[tuple[int], np.
     """The `count` bytes of a stream; not a byte more is made of it."""
     if not count:  # not every language tells a damaged stream of nothing from a whole one
         return np.zeros(0, np.uint8)
+    inflate = zlib.decompressobj(RAW)
     try:
-        found = zlib.decompressobj(RAW).decompress(stream, count + 1)
+        found = inflate.decompress(stream, count + 1)
     except zlib.error as error:
         raise FormatError("packed", f"{path}.data", "the bytes are no deflate stream: the file is damaged") from error
     if len(found) != count:
         given = f"more than {count}" if len(found) > count else str(len(found))
         raise FormatError("packed", f"{path}.data", f"the stream gives {given} bytes, expected {count}")
+    if not inflate.eof or inflate.unused_data:
+        raise FormatError("packed", f"{path}.data", "the stream does not end with its bytes: the file is damaged")
     return np.frombuffer(found, np.uint8)

@@ -9,28 +9,37 @@ from mua.arguments import PathLike, as_path
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.asset.flatbuffer import FormatError, Tree, parse
+from mua.asset.magnitude import require_bounded
 from mua.asset.packing import unpack
+from mua.asset.sizes import require_sizes
 from mua.asset.tensors import indices, reals
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.errors import InputError
-from mua.pose.clip import LARGEST_RATE, LEAST_RATE, Clip
+from mua.limits import (
+    BARYCENTRIC_SLACK,
+    BIND_BOUND,
+    LARGEST,
+    LARGEST_RATE,
+    LARGEST_TAP,
+    LEAST_RATE,
+    LEAST_SCALE,
+    MAX_ADDED,
+    MAX_FRAMES,
+    MAX_INFLUENCES,
+    MAX_TAPS,
+    MAX_WINDOW,
+    STAGES,
+    UNIT_BOUND,
+    WEIGHT_BOUND,
+)
+from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
-from mua.rig.character import MAX_INFLUENCES, Mesh
+from mua.rig.character import Mesh
 from mua.rig.rig import Rig
 from mua.rig.surface import END, Surface, block_triangles, blocks, codes_of, count_codes
-from mua.rig.texel_map import TexelMap, centre_barycentrics
+from mua.rig.texel_map import CHIEF, TexelMap, centre_barycentrics
 
-UNIT_BOUND = 2e-3  # a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
-WEIGHT_BOUND = 1e-4  # 8 weights rounded to f32, with room for a writer that rounds to f16-derived values
-BIND_BOUND = 1e-4  # metres and quaternion components: f32 forward kinematics over a deep chain
-MAX_SIZE = 4096
-MAX_LEVELS = 8
-MAX_TAPS = 40
-LARGEST_TAP = 16.0  # those of PyWavelets' wavelets stay below 5
-MAX_FRAMES = 1 << 20  # of a clip at the encoding's rate: 9 hours at 30 frames per second
-MAX_ADDED = 1 << 24  # joints in all frames that clips gain at the encoding's rate: 46 minutes of 100, 30 to 90 Hz
-LEAST_SCALE = 1e-6  # of a descriptor's number: a thousandth of what 1 is on a person, of a figure 2 mm high
 GEOMETRY_CHANNELS, APPEARANCE_CHANNELS = 11, 12
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
@@ -81,14 +90,17 @@ def parse_checked(content: bytes) -> Tree:
             "checksum", "crc32", f"{tree['crc32']:08x}, but the content gives {found:08x}: the file is damaged"
         )
     _require_stages(tree, len(content))
+    require_sizes(tree)
     unpack(tree, len(content))
     return tree
 
 
 def _require_stages(tree: Tree, size: int) -> None:
-    ends = tree.get("stages", np.zeros(0, np.uint32)).astype(np.int64)
-    if np.any(np.diff(ends) < 0) or ends.max(initial=0) > size:
-        _refuse("stages", f"{ends.tolist()}, expected rising numbers up to the file's {size} bytes")
+    if "stages" not in tree:
+        return
+    ends = tree["stages"].astype(np.int64)
+    if len(ends) != STAGES or np.any(np.diff(ends) < 0) or ends[-1] > size:
+        _refuse("stages", f"{ends.tolist()}, expected {STAGES} rising numbers up to the file's {size} bytes")
 
 
 def decode_tree(tree: Tree) -> Avatar:
@@ -105,14 +117,11 @@ def decode_tree(tree: Tree) -> Avatar:
     coarse = _coarse(tree["coarse"], inputs)
     rig = _rig(tree, skeleton, coarse.mean)
     size, count = rig.texels.size, len(rig.texels.texels)
-    branches = [
-        _branch(tree[name], name, channels, count=count, inputs=inputs, size=size >> wavelet.levels)
+    branches = {
+        name: _branch(tree[name], name, channels, count=count, inputs=inputs, size=size >> wavelet.levels)
         for name, channels in (("geometry", GEOMETRY_CHANNELS), ("appearance", APPEARANCE_CHANNELS))
-    ]
-    if size % (1 << wavelet.levels):
-        _refuse("texels.size", f"{size} does not halve {wavelet.levels} times")
-    if max(len(branch.details) for branch in branches) > wavelet.levels:
-        _refuse("geometry.details", f"more levels of detail than the wavelet's {wavelet.levels}")
+    }
+    require_bounded(components, wavelet, coarse, branches)
     return Avatar(
         name=tree["name"],
         producer=tree["producer"],
@@ -120,8 +129,7 @@ def decode_tree(tree: Tree) -> Avatar:
         encoding=encoding,
         components=components,
         coarse=coarse,
-        geometry=branches[0],
-        appearance=branches[1],
+        **branches,
         wavelet=wavelet,
         clips=_clips(tree["clips"], skeleton, translated, encoding.rate),
         bounds=_bounds(tree["bounds"]),
@@ -151,10 +159,19 @@ def _skeleton(tree: Tree) -> Skeleton:
         root=tree["root"],
     )
     stated = reals(tree["bind_inverse"], "skeleton.bind_inverse", (count, 8))
-    gap = np.minimum(np.abs(stated - skeleton.bind_inverse), np.abs(stated + skeleton.bind_inverse)).max()
+    gaps = [np.abs(stated - sign * skeleton.bind_inverse).max(axis=1) for sign in (1, -1)]  # of a dual quaternion
+    gap = np.minimum(*gaps).max()
     if gap > BIND_BOUND:
         _refuse("skeleton.bind_inverse", f"differs by {gap:.1e} from the inverse of the bind pose")
     return skeleton
+
+
+def _some(tensor: Tree, path: str, shape: tuple[int | None, ...], *, axis: int) -> Array:
+    """Reals of which there is at least one along the axis: components, or a rank."""
+    values = reals(tensor, path, shape)
+    if not values.shape[axis]:
+        raise FormatError("shape", f"{path}.shape", f"side {axis} is 0, expected 1 or more")
+    return values
 
 
 def _unit(tensor: Tree, path: str, shape: tuple[int | None, ...]) -> Array:
@@ -184,8 +201,8 @@ def _encoding(tree: Tree, skeleton: Skeleton, among: Array) -> PoseEncoding:
     translated = _translated(tree, "encoding.translated", skeleton)
     if not np.isin(translated, among).all():
         _refuse("encoding.translated", "joints must be among the skeleton's translated ones")
-    if not 1 <= tree["window"] <= 16:
-        _refuse("encoding.window", f"{tree['window']} frames, expected 1 to 16")
+    if not 1 <= tree["window"] <= MAX_WINDOW:
+        _refuse("encoding.window", f"{tree['window']} frames, expected 1 to {MAX_WINDOW}")
     return PoseEncoding(
         joints=tuple(int(j) for j in joints),
         rate=_rate(tree["rate"], "encoding.rate"),
@@ -199,7 +216,7 @@ def _components(tree: Tree, width: int) -> Components:
     scale = reals(tree["scale"], "encoding.scale", (width,))
     if scale.min() < np.float32(LEAST_SCALE):
         _refuse("encoding.scale", f"{scale.min()}, expected {LEAST_SCALE:g} or more")
-    directions = reals(tree["components"], "encoding.components", (None, width))
+    directions = _some(tree["components"], "encoding.components", (None, width), axis=0)
     ranges = reals(tree["ranges"], "encoding.ranges", (2, len(directions)))
     swapped = np.flatnonzero(ranges[0] > ranges[1])
     if swapped.size:
@@ -243,25 +260,41 @@ def _rig(tree: Tree, skeleton: Skeleton, vertices: Array) -> Rig:
 
 def _texels(tree: Tree, mesh: Mesh) -> TexelMap:
     size = tree["size"]
-    if not 1 <= size <= MAX_SIZE:
-        _refuse("texels.size", f"{size}, expected 1 to {MAX_SIZE}")
     texels = indices(tree["texels"], "texels.texels", (None,), 0, size * size)
     if np.any(np.diff(texels) <= 0):
         _refuse("texels.texels", "texels must ascend")
     triangles = indices(tree["triangles"], "texels.triangles", (len(texels),), 0, len(mesh.faces))
     first = _barycentrics(tree, mesh, texels, triangles)
     barycentrics = np.column_stack([first, 1 - first.sum(axis=1)])
-    slack = 4 * np.finfo(np.float32).eps  # the third is a rounded difference
-    if barycentrics.min(initial=0) < -slack:
+    if barycentrics.min(initial=0) < -BARYCENTRIC_SLACK:
         _refuse("texels.barycentrics", f"{barycentrics.min():.3g}, expected 0 to 1")
-    return TexelMap(
+    one_sided = _one_sided(tree["one_sided"], len(texels)) if "one_sided" in tree else None
+    if not 0 <= tree["length"] <= LARGEST:
+        _refuse("texels.length", f"{tree['length']}, expected 0 to {LARGEST:.6g}")
+    found = TexelMap(
         size=size,
         texels=texels,
         triangles=triangles,
         barycentrics=np.maximum(barycentrics, 0),
         claimed_twice=0,
-        one_sided=_one_sided(tree["one_sided"], len(texels)) if "one_sided" in tree else None,
+        one_sided=one_sided,
+        levels=tuple(level["blocks"] for level in tree["levels"]),
+        length=tree["length"],
     )
+    _require_levels(found)
+    return found
+
+
+def _require_levels(texels: TexelMap) -> None:
+    for number, codes in enumerate(texels.levels or ()):
+        path, (_, four) = f"texels.levels[{number}].blocks", texels.blocks()
+        if len(codes) != len(four):
+            raise FormatError("shape", path, f"{len(codes)} bytes, expected {len(four)}")
+        kinds = codes[:, None] >> 2 * np.arange(4) & 3
+        wrong = np.flatnonzero(((kinds == CHIEF).sum(axis=1) != 1) | (kinds.astype(bool) & (four < 0)).any(axis=1))
+        if wrong.size:
+            _refuse(path, f"block {wrong[0]} has not one chief, or a member that is no valid texel")
+        texels = texels.halved()
 
 
 def _one_sided(content: Array, count: int) -> Array:
@@ -289,8 +322,6 @@ def _barycentrics(tree: Tree, mesh: Mesh, texels: Array, triangles: Array) -> Ar
 
 def _wavelet(tree: Tree) -> Wavelet:
     low, high = tree["rec_lo"], tree["rec_hi"]
-    if not 1 <= tree["levels"] <= MAX_LEVELS:
-        _refuse("wavelet.levels", f"{tree['levels']}, expected 1 to {MAX_LEVELS}")
     if low.size != high.size or low.size % 2 or not 2 <= low.size <= MAX_TAPS:
         _refuse("wavelet.rec_lo", f"{low.size} and {high.size} taps, expected an even number of each, 2 to {MAX_TAPS}")
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
@@ -315,13 +346,13 @@ def _mlp(layers: list[Tree], path: str, first: int, last: int) -> Mlp:
 
 def _coarse(tree: Tree, inputs: int) -> Coarse:
     mean = reals(tree["mean"], "coarse.mean", (None, 3))
-    basis = reals(tree["basis"], "coarse.basis", (None, len(mean), 3))
+    basis = _some(tree["basis"], "coarse.basis", (None, len(mean), 3), axis=0)
     return Coarse(mlp=_mlp(tree["mlp"], "coarse.mlp", inputs, len(basis)), mean=mean, basis=basis)
 
 
 def _branch(tree: Tree, path: str, channels: int, *, count: int, inputs: int, size: int) -> Branch:
     """One branch over `count` texels with LL of `size`, driven by so many components."""
-    basis = reals(tree["ll_basis"], f"{path}.ll_basis", (channels, None, size, size))
+    basis = _some(tree["ll_basis"], f"{path}.ll_basis", (channels, None, size, size), axis=1)
     details = tuple(
         _detail(band, f"{path}.details[{i}]", channels, size << i) for i, band in enumerate(tree["details"])
     )
@@ -336,7 +367,7 @@ def _branch(tree: Tree, path: str, channels: int, *, count: int, inputs: int, si
 
 
 def _detail(tree: Tree, path: str, channels: int, size: int) -> DetailBand:
-    h = reals(tree["h"], f"{path}.h", (3, channels, None, size))
+    h = _some(tree["h"], f"{path}.h", (3, channels, None, size), axis=2)
     return DetailBand(
         mean=reals(tree["mean"], f"{path}.mean", (3, channels, size, size)),
         h=h,

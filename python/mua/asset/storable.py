@@ -7,8 +7,8 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.avatar import Avatar
-from mua.asset.tensors import LARGEST
 from mua.errors import InputError
+from mua.limits import LARGEST
 
 
 def require_storable(avatar: Avatar) -> None:

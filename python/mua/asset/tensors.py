@@ -7,6 +7,7 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.asset.flatbuffer import MAX_BYTES, FormatError, Tree
+from mua.limits import LARGEST, MAX_RANK
 
 Element = Literal["f32", "f16", "i8"]
 Storage = Literal["f32", "f16", "i8", "packed"]  # of a whole file
@@ -17,8 +18,6 @@ DTYPES: dict[str, np.dtype[Any]] = {
     "I8": np.dtype("i1"),
     "I32": np.dtype("<i4"),
 }
-MAX_RANK = 4
-LARGEST = 65504.0  # of any real: f16's largest, so that what is decoded from a file is finite too
 
 
 def pack(values: Array, element: Element = "f32", *, rows: int = 0) -> Tree:

@@ -15,6 +15,7 @@ from mua.asset.read import decode_tree, parse_checked
 from mua.asset.rounding import rounded
 from mua.asset.storable import require_storable
 from mua.asset.tensors import Element, Storage, pack, pack_indices
+from mua.avatar.coarser import with_levels
 from mua.avatar.model import Branch, Coarse, DetailBand, Mlp
 from mua.errors import InputError
 from mua.files.write import write_bytes
@@ -55,6 +56,7 @@ def encode(avatar: Avatar, *, storage: Storage = "f16") -> bytes:
     Errors: InputError naming the field that a file cannot hold.
     """
     require_storable(avatar)
+    avatar = with_levels(avatar)
     if storage == "packed":
         content = seal(build_packed(_avatar(rounded(avatar), "f16"), avatar.rig))
     else:
@@ -89,6 +91,8 @@ def _avatar(avatar: Avatar, element: Element) -> Tree:
             "triangles": pack_indices(avatar.rig.texels.triangles),
             "barycentrics": pack(avatar.rig.texels.barycentrics[:, :2]),
             **_one_sided(avatar.rig.texels.one_sided),
+            "length": avatar.rig.texels.length,
+            "levels": [{"blocks": blocks} for blocks in avatar.rig.texels.levels or ()],
         },
         "wavelet": {
             "name": avatar.wavelet.name,

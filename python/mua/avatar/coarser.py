@@ -1,6 +1,6 @@
-"""Coarser levels of an avatar's texture: every 2 x 2 texels become one, again and again (schemas/README.md, section 9).
+"""Levels of detail: every 2 x 2 texels of a texture become one, again and again (schemas/README.md, section 9).
 
-A level is computed from what the file holds, so that every file has its levels and none is larger for it.
+Which texels become one is decided here, when a file is written; the file holds it, and readers only gather.
 """
 
 from dataclasses import replace
@@ -10,57 +10,86 @@ import numpy as np
 
 from mua.arrays import Array
 from mua.avatar.model import Branch, Model
-from mua.channels import STATIC_LEVELS
-from mua.rig.texel_map import TexelMap
+from mua.channels import most_levels
+from mua.limits import GROWTH
+from mua.rig.texel_map import CHIEF, MEMBER, TURNED, TexelMap
 
 REACH = 6.0  # texels: what lies farther apart in space belongs to other surfaces, though it is beside in the texture
-GROWTH = 1.85  # of the standard deviations where one splat stands for four: the figure then covers as much as before
 TURN = 1.0  # between quaternions: what is turned farther, or has the other sign, has no part in a mean rotation
-MOST_TAPS = 32  # of a wavelet: UpsampleTexels holds no more samples of a tile of a level that is not upsampled
 
 M = TypeVar("M", bound=Model)
 
 
 def coarsest(avatar: Model) -> int:
-    """The coarsest level that an avatar has, 0 where it has but one.
-
-    Details that vary with the frame would have to be computed to be averaged: such levels are not left out.
-    """
+    """The coarsest level that an avatar has, 0 where it has but one."""
+    if avatar.rig.texels.levels is not None:
+        return len(avatar.rig.texels.levels)
     details = max(len(avatar.geometry.details), len(avatar.appearance.details))
-    if len(avatar.wavelet.rec_lo) > MOST_TAPS:
-        return 0
-    return min(STATIC_LEVELS, avatar.wavelet.levels - details)
+    return most_levels(avatar.wavelet.levels, details, taps=len(avatar.wavelet.rec_lo))
 
 
 def at_level(avatar: M, level: int) -> M:
     """The avatar with a texture of half as many texels along a side, `level` times, at most `coarsest` of it."""
+    if level and avatar.rig.texels.levels is None:
+        avatar = with_levels(avatar)
     for _ in range(level):
         avatar = _coarser(avatar)
     return avatar
 
 
+def with_levels(avatar: M) -> M:
+    """The avatar with its levels decided anew, and the length of its texels measured."""
+    undecided = _with_texels(avatar, replace(avatar.rig.texels, levels=None, length=None))
+    level, levels = undecided, []
+    for _ in range(coarsest(undecided)):
+        levels.append(_decide(level))
+        level = _coarser(_with_texels(level, replace(level.rig.texels, levels=(levels[-1],))))
+    held = replace(avatar.rig.texels, levels=tuple(levels), length=texel_length(undecided))
+    return _with_texels(avatar, held)
+
+
 def texel_length(avatar: Model) -> float:
     """The side of a texel on the surface, metres: of all of the template in equal parts; 0 without texels."""
+    if avatar.rig.texels.length is not None:
+        return avatar.rig.texels.length
     a, b, c = np.swapaxes(avatar.coarse.mean[avatar.rig.mesh.faces].astype(float), 0, 1)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
     count = len(avatar.rig.texels.texels)
-    return float(np.sqrt(area / count)) if count else 0.0
+    return float(np.float32(np.sqrt(area / count))) if count else 0.0
+
+
+def _decide(avatar: Model) -> Array:
+    """A byte [B] for each block of 2 x 2 texels: two bits for each of the four say what it is to the block.
+
+    The chief, which gives the block its place on the mesh, is the texel that has most others within reach, the first of
+    equals; the members are those within its reach.
+    """
+    texels, statics = avatar.rig.texels, avatar.geometry.static.astype(float)
+    four = texels.blocks()[1]
+    held, places = four >= 0, _points(avatar) + statics[:3].T
+    at = places[four] if len(places) else np.zeros((*four.shape, 3))
+    reach = REACH * texel_length(_with_texels(avatar, replace(texels, length=None)))
+    near = np.linalg.norm(at[:, :, None] - at[:, None], axis=-1) <= reach
+    near &= held[:, :, None] & held[:, None]
+    rows, chief = np.arange(len(four)), np.argmax(near.sum(axis=2), axis=1)
+    apart = statics[3:7, four] - statics[3:7, four[rows, chief]][:, :, None] if len(four) else np.zeros((4, 0, 4))
+    kinds = near[rows, chief] * np.where(np.linalg.norm(apart, axis=0) <= TURN, TURNED, MEMBER)
+    kinds[rows, chief] = CHIEF
+    return np.asarray((kinds << 2 * np.arange(4)).sum(axis=1).astype(np.uint8))
 
 
 def _coarser(avatar: M) -> M:
     """The next level."""
     texels, statics = avatar.rig.texels, avatar.geometry.static.astype(float)
-    points = _points(avatar)
-    kept, members = _blocks(texels, points + statics[:3].T, REACH * texel_length(avatar))
-    count = (members >= 0).sum(axis=1)
+    kept, members, turned = texels.gathered()
+    points, count = _points(avatar), (members >= 0).sum(axis=1)
     geometry = _means(statics, members)
     geometry[:3] += _means(points.T, members) - points[kept].T
-    geometry[3:7] = _means(statics[3:7], _turned_alike(statics[3:7], members, kept))
+    geometry[3:7] = _means(statics[3:7], turned)
     geometry[7:10] += np.log(GROWTH) * np.log2(count) / 2
     appearance = _means(avatar.appearance.static.astype(float), members)
     return replace(
-        avatar,
-        rig=replace(avatar.rig, texels=_halved(texels, kept, members)),
+        _with_texels(avatar, texels.halved()),
         wavelet=replace(avatar.wavelet, coarser=avatar.wavelet.coarser + 1),
         geometry=_with_static(avatar.geometry, geometry),
         appearance=_with_static(avatar.appearance, appearance),
@@ -72,28 +101,6 @@ def _points(avatar: Model) -> Array:
     texels = avatar.rig.texels
     corners = avatar.coarse.mean[avatar.rig.mesh.faces[texels.triangles]].astype(float)
     return np.asarray(np.einsum("nk,nkc->nc", texels.barycentrics.astype(float), corners))
-
-
-def _blocks(
-    texels: TexelMap,
-    places: Array,  # [N, 3] of the texels, metres
-    reach: float,  # metres
-) -> tuple[Array, Array]:
-    """The texel [B] that gives each block of 2 x 2 its place on the mesh, and the block's members [B, 4], -1 for none.
-
-    It is the one that has most others within reach, the first of equals; the members are those within its reach.
-    """
-    row, column = np.divmod(texels.texels.astype(np.int64), texels.size)
-    _, block = np.unique(row // 2 * (texels.size // 2) + column // 2, return_inverse=True)
-    members = np.full((block.max(initial=-1) + 1, 4), -1)
-    members[block, row % 2 * 2 + column % 2] = np.arange(len(block))
-    held = members >= 0
-    at = places[members] if len(places) else np.zeros((*members.shape, 3))
-    near = np.linalg.norm(at[:, :, None] - at[:, None], axis=-1) <= reach
-    near &= held[:, :, None] & held[:, None]
-    chief = np.argmax(near.sum(axis=2), axis=1)
-    rows = np.arange(len(members))
-    return members[rows, chief], np.where(near[rows, chief], members, -1)
 
 
 def _means(
@@ -108,31 +115,8 @@ def _means(
     return np.asarray(sums / np.maximum(held.sum(axis=1), 1))
 
 
-def _turned_alike(
-    rotations: Array,  # [4, N]
-    members: Array,  # [B, 4]
-    kept: Array,  # [B]
-) -> Array:
-    """Those of the members [B, 4] that are turned nearly as the one that is kept."""
-    apart = rotations[:, members] - rotations[:, kept, None] if len(kept) else np.zeros((4, 0, 4))
-    return np.where(np.linalg.norm(apart, axis=0) <= TURN, members, -1)
-
-
-def _halved(
-    texels: TexelMap,
-    kept: Array,  # [B]
-    members: Array,  # [B, 4]
-) -> TexelMap:
-    """Blocks as texels of half the size, each where the texel lies that is kept, one-sided where all members are."""
-    row, column = np.divmod(texels.texels[kept], texels.size)
-    return replace(
-        texels,
-        size=texels.size // 2,
-        texels=(row // 2 * (texels.size // 2) + column // 2).astype(np.int32),
-        triangles=texels.triangles[kept],
-        barycentrics=texels.barycentrics[kept],
-        one_sided=None if texels.one_sided is None else np.all(texels.one_sided[members] | (members < 0), axis=1),
-    )
+def _with_texels(avatar: M, texels: TexelMap) -> M:
+    return replace(avatar, rig=replace(avatar.rig, texels=texels))
 
 
 def _with_static(branch: Branch, static: Array) -> Branch:

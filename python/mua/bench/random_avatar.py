@@ -17,10 +17,11 @@ from mua.arrays import Array
 from mua.asset.avatar import Avatar
 from mua.avatar.model import Branch, Coarse, DetailBand, Layer, Mlp, Wavelet
 from mua.channels import LEVELS
+from mua.limits import MAX_INFLUENCES
 from mua.pose.clip import Clip
 from mua.pose.encoding import Components, Normalization, PoseEncoding
 from mua.pose.skeleton import Skeleton
-from mua.rig.character import MAX_INFLUENCES, Mesh
+from mua.rig.character import Mesh
 from mua.rig.rig import Rig
 from mua.rig.texel_map import build_texel_map
 from mua.rig.triangulate import triangulate

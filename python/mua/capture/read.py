@@ -16,7 +16,7 @@ from mua.capture.capture import FORMAT, FRAME, VERSION, Capture, CaptureClip
 from mua.characters.figure_size import LEAST, MOST
 from mua.errors import InputError
 from mua.files.inputs import CAPTURE, require_capture, require_file
-from mua.pose.clip import LARGEST_RATE, LEAST_RATE
+from mua.limits import LARGEST_RATE, LEAST_RATE
 
 LARGEST_SIDE = 1 << 15  # pixels
 ROTATION_BOUND = 1e-3  # what rounding to four digits leaves of a rotation

@@ -16,7 +16,7 @@ from mua.characters.outline import outlines
 from mua.characters.rigid_skeleton import rigid_skeleton, roles_of
 from mua.characters.winding import inside_out
 from mua.errors import InputError
-from mua.rig.character import MAX_INFLUENCES
+from mua.limits import MAX_INFLUENCES
 from mua.scene import Part, Scene, Source, without
 
 WELD = 1e-6  # of the character's size: vertices of one mesh nearer than this, with equal weights, are one

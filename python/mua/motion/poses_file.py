@@ -15,8 +15,9 @@ from mua.arguments import finite_array, unit_quaternions
 from mua.arrays import Array
 from mua.errors import InputError
 from mua.files.write import write_bytes
+from mua.limits import LARGEST_RATE, LEAST_RATE
 from mua.motion.source import SourceMotion
-from mua.pose.clip import LARGEST_RATE, LEAST_RATE, Clip
+from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 
 KEYS = ("names", "parents", "root", "bind_rotations", "bind_translations", "rotations", "translations", "rate")

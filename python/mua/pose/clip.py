@@ -10,9 +10,6 @@ from mua.arrays import Array
 from mua.errors import InputError
 from mua.pose.skeleton import Pose
 
-LEAST_RATE, LARGEST_RATE = 1.0, 1000.0  # frames per second that a file may say
-
-
 RANGE_OF_MOTION = "range of motion: "  # names of clips of the built-in range of motion begin so
 
 

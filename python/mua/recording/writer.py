@@ -14,7 +14,8 @@ from mua.arrays import Array
 from mua.channels import CHANNELS, COARSE_TEXELS
 from mua.errors import InputError
 from mua.files.lock import DirectoryLock
-from mua.pose.clip import LARGEST_RATE, LEAST_RATE, is_averaged
+from mua.limits import LARGEST_RATE, LEAST_RATE
+from mua.pose.clip import is_averaged
 from mua.pose.skeleton import Pose
 from mua.recording.encode import (
     HALF_MAX,

@@ -8,8 +8,6 @@ from mua.pose.clip import Clip
 from mua.pose.skeleton import Skeleton
 from mua.scene import Source
 
-MAX_INFLUENCES = 8
-
 
 @dataclass(frozen=True, eq=False)
 class Mesh:

@@ -1,13 +1,14 @@
 """Which triangle and which point of it each texel of the texture space shows."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mua.arrays import Array
 from mua.rig.character import Mesh
 
+MEMBER, TURNED, CHIEF = 1, 2, 3  # what a texel is to its block of 2 x 2: counted, its rotation too, gives it its place
 CANDIDATES_AT_ONCE = 1 << 20  # texel-in-triangle tests held in memory together, about 100 MB
 
 
@@ -21,6 +22,36 @@ class TexelMap:
     barycentrics: Array  # [N, 3] float32, sum 1, all >= 0
     claimed_twice: int  # texels that more than one triangle covers (beyond shared edges)
     one_sided: Array | None = None  # [N] bool: not drawn from behind its triangle, where others hide it; None: none
+    levels: tuple[Array, ...] | None = None  # a byte for each block of each coarser level; None: undecided
+    length: float | None = None  # metres: side of a texel on the mean mesh; None: not measured
+
+    def blocks(self) -> tuple[Array, Array]:
+        """Blocks of 2 x 2 that hold a texel, [B] row * size / 2 + col, and their texels [B, 4], -1 for none."""
+        row, column = np.divmod(self.texels.astype(np.int64), self.size)
+        numbers, block = np.unique(row // 2 * (self.size // 2) + column // 2, return_inverse=True)
+        four = np.full((len(numbers), 4), -1)
+        four[block, row % 2 * 2 + column % 2] = np.arange(len(block))
+        return numbers, four
+
+    def gathered(self) -> tuple[Array, Array, Array]:
+        """Of the next level's texels the chief [B], the members [B, 4] and those whose rotation counts; -1 for none."""
+        assert self.levels
+        four, kinds = self.blocks()[1], self.levels[0][:, None] >> 2 * np.arange(4) & 3
+        return four[kinds == CHIEF], np.where(kinds >= MEMBER, four, -1), np.where(kinds >= TURNED, four, -1)
+
+    def halved(self) -> "TexelMap":
+        """The next level: blocks as texels, each where its chief lies, one-sided where all members are."""
+        assert self.levels
+        chiefs, members, _ = self.gathered()
+        return replace(
+            self,
+            size=self.size // 2,
+            texels=self.blocks()[0].astype(np.int32),
+            triangles=self.triangles[chiefs],
+            barycentrics=self.barycentrics[chiefs],
+            one_sided=None if self.one_sided is None else np.all(self.one_sided[members] | (members < 0), axis=1),
+            levels=self.levels[1:],
+        )
 
 
 def build_texel_map(mesh: Mesh, size: int) -> TexelMap:

@@ -54,7 +54,7 @@ export class AvatarBuffers {
     this.coarser = null; // that the last of the levels was made of
   }
 
-  /** A level of detail, at most `coarsest` of the avatar; made when it is first asked for. @returns {LevelBuffers} */
+  /** A level of detail, at most the coarsest of the avatar; made when it is first asked for. @returns {LevelBuffers} */
   level(/** @type {number} */ number) {
     while (this.levels.length <= number) {
       this.coarser = coarserTexture(this.avatar, this.coarser ?? textureOf(this.avatar));

@@ -1,7 +1,6 @@
 // The levels of detail at which a player shows avatars: the one that was asked for, or those that their distances ask for.
 // Reference: python/mua/player/levels.py.
 
-import { coarsest, levelCounts, texelLength } from "./coarser.js";
 import { chooseLevels, texelPixels } from "./level_choice.js";
 import { world } from "./skeleton.js";
 
@@ -10,15 +9,15 @@ import { world } from "./skeleton.js";
 
 /** The sizes of an avatar's levels, texels along a side, the finest first. */
 export const sizesOf = (/** @type {Avatar} */ avatar) =>
-  Array.from({ length: coarsest(avatar) + 1 }, (_, level) => avatar.texels.size / 2 ** level);
+  Array.from({ length: avatar.texels.levels.length + 1 }, (_, level) => avatar.texels.size / 2 ** level);
 
 /** Of one avatar, from picture to picture. */
 export class Levels {
   constructor(/** @type {Avatar} */ avatar) {
     this.avatar = avatar;
     this.sizes = sizesOf(avatar);
-    this.counts = levelCounts(avatar);
-    this.length = texelLength(avatar, avatar.texels.texels.length);
+    this.counts = [avatar.texels, ...avatar.texels.levels].map(({ texels }) => texels.length);
+    this.length = avatar.texels.length;
     this.shown = 0;
   }
 

@@ -31,7 +31,7 @@ internal static class LevelProgram
             return;
         }
         AvatarFile avatar = AvatarFile.Read(File.ReadAllBytes(arguments[0]));
-        Console.WriteLine("texel " + DetailLevel.TexelLength(avatar).ToString("R"));
+        Console.WriteLine("texel " + ((double)avatar.Texels.Length).ToString("R"));
         foreach (DetailLevel level in DetailLevel.All(avatar))
         {
             Console.WriteLine("level " + level.Number + " " + level.Size + " " + level.Count);

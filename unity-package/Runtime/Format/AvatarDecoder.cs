@@ -9,11 +9,6 @@ namespace Mua.Format
     internal sealed class AvatarDecoder
     {
         private const long Any = Tensors.Any;
-        private const int MaxWindow = 16;
-        private const float LeastRate = 1, LargestRate = 1000; // frames per second
-        private const int MaxFrames = 1 << 20; // of a clip at the encoding's rate: 9 hours at 30 frames per second
-        private const int MaxAdded = 1 << 24; // joints in all frames that clips gain at the encoding's rate
-        private const float LeastScale = 1e-6f; // of a descriptor's number, of a figure 2 mm high
 
         private static readonly byte[] PngSignature = { 0x89, (byte)'P', (byte)'N', (byte)'G', 0x0D, 0x0A, 0x1A, 0x0A };
 
@@ -45,14 +40,7 @@ namespace Mua.Format
             int size = avatar.Texels.Size, count = avatar.Texels.Count, side = size >> levels;
             avatar.Geometry = model.Geometry(tree.Child("geometry"), count, inputs, side);
             avatar.Appearance = model.Appearance(tree.Child("appearance"), count, inputs, side);
-            if (size % (1 << levels) != 0)
-            {
-                throw Refusal.Of("texels.size", "{0} does not halve {1} times", size, levels);
-            }
-            if (Math.Max(avatar.Geometry.Details.Length, avatar.Appearance.Details.Length) > levels)
-            {
-                throw Refusal.Of("geometry.details", "more levels of detail than the wavelet's {0}", levels);
-            }
+            Magnitude.Require(avatar);
             avatar.Clips = Clips(tree.Children("clips"), avatar.Skeleton, avatar.Encoding.Rate);
             avatar.Bounds = Bounds(tree.Child("bounds"));
             avatar.Thumbnail = Thumbnail(tree.Block("thumbnail"));
@@ -74,9 +62,9 @@ namespace Mua.Format
                 }
             }
             long window = tree.Number("window");
-            if (window < 1 || window > MaxWindow)
+            if (window < 1 || window > Limits.MaxWindow)
             {
-                throw Refusal.Of("encoding.window", "{0} frames, expected 1 to {1}", window, MaxWindow);
+                throw Refusal.Of("encoding.window", "{0} frames, expected 1 to {1}", window, Limits.MaxWindow);
             }
             encoding.Window = (int)window;
             encoding.Rate = Rate(tree, "encoding.rate");
@@ -91,13 +79,14 @@ namespace Mua.Format
             encoding.Scale = tensors.Reals(tree.Child("scale"), "encoding.scale", encoding.Width).ToFloats();
             foreach (float scale in encoding.Scale)
             {
-                if (scale < LeastScale)
+                if (scale < (float)Limits.LeastScale)
                 {
-                    throw Refusal.Of("encoding.scale", "{0}, expected {1} or more", scale, LeastScale);
+                    throw Refusal.Of("encoding.scale", "{0}, expected {1} or more", scale, Limits.LeastScale);
                 }
             }
             encoding.Components = tensors.Reals(
                 tree.Child("components"), "encoding.components", Any, encoding.Width);
+            Tensors.RequireSome(encoding.Components, 0, "encoding.components");
             int count = encoding.Components.Shape[0];
             encoding.Ranges = tensors.Reals(tree.Child("ranges"), "encoding.ranges", 2, count).ToFloats();
             for (int i = 0; i < count; i++)
@@ -122,9 +111,9 @@ namespace Mua.Format
         private static float Rate(Table tree, string path)
         {
             float rate = tree.Real("rate");
-            if (!(rate >= LeastRate && rate <= LargestRate))
+            if (!(rate >= Limits.LeastRate && rate <= Limits.LargestRate))
             {
-                throw Refusal.Of(path, "{0} frames per second, expected {1} to {2}", rate, LeastRate, LargestRate);
+                throw Refusal.Of(path, "{0} frames per second, expected {1} to {2}", rate, Limits.LeastRate, Limits.LargestRate);
             }
             return rate;
         }
@@ -139,7 +128,7 @@ namespace Mua.Format
                 int frames = clips[i].FrameCount;
                 double times = Math.Max(encodingRate / clips[i].Rate, 1);
                 added += (times - 1) * frames * skeleton.JointCount;
-                if (times * frames > MaxFrames || added > MaxAdded)
+                if (times * frames > Limits.MaxFrames || added > Limits.MaxAdded)
                 {
                     throw Refusal.Of(
                         "clips[" + i + "].rotations",

@@ -62,23 +62,29 @@ namespace Mua.Format
         internal static AvatarFile Decode(Table tree, byte[] content)
         {
             RequireStages(tree.Block("stages"), content);
+            Sizes.Require(tree, content);
             Unpacking.Of(tree, content);
             return new AvatarDecoder(content).Decode(tree);
         }
 
         private static void RequireStages(Block stages, byte[] content)
         {
-            long last = 0;
-            for (int i = 0; stages != null && i < stages.Count; i++)
+            if (stages == null)
             {
-                uint end = MemoryMarshal.Read<uint>(new ReadOnlySpan<byte>(content, stages.Offset + 4 * i, 4));
-                if (end < last || end > content.Length)
-                {
-                    throw Refusal.Of(
-                        "stages", "{0} after {1}, expected rising numbers up to the file's {2} bytes", end, last,
-                        content.Length);
-                }
-                last = end;
+                return;
+            }
+            var bytes = new ReadOnlySpan<byte>(content, stages.Offset, sizeof(uint) * stages.Count);
+            uint[] ends = MemoryMarshal.Cast<byte, uint>(bytes).ToArray();
+            bool rises = ends.Length == Limits.Stages && ends[Limits.Stages - 1] <= content.Length;
+            for (int i = 1; rises && i < Limits.Stages; i++)
+            {
+                rises = ends[i - 1] <= ends[i];
+            }
+            if (!rises)
+            {
+                throw Refusal.Of(
+                    "stages", "[{0}], expected {1} rising numbers up to the file's {2} bytes", string.Join(", ", ends),
+                    Limits.Stages, content.Length);
             }
         }
     }

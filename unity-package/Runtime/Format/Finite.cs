@@ -6,15 +6,12 @@ namespace Mua.Format
     /// <summary>Whether a tensor's values are finite and within bounds.</summary>
     internal static class Finite
     {
-        /// <summary>Of any real: f16's largest, so that what is decoded from a file is finite too.</summary>
-        public const float Largest = 65504;
-
-        // What is to be added to a magnitude above Largest, to an infinity or a NaN, and to no other number, to reach the sign
+        // What is to be added to a magnitude above Limits.Largest, to an infinity or a NaN, and to no other number, to reach the sign
         // bit; the numbers of a word do not touch each other.
         private const ulong Magnitudes32 = 0x7FFFFFFF7FFFFFFF, Beyond32 = 0x38801FFF38801FFF;
         private const ulong Magnitudes16 = 0x7FFF7FFF7FFF7FFF, Beyond16 = 0x0400040004000400;
 
-        /// <summary>Whether all values are finite and at most Largest in magnitude; f32 and f16 eight bytes at a step.</summary>
+        /// <summary>Whether all values are finite and at most Limits.Largest in magnitude; f32 and f16 eight bytes at a step.</summary>
         public static bool Within(Tensor tensor)
         {
             switch (tensor.Type)
@@ -37,6 +34,26 @@ namespace Mua.Format
                 isFinite = IsFinite(tensor.Read(i));
             }
             return isFinite;
+        }
+
+        /// <summary>The largest magnitude of finite values; 0 of none.</summary>
+        public static float Magnitude(Tensor tensor)
+        {
+            float largest = 0;
+            if (tensor.Type == ElementType.F16)
+            {
+                int most = 0;
+                foreach (ushort bits in MemoryMarshal.Cast<byte, ushort>(tensor.Bytes))
+                {
+                    most = Math.Max(most, bits & 0x7FFF);
+                }
+                return Half.ToSingle((ushort)most);
+            }
+            for (int i = 0; i < tensor.Count; i++)
+            {
+                largest = Math.Max(largest, Math.Abs(tensor.Read(i)));
+            }
+            return largest;
         }
 
         private static bool Within(ReadOnlySpan<byte> bytes, ulong magnitudes, ulong beyond)
@@ -66,9 +83,9 @@ namespace Mua.Format
                 {
                     return false;
                 }
-                for (int at = i * row; scale > Largest / 128 && at < (i + 1) * row; at++)
+                for (int at = i * row; scale > Limits.Largest / 128 && at < (i + 1) * row; at++)
                 {
-                    if (Math.Abs((float)((sbyte)tensor.Bytes[at] * scale)) > Largest)
+                    if (Math.Abs((float)((sbyte)tensor.Bytes[at] * scale)) > Limits.Largest)
                     {
                         return false;
                     }

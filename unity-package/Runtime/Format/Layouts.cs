@@ -49,13 +49,18 @@ namespace Mua.Format
             new Field("skin_indices", Kind.Table, required: true, table: Tensor),
             new Field("skin_weights", Kind.Table, required: true, table: Tensor));
 
+        public static readonly Layout Level = new Layout(
+            new Field("blocks", Kind.U8, vector: true, required: true));
+
         public static readonly Layout Texels = new Layout(
             new Field("size", Kind.U32),
             new Field("texels", Kind.Table, required: true, table: Tensor),
             new Field("triangles", Kind.Table, required: true, table: Tensor),
             new Field("barycentrics", Kind.Table, required: true, table: Tensor),
             new Field("listed", Kind.Table, table: Tensor),
-            new Field("one_sided", Kind.U8, vector: true));
+            new Field("one_sided", Kind.U8, vector: true),
+            new Field("length", Kind.F32),
+            new Field("levels", Kind.Table, vector: true, required: true, table: Level));
 
         public static readonly Layout Wavelet = new Layout(
             new Field("name", Kind.Text, required: true),

@@ -7,13 +7,9 @@ namespace Mua.Format
     internal sealed class ModelDecoder
     {
         private const long Any = Tensors.Any;
-        private const int MaxLevels = 8;
-        private const int MaxTaps = 40;
-        private const double LargestTap = 16; // those of PyWavelets' wavelets stay below 5
         private const int GeometryChannels = 11;
         private const int AppearanceChannels = 12;
         private const int Bands = 3;
-        private const int MaxShift = 32; // a longer side than any tensor's
 
         private readonly Tensors tensors;
         private readonly byte[] content;
@@ -27,16 +23,11 @@ namespace Mua.Format
         public Wavelet Wavelet(Table tree)
         {
             double[] low = Doubles(tree.Block("rec_lo")), high = Doubles(tree.Block("rec_hi"));
-            long levels = tree.Number("levels");
-            if (levels < 1 || levels > MaxLevels)
-            {
-                throw Refusal.Of("wavelet.levels", "{0}, expected 1 to {1}", levels, MaxLevels);
-            }
-            if (low.Length != high.Length || low.Length % 2 != 0 || low.Length < 2 || low.Length > MaxTaps)
+            if (low.Length != high.Length || low.Length % 2 != 0 || low.Length < 2 || low.Length > Limits.MaxTaps)
             {
                 throw Refusal.Of(
                     "wavelet.rec_lo", "{0} and {1} taps, expected an even number of each, 2 to {2}",
-                    low.Length, high.Length, MaxTaps);
+                    low.Length, high.Length, Limits.MaxTaps);
             }
             for (int i = 0; i < low.Length; i++)
             {
@@ -47,20 +38,21 @@ namespace Mua.Format
             }
             for (int i = 0; i < low.Length; i++)
             {
-                if (Math.Max(Math.Abs(low[i]), Math.Abs(high[i])) > LargestTap)
+                if (Math.Max(Math.Abs(low[i]), Math.Abs(high[i])) > Limits.LargestTap)
                 {
                     throw Refusal.Of(
                         "wavelet.rec_lo", "a tap of {0:g4} or {1:g4}, expected {2} to {3}", low[i], high[i],
-                        -LargestTap, LargestTap);
+                        -Limits.LargestTap, Limits.LargestTap);
                 }
             }
-            return new Wavelet { Name = tree.Text("name"), Levels = (int)levels, RecLo = low, RecHi = high };
+            return new Wavelet { Name = tree.Text("name"), Levels = (int)tree.Number("levels"), RecLo = low, RecHi = high };
         }
 
         public Coarse Coarse(Table tree, int inputs)
         {
             Tensor mean = tensors.Reals(tree.Child("mean"), "coarse.mean", Any, 3);
             Tensor basis = tensors.Reals(tree.Child("basis"), "coarse.basis", Any, mean.Shape[0], 3);
+            Tensors.RequireSome(basis, 0, "coarse.basis");
             Layer[] mlp = Mlp(tree.Children("mlp"), "coarse.mlp", inputs, basis.Shape[0]);
             return new Coarse { Mlp = mlp, Mean = mean, Basis = basis };
         }
@@ -98,12 +90,13 @@ namespace Mua.Format
         private Branch Branch(Table tree, string path, int channels, int count, int inputs, int side)
         {
             Tensor basis = tensors.Reals(tree.Child("ll_basis"), path + ".ll_basis", channels, Any, side, side);
+            Tensors.RequireSome(basis, 1, path + ".ll_basis");
             Table[] bands = tree.Children("details");
             var details = new DetailBand[bands.Length];
             long ranks = basis.Shape[1];
             for (int i = 0; i < details.Length; i++)
             {
-                long size = (long)side << Math.Min(i, MaxShift);
+                long size = (long)side << i;
                 details[i] = Detail(bands[i], path + ".details[" + i + "]", channels, size);
                 ranks += details[i].Rank;
             }
@@ -120,6 +113,7 @@ namespace Mua.Format
         private DetailBand Detail(Table tree, string path, int channels, long size)
         {
             Tensor h = tensors.Reals(tree.Child("h"), path + ".h", Bands, channels, Any, size);
+            Tensors.RequireSome(h, 2, path + ".h");
             return new DetailBand
             {
                 H = h,

@@ -11,8 +11,6 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Parser
     {
-        public const int Major = 5;
-
         private const int OffsetWidth = 4;
         private static readonly UTF8Encoding Utf8 = new UTF8Encoding(false, true);
 
@@ -51,17 +49,11 @@ namespace Mua.Format
             int slot = root.Slot("version_major");
             int at = FindFields(root, Follow(0, ""), "")[slot];
             long version = at == 0 ? 0 : (long)ReadScalar(root.Fields[slot], at, "version_major");
-            if (version > Major)
+            if (version != Limits.Major)
             {
                 throw Fault(
                     "version", "version_major",
-                    "format version " + version + " is newer than " + Major + ", update com.mua.avatar");
-            }
-            if (version < Major)
-            {
-                throw Fault(
-                    "version", "version_major",
-                    "format version " + version + " is older than " + Major + ", bake the avatar again");
+                    "format version " + version + ", expected " + Limits.Major + ": update mua where the file is newer");
             }
         }
 
@@ -183,14 +175,23 @@ namespace Mua.Format
         private string ReadText(int at, string path)
         {
             Block text = ReadVector(at, path, 1);
+            string found;
             try
             {
-                return Utf8.GetString(content, text.Offset, text.Count);
+                found = Utf8.GetString(content, text.Offset, text.Count);
             }
             catch (DecoderFallbackException)
             {
                 throw Fault("text", path, "the text is not UTF-8");
             }
+            foreach (char letter in found)
+            {
+                if (char.IsControl(letter) && !(path == "notes" && (letter == '\n' || letter == '\t')))
+                {
+                    throw Fault("text", path, "the text holds the control character U+" + ((int)letter).ToString("X4"));
+                }
+            }
+            return found;
         }
 
         private Block ReadVector(int at, string path, int width)

@@ -5,12 +5,7 @@ namespace Mua.Format
     /// <summary>Skeleton, template, texels and surface of a parsed tree, checked as in python/mua/asset/read.py.</summary>
     internal sealed class RigDecoder
     {
-        private const double UnitBound = 2e-3; // a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
-        private const float WeightBound = 1e-4f; // 8 weights rounded to f32, or derived from f16
-        private const double BindBound = 1e-4; // metres and quaternion components: f32 kinematics over a deep chain
-        private const float BarycentricSlack = 4f / (1 << 23); // the third is a rounded difference
-        private const int MaxSize = 4096;
-        private const int MaxInfluences = 8;
+        private const int DualNumbers = 8; // of a dual quaternion
         private const long Any = Tensors.Any;
 
         private readonly Tensors tensors;
@@ -87,7 +82,7 @@ namespace Mua.Format
             Tensor uvFaces = tensors.Indices(
                 tree.Child("uv_faces"), "template.uv_faces", 0, uv.Shape[0], faces.Shape[0], 3);
             Tensor weights = tensors.Reals(
-                tree.Child("skin_weights"), "template.skin_weights", vertices, MaxInfluences);
+                tree.Child("skin_weights"), "template.skin_weights", vertices, Limits.MaxInfluences);
             RequireWeights(weights);
             return new Template
             {
@@ -96,17 +91,13 @@ namespace Mua.Format
                 UvFaces = uvFaces,
                 SkinWeights = weights,
                 SkinIndices = tensors.Indices(
-                    tree.Child("skin_indices"), "template.skin_indices", 0, joints, vertices, MaxInfluences),
+                    tree.Child("skin_indices"), "template.skin_indices", 0, joints, vertices, Limits.MaxInfluences),
             };
         }
 
         public Texels Texels(Table tree, byte[] content, Template template)
         {
             long size = tree.Number("size");
-            if (size < 1 || size > MaxSize)
-            {
-                throw Refusal.Of("texels.size", "{0}, expected 1 to {1}", size, MaxSize);
-            }
             Tensor indices = tensors.Indices(tree.Child("texels"), "texels.texels", 0, size * size, Any);
             ReadOnlySpan<int> texels = indices.Integers;
             for (int i = 1; i < texels.Length; i++)
@@ -120,14 +111,46 @@ namespace Mua.Format
                 tree.Child("triangles"), "texels.triangles", 0, template.Faces.Shape[0], texels.Length);
             Tensor barycentrics = Barycentrics(tree, template, (int)size, texels, triangles.Integers);
             RequireBarycentrics(barycentrics);
+            byte[] oneSided = OneSided(tree.Block("one_sided"), content, texels.Length);
+            float length = tree.Real("length");
+            if (!(length >= 0 && length <= Limits.Largest))
+            {
+                throw Refusal.Of("texels.length", "{0:g6}, expected 0 to {1}", length, Limits.Largest);
+            }
             return new Texels
             {
+                Length = length,
+                Levels = Levels(tree.Children("levels"), content, texels, (int)size),
                 Size = (int)size,
                 Indices = indices,
                 Triangles = triangles,
                 Barycentrics = barycentrics,
-                OneSided = OneSided(tree.Block("one_sided"), content, texels.Length),
+                OneSided = oneSided,
             };
+        }
+
+        /// <summary>The blocks of each coarser level, each of which must have a chief among its valid texels.</summary>
+        private static BlockLevel[] Levels(Table[] trees, byte[] content, ReadOnlySpan<int> texels, int size)
+        {
+            var levels = new BlockLevel[trees.Length];
+            for (int i = 0; i < levels.Length; i++, size /= 2)
+            {
+                string path = "texels.levels[" + i + "].blocks";
+                Block block = trees[i].Block("blocks");
+                levels[i] = new BlockLevel(texels, size, new ReadOnlySpan<byte>(content, block.Offset, block.Count));
+                if (block.Count != levels[i].Count)
+                {
+                    throw new AvatarFormatException(
+                        "shape", path, block.Count + " bytes, expected " + levels[i].Count);
+                }
+                int wrong = levels[i].FindUnsound();
+                if (wrong >= 0)
+                {
+                    throw Refusal.Of(path, "block {0} has not one chief, or a member that is no valid texel", wrong);
+                }
+                texels = levels[i].Texels;
+            }
+            return levels;
         }
 
         /// <summary>A bit for each texel; null where the file has none.</summary>
@@ -199,7 +222,7 @@ namespace Mua.Format
                 double length = new QuaternionD(
                     quaternions.Read(i), quaternions.Read(i + 1), quaternions.Read(i + 2), quaternions.Read(i + 3))
                     .Length;
-                if (Math.Abs(length - 1) > UnitBound)
+                if (Math.Abs(length - 1) > Limits.UnitBound)
                 {
                     throw Refusal.Of(path, "a quaternion of length {0:g4}, expected 1", length);
                 }
@@ -208,14 +231,19 @@ namespace Mua.Format
 
         private static void RequireInverse(Skeleton skeleton, Tensor stated)
         {
-            for (int i = 0; i < stated.Count; i++)
+            for (int joint = 0; joint < skeleton.JointCount; joint++)
             {
-                double value = stated.Read(i), expected = skeleton.BindInverse[i];
-                double gap = Math.Min(Math.Abs(value - expected), Math.Abs(value + expected));
-                if (gap > BindBound)
+                double same = 0, opposite = 0; // of all eight numbers
+                for (int i = DualNumbers * joint; i < DualNumbers * (joint + 1); i++)
+                {
+                    same = Math.Max(same, Math.Abs(stated.Read(i) - skeleton.BindInverse[i]));
+                    opposite = Math.Max(opposite, Math.Abs(stated.Read(i) + skeleton.BindInverse[i]));
+                }
+                if (Math.Min(same, opposite) > Limits.BindBound)
                 {
                     throw Refusal.Of(
-                        "skeleton.bind_inverse", "differs by {0:e1} from the inverse of the bind pose", gap);
+                        "skeleton.bind_inverse", "differs by {0:e1} from the inverse of the bind pose",
+                        Math.Min(same, opposite));
                 }
             }
         }
@@ -226,15 +254,15 @@ namespace Mua.Format
             {
                 float sum = 0, before = float.PositiveInfinity;
                 bool negative = false, rising = false;
-                for (int i = 0; i < MaxInfluences; i++)
+                for (int i = 0; i < Limits.MaxInfluences; i++)
                 {
-                    float weight = weights.Read(MaxInfluences * vertex + i);
+                    float weight = weights.Read(Limits.MaxInfluences * vertex + i);
                     sum += weight;
                     negative |= weight < 0;
                     rising |= weight > before;
                     before = weight;
                 }
-                if (negative || Math.Abs(sum - 1) > WeightBound)
+                if (negative || Math.Abs(sum - 1) > (float)Limits.WeightBound)
                 {
                     throw Refusal.Of(
                         "template.skin_weights", "weights of vertex {0} sum to {1:g4} or one is negative", vertex, sum);
@@ -253,7 +281,7 @@ namespace Mua.Format
             {
                 float first = barycentrics.Read(i), second = barycentrics.Read(i + 1), third = 1 - (first + second);
                 float least = Math.Min(Math.Min(first, second), third);
-                if (least < -BarycentricSlack)
+                if (least < -Limits.BarycentricSlack)
                 {
                     throw Refusal.Of("texels.barycentrics", "{0:g3}, expected 0 to 1", least);
                 }

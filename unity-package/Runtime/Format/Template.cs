@@ -37,6 +37,12 @@ namespace Mua.Format
         /// <summary>A bit for each texel, the lowest of a byte first: not drawn from behind. Null where the file has none.</summary>
         public byte[] OneSided { get; internal set; }
 
+        /// <summary>Side of a texel on the mean mesh, metres.</summary>
+        public float Length { get; internal set; }
+
+        /// <summary>Coarser levels, the finest of them first.</summary>
+        public BlockLevel[] Levels { get; internal set; }
+
         /// <summary>N.</summary>
         public int Count => Indices.Count;
 

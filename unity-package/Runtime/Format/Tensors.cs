@@ -9,8 +9,6 @@ namespace Mua.Format
         /// <summary>A side of any length.</summary>
         public const long Any = -1;
 
-        private const int MaxRank = 4;
-
         private readonly byte[] content;
 
         public Tensors(byte[] content)
@@ -37,7 +35,7 @@ namespace Mua.Format
             return tensor;
         }
 
-        /// <summary>Finite reals of `shape` within Finite.Largest, stored as f32, f16 or i8.</summary>
+        /// <summary>Finite reals of `shape` within Limits.Largest, stored as f32, f16 or i8.</summary>
         public Tensor Reals(Table table, string path, params long[] shape)
         {
             Tensor tensor = Stored(table, path);
@@ -51,8 +49,17 @@ namespace Mua.Format
                 return tensor;
             }
             throw Finite.All(tensor)
-                ? Fault("value", path, "a value lies outside -" + Finite.Largest + " to " + Finite.Largest)
+                ? Fault("value", path, "a value lies outside -" + Limits.Largest + " to " + Limits.Largest)
                 : Fault("finite", path, "a value is not finite");
+        }
+
+        /// <summary>Refuses a tensor without a component or rank along a side.</summary>
+        public static void RequireSome(Tensor tensor, int side, string path)
+        {
+            if (tensor.Shape[side] == 0)
+            {
+                throw Fault("shape", path + ".shape", "side " + side + " is 0, expected 1 or more");
+            }
         }
 
         /// <summary>A tensor whose shape, bytes and scales agree.</summary>
@@ -87,9 +94,9 @@ namespace Mua.Format
         public int[] Sides(Table table, string path)
         {
             Block sides = table.Block("shape");
-            if (sides.Count < 1 || sides.Count > MaxRank)
+            if (sides.Count < 1 || sides.Count > Limits.MaxRank)
             {
-                throw Fault("shape", path + ".shape", sides.Count + " dimensions, expected 1 to " + MaxRank);
+                throw Fault("shape", path + ".shape", sides.Count + " dimensions, expected 1 to " + Limits.MaxRank);
             }
             ReadOnlySpan<uint> stored = View<uint>(sides.Offset, 4 * sides.Count);
             var shape = new int[stored.Length];

@@ -11,12 +11,13 @@ namespace Mua.Format
     /// </summary>
     internal sealed class Unpacking
     {
-        private const long Times = 16, Room = 1 << 20; // all that packed tensors give: bytes for each of the file, and beside
-
         private readonly byte[] content;
         private readonly Tensors tensors;
         private byte[] planes = new byte[0];
         private long claimed;
+
+        /// <summary>Bytes that all packed tensors may give.</summary>
+        private long Most => (long)Limits.UnpackedTimes * content.Length + Limits.UnpackedRoom;
 
         private Unpacking(byte[] content)
         {
@@ -70,11 +71,11 @@ namespace Mua.Format
         private void Claim(Table tensor, string path)
         {
             claimed += Claimed(tensor, path);
-            if (claimed > Times * content.Length + Room)
+            if (claimed > Most)
             {
                 throw Refusal.Of(
                     path + ".data", "the file's packed tensors claim more than {0} bytes, too many for {1} bytes",
-                    Times * content.Length + Room, content.Length);
+                    Most, content.Length);
             }
         }
 
@@ -121,9 +122,9 @@ namespace Mua.Format
             }
             int found = 0;
             bool ends;
+            var source = new StreamSource(content, packed.Offset, packed.Count);
             try
             {
-                var source = new MemoryStream(content, packed.Offset, packed.Count, false);
                 using (var stream = new DeflateStream(source, CompressionMode.Decompress))
                 {
                     int read = count;
@@ -143,6 +144,10 @@ namespace Mua.Format
             {
                 string given = ends ? found.ToString() : "more than " + count;
                 throw Fault(path, "the stream gives " + given + " bytes, expected " + count);
+            }
+            if (!source.IsUsedUp)
+            {
+                throw Fault(path, "the stream does not end with its bytes: the file is damaged");
             }
         }
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from mua.rig.character import MAX_INFLUENCES, Character
+from mua.limits import MAX_INFLUENCES
+from mua.rig.character import Character
 from mua.teachers.procedural.figure import build_arm, build_leg, build_thumb, build_trunk, other_side
 from mua.teachers.procedural.grid import weld
 from mua.teachers.procedural.head import build_hair, build_head

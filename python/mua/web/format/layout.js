@@ -45,6 +45,9 @@ export const TABLES = {
     { name: "skin_indices", kind: "Tensor", required: true },
     { name: "skin_weights", kind: "Tensor", required: true },
   ],
+  Level: [
+    { name: "blocks", kind: "ubyte", vector: true, required: true },
+  ],
   Texels: [
     { name: "size", kind: "uint" },
     { name: "texels", kind: "Tensor", required: true },
@@ -52,6 +55,8 @@ export const TABLES = {
     { name: "barycentrics", kind: "Tensor", required: true },
     { name: "listed", kind: "Tensor" },
     { name: "one_sided", kind: "ubyte", vector: true },
+    { name: "length", kind: "float" },
+    { name: "levels", kind: "Level", vector: true, required: true },
   ],
   Wavelet: [
     { name: "name", kind: "string", required: true },

@@ -1,10 +1,11 @@
 // Wavelet, networks and subbands of a file, checked; what the device reads stays as it is stored.
 // Reference: python/mua/asset/read.py.
 
+import { LARGEST_TAP, MAX_TAPS } from "./limits.js";
 import { general } from "./numbers.js";
 import { fault } from "./parser.js";
 import { refuse } from "./rig.js";
-import { realTensor, reals } from "./tensors.js";
+import { realTensor, reals, someTensor } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 /** @typedef {import("./tensors.js").Stored} Stored */
@@ -21,9 +22,6 @@ import { realTensor, reals } from "./tensors.js";
  * @property {number} rank of LL
  */
 
-const MAX_LEVELS = 8;
-const MAX_TAPS = 40;
-const LARGEST_TAP = 16;
 
 /** @typedef {ReturnType<typeof readWavelet>} Wavelet */
 
@@ -33,7 +31,6 @@ export function readWavelet(/** @type {Tree} */ tree) {
     rec_lo: low,
     rec_hi: high,
   } = /** @type {{levels: number, rec_lo: Float64Array, rec_hi: Float64Array}} */ (/** @type {unknown} */ (tree));
-  if (levels < 1 || levels > MAX_LEVELS) throw refuse("wavelet.levels", `${levels}, expected 1 to ${MAX_LEVELS}`);
   if (low.length !== high.length || low.length % 2 || low.length < 2 || low.length > MAX_TAPS)
     throw refuse(
       "wavelet.rec_lo",
@@ -52,7 +49,7 @@ export function readWavelet(/** @type {Tree} */ tree) {
 export function readCoarse(/** @type {Tree} */ tree, /** @type {number} */ inputs) {
   const mean = realTensor(tree.mean, "coarse.mean", [null, 3]);
   const vertices = mean.shape[0];
-  const basis = realTensor(tree.basis, "coarse.basis", [null, vertices, 3]);
+  const basis = someTensor(tree.basis, "coarse.basis", [null, vertices, 3], 0);
   const mlp = readMlp(tree.mlp, "coarse.mlp", inputs, basis.shape[0]);
   return { mlp, mean, basis, vertices, places: reals(tree.mean, "coarse.mean", [null, 3]).values };
 }
@@ -83,7 +80,7 @@ function readMlp(
  * @returns {Branch}
  */
 export function readBranch(tree, path, channels, { count, inputs, size }) {
-  const llBasis = realTensor(tree.ll_basis, `${path}.ll_basis`, [channels, null, size, size]);
+  const llBasis = someTensor(tree.ll_basis, `${path}.ll_basis`, [channels, null, size, size], 1);
   const details = /** @type {Tree[]} */ (tree.details).map((band, i) =>
     readDetail(band, `${path}.details[${i}]`, channels, size * 2 ** i),
   );
@@ -107,7 +104,7 @@ function readDetail(
   /** @type {number} */ channels,
   /** @type {number} */ size,
 ) {
-  const h = realTensor(tree.h, `${path}.h`, [3, channels, null, size]);
+  const h = someTensor(tree.h, `${path}.h`, [3, channels, null, size], 2);
   const mean = realTensor(tree.mean, `${path}.mean`, [3, channels, size, size]);
   return { mean, h, w: realTensor(tree.w, `${path}.w`, h.shape), rank: h.shape[2], size };
 }

@@ -2,13 +2,12 @@
 // ones, and deflated. Reference: python/mua/asset/packing.py.
 
 import { ROOT, TABLES } from "./layout.js";
+import { UNPACKED_ROOM, UNPACKED_TIMES } from "./limits.js";
 import { fault } from "./parser.js";
 import { isThere } from "./stages.js";
 import { SIZES, sides } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
-
-const [TIMES, ROOM] = [16, 2 ** 20]; // what all packed tensors give: bytes for each of the file, and bytes beside
 
 /**
  * Unpack the packed tensors of a file of `size` bytes, in place. What a tensor gives is known from its shape, and what all
@@ -19,7 +18,7 @@ export async function unpack(tree, size, end = size) {
   const held = [...tensors(tree, ROOT, "")].filter(
     ([, tensor]) => tensor.packing === "Deflate" || !isThere(tensor, end),
   );
-  const most = TIMES * size + ROOM;
+  const most = UNPACKED_TIMES * size + UNPACKED_ROOM;
   let all = 0;
   for (const [path, tensor] of held) {
     all += claimed(tensor, path);
@@ -67,7 +66,7 @@ async function inflate(
   const count = found.length;
   if (!count) return; // not every language tells a damaged stream of nothing from a whole one
   const reader = new Blob([stream]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
-  let got = 0;
+  let [got, whole] = [0, true];
   try {
     for (let part = await reader.read(); !part.done; part = await reader.read()) {
       if (got + part.value.length > count) {
@@ -79,9 +78,11 @@ async function inflate(
     }
   } catch {
     if (got < count) throw fault("packed", `${path}.data`, "the bytes are no deflate stream: the file is damaged");
+    whole = false; // it does not end, or bytes follow it
   }
   reader.cancel().catch(() => {}); // what is left of it does not matter
-  if (got === count) return;
+  if (got === count && whole) return;
+  if (got === count) throw fault("packed", `${path}.data`, "the stream does not end with its bytes: the file is damaged");
   const given = got > count ? `more than ${count}` : got;
   throw fault("packed", `${path}.data`, `the stream gives ${given} bytes, expected ${count}`);
 }

@@ -3,16 +3,18 @@
 
 import { AvatarError } from "../error.js";
 import { ENUMS, IDENTIFIER, ROOT, TABLES } from "./layout.js";
+import { MAJOR } from "./limits.js";
 
 /** @typedef {Record<string, any>} Tree */
 /** @typedef {{name: string, kind: string, vector?: boolean, required?: boolean, align?: number}} Field */
 
-const MAJOR = 5; // version of the format
 /** @type {Record<string, number>} */
 const WIDTHS = { bool: 1, ubyte: 1, ushort: 2, uint: 4, float: 4, double: 8 };
 /** @type {Record<string, new (content: ArrayBufferLike, at: number, count: number) => ArrayBufferView>} */
 const VIEWS = { bool: Uint8Array, ubyte: Uint8Array, uint: Uint32Array, float: Float32Array, double: Float64Array };
 const TEXT = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true });
+const CONTROL = /\p{Cc}/u; // what a terminal would obey
+const CONTROL_IN_NOTES = /(?![\t\n])\p{Cc}/u; // but tabs and line feeds
 
 /** An error of a file: what is wrong with which field, and its code. */
 export function fault(/** @type {string} */ code, /** @type {string} */ field, /** @type {string} */ sentence) {
@@ -31,10 +33,10 @@ export function parse(content) {
   if (String.fromCharCode(...identifier) !== IDENTIFIER)
     throw fault("identifier", "", `the file identifier is ${quoted(identifier)}, expected b'${IDENTIFIER}'`);
   const version = new Parser(content).rootScalar("version_major");
-  if (version > MAJOR)
-    throw fault("version", "version_major", `format version ${version} is newer than ${MAJOR}, update mua`);
-  if (version < MAJOR)
-    throw fault("version", "version_major", `format version ${version} is older than ${MAJOR}, bake the avatar again`);
+  if (version !== MAJOR) {
+    const sentence = `format version ${version}, expected ${MAJOR}: update mua where the file is newer`;
+    throw fault("version", "version_major", sentence);
+  }
   const parser = new Parser(content);
   const tree = parser.table(ROOT, 0, "");
   return { tree, crcAt: parser.crcAt };
@@ -150,11 +152,16 @@ class Parser {
   one(/** @type {string} */ kind, /** @type {number} */ at, /** @type {string} */ path) {
     if (kind !== "string") return this.table(kind, at, path);
     const [start, count] = this.vector(at, path, 1);
+    let text;
     try {
-      return TEXT.decode(new Uint8Array(this.content, start, count));
+      text = TEXT.decode(new Uint8Array(this.content, start, count));
     } catch {
       throw fault("text", path, "the text is not UTF-8");
     }
+    const control = text.match(path === "notes" ? CONTROL_IN_NOTES : CONTROL)?.[0];
+    if (control === undefined) return text;
+    const code = control.charCodeAt(0).toString(16).toUpperCase().padStart(4, "0");
+    throw fault("text", path, `the text holds the control character U+${code}`);
   }
 
   vector(/** @type {number} */ at, /** @type {string} */ path, /** @type {number} */ width) {

@@ -2,25 +2,22 @@
 // and sentence of the Python reader. Reference: python/mua/asset/read.py.
 
 import { checksum } from "./checksum.js";
+import { LARGEST_RATE, LEAST_RATE, LEAST_SCALE, MAX_ADDED, MAX_FRAMES, MAX_WINDOW, STAGES } from "./limits.js";
+import { checkMagnitude } from "./magnitude.js";
 import { readBranch, readCoarse, readWavelet } from "./model.js";
 import { general, shortest } from "./numbers.js";
 import { fault, parse } from "./parser.js";
 import { unpack } from "./packing.js";
 import { besideRoot, readSkeleton, readSurface, readTemplate, readTexels, refuse, translated, unit } from "./rig.js";
+import { checkSizes } from "./sizes.js";
 import { leaveOut } from "./stages.js";
-import { reals } from "./tensors.js";
+import { expanded, reals, someTensor } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 /** @typedef {import("./rig.js").Skeleton} Skeleton */
 
 const GEOMETRY_CHANNELS = 11;
 const APPEARANCE_CHANNELS = 12;
-const MAX_WINDOW = 16;
-const LEAST_RATE = 1; // frames per second
-const LARGEST_RATE = 1000;
-const MAX_FRAMES = 2 ** 20; // of a clip at the encoding's rate
-const MAX_ADDED = 2 ** 24; // joints in all frames that clips gain at the encoding's rate
-const LEAST_SCALE = 1e-6; // of a descriptor's number
 const PNG_SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
 /** @typedef {ReturnType<typeof decode>} Avatar what a file holds; arrays are views of its bytes where they can be */
@@ -31,7 +28,8 @@ const PNG_SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 export async function read(/** @type {ArrayBuffer} */ content) {
   const { tree, crcAt } = parse(content);
   checkSum(content, tree, crcAt);
-  checkStages(tree.stages ?? [], content.byteLength);
+  checkStages(tree.stages, content.byteLength);
+  checkSizes(tree);
   await unpack(tree, content.byteLength);
   return decode(tree);
 }
@@ -46,6 +44,7 @@ export async function readStage(content, end) {
   part.set(new Uint8Array(content, 0, end));
   const { tree } = parse(part.buffer);
   checkStages(tree.stages, part.length);
+  checkSizes(tree);
   leaveOut(tree, end);
   await unpack(tree, part.length, end);
   return decode(tree);
@@ -61,10 +60,11 @@ function checkSum(/** @type {ArrayBuffer} */ content, /** @type {Tree} */ tree, 
   }
 }
 
-function checkStages(/** @type {Uint32Array | number[]} */ ends, /** @type {number} */ size) {
+function checkStages(/** @type {Uint32Array | undefined} */ ends, /** @type {number} */ size) {
+  if (!ends) return;
   const list = Array.from(ends);
-  if (list.some((end, i) => end > size || (i > 0 && end < list[i - 1])))
-    throw refuse("stages", `[${list.join(", ")}], expected rising numbers up to the file's ${size} bytes`);
+  if (list.length !== STAGES || list.some((end, i) => end > size || (i > 0 && end < list[i - 1])))
+    throw refuse("stages", `[${list.join(", ")}], expected ${STAGES} rising numbers up to the file's ${size} bytes`);
 }
 
 function decode(/** @type {Tree} */ tree) {
@@ -80,10 +80,7 @@ function decode(/** @type {Tree} */ tree) {
   const of = { count: texels.texels.length, inputs, size: side };
   const geometry = readBranch(tree.geometry, "geometry", GEOMETRY_CHANNELS, of);
   const appearance = readBranch(tree.appearance, "appearance", APPEARANCE_CHANNELS, of);
-  if (texels.size % 2 ** wavelet.levels)
-    throw refuse("texels.size", `${texels.size} does not halve ${wavelet.levels} times`);
-  if (Math.max(geometry.details.length, appearance.details.length) > wavelet.levels)
-    throw refuse("geometry.details", `more levels of detail than the wavelet's ${wavelet.levels}`);
+  checkMagnitude(encoding, wavelet, coarse, { geometry, appearance });
   const clips = readClips(tree.clips, skeleton, encoding.rate);
   const bounds = readBounds(tree.bounds);
   const { name, producer, notes } = /** @type {Record<string, string>} */ (tree);
@@ -114,8 +111,8 @@ function readComponents(/** @type {Tree} */ tree, /** @type {number} */ width) {
   const least = scale.reduce((a, b) => Math.min(a, b), Infinity);
   if (least < Math.fround(LEAST_SCALE))
     throw refuse("encoding.scale", `${shortest(least)}, expected ${scientificWhole(LEAST_SCALE)} or more`);
-  const { values: directions, shape } = reals(tree.components, "encoding.components", [null, width]);
-  const count = shape[0];
+  const stored = someTensor(tree.components, "encoding.components", [null, width], 0);
+  const [directions, count] = [expanded(stored), stored.shape[0]];
   const ranges = reals(tree.ranges, "encoding.ranges", [2, count]).values;
   const swapped = ranges.subarray(0, count).findIndex((low, k) => low > ranges[count + k]);
   if (swapped >= 0)

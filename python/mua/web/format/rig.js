@@ -4,18 +4,15 @@ import { centreBarycentrics } from "../prepare.js";
 import { normalized } from "../rotation.js";
 import { bindInverse } from "../skeleton.js";
 import { blocks, blockTriangles } from "../surface.js";
-import { general, scientific } from "./numbers.js";
+import { readLevels } from "./blocks.js";
+import { BARYCENTRIC_SLACK, BIND_BOUND, LARGEST, MAX_INFLUENCES, UNIT_BOUND, WEIGHT_BOUND } from "./limits.js";
+import { general, scientific, shortest } from "./numbers.js";
 import { fault } from "./parser.js";
 import { indices, reals } from "./tensors.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 
-const UNIT_BOUND = 2e-3; // a unit quaternion rounded to f16 leaves 1 by at most 4 x 2^-11
-const WEIGHT_BOUND = 1e-4;
-const BIND_BOUND = 1e-4; // metres and quaternion components: f32 forward kinematics over a deep chain
-const INFLUENCES = 8; // joints of a vertex
-const MAX_SIZE = 4096;
-const SLACK = 2 ** -21; // the third barycentric is a rounded difference
+const DUAL_NUMBERS = 8; // of a dual quaternion
 const END = -1; // of a strip
 
 export const refuse = (/** @type {string} */ field, /** @type {string} */ sentence) => fault("value", field, sentence);
@@ -46,9 +43,18 @@ export function readSkeleton(/** @type {Tree} */ tree) {
   return { ...skeleton, inverse, translated: translated(tree, "skeleton.translated", count, root) };
 }
 
-/** The larger of what two sets of dual quaternions, which may have either sign number by number, differ by. */
+/** How far dual quaternions are from those stated, each of which may have the opposite sign. */
 function bindGap(/** @type {Float32Array} */ stated, /** @type {Float64Array} */ inverse) {
-  return inverse.reduce((most, v, i) => Math.max(most, Math.min(Math.abs(stated[i] - v), Math.abs(stated[i] + v))), 0);
+  let most = 0;
+  for (let at = 0; at < inverse.length; at += DUAL_NUMBERS) {
+    const [same, opposite] = [1, -1].map((sign) =>
+      inverse
+        .subarray(at, at + DUAL_NUMBERS)
+        .reduce((gap, value, i) => Math.max(gap, Math.abs(stated[at + i] - sign * value)), 0),
+    );
+    most = Math.max(most, Math.min(same, opposite));
+  }
+  return most;
 }
 
 /** Unit quaternions [..., 4] as stored. @param {Tree} tensor @param {string} path @param {(number | null)[]} shape */
@@ -91,9 +97,9 @@ export function readTemplate(/** @type {Tree} */ tree, /** @type {number} */ cou
   const uv = reals(tree.uv, "template.uv", [null, 2]);
   const faces = indices(tree.faces, "template.faces", [null, 3], 0, count);
   const uvFaces = indices(tree.uv_faces, "template.uv_faces", [faces.length / 3, 3], 0, uv.shape[0]);
-  const weights = reals(tree.skin_weights, "template.skin_weights", [count, INFLUENCES]).values;
+  const weights = reals(tree.skin_weights, "template.skin_weights", [count, MAX_INFLUENCES]).values;
   checkWeights(weights, count);
-  const skinIndices = indices(tree.skin_indices, "template.skin_indices", [count, INFLUENCES], 0, joints);
+  const skinIndices = indices(tree.skin_indices, "template.skin_indices", [count, MAX_INFLUENCES], 0, joints);
   return { faces, uv: uv.values, uvFaces, skinIndices, skinWeights: weights };
 }
 
@@ -102,10 +108,10 @@ function checkWeights(/** @type {Float32Array} */ weights, /** @type {number} */
   let [worst, sumOfWorst, negative, rising] = [0, 1, false, -1];
   for (let vertex = 0; vertex < count; vertex++) {
     let sum = 0;
-    for (let at = INFLUENCES * vertex; at < INFLUENCES * (vertex + 1); at++) {
+    for (let at = MAX_INFLUENCES * vertex; at < MAX_INFLUENCES * (vertex + 1); at++) {
       sum += weights[at];
       negative ||= weights[at] < 0;
-      if (rising < 0 && at % INFLUENCES && weights[at] > weights[at - 1]) rising = vertex;
+      if (rising < 0 && at % MAX_INFLUENCES && weights[at] > weights[at - 1]) rising = vertex;
     }
     if (Math.abs(sum - 1) > Math.abs(sumOfWorst - 1)) [worst, sumOfWorst] = [vertex, sum];
   }
@@ -119,7 +125,6 @@ function checkWeights(/** @type {Float32Array} */ weights, /** @type {number} */
 
 export function readTexels(/** @type {Tree} */ tree, /** @type {Template} */ template) {
   const size = /** @type {number} */ (tree.size);
-  if (size < 1 || size > MAX_SIZE) throw refuse("texels.size", `${size}, expected 1 to ${MAX_SIZE}`);
   const texels = indices(tree.texels, "texels.texels", [null], 0, size * size);
   if (!ascend(texels)) throw refuse("texels.texels", "texels must ascend");
   const triangles = indices(tree.triangles, "texels.triangles", [texels.length], 0, template.faces.length / 3);
@@ -129,9 +134,14 @@ export function readTexels(/** @type {Tree} */ tree, /** @type {Template} */ tem
     const third = 1 - Math.fround(barycentrics[at] + barycentrics[at + 1]);
     least = Math.min(least, barycentrics[at], barycentrics[at + 1], third);
   }
-  if (least < -SLACK) throw refuse("texels.barycentrics", `${general(least, 3)}, expected 0 to 1`);
+  if (least < -BARYCENTRIC_SLACK) throw refuse("texels.barycentrics", `${general(least, 3)}, expected 0 to 1`);
   const oneSided = readOneSided(tree.one_sided, texels.length);
-  return { size, texels, triangles, barycentrics: barycentrics.map((share) => Math.max(share, 0)), oneSided };
+  const length = /** @type {number} */ (tree.length);
+  if (!(length >= 0 && length <= LARGEST))
+    throw refuse("texels.length", `${shortest(length)}, expected 0 to ${LARGEST}`);
+  const levels = readLevels(tree.levels, { size, texels });
+  const held = barycentrics.map((share) => Math.max(share, 0));
+  return { size, texels, triangles, barycentrics: held, oneSided, length, levels };
 }
 
 /** A bit for each texel, the lowest of a byte first: not drawn from behind. None where the file has none. @param {Uint8Array | undefined} content @param {number} count */

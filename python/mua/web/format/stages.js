@@ -1,13 +1,12 @@
 // A file for the network before all of it is there: its stages, each of which shows more. Reference: section 11.1 of
 // schemas/README.md.
 
+import { STAGES } from "./limits.js";
 import { fault, parse } from "./parser.js";
 
 /** @typedef {import("./parser.js").Tree} Tree */
 
 const HEAD = 2 ** 18; // bytes of a file, among which its tables are sought
-const BEFORE = 4; // stages that are shown before all is there; one more is the whole file
-
 /** Which stages of a file have arrived; its bytes are written into `content`, zeros until then. */
 export class Stages {
   constructor(/** @type {ArrayBuffer} */ content) {
@@ -36,8 +35,8 @@ function endsOf(/** @type {ArrayBuffer} */ content, /** @type {number} */ got) {
   try {
     const { tree } = parse(content);
     const ends = /** @type {Uint32Array | undefined} */ (tree.stages);
-    if (!ends || ends.length !== BEFORE + 1 || ends.byteOffset + ends.byteLength > got) return null;
-    return Array.from(ends.subarray(0, BEFORE));
+    if (!ends || ends.length !== STAGES || ends.byteOffset + ends.byteLength > got) return null;
+    return Array.from(ends.subarray(0, STAGES - 1));
   } catch {
     return null; // what is wrong is said of the whole file
   }
@@ -56,11 +55,18 @@ export function leaveOut(tree, end) {
     [clip.rotations, clip.translation, clip.translations].every(there),
   );
   if (!tree.clips.length) throw fault("truncated", "clips", "none is there yet");
-  if ([texels.texels, texels.triangles, texels.barycentrics, texels.listed].every(there)) return;
-  tree.texels = { size: texels.size, texels: empty("I32", 0), triangles: empty("I32", 0), barycentrics: empty("F32", 0, 2) };
+  const held = [texels.texels, texels.triangles, texels.barycentrics, texels.listed];
+  const levels = /** @type {Tree[]} */ (texels.levels);
+  if (held.every(there) && levels.every(({ blocks }) => isThere({ data: blocks }, end))) return;
+  const [indices, barycentrics] = [empty("I32", 0), empty("F32", 0, 2)];
+  tree.texels = { ...texels, texels: indices, triangles: indices, barycentrics, levels: levels.map(() => NO_BLOCKS) };
+  delete tree.texels.listed;
+  delete tree.texels.one_sided;
   for (const branch of [tree.geometry, tree.appearance])
     branch.static_offset = empty("F32", branch.static_offset.shape[0], 0);
 }
+
+const NO_BLOCKS = { blocks: new Uint8Array() };
 
 export const isThere = (/** @type {Tree} */ { data }, /** @type {number} */ end) => data.byteOffset + data.length <= end;
 

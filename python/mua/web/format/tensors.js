@@ -1,6 +1,7 @@
 // The Tensor of the file: shape, element type, bytes, and one scale for each row where the type is I8. What is uploaded
 // stays in its stored type. Reference: python/mua/asset/tensors.py.
 
+import { LARGEST, MAX_RANK } from "./limits.js";
 import { fault } from "./parser.js";
 import { general } from "./numbers.js";
 
@@ -14,8 +15,6 @@ import { general } from "./numbers.js";
  * @property {Float32Array | undefined} scale of each row of I8
  */
 
-export const LARGEST = 65504; // of any real: f16's largest, so that what is decoded from a file is finite too
-const MAX_RANK = 4;
 const MAX_BYTES = 2 ** 31 - 1;
 /** @type {Record<string, number>} */
 export const SIZES = { F32: 4, F16: 2, I8: 1, I32: 4 };
@@ -86,6 +85,24 @@ export function realTensor(tensor, path, shape) {
 export function reals(tensor, path, shape) {
   const found = realTensor(tensor, path, shape);
   return { shape: found.shape, values: expanded(found) };
+}
+
+/** A tensor of at least one component or rank along a side. @param {Tree} tensor @param {string} path @param {(number | null)[]} shape @param {number} side */
+export function someTensor(tensor, path, shape, side) {
+  const found = realTensor(tensor, path, shape);
+  if (!found.shape[side]) throw fault("shape", `${path}.shape`, `side ${side} is 0, expected 1 or more`);
+  return found;
+}
+
+/** The largest magnitude of finite values; 0 of none. */
+export function largest(/** @type {Stored} */ found) {
+  let most = 0;
+  if (found.type === "F16") {
+    for (const bits of words(found, Uint16Array)) most = Math.max(most, bits & HALF_MAGNITUDE);
+    return half(most);
+  }
+  for (const value of expanded(found)) most = Math.max(most, Math.abs(value));
+  return most;
 }
 
 /** The value of the largest magnitude; NaN where one is not finite. */

@@ -1,0 +1,33 @@
+// Generated from python/mua/limits.py by tools/gen_layout.py; do not edit.
+
+export const MAJOR = 1;
+export const MINOR = 0;
+export const MAX_RANK = 4;
+export const LARGEST = 65504.0;
+export const UNPACKED_TIMES = 16;
+export const UNPACKED_ROOM = 1048576;
+export const STAGES = 5;
+export const MAX_JOINTS = 4096;
+export const MAX_LAYERS = 64;
+export const MAX_CLIPS = 4096;
+export const MAX_LEVELS = 8;
+export const MAX_SIDE = 4096;
+export const TEXTURE_TIMES = 16;
+export const TEXTURE_ROOM = 65536;
+export const MAX_DETAIL_LEVELS = 2;
+export const MOST_TAPS = 32;
+export const GROWTH = 1.85;
+export const UNIT_BOUND = 0.002;
+export const WEIGHT_BOUND = 0.0001;
+export const BIND_BOUND = 0.0001;
+export const BARYCENTRIC_SLACK = 4.76837158203125e-07;
+export const MAX_INFLUENCES = 8;
+export const MAX_TAPS = 40;
+export const LARGEST_TAP = 16.0;
+export const MAX_WINDOW = 16;
+export const LEAST_RATE = 1.0;
+export const LARGEST_RATE = 1000.0;
+export const MAX_FRAMES = 1048576;
+export const MAX_ADDED = 16777216;
+export const LEAST_SCALE = 1e-06;
+export const MAGNITUDE = 4.611686018427388e+18;
