@@ -10,6 +10,9 @@ import engine_shaders
 import pipelines
 import pytest
 from csharp import CSharp
+from format_program import program
+
+__all__ = ["program"]  # a fixture, which modules with a program of their own replace
 
 
 @pytest.fixture(scope="session")
