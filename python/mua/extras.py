@@ -7,14 +7,14 @@ from pathlib import Path
 
 # The extras of python/pyproject.toml, by the names under which their packages are imported.
 READING = ("DracoPy", "meshoptimizer", "pygltflib", "pywt", "scipy", "xatlas")
-TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "warp", "xatlas")
+TRAINING = ("meshoptimizer", "moderngl", "pywt", "scipy", "torch", "trimesh", "warp", "xatlas")
 VIEWING = (*READING, "glfw", "imageio_ffmpeg", "imgui_bundle", "rendercanvas", "wgpu")
 EXTRAS = {  # the smaller ones first: of several that bring a package the first is proposed
     "view": frozenset(VIEWING),
     "export": frozenset((*READING, "pxr")),
     "train": frozenset(TRAINING),
-    "bake": frozenset((*READING, *TRAINING, "plyfile", "pxr")),
-    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "plyfile", "pxr", "torchmetrics")),
+    "bake": frozenset((*READING, *TRAINING, "pxr")),
+    "teach": frozenset((*READING, *TRAINING, "imageio_ffmpeg", "pxr", "torchmetrics")),
     "eval": frozenset((*VIEWING, *TRAINING, "flip_evaluator", "matplotlib", "torchmetrics")),
     "deploy": frozenset(("adbutils",)),
 }

@@ -27,7 +27,19 @@ COMMANDS = (
     "view",
 )
 # What takes long to load, or is not there unless its extra was asked for.
-SLOW = ("torch", "warp", "wgpu", "pxr", "scipy", "matplotlib", "moderngl", "meshoptimizer", "xatlas", "adbutils")
+SLOW = (
+    "torch",
+    "trimesh",
+    "warp",
+    "wgpu",
+    "pxr",
+    "scipy",
+    "matplotlib",
+    "moderngl",
+    "meshoptimizer",
+    "xatlas",
+    "adbutils",
+)
 RUN = """
 sys.argv[0] = "mua-{name}"
 try:

@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 import torch
 from scipy.spatial import cKDTree
+from trimesh.grouping import group_rows, unique_rows
 
 from mua.arrays import Array
 from mua.avatar.camera import Camera, orbit
@@ -94,10 +95,9 @@ def near_open_edges(rig: Rig) -> Array:
     """Whether each texel [N] lies near an edge that only one triangle has."""
     vertices, faces, texels = rig.mesh.vertices, rig.mesh.faces, rig.texels
     size = float(np.ptp(vertices, axis=0).max())
-    welded = np.unique(np.round(vertices / (SAME_PLACE * size)), axis=0, return_inverse=True)[1].reshape(-1)
+    _, welded = unique_rows(np.round(vertices / (SAME_PLACE * size)).astype(np.int64))
     edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    _, first, count = np.unique(np.sort(welded[edges], axis=1), axis=0, return_index=True, return_counts=True)
-    ends = vertices[edges[first[count == 1]]]
+    ends = vertices[edges[group_rows(np.sort(welded[edges], axis=1), require_count=1)]]
     if not len(ends):
         return np.zeros(len(texels.texels), bool)
     steps = np.linspace(0, 1, EDGE_POINTS)[:, None, None]

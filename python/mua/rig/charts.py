@@ -55,6 +55,7 @@ def areas(
     corners: Array,  # [F, 3, 2 or 3]
 ) -> Array:
     """Area of each triangle [F]."""
+    # Also in UV; trimesh's are 0.3 ms faster on 12,000 triangles, and round 64 % of them to other last bits.
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     squares = (a * a).sum(axis=1) * (b * b).sum(axis=1) - (a * b).sum(axis=1) ** 2
     return np.sqrt(np.maximum(squares, 0)) / 2

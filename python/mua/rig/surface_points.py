@@ -41,6 +41,7 @@ def nearest_barycentrics(
     corners: Array,  # [..., 3, 3] of triangles
 ) -> Array:
     """Barycentrics [..., 3] of the points of triangles that lie nearest to the given ones."""
+    # Those of trimesh are NaN on triangles without area; 14 ms for 12,000 pairs, in place of 4.
     a, b, c = np.moveaxis(corners, -2, 0)
     inside = _plane_barycentrics(points, a, b, c)
     best = np.where(np.all(inside >= 0, axis=-1, keepdims=True), inside, np.nan)

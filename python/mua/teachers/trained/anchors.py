@@ -51,6 +51,7 @@ def anchors_of(
 
 def nearest_points(vertices: Array, faces: Array, points: Array, *, reach: float) -> Anchors:
     """The nearest points of a surface to points [P, 3]."""
+    # trimesh's search needs rtree and finds the same in 374 ms, in place of 148 (5,000 points, 11,024 triangles).
     corners = vertices[faces]
     near = cKDTree(corners.mean(axis=1)).query(points, k=min(NEAR, len(faces)))[1].reshape(len(points), -1)
     barycentrics = nearest_barycentrics(points[:, None], corners[near])

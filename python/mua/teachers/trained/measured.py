@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from plyfile import PlyData, PlyParseError
+import trimesh
 from torch import Tensor
 
 from mua import rotation
@@ -94,14 +94,13 @@ def unit_of(
 
 
 def read_surface(file: Path) -> Mesh:
-    """The triangles of a .ply file, in the world and in metres; raises InputError where it holds none."""
+    """The triangles of a .ply or .obj file, in the file's unit; raises InputError where it holds none."""
     try:
-        held = PlyData.read(str(file))
-        vertices = np.stack([held["vertex"][axis] for axis in "xyz"], axis=1).astype(float)
-        faces = np.stack(held["face"].data[held["face"].properties[0].name]).astype(np.int64)
-    except (OSError, PlyParseError, KeyError, IndexError, ValueError) as error:
-        raise InputError(f"{file}: is no .ply file with vertices and triangles ({error})") from error
-    if faces.ndim != 2 or faces.shape[1] != 3 or not np.isfinite(vertices).all():
+        held = trimesh.load_mesh(file, process=False, skip_materials=True)
+        vertices, faces = np.array(held.vertices, float), np.array(held.faces, np.int64)
+    except Exception as error:  # trimesh lets pass whatever its parsers run into
+        raise InputError(f"{file}: is no .ply or .obj file with vertices and triangles ({error})") from error
+    if not faces.size or not np.isfinite(vertices).all():
         raise InputError(f"{file}: expected triangles between finite vertices")
     wrong = faces[(faces < 0) | (faces >= len(vertices))]
     if wrong.size:

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 import torch
+import trimesh
 from scipy.spatial import cKDTree
 from torch import Tensor
 
@@ -106,9 +107,7 @@ def roughness(
 
 def edges_of(mesh: Mesh) -> Tensor:
     """Edges [E, 2] int64 between vertices, each once."""
-    faces = mesh.faces
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    return torch.as_tensor(np.unique(np.sort(edges, axis=1), axis=0)).long()
+    return torch.tensor(trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).edges_unique).long()
 
 
 def gather(
