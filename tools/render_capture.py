@@ -132,9 +132,9 @@ def parser() -> argparse.ArgumentParser:
 def main() -> None:
     given = vars(parser().parse_args())
     folder, blender, threads = (given.pop(name) for name in ("output", "blender", "threads"))
-    lists = {name: tuple(given.pop(name)) for name in ("motion", "held_out_motion", "leave_out")}
+    given |= {name: tuple(given[name]) for name in ("motion", "held_out_motion", "leave_out")}
     try:
-        render_capture(Order(**lists, **given), folder, blender=blender, threads=threads)
+        render_capture(Order(**given), folder, blender=blender, threads=threads)
     except InputError as error:
         sys.exit(f"error: {error}")
 

@@ -180,7 +180,9 @@ def _steps(shader: Shader, body: str) -> Iterator[str]:
             at = _statement_end(body, start)
             yield from 2 * list(_steps(shader, body[start:at]))
         else:
-            statement = STATEMENT.match(body, at)[0]
+            matched = STATEMENT.match(body, at)
+            assert matched, body[at:]  # it matches whatever stands there
+            statement = matched[0]
             for word in re.findall(r"\w+", statement):
                 if word in shader.functions:
                     yield from 2 * list(_steps(shader, shader.functions[word].body))

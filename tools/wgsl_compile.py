@@ -57,7 +57,9 @@ def _grouped(code: str, stage: str) -> str:
 def _interface(reflected: dict[str, Any], code: str) -> Interface:
     point = reflected["entryPoints"][0]
     used = {bound["name"] for bound in point.get("bindings", []) if bound["binding"].get("used")}
-    buffers, constants, binding = [], (), None
+    buffers: list[BufferSlot] = []
+    constants: tuple[Constant, ...] = ()
+    binding = None
     for parameter in reflected["parameters"]:
         if parameter["name"] not in used:
             continue

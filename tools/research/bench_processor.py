@@ -8,6 +8,7 @@ import argparse
 import time
 from collections import defaultdict
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -19,7 +20,7 @@ from mua.avatar.camera import Camera
 from mua.bench.counts import DISTANCES, eye_before, fragments
 from mua.bench.random_avatar import random_avatar
 from mua.bench.work import by_kernel
-from mua.gpu import Buffer, Device, open_device
+from mua.gpu import Buffer, Commands, Device, open_device
 from mua.gpu.kernel import Kernel
 from mua.motion.facing import front_of
 from mua.player.buffers import AvatarBuffers
@@ -37,7 +38,7 @@ class Recorded:
     def __init__(self, device: Device) -> None:
         self._device = device
         self.all = device.commands()
-        self.each = []
+        self.each: list[tuple[str, Commands]] = []
 
     def dispatch(
         self, kernel: Kernel, groups: tuple[int, int, int], buffers: Mapping[str, Buffer], **constants: Any
@@ -67,7 +68,7 @@ def main() -> None:
     avatar.decode(before, clip.rotations[window], clip.translations[window])
     azimuth = front_of(skeleton, clip.rotations[0], clip.translations[0])
     cameras = {way: eye_before(avatar.bounds, azimuth, way) for way in given.distance or DISTANCES}
-    recorded = Recorded(device)
+    recorded: Any = Recorded(device)
     avatar.decode(recorded, clip.rotations[window], clip.translations[window])
     frame.sort(recorded, [next(iter(cameras.values()))])
     kernels(device, frame, recorded, given.repeat)
@@ -75,13 +76,19 @@ def main() -> None:
         drawing(device, frame, clip, window, camera, f"{distance} m", given.repeat)
 
 
+def _through(commands: Commands, frame: SplatFrame[AvatarFrame]) -> None:
+    """Submit commands and wait until they are done."""
+    commands.submit()
+    frame.arguments.read()
+
+
 def kernels(device: Device, frame: SplatFrame[AvatarFrame], recorded: Recorded, repeat: int) -> None:
     """Print a row for each kernel."""
     spent = defaultdict(list)
     for _ in range(repeat):
-        once = defaultdict(float)
+        once: defaultdict[str, float] = defaultdict(float)
         for name, commands in recorded.each:
-            once[name] += processor(lambda commands=commands: (commands.submit(), frame.arguments.read()))
+            once[name] += processor(partial(_through, commands, frame))
             once[name] -= processor(frame.arguments.read)
         for name, seconds in once.items():
             spent[name].append(1e3 * seconds)

@@ -58,7 +58,7 @@ OPTIONS: dict[str, dict[str, float]] = {
     "no weight decay": {"weight_decay": 0.0},
     "weight decay 0.01": {"weight_decay": 1e-2},
     "heading kept": {"heading": False},
-    "fine-tuned at 3e-4": {"rate": 3e-4},
+    "fine-tuned at 3e-4": {"lr": 3e-4},
     f"{LONGER}x fine-tuning": {"longer": LONGER},
 }
 SHARES = (*(f"{name}, %" for name in ATTRIBUTES), "mesh, %")
@@ -91,8 +91,8 @@ def main(
 
 
 def vary(settings: Settings, change: dict[str, float]) -> Settings:
-    """Settings with some fields of their generalisation changed, and fine-tuned `longer` times as long or at `rate`."""
-    own = {name: value for name, value in change.items() if name not in ("longer", "rate")}
+    """Settings with some fields of their generalisation changed, and fine-tuned `longer` times as long or at `lr`."""
+    own = {name: value for name, value in change.items() if name not in ("longer", "lr")}
     longer, fine = change.get("longer", 1), settings.finetune
     return replace(
         settings,
@@ -101,7 +101,7 @@ def vary(settings: Settings, change: dict[str, float]) -> Settings:
             fine,
             steps=int(longer * fine.steps),
             epochs=longer * fine.epochs,
-            rate=change.get("rate", fine.rate),
+            lr=change.get("lr", fine.lr),
         ),
     )
 

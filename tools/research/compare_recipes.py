@@ -95,7 +95,7 @@ def main() -> None:
             continue
         kept.drop(recipe)
         for task in tasks:
-            follow(task, recording, one, lambda row, key=(recipe, task.name): kept.add(key, row))
+            follow(task, recording, one, partial(kept.add, (recipe, task.name)))
     text = summary(kept)
     (arguments.output / "recipes.md").write_text(text)
     plot(arguments.output / "recipes.png", kept)
@@ -137,7 +137,9 @@ def follow(task: Task, recording: Recording, settings: Settings, add: Callable[[
         if not joint or progress.step not in marks:
             return
         spent = [before + clock() - since for before, clock, since in zip(spent, clocks, started, strict=True)]
-        add(Row(progress.step, *spent, *losses(branch, task)))
+        seconds, processor = spent
+        training, held_out = losses(branch, task)
+        add(Row(progress.step, seconds, processor, training, held_out))
         started = [clock() for clock in clocks]
 
     with tempfile.TemporaryDirectory() as directory:

@@ -142,7 +142,7 @@ def full_size(
         held[name] = gram, cross, (part.stop - part.start) * len(known.texels)
     together = tuple(map(sum, zip(*held.values(), strict=True)))
     for kind, parts in (("pca-only", [together]), ("full-blendshapes", list(held.values()))):
-        spectra = [spectrum(*part[:2]) for part in parts]  # type: ignore[arg-type]
+        spectra = [spectrum(*part[:2]) for part in parts]
         for components in COMPONENTS:
             sums = [sum(float(s[at][:components].sum()) for s in spectra) for at in (0, 1)]
             numbers = sum(components * int(part[2]) for part in parts)

@@ -5,6 +5,9 @@ from all sides, as an eye of a headset sees it, by the device at hand. Exact is 
 over pixels by 3 x 3 Gauss-Legendre points, in the order of depth. With --share the one-sided texels are measured anew.
 """
 
+# mypy: disable-error-code="index, operator, no-untyped-def, var-annotated"
+# Kernels are written in warp's dialect of Python.
+
 import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -165,10 +165,10 @@ def trained(
     seen: Seen, rig: Rig, encoding: PoseEncoding, arguments: argparse.Namespace
 ) -> tuple[DrivableTemplate, float]:
     settings = TemplateSettings(sizes=GraphSizes(nodes=arguments.nodes))
-    stages = (
+    of_nodes, of_offsets = (
         replace(one, steps=max(1, int(one.steps * arguments.steps))) for one in (settings.nodes, settings.offsets)
     )
-    settings = replace(settings, **dict(zip(("nodes", "offsets"), stages, strict=True)))
+    settings = replace(settings, nodes=of_nodes, offsets=of_offsets)
     if arguments.networks == "mlp":
         settings = replace(settings, sizes=replace(settings.sizes, features=HIDDEN))
     template = template_of(rig, encoding, settings)
